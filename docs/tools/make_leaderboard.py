@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from brdfkit.theses.kurt2007.neural import decode_network
 from leaderboard.page import write_page
 from leaderboard.truth import MAX_ANGLE, PAIRS, Truth
 
@@ -23,7 +24,6 @@ import brdfkit as bk
 from brdfkit.core.files import sha256, write_safely
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
-from brdfkit.model.samples.neural import decode_network
 from brdfkit.regression import regress
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
@@ -104,7 +104,7 @@ def restart(file, model):
     """(E of the fit, the least E of `RESTARTS` searches from random points on all samples)."""
     data, model = bk.load(file), labels.model(model)
     samples = select_samples(data, MAX_ANGLE)
-    space = Space.of(model, {}, model.determined(samples), data.anisotropic)
+    space = Space.of(model, {}, model.determine_parameters(samples), data.anisotropic)
     problem = Problem(model, samples, bk.losses.named["log"], space)
     ends = []
     for u in np.random.default_rng(SEED).random((RESTARTS, 1, len(space.names))):

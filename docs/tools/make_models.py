@@ -130,7 +130,7 @@ def shown_values(form):
 
 
 def picture(form):
-    return "_".join([form.type_name(), *form.chosen().values()]) + ".png"
+    return "_".join([form.type_name(), *form.changed_options().values()]) + ".png"
 
 
 def use(model):

@@ -12,7 +12,7 @@ from make_models import docstring, paragraphs, references, table, xml
 
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS, MODELS
-from brdfkit.model.labels import model_in
+from brdfkit.model.labels import find_model_in
 
 FOLDER = Path(__file__).parents[1] / "plugins"
 TOP = "../../plugins"
@@ -48,7 +48,7 @@ def shipped(kind):
 
 
 def is_model(kind, source):
-    return kind == MODELS and model_in(source) is not None
+    return kind == MODELS and find_model_in(source) is not None
 
 
 def page(kind, name, source):

@@ -24,6 +24,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
+from brdfkit.theses.kurt2007.neural import decode_network
 from PIL import Image, ImageDraw, ImageFont
 from real_measurements import page
 from real_measurements.errors import MODELS, measure
@@ -36,7 +37,6 @@ from brdfkit.core.colours import to_srgb
 from brdfkit.core.files import write_safely
 from brdfkit.core.jit.threads import use_threads
 from brdfkit.core.json_values import round_numbers
-from brdfkit.model.samples.neural import decode_network
 
 RESULTS = Path(__file__).parents[1] / "real_measurements.json"
 DIGITS = 4  # of numbers in it

@@ -19,7 +19,7 @@ import drjit as dr
 from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.geometry.vectors import half_vector
 from brdfkit.model import Model, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, factored, lambertian
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian, make_factored_lobe
 from brdfkit.model.microfacet import Visible, v_groove
 from brdfkit.model.numerics import expm1, log1p
 
@@ -104,4 +104,4 @@ class ABC(Model):
             return 4 / dr.pi * heights.integral() * fresnel(self.ior, wi.z)
 
         sampling = HalfVector(Visible(heights))
-        return lambertian(), factored(facets, self.geometry, sampling, energy)
+        return lambertian(), make_factored_lobe(facets, self.geometry, sampling, energy)

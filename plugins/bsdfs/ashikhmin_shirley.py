@@ -61,7 +61,7 @@ class AshikhminShirley(FresnelModel):
         if self.diffuse == "coupled":
             diffuse = Lobe(self.coupled_diffuse, Cosine(), self.coupled_albedo, diffuse=True)
         sampling = HalfVector(Visible(powers))
-        return diffuse, *self.fresnel_lobes(powers.density, self.geometry, sampling)
+        return diffuse, *self.make_fresnel_lobes(powers.density, self.geometry, sampling)
 
 
 def entering_share(cosine: JitFloat) -> JitFloat:

@@ -16,7 +16,7 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.model import Model, follows, option, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, factored, lambertian
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian, make_factored_lobe
 from brdfkit.model.microfacet import CosinePower, Visible
 
 # The ball on the model's page: blue lacquer
@@ -48,6 +48,6 @@ class BlinnPhong(Model):
     def lobes(self) -> tuple[Lobe, ...]:
         sampling = HalfVector(Visible(CosinePower(self.exponent, self.exponent_v)))
         brightest = 4 if self.normalisation == "printed" else 1
-        return lambertian(), factored(
+        return lambertian(), make_factored_lobe(
             self.facets, lambda wi, wo: 1.0, sampling, lambda wi: brightest * wi.z
         )

@@ -37,4 +37,4 @@ class CookTorrance(FresnelModel):
     def lobes(self) -> tuple[Lobe, ...]:
         slopes = Beckmann(self.alpha, self.alpha)  # its D includes the factor 1/π of eq. 3.28
         sampling = HalfVector(Visible(slopes))
-        return lambertian(), *self.fresnel_lobes(slopes.D, self.geometry, sampling, albedo=4)
+        return lambertian(), *self.make_fresnel_lobes(slopes.D, self.geometry, sampling, albedo=4)

@@ -36,4 +36,4 @@ class GGX(FresnelModel):
         def geometry(wi: JitVector, wo: JitVector) -> JitFloat:
             return slopes.G2(wi, wo) / (4 * wi.z * wo.z)
 
-        return lambertian(), *self.fresnel_lobes(slopes.D, geometry, HalfVector(slopes))
+        return lambertian(), *self.make_fresnel_lobes(slopes.D, geometry, HalfVector(slopes))

@@ -127,7 +127,7 @@ class Koenderink(Model):
     )
 
     @classmethod
-    def anisotropic(cls) -> bool:
+    def is_anisotropic(cls) -> bool:
         return cls.symmetry == "anisotropic"
 
     @classmethod

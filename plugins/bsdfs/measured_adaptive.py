@@ -23,8 +23,8 @@ import numpy as np
 from brdfkit.core.array_types import JitColour, JitVector, MitsubaModule, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.bsdf.adaptive_lookup import AdaptiveLookup
-from brdfkit.mitsuba_bridge.bsdf.measured_base import measured_frame
-from brdfkit.mitsuba_bridge.channels import channels
+from brdfkit.mitsuba_bridge.bsdf.measured_base import define_measured_frame
+from brdfkit.mitsuba_bridge.channels import make_channels
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 
 ARRAYS = "phi_i", "theta_i", "ndf", "sigma", "vndf", "density"
@@ -35,7 +35,7 @@ COSINE_SHARE = 0.02
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.BSDF`, for the current variant."""
 
-    Frame: MitsubaObject = measured_frame(mi)
+    Frame: MitsubaObject = define_measured_frame(mi)
 
     class MeasuredAdaptive(Frame):
         def __init__(self, props: MitsubaObject) -> None:
@@ -45,7 +45,7 @@ def define(mi: MitsubaModule) -> type:
             self.lookup = AdaptiveLookup(**arrays, **{name: props[name] for name in FLAGS})
             wavelengths = np.array(props["wavelengths"]) if "wavelengths" in props else None
             self.values, self.albedos = (
-                channels(np.array(props[name]).reshape(-1, props[name].shape[-1]), wavelengths)
+                make_channels(np.array(props[name]).reshape(-1, props[name].shape[-1]), wavelengths)
                 for name in ("values", "albedo")
             )
             self.draw_by(self.lookup, not props["isotropic"], COSINE_SHARE)

@@ -20,9 +20,9 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitColour, JitVector, MitsubaModule, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.bsdf.half_vector_table import HalfVectorTable
-from brdfkit.mitsuba_bridge.bsdf.measured_base import measured_frame
-from brdfkit.mitsuba_bridge.bsdf.table_lookup import corners
-from brdfkit.mitsuba_bridge.channels import channels
+from brdfkit.mitsuba_bridge.bsdf.measured_base import define_measured_frame
+from brdfkit.mitsuba_bridge.bsdf.table_lookup import find_corners
+from brdfkit.mitsuba_bridge.channels import make_channels
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 from brdfkit.model.samples import Table
 
@@ -33,17 +33,17 @@ ANISOTROPIC = {"azimuths": 24, "angles": 16, "cells": (60, 32), "points": 1}
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.BSDF`, for the current variant."""
 
-    Frame: MitsubaObject = measured_frame(mi)
+    Frame: MitsubaObject = define_measured_frame(mi)
 
     class MeasuredTable(Frame):
         def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             self.table, wavelengths = _read(props)
             cells = self.table.filled_values
-            self.values = channels(cells.reshape(-1, cells.shape[-1]), wavelengths)
+            self.values = make_channels(cells.reshape(-1, cells.shape[-1]), wavelengths)
             size = ANISOTROPIC if self.table.anisotropic else {}
             half_vectors = HalfVectorTable(self.look_up, **size)
-            self.albedos = channels(half_vectors.albedo, wavelengths)
+            self.albedos = make_channels(half_vectors.albedo, wavelengths)
             self.draw_by(half_vectors, self.table.anisotropic)
 
         def look_up(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
@@ -51,7 +51,7 @@ def define(mi: MitsubaModule) -> type:
             return np.maximum(self.table.eval(wi, wo), 0)
 
         def brdf(self, wi: JitVector, wo: JitVector, si: MitsubaObject) -> JitColour:
-            return self.values.mean(corners(self.table, wi, wo), si)
+            return self.values.mean(find_corners(self.table, wi, wo), si)
 
         def albedo(self, wi: JitVector, si: MitsubaObject) -> JitColour:
             return self.albedos.mean(self.sampling.incidences(wi), si)

@@ -75,12 +75,12 @@ class Mixture(Model):
         return parameters
 
     @classmethod
-    def determined(cls, samples: Samples) -> dict[str, float]:
+    def determine_parameters(cls, samples: Samples) -> dict[str, float]:
         """Return the terms' shape parameters that are computed from the measured directions."""
         return {
             prefix + name: value
             for prefix, model, _ in cls.parts()
-            for name, value in model.determined(samples).items()
+            for name, value in model.determine_parameters(samples).items()
         }
 
     def lobes(self) -> tuple[Lobe, ...]:

@@ -87,7 +87,7 @@ class PCAPolynomial(Model):
         return [(j, k) for k in range(1, cls.degree + 1) for j in range(cls.components())]
 
     @classmethod
-    def anisotropic(cls) -> bool:
+    def is_anisotropic(cls) -> bool:
         return cls.symmetry == "anisotropic"
 
     @classmethod
@@ -105,7 +105,7 @@ class PCAPolynomial(Model):
         return constant | betas | angles
 
     @classmethod
-    def determined(cls, samples: Samples) -> dict[str, float]:
+    def determine_parameters(cls, samples: Samples) -> dict[str, float]:
         """Return the angles of the principal axes of the products of the measured directions."""
         data = samples.wi * samples.wo
         if cls.components() == 2:

@@ -139,4 +139,6 @@ class SGD(FresnelModel):
             return slopes.G1(wi) * slopes.G1(wo) / (dr.pi * wi.z * wo.z)
 
         sampling = HalfVector(Visible(slopes))
-        return lambertian(), *self.fresnel_lobes(slopes.D, geometry, sampling, albedo=4 / dr.pi)
+        return lambertian(), *self.make_fresnel_lobes(
+            slopes.D, geometry, sampling, albedo=4 / dr.pi
+        )

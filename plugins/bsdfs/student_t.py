@@ -116,4 +116,4 @@ class StudentT(FresnelModel):
             return slopes.G2(wi, wo) / (4 * wi.z * wo.z)
 
         sampling = HalfVector(Visible(slopes))
-        return lambertian(), *self.fresnel_lobes(slopes.D, geometry, sampling)
+        return lambertian(), *self.make_fresnel_lobes(slopes.D, geometry, sampling)

@@ -16,7 +16,7 @@ from brdfkit.core.array_types import (
     MitsubaModule,
     MitsubaObject,
 )
-from brdfkit.mitsuba_bridge.properties.declarations import bsdf, declared, texture
+from brdfkit.mitsuba_bridge.properties.declarations import bsdf, derive_plugin, texture
 
 PARAMETERS = {
     "angle": texture(0.0, "from the surface's u axis to the material's, counterclockwise [rad]"),
@@ -28,7 +28,7 @@ def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.BSDF`, for the current variant."""
     import drjit as dr
 
-    Base: MitsubaObject = declared(mi.BSDF, PARAMETERS)
+    Base: MitsubaObject = derive_plugin(mi.BSDF, PARAMETERS)
 
     class TangentRotation(Base):
         def __init__(self, props: MitsubaObject) -> None:

@@ -79,4 +79,4 @@ class TorranceSparrow(FresnelModel):
     def lobes(self) -> tuple[Lobe, ...]:
         angles = GaussianAngle(self.alpha)
         sampling = HalfVector(Visible(angles))
-        return lambertian(), *self.fresnel_lobes(angles.D, self.geometry, sampling)
+        return lambertian(), *self.make_fresnel_lobes(angles.D, self.geometry, sampling)

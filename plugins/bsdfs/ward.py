@@ -14,7 +14,7 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.model import Model, follows, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, factored, lambertian
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian, make_factored_lobe
 from brdfkit.model.microfacet import Beckmann, Visible
 
 # The ball on the model's page: brushed steel
@@ -41,4 +41,4 @@ class Ward(Model):
 
     def lobes(self) -> tuple[Lobe, ...]:
         sampling = HalfVector(Visible(Beckmann(self.alpha_u, self.alpha_v)))
-        return lambertian(), factored(self.facets, self.geometry, sampling)
+        return lambertian(), make_factored_lobe(self.facets, self.geometry, sampling)

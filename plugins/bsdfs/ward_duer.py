@@ -15,7 +15,7 @@ import drjit as dr
 from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.geometry.vectors import cos_theta_d
 from brdfkit.model import Model, follows, option, shape, weight
-from brdfkit.model.lobes import HalfVector, Lobe, factored, lambertian
+from brdfkit.model.lobes import HalfVector, Lobe, lambertian, make_factored_lobe
 from brdfkit.model.microfacet import Beckmann, Visible
 
 # The ball on the model's page: satin paint
@@ -45,4 +45,4 @@ class WardDuer(Model):
 
     def lobes(self) -> tuple[Lobe, ...]:
         sampling = HalfVector(Visible(Beckmann(self.alpha_u, self.alpha_v)))
-        return lambertian(), factored(self.facets, self.geometry, sampling)
+        return lambertian(), make_factored_lobe(self.facets, self.geometry, sampling)

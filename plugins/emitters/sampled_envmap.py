@@ -25,7 +25,7 @@ from brdfkit.core.array_types import (
 )
 from brdfkit.lighting.sampling.emitter import MAP_PARAMETERS, environment_emitter, make_small_sky
 from brdfkit.lighting.sampling.power_map import cell_power, pixel_power
-from brdfkit.mitsuba_bridge.arrays import Integers, Rows, cell
+from brdfkit.mitsuba_bridge.arrays import Integers, Rows, find_cell
 from brdfkit.mitsuba_bridge.properties.declarations import word
 
 # The map samplers below have the methods that `lighting/sampling/__init__.py` lists
@@ -75,7 +75,7 @@ class Cdf:
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
         import mitsuba as mi
 
-        index = mi.Point2u(cell(x, self.columns), cell(y, self.rows))
+        index = mi.Point2u(find_cell(x, self.columns), find_cell(y, self.rows))
         return self.table.pdf(index, active) * (self.rows * self.columns)
 
 
@@ -105,7 +105,7 @@ class Alias:
         return mi.Float(column) + x, mi.Float(row) + y, density
 
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
-        index = cell(y, self.rows) * self.columns + cell(x, self.columns)
+        index = find_cell(y, self.rows) * self.columns + find_cell(x, self.columns)
         return self.densities.at(index, active=active)
 
 
@@ -126,7 +126,7 @@ class AliasTable:
         import drjit as dr
         import mitsuba as mi
 
-        entry = cell(u * count, count)
+        entry = find_cell(u * count, count)
         remainder = u * count - mi.Float(entry)
         threshold = self.thresholds.at(first + entry, active=active)
         own = remainder < threshold

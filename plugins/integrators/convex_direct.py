@@ -42,8 +42,8 @@ from brdfkit.core.array_types import (
 from brdfkit.lighting.visibility.casters import Casters
 from brdfkit.lighting.visibility.decomposition import CONCAVITY
 from brdfkit.lighting.visibility.occluders import RESOLUTION, Occluders
-from brdfkit.mitsuba_bridge.check_scenes import reference_film
-from brdfkit.mitsuba_bridge.properties.declarations import count, declared, plain_number
+from brdfkit.mitsuba_bridge.check_scenes import make_film
+from brdfkit.mitsuba_bridge.properties.declarations import count, derive_plugin, plain_number
 
 PARAMETERS = {
     "concavity": plain_number(CONCAVITY, (0.01, 1.0), "largest distance of a part to its hull"),
@@ -53,7 +53,7 @@ PARAMETERS = {
 
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
-    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
+    Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class ConvexDirect(Base):
         def __init__(self, props: MitsubaObject) -> None:
@@ -156,7 +156,7 @@ def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
     scene = {
         "type": "scene",
         "integrator": {"type": "convex_direct"},
-        "sensor": {"type": "orthographic", "to_world": camera, "film": reference_film(16)},
+        "sensor": {"type": "orthographic", "to_world": camera, "film": make_film(16)},
         "sky": {"type": "constant", "radiance": {"type": "rgb", "value": sky.tolist()}},
         "ground": {"type": "rectangle", "bsdf": {"type": "diffuse", "reflectance": grey}},
         "cube": {"type": "cube", "to_world": cube},

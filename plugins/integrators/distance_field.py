@@ -70,10 +70,16 @@ from brdfkit.distance_fields.shading.visible_point import (
 )
 from brdfkit.distance_fields.shadows.field import bounding_sphere
 from brdfkit.distance_fields.shadows.shadow import DIRECTIONS
-from brdfkit.mitsuba_bridge.check_scenes import reference_film
+from brdfkit.mitsuba_bridge.check_scenes import make_film
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
-from brdfkit.mitsuba_bridge.properties.declarations import count, declared, plain_number, text, word
-from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
+from brdfkit.mitsuba_bridge.properties.declarations import (
+    count,
+    derive_plugin,
+    plain_number,
+    text,
+    word,
+)
+from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 
 PARAMETERS = {
     "filename": text("", "file of the field, as JSON"),
@@ -95,7 +101,7 @@ def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
     import drjit as dr
 
-    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
+    Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class DistanceField(Base):
         def __init__(self, props: MitsubaObject) -> None:
@@ -129,7 +135,7 @@ def define(mi: MitsubaModule) -> type:
             medium: MitsubaObject = None,
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
-            refuse_scalar("distance_field")
+            require_vectorised("distance_field")
             # Lamps and the sky in the background
             background = scene.ray_intersect(mi.Ray3f(ray), active)
             emitter, radiance = background.emitter(scene), mi.UnpolarizedSpectrum(0)
@@ -210,7 +216,7 @@ def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
             **example(),
             "bsdf": {"type": "diffuse", "reflectance": grey},
         },
-        "sensor": {"type": "orthographic", "to_world": camera, "film": reference_film()},
+        "sensor": {"type": "orthographic", "to_world": camera, "film": make_film()},
         "lamp": {"type": "sphere", "center": [0, 0, d], "radius": r, "emitter": light},
     }
     return scene, [albedo * (r / d) ** 2 * value for value in radiance]

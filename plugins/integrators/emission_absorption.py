@@ -41,9 +41,9 @@ from brdfkit.core.array_types import (
     MitsubaObject,
 )
 from brdfkit.core.jit.loops import record_loops
-from brdfkit.mitsuba_bridge.channels import emission_of_rgb, white
-from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
-from brdfkit.mitsuba_bridge.properties.declarations import count, declared, flag, volume
+from brdfkit.mitsuba_bridge.channels import make_rgb_emission, make_white_light
+from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
+from brdfkit.mitsuba_bridge.properties.declarations import count, derive_plugin, flag, volume
 from brdfkit.model.numerics import expm1
 from brdfkit.volumes.rays.box import intersect_box, light_behind
 
@@ -59,15 +59,15 @@ PARAMETERS = {
 
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
-    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
+    Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class EmissionAbsorption(Base):
         def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             self.has_colours = hasattr(self.extinction, "optics")
             self.sees_between = self.has_colours and self.extinction.is_missed_by(self.steps)
-            self.white = white()
-            self.light: Any = emission_of_rgb() if self.has_colours else None
+            self.white = make_white_light()
+            self.light: Any = make_rgb_emission() if self.has_colours else None
 
         def end(self, it: MitsubaObject, active: JitMask) -> JitVector:
             """Return the integrals that `optics` needs at an end of a part, if it needs any."""
@@ -160,7 +160,7 @@ def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
             "emission": {"type": "constvolume", "value": {"type": "rgb", "value": e.tolist()}},
             "steps": 16,
         },
-        "sensor": through_unit_cube(),
+        "sensor": make_cube_camera(),
         "behind": {"type": "constant", "radiance": {"type": "rgb", "value": behind}},
     }
     return scene, e * (1 - np.exp(-sigma)) / sigma + np.exp(-sigma) * behind

@@ -53,9 +53,15 @@ from brdfkit.lighting.visibility.casters import Casters
 from brdfkit.lighting.visibility.decomposition import CONCAVITY
 from brdfkit.lighting.visibility.occluders import RESOLUTION
 from brdfkit.lighting.visibility.shadowed_light import ShadowedLight
-from brdfkit.mitsuba_bridge.check_scenes import reference_film
-from brdfkit.mitsuba_bridge.properties.declarations import count, declared, plain_number, text, word
-from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
+from brdfkit.mitsuba_bridge.check_scenes import make_film
+from brdfkit.mitsuba_bridge.properties.declarations import (
+    count,
+    derive_plugin,
+    plain_number,
+    text,
+    word,
+)
+from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 
 METHODS = "filtered_sampling", *LOBES
 PARAMETERS = {
@@ -75,7 +81,7 @@ PARAMETERS = {
 
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
-    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
+    Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class FilteredEnvironment(Base):
         def __init__(self, props: MitsubaObject) -> None:
@@ -132,7 +138,7 @@ def _choose_shading(
 
 def _require_one_environment(mi: MitsubaModule, scene: MitsubaObject) -> MitsubaObject:
     """Return the environment of a `scene`; raise `BrdfkitError` for none or other lights."""
-    refuse_scalar("filtered_environment")
+    require_vectorised("filtered_environment")
     if scene.environment() is None:
         raise BrdfkitError(
             "filtered_environment: the scene has no environment to light it; add an envmap."
@@ -154,7 +160,7 @@ def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
     scene = {
         "type": "scene",
         "integrator": {"type": "filtered_environment", "resolution": 64},
-        "sensor": {"type": "perspective", "fov": 20, "to_world": camera, "film": reference_film()},
+        "sensor": {"type": "perspective", "fov": 20, "to_world": camera, "film": make_film()},
         "wall": {
             "type": "rectangle",
             "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": albedo}},

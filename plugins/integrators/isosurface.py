@@ -34,17 +34,17 @@ from brdfkit.core.array_types import (
     MitsubaModule,
     MitsubaObject,
 )
-from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
+from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import (
     bsdf,
     count,
-    declared,
+    derive_plugin,
     flag,
     number,
     volume,
 )
-from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
-from brdfkit.mitsuba_bridge.surface_points import interaction
+from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
+from brdfkit.mitsuba_bridge.surface_points import make_interaction
 from brdfkit.volumes.light.surface_light import direct_light
 from brdfkit.volumes.rays.box import (
     bend_to_viewer,
@@ -67,7 +67,7 @@ PARAMETERS = {
 
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
-    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
+    Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class Isosurface(Base):
         def f(self, p: JitVector, active: JitMask = True) -> JitFloat:
@@ -86,7 +86,7 @@ def define(mi: MitsubaModule) -> type:
             medium: MitsubaObject = None,
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
-            refuse_scalar("isosurface")
+            require_vectorised("isosurface")
             end, behind = light_behind(scene, ray, active)
             near, far = intersect_box(ray, self.volume)
             far = dr.minimum(far, end)
@@ -111,7 +111,7 @@ def define(mi: MitsubaModule) -> type:
             flat = dr.squared_norm(outwards) == 0
             n = dr.normalize(dr.select(flat, -ray.d, outwards))
             n = dr.select(on_face, face_normal(ray(t), self.volume), n)
-            return interaction(ray, t, ray(t), bend_to_viewer(n, ray.d), hit)
+            return make_interaction(ray, t, ray(t), bend_to_viewer(n, ray.d), hit)
 
         def is_free(self, ray: MitsubaObject, active: JitMask) -> JitMask:
             """Return whether the surface does not block a ray between its origin and its end."""
@@ -142,7 +142,7 @@ def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
             "level": 1.7,
             "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": albedo}},
         },
-        "sensor": through_unit_cube(),
+        "sensor": make_cube_camera(),
         "sky": {"type": "constant", "radiance": {"type": "rgb", "value": radiance}},
     }
     return scene, [radiance * value for value in albedo]

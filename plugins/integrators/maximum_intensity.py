@@ -33,9 +33,9 @@ from brdfkit.core.array_types import (
     MitsubaModule,
     MitsubaObject,
 )
-from brdfkit.mitsuba_bridge.channels import emission_of_rgb
-from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
-from brdfkit.mitsuba_bridge.properties.declarations import count, declared, flag, volume
+from brdfkit.mitsuba_bridge.channels import make_rgb_emission
+from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
+from brdfkit.mitsuba_bridge.properties.declarations import count, derive_plugin, flag, volume
 from brdfkit.volumes.rays.box import intersect_box, light_behind
 from brdfkit.volumes.rays.search import find_largest
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
@@ -49,12 +49,12 @@ PARAMETERS = {
 
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
-    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
+    Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class MaximumIntensity(Base):
         def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
-            self.light = emission_of_rgb()
+            self.light = make_rgb_emission()
             self.has_colours = hasattr(self.volume, "optics")
 
         def value(self, it: MitsubaObject, active: JitMask) -> JitFloat:
@@ -116,7 +116,7 @@ def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
     scene = {
         "type": "scene",
         "integrator": {"type": "maximum_intensity", "volume": volume, "steps": 16},
-        "sensor": through_unit_cube(),
+        "sensor": make_cube_camera(),
         "behind": {"type": "constant", "radiance": {"type": "rgb", "value": behind}},
     }
     return scene, a * rgb + (1 - a) * behind

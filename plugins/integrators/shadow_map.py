@@ -29,8 +29,8 @@ from functools import partial
 from typing import Any
 
 from brdfkit.core.array_types import FloatArray, MitsubaModule, MitsubaObject
-from brdfkit.mitsuba_bridge.check_scenes import beside_a_shadow
-from brdfkit.mitsuba_bridge.direct_light import shadowed
+from brdfkit.mitsuba_bridge.check_scenes import make_shadow_scene
+from brdfkit.mitsuba_bridge.direct_light import derive_shadow_integrator
 from brdfkit.mitsuba_bridge.properties.declarations import count, flag, plain_number, word
 from brdfkit.shadows.maps.light_shadow import DEPTHS, LightShadow
 from brdfkit.shadows.maps.map_point import AUTOMATIC, Bias
@@ -53,7 +53,7 @@ PARAMETERS = {
 
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
-    Base: MitsubaObject = shadowed(mi, PARAMETERS)
+    Base: MitsubaObject = derive_shadow_integrator(mi, PARAMETERS)
 
     class ShadowMapped(Base):
         def shadow_of(
@@ -81,5 +81,5 @@ def define(mi: MitsubaModule) -> type:
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
-    """Return the scene of `beside_a_shadow` for the checks, and its radiance (3,)."""
-    return beside_a_shadow({"type": "shadow_map", "resolution": 64})
+    """Return the scene of `make_shadow_scene` for the checks, and its radiance (3,)."""
+    return make_shadow_scene({"type": "shadow_map", "resolution": 64})

@@ -33,8 +33,8 @@ from typing import Any
 
 from brdfkit.core.array_types import FloatArray, MitsubaModule, MitsubaObject
 from brdfkit.core.projective.light import Light
-from brdfkit.mitsuba_bridge.check_scenes import beside_a_shadow
-from brdfkit.mitsuba_bridge.direct_light import shadowed
+from brdfkit.mitsuba_bridge.check_scenes import make_shadow_scene
+from brdfkit.mitsuba_bridge.direct_light import derive_shadow_integrator
 from brdfkit.mitsuba_bridge.properties.declarations import flag, plain_number, word
 from brdfkit.shadows.volumes.casters import CASTERS
 from brdfkit.shadows.volumes.light_volumes import FAR_PLANES, METHODS, LightVolumes
@@ -56,7 +56,7 @@ PARAMETERS = {
 
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
-    Base: MitsubaObject = shadowed(mi, PARAMETERS)
+    Base: MitsubaObject = derive_shadow_integrator(mi, PARAMETERS)
 
     class ShadowVolumes(Base):
         def shadow_of(
@@ -87,5 +87,5 @@ def define(mi: MitsubaModule) -> type:
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
-    """Return the scene of `beside_a_shadow` for the checks, and its radiance (3,)."""
-    return beside_a_shadow({"type": "shadow_volume"})
+    """Return the scene of `make_shadow_scene` for the checks, and its radiance (3,)."""
+    return make_shadow_scene({"type": "shadow_volume"})

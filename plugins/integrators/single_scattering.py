@@ -53,16 +53,16 @@ from brdfkit.core.array_types import (
     MitsubaModule,
     MitsubaObject,
 )
-from brdfkit.mitsuba_bridge.check_scenes import through_unit_cube
+from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import (
     count,
-    declared,
+    derive_plugin,
     number,
     phase,
     volume,
     word,
 )
-from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
+from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 from brdfkit.volumes.light import emitters
 from brdfkit.volumes.light.medium import Medium
 from brdfkit.volumes.light.vertex import Vertex, medium_interaction
@@ -83,7 +83,7 @@ PARAMETERS = {
 
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
-    Base: MitsubaObject = declared(mi.SamplingIntegrator, PARAMETERS)
+    Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class SingleScattering(Base):
         def __init__(self, props: MitsubaObject) -> None:
@@ -104,7 +104,7 @@ def define(mi: MitsubaModule) -> type:
             medium: MitsubaObject = None,
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
-            refuse_scalar(self.name)
+            require_vectorised(self.name)
 
             def goes_on(
                 depth: JitInt, ray: MitsubaObject, throughput: JitColour, *_: Any
@@ -269,7 +269,7 @@ def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
             "albedo": albedo,
             "phase": {"type": "hg", "g": g},
         },
-        "sensor": through_unit_cube(),
+        "sensor": make_cube_camera(),
         "sun": {"type": "directional", "direction": [0, 0, -1], "irradiance": colour},
     }
     back = (1 - g**2) / (4 * math.pi * (1 + g**2 + 2 * g) ** 1.5)  # Henyey-Greenstein at μ = -1

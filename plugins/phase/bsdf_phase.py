@@ -30,7 +30,7 @@ from brdfkit.core.array_types import (
     MitsubaObject,
 )
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.mitsuba_bridge.properties.declarations import bsdf, declared, volume
+from brdfkit.mitsuba_bridge.properties.declarations import bsdf, derive_plugin, volume
 
 PARAMETERS = {
     "bsdf": bsdf("f, by default white and matte; in a scene file it needs this name"),
@@ -41,7 +41,7 @@ ROUNDING = 1e-5  # changes of ρ below this share of ρ are rounding
 
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.PhaseFunction`, for the current variant."""
-    Base: MitsubaObject = declared(mi.PhaseFunction, PARAMETERS)
+    Base: MitsubaObject = derive_plugin(mi.PhaseFunction, PARAMETERS)
 
     class BsdfPhase(Base):
         def __init__(self, props: MitsubaObject) -> None:

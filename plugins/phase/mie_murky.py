@@ -11,7 +11,7 @@ distribution of the other half has an inverse. The mean cosine is 8/17.
 from typing import Any
 
 from brdfkit.core.array_types import MitsubaModule, MitsubaObject
-from brdfkit.mitsuba_bridge.phase_functions import even_and_forward
+from brdfkit.mitsuba_bridge.phase_functions import define_even_and_forward
 
 PARAMETERS: dict[str, Any] = {}
 EXPONENT = 32
@@ -19,7 +19,7 @@ EXPONENT = 32
 
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.PhaseFunction`, for the current variant."""
-    Base: MitsubaObject = even_and_forward(mi, EXPONENT)
+    Base: MitsubaObject = define_even_and_forward(mi, EXPONENT)
 
     class MieMurky(Base):
         pass

@@ -18,7 +18,7 @@ which mixes any two.
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, MitsubaModule, MitsubaObject
-from brdfkit.mitsuba_bridge.phase_functions import deflection
+from brdfkit.mitsuba_bridge.phase_functions import derive_phase_function
 from brdfkit.mitsuba_bridge.properties.declarations import number
 
 PARAMETERS = {
@@ -38,7 +38,7 @@ def cosine(k: JitFloat, u: JitFloat) -> JitFloat:
 
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.PhaseFunction`, for the current variant."""
-    Base: MitsubaObject = deflection(mi, PARAMETERS)
+    Base: MitsubaObject = derive_phase_function(mi, PARAMETERS)
 
     class Schlick(Base):
         def density(self, mu: JitFloat) -> JitFloat:

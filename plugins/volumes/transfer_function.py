@@ -41,10 +41,10 @@ from brdfkit.core.array_types import (
     MitsubaObject,
 )
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.mitsuba_bridge.channels import emission_of_rgb, spectrum_of_rgb
+from brdfkit.mitsuba_bridge.channels import make_rgb_emission, make_rgb_spectrum
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
-from brdfkit.mitsuba_bridge.properties.declarations import declared, text, volume, word
-from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
+from brdfkit.mitsuba_bridge.properties.declarations import derive_plugin, text, volume, word
+from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 from brdfkit.volumes.light.majorants import read_grid
 from brdfkit.volumes.rays.voxel_steps import is_trilinear, typical_difference
 from brdfkit.volumes.transfer import files
@@ -64,11 +64,11 @@ PARAMETERS = {
 
 def define(mi: MitsubaModule) -> type:
     """Return the class derived from `mi.Volume`, for the current variant."""
-    Base: MitsubaObject = declared(mi.Volume, PARAMETERS)
+    Base: MitsubaObject = derive_plugin(mi.Volume, PARAMETERS)
 
     class TransferFunctionVolume(Base):
         def __init__(self, props: MitsubaObject) -> None:
-            refuse_scalar("transfer_function")
+            require_vectorised("transfer_function")
             values = props.get("values", 0)
             if "to_world" not in props and isinstance(values, mi.Volume):
                 props["to_world"] = find_box(mi, values)
@@ -155,7 +155,7 @@ def define(mi: MitsubaModule) -> type:
         def spectrum(self) -> Callable[..., JitColour]:
             """A function (rgb, it) → spectrum, for reflectances or emission, as RGB means."""
             emits = self.function.colour == "emission"
-            return emission_of_rgb() if emits else spectrum_of_rgb()
+            return make_rgb_emission() if emits else make_rgb_spectrum()
 
         @cached_property
         def majorants(self) -> FloatArray:

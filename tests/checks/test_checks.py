@@ -49,7 +49,7 @@ def in_variant(model, variant):
     import mitsuba as mi
 
     mi.set_variant(variant)
-    channels = None if mi.is_spectral and model.signed() else 3
+    channels = None if mi.is_spectral and model.has_signed_weights() else 3
     own = ["weights", "plugin is formula", "plugin gradient", "finite"]
     report = bk.check(random_model(model, 1, channels), only=own)
     assert report, str(report)
@@ -276,7 +276,7 @@ def _check(model, check, monkeypatch):
 
     from brdfkit.mitsuba_bridge.bsdf import adapter
 
-    class Bsdf(adapter.define(mi, model)):
+    class Bsdf(adapter.define_bsdf(mi, model)):
         def __init__(self):
             super().__init__(mi.Properties("test"))
 

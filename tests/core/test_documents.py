@@ -18,9 +18,9 @@ from brdfkit.core.documents.parts import BAD
 from brdfkit.core.documents.text import to_text
 from brdfkit.core.figures import to_png
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.images.ball.ball import WHITE, ball
+from brdfkit.images.ball.ball import WHITE, draw_ball
 from brdfkit.images.ball.lights import studio
-from brdfkit.images.ball.normals import facing
+from brdfkit.images.ball.normals import find_normals
 from brdfkit.regression.certainty import Certainty
 from brdfkit.volumes.summary.summary import summarise
 
@@ -263,21 +263,21 @@ def test_the_ball_is_a_picture_of_the_material(monkeypatch):
     def matt(wi, wo):
         return np.full((len(wi), 1), WHITE / np.pi)
 
-    white, cover = ball(matt, 24)
+    white, cover = draw_ball(matt, 24)
     assert cover.sum() == pytest.approx(np.pi * 12**2, rel=0.01)
     assert white[cover == 0].max() == 0
     assert np.percentile(white[cover > 0], 99) == pytest.approx(WHITE, rel=0.05)
     # the radiance is linear in the BRDF
-    half, _ = ball(lambda wi, wo: 0.5 * matt(wi, wo), 24)
+    half, _ = draw_ball(lambda wi, wo: 0.5 * matt(wi, wo), 24)
     np.testing.assert_allclose(half, 0.5 * white)
     # with many directions, against the sum over all of the light, but for a common factor
     monkeypatch.setattr("brdfkit.images.ball.ball.DIRECTIONS", 1000)
-    white, _ = ball(matt, 24)
+    white, _ = draw_ball(matt, 24)
     heights, azimuths = np.meshgrid(np.linspace(-0.9975, 0.9975, 400), np.arange(800) * np.pi / 400)
     light = from_angles(np.arccos(heights), azimuths).reshape(-1, 3)
     at = (np.arange(24) + 0.5) / 12 - 1
     x, y = (grid[cover == 1] for grid in np.meshgrid(at, -at))
-    cosines = np.maximum(facing(x, y) @ light.T, 0)
+    cosines = np.maximum(find_normals(x, y) @ light.T, 0)
     ratios = white[cover == 1, 0] / (cosines @ studio(light))
     assert ratios.std() < 0.02 * ratios.mean()
 

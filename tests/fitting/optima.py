@@ -11,11 +11,11 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from brdfkit.theses.kurt2007.neural import decode_network
 
 import brdfkit as bk
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
-from brdfkit.model.samples.neural import decode_network
 from brdfkit.regression import regress
 
 LIST = Path(__file__).with_name("optima.csv")

@@ -15,7 +15,7 @@ from brdfkit.checks.material_subject import random_pairs
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
-from brdfkit.model.evaluation import lobe_values
+from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.regression import certainty, losses
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
@@ -68,7 +68,7 @@ def test_a_linear_model_has_the_sandwich_of_the_textbook():
     values = 0.1 + 0.05 * wi[:, 2:] + 0.02 * wo[:, 2:] * rng.normal(size=(100, 1))
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
     fit = bk.fit(data, "koenderink", loss=sample_sum("plain"))
-    J, _ = lobe_values(fit.model, wi, wo)
+    J, _ = compute_lobe_values(fit.model, wi, wo)
     J = J.T if len(J) == len(fit.values) else J
     inverse = np.linalg.inv(J.T @ J)
     solution = np.linalg.lstsq(J, values[:, 0], rcond=None)[0]

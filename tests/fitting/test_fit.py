@@ -50,7 +50,7 @@ def isotropic(model):
 
 def given(truth, data):
     """Parameters that a fit takes from the geometry of the data and not from its values."""
-    return {name: truth.values[name] for name in truth.determined(data.samples)}
+    return {name: truth.values[name] for name in truth.determine_parameters(data.samples)}
 
 
 # Parameters of which only the ratios count

@@ -10,7 +10,7 @@ import brdfkit as bk
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
-from brdfkit.model.evaluation import lobe_values
+from brdfkit.model.evaluation import compute_lobe_values
 
 
 def hemisphere(n_theta, n_phi):
@@ -29,7 +29,7 @@ def test_lobes_are_evaluated_together():
     directions, _ = hemisphere(4, 8)
     with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
         dr.kernel_history_clear()
-        lobe_values(model, directions, directions)
+        compute_lobe_values(model, directions, directions)
         assert len(dr.kernel_history([dr.KernelType.JIT])) == 1
 
 
@@ -64,7 +64,7 @@ def test_basis_is_orthonormal(label):
         wi, weight_i = hemisphere(4, 8)
     pairs_i, pairs_o = np.repeat(wi, len(wo), axis=0), np.tile(wo, (len(wi), 1))
     weights = np.repeat(weight_i, len(wo)) * np.tile(weight_o, len(wi))
-    basis, _ = lobe_values(model, pairs_i, pairs_o)
+    basis, _ = compute_lobe_values(model, pairs_i, pairs_o)
     gram = (basis * weights[:, None]).T @ basis
     np.testing.assert_allclose(gram, np.eye(len(gram)), atol=1e-10)
 
@@ -104,11 +104,11 @@ def test_turned_by_its_angles_data_has_its_principal_axes():
 def test_principal_axes_of_curet(measured_data):
     """Kurt 2007: the first axis at -1.80°, by the 189 geometries below 80°."""
     samples = select_samples(bk.load(measured_data / "curet" / "abrdf.dat#1"), 80.0)
-    angles = labels.model("pca_polynomial").determined(samples)
+    angles = labels.model("pca_polynomial").determine_parameters(samples)
     assert np.degrees(angles["angle_1_2"]) == pytest.approx(-1.80, abs=5e-3)
     # All 205 geometries: -0.92°
     samples = select_samples(bk.load(measured_data / "curet" / "abrdf.dat#1"), 89.0)
-    angles = labels.model("pca_polynomial").determined(samples)
+    angles = labels.model("pca_polynomial").determine_parameters(samples)
     assert np.degrees(angles["angle_1_2"]) == pytest.approx(-0.92, abs=5e-3)
 
 

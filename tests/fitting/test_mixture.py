@@ -96,7 +96,7 @@ def test_a_second_lobe_of_the_same_model_begins_narrower(model):
 @pytest.mark.quick
 def test_what_a_part_takes_from_the_geometry_is_no_search():
     data = bk.load("dusty_gold")
-    angles = labels.model("pca_polynomial").determined(select_samples(data, 80.0))
+    angles = labels.model("pca_polynomial").determine_parameters(select_samples(data, 80.0))
     found = bk.fit(data, "pca_polynomial+ward", starts=1)
     for name, value in angles.items():
         assert found.values[f"pca_polynomial_1_{name}"] == value

@@ -25,7 +25,7 @@ def test_optima(name):
             found = optima.search(model, data, loss)
             # Models that are clamped at 0 have an end at every kink, and rounding leads to one or
             # another; a fit of few samples that nearly meets them all is rounding
-            share = 1e-2 if labels.model(model).signed() else 1e-6
+            share = 1e-2 if labels.model(model).has_signed_weights() else 1e-6
             if found > error * (1 + share) + 1e-9:
                 worse.append(f"{model} {loss}: {found:.9g}, not {error:.9g}")
     assert not worse

@@ -6,7 +6,7 @@ from test_fit import synthetic
 
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.model.evaluation import lobe_values
+from brdfkit.model.evaluation import compute_lobe_values
 
 
 @pytest.mark.parametrize(("name", "loss"), [("koenderink", "plain"), ("pca_polynomial", "cosine")])
@@ -21,7 +21,7 @@ def test_variance_and_bias_are_those_of_repeated_fits(name, loss):
     error = bk.uncertainty.prediction_error(fits[0], measured[0], truth=truth, sigma=sigma)
     rows = measured[0].samples.within(80)
     lobes = np.array([np.ravel([f.values[n] for n in f.model.weights()]) for f in fits])
-    predicted = lobe_values(fits[0].model, wi[rows], wo[rows])[0] @ lobes.T
+    predicted = compute_lobe_values(fits[0].model, wi[rows], wo[rows])[0] @ lobes.T
     known = truth.eval(wi[rows], wo[rows])
     np.testing.assert_allclose(
         error.bias, predicted.mean(axis=1, keepdims=True) - known, atol=5 * sigma / count**0.5

@@ -74,7 +74,7 @@ def held(name, loss, noise, replicates, n=600, robust=None, seed=0):
     drawn = random_model(model, seed + 2, channels=3)
     own = {k: v for k, v in drawn.values.items() if not model.parameters[k].follows}
     sample = Samples.from_arrays(wi, wo, np.ones((n, 3)), None, "RGB", "directions")
-    given = model.determined(sample)
+    given = model.determine_parameters(sample)
     own |= given
     space = Space.of(model, {}, given, False)
     u = np.clip(space.coordinates(own), 0.15, 0.85)[None]  # inside the bounds

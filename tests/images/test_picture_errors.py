@@ -8,11 +8,11 @@ import pytest
 from scipy.ndimage import gaussian_filter
 
 from brdfkit.core.colours import import_colour, to_srgb
-from brdfkit.images.errors import image_errors
+from brdfkit.images.errors import compare_pictures
 from brdfkit.images.errors.colour_difference import WHITE, ciede2000, delta_e_itp
-from brdfkit.images.errors.flip import exposures, flip
+from brdfkit.images.errors.flip import find_exposures, flip
 from brdfkit.images.errors.metrics import METRICS, ssim
-from brdfkit.images.errors.noise import Halves, samples_for
+from brdfkit.images.errors.noise import Halves, estimate_samples
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.rendering import render
 
@@ -52,7 +52,7 @@ def test_psnr_is_that_of_the_definition(rng):
 
 def test_errors_are_unknown_where_nothing_shows_the_material(scene):
     picture, disc = scene
-    errors = image_errors({"a": picture, "b": 2 * picture}, picture, disc & False)
+    errors = compare_pictures({"a": picture, "b": 2 * picture}, picture, disc & False)
     assert np.isnan([*errors.by_name["b"].values(), *errors.floor.values()]).all()
     assert errors.notes == (
         "No pixel shows the material, which leaves all errors unknown: render it larger.",
@@ -137,11 +137,11 @@ def test_flip_has_the_exposures_of_its_authors(scene):
     evaluate = pytest.importorskip("flip_evaluator").evaluate
     picture = np.clip(scene[0], 0, 2)
     _, _, settings = evaluate(picture, picture, "HDR", applyMagma=False)
-    start, stop = exposures(picture, np.full((48, 48), True))
+    start, stop = find_exposures(picture, np.full((48, 48), True))
     theirs = settings["startExposure"], settings["stopExposure"]
     assert (start, stop) == pytest.approx(theirs, abs=1e-4)
     dark = np.where(np.arange(48)[:, None, None] < 30, 0, picture)  # the median is black
-    assert np.ptp(exposures(dark, np.full((48, 48), True))) == 8
+    assert np.ptp(find_exposures(dark, np.full((48, 48), True))) == 8
 
 
 def test_ssim_is_that_of_the_paper(scene, rng):
@@ -189,13 +189,13 @@ def test_a_difference_within_the_noise_is_none(scene, rng):
         "nearly": reference + 0.005 * noise[0],
         "other": reference * np.float32(1.5),
     }
-    errors = image_errors(pictures, reference + 0.01 * noise[1], mask)
+    errors = compare_pictures(pictures, reference + 0.01 * noise[1], mask)
     rows = {name: texts for name, *texts in errors.table()}
     assert list(rows) == ["same", "nearly", "other", "noise floor"]
     assert all(text.startswith("(") for text in rows["same"] + rows["nearly"])
     assert not any("(" in text for text in rows["other"] + rows["noise floor"])
     assert not errors.exceeds("nearly", "psnr")
-    without_noise = image_errors({"it": reference, "same": reference}, reference, mask)
+    without_noise = compare_pictures({"it": reference, "same": reference}, reference, mask)
     assert all(text.startswith("(") for text in without_noise.table()[0][1:])
     assert errors.exceeds("other", "ssim")
     assert errors.by_name["same"]["psnr"] == np.inf
@@ -211,7 +211,7 @@ def test_what_is_unknown_is_said(scene):
     broken = reference.copy()
     broken[20, 24] = np.nan
     broken[0, 0] = np.nan  # outside the mask
-    errors = image_errors({"it": reference, "off": reference * 2, "broken": broken}, None, mask)
+    errors = compare_pictures({"it": reference, "off": reference * 2, "broken": broken}, None, mask)
     assert np.isnan([*errors.by_name["broken"].values(), *errors.floor.values()]).all()
     assert np.isfinite([*errors.by_name["off"].values()]).all()
     said = str(errors)
@@ -225,7 +225,7 @@ def test_metrics_without_their_packages_are_left_out_in_a_sentence(scene, monkey
     for module in absent:
         monkeypatch.setitem(sys.modules, module, None)
     reference, mask = scene
-    errors = image_errors({"it": reference, "off": reference * 2}, reference, mask)
+    errors = compare_pictures({"it": reference, "off": reference * 2}, reference, mask)
     left = [key for key in METRICS if key not in ["flip", "ssim"][: len(absent)]]
     assert list(errors.floor) == list(errors.by_name["off"]) == left
     assert len(errors.columns) == len(left) + 1
@@ -265,5 +265,5 @@ def test_the_floor_is_that_of_another_seed(llvm_variant):
 
 
 def test_twice_the_samples_give_three_decibels():
-    assert samples_for(43, 40, 100) == pytest.approx(200, rel=0.01)
-    assert samples_for(45, -np.inf, 100) > 1e99
+    assert estimate_samples(43, 40, 100) == pytest.approx(200, rel=0.01)
+    assert estimate_samples(45, -np.inf, 100) > 1e99

@@ -7,7 +7,7 @@ import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.core.geometry.directions import from_angles, to_half_difference
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.model.samples.measures import MEASURES, weigh, whole
+from brdfkit.model.samples.measures import MEASURES, compute_measure, integrate_measure
 
 pytestmark = pytest.mark.quick
 
@@ -24,14 +24,18 @@ def grid(theta_i, theta_o, phi):
 def shares(data, measure, max_angle=80.0):
     """How much of a measure each sample stands for, as a share of all below `max_angle`."""
     samples = select_samples(data, max_angle)
-    return samples, weigh(samples.extents, measure) / whole(max_angle, measure)
+    return samples, compute_measure(samples.extents, measure) / integrate_measure(
+        max_angle, measure
+    )
 
 
 def test_all_directions_have_the_solid_angle_of_two_caps():
     """Divided by 4 · 2π: dω_i dω_o = 4 s dθ_h dθ_d dφ_d dφ_h."""
     for angle in (40.0, 80.0):
         cap = 2 * np.pi * (1 - np.cos(np.radians(angle)))
-        assert whole(angle, "solid_angle") == pytest.approx(cap**2 / (8 * np.pi), rel=3e-3)
+        assert integrate_measure(angle, "solid_angle") == pytest.approx(
+            cap**2 / (8 * np.pi), rel=3e-3
+        )
 
 
 @pytest.mark.parametrize("measure", INTEGRALS)

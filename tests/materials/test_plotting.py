@@ -11,7 +11,7 @@ from brdfkit.core.colours import luminance
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.figures import Plot
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.images.thumbnails.lobes import Radius
+from brdfkit.images.thumbnails import Radius
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.plotting import plot
 from brdfkit.materials.plotting.plane_of_incidence import compute_lobe

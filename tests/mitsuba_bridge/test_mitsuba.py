@@ -16,7 +16,7 @@ from brdfkit.checks.material_subject import random_pairs
 from brdfkit.checks.sampling import draw_uniform
 from brdfkit.core.geometry.directions import from_angles, normalize
 from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate
-from brdfkit.model.lobes import components_of
+from brdfkit.model.lobes import group_components
 
 # All z-scores of this file, some 30: a right renderer exceeds this once in 5,000 files
 HIGHEST_Z = 4.5
@@ -126,7 +126,7 @@ def test_gradient_of_a_picture(model, llvm_variant, monkeypatch):
     loaded = mi.load_dict(scene(ball(coloured(model).scene_dict()), integrator))
     found = mi.traverse(loaded)
     names = list(model.parameters)
-    if model.signed():  # many weights, all alike
+    if model.has_signed_weights():  # many weights, all alike
         names = [*model.weights()[:2], model.weights()[-1], *model.shapes()]
     keys = {name: f"ball.bsdf.{name}.value" for name in names}
     before = {name: type(found[key])(found[key]) for name, key in keys.items()}
@@ -421,7 +421,7 @@ def test_components_sum_to_the_whole(model, llvm_variant):
     """Over the indices of the components, and over Mitsuba's kinds of them."""
     mi = llvm_variant
     bsdf = mi.load_dict(coloured(model).scene_dict())
-    assert bsdf.component_count() == len(components_of(model().lobes()))
+    assert bsdf.component_count() == len(group_components(model().lobes()))
     wi, wo = random_pairs(5000, seed=5, max_degrees=85)
     whole, _ = evaluated(mi, bsdf, wi, wo)
     parts = [evaluated(mi, bsdf, wi, wo, ctx)[0] for _, ctx in contexts(mi, bsdf)]
@@ -485,7 +485,7 @@ def test_spectral_has_the_luminance_of_rgb(name, variant):
     for name in ("llvm_ad_rgb", "llvm_ad_spectral"):
         variant(name)
         entries = coloured(model).scene_dict()
-        if model.signed():  # there is no spectrum of a negative colour
+        if model.has_signed_weights():  # there is no spectrum of a negative colour
             for weight, value in model().values.items():
                 entries[weight] = entries[weight] if value else 0.02
         found[name] = luminance(mi, entries)

@@ -9,7 +9,7 @@ import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
-from brdfkit.model.evaluation import lobe_values
+from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.model.samples import Samples
 from brdfkit.regression import losses
 from brdfkit.regression.problem.folding import fold
@@ -30,7 +30,7 @@ def table(seed=0, shape=(12, 8, 24)):
 def problem_of(name, samples, loss="cosine"):
     """The `Problem` of a model, with what the directions determine fixed."""
     model = labels.model(name)
-    space = Space.of(model, {}, model.determined(samples), True)
+    space = Space.of(model, {}, model.determine_parameters(samples), True)
     return Problem(model, samples, losses.named.by_sample[loss], space)
 
 
@@ -132,7 +132,7 @@ def test_settled_weights_give_the_solution_back(model, name):
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
     fit = bk.fit(data, model, loss=sample_sum("plain"), robust=name)
     assert fit.message.startswith("settled")
-    columns, _ = lobe_values(fit.model, wi, wo)
+    columns, _ = compute_lobe_values(fit.model, wi, wo)
     solution = np.ravel([fit.values[n] for n in fit.model.weights()])
     fitted = columns @ solution
     residuals = (values[:, 0] - fitted) / np.sqrt(1 - leverages(columns.T))

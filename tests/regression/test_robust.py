@@ -7,7 +7,7 @@ from sample_sums import sample_sum
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.model.evaluation import lobe_values
+from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.regression import losses
 from brdfkit.regression.robust.reweighting import WEIGHTS, robust_least_squares
 
@@ -91,7 +91,7 @@ def test_few_samples_settle_where_matlabs_passes_do(name, seed):
     values = np.random.default_rng(seed).standard_t(2, (12, 1)) + 3
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
     fit = bk.fit(data, "koenderink:order=2", loss=sample_sum("plain"), robust=name)
-    columns, _ = lobe_values(fit.model, wi, wo)
+    columns, _ = compute_lobe_values(fit.model, wi, wo)
     found = robust_least_squares(columns, values[:, 0], name)
     assert found.converged
     weights = np.ravel([fit.values[n] for n in fit.model.weights()])
@@ -115,7 +115,7 @@ def test_a_linear_fit_is_the_least_squares():
     for name in ("bisquare", "huber"):
         fit = bk.fit(data, "koenderink", loss=sample_sum("plain"), robust=name)
         samples = select_samples(data, 80.0)
-        columns, _ = lobe_values(fit.model, samples.wi, samples.wo)
+        columns, _ = compute_lobe_values(fit.model, samples.wi, samples.wo)
         found = robust_least_squares(columns, values[:, 0], name)
         weights = [fit.values[n] for n in fit.model.weights()]
         np.testing.assert_allclose(np.ravel(weights), found.solution, rtol=1e-8)
@@ -128,7 +128,7 @@ def test_the_thesis_polynomial(measured_data):
     for robust, error in expected.items():
         fit = bk.fit(data, "pca_polynomial:degree=7", loss=sample_sum("plain"), robust=robust)
         samples = select_samples(data, 80.0)
-        columns, _ = lobe_values(fit.model, samples.wi, samples.wo)
+        columns, _ = compute_lobe_values(fit.model, samples.wi, samples.wo)
         weights = np.ravel([fit.values[n] for n in fit.model.weights()])
         difference = (columns @ weights - samples.values[:, 0]) * samples.wi[:, 2]
         assert np.sqrt(losses.named["kurt"].importance(samples) @ difference**2) == pytest.approx(

@@ -1,9 +1,9 @@
 """The search for the end of a fit: where few starts lead to it, where a parameter does nothing."""
 
 import numpy as np
+from brdfkit.theses.kurt2007.neural import decode_network
 
 import brdfkit as bk
-from brdfkit.model.samples.neural import decode_network
 from brdfkit.regression.search.levenberg_marquardt import _correct
 
 

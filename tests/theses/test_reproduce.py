@@ -9,8 +9,8 @@ from PIL import Image
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.theses import Claim, theses
-from brdfkit.theses.claims import count
+from brdfkit.theses import Claim, list_theses
+from brdfkit.theses.claims import count_verdicts
 from brdfkit.theses.drawing import draw_curves, figure
 from brdfkit.theses.page import Picture, Section, Table, write_page
 from brdfkit.theses.sources import find_sources
@@ -42,14 +42,14 @@ def test_a_page_has_every_claim_table_and_figure(tmp_path):
 
 @pytest.mark.quick
 def test_a_verdict_is_one_of_four():
-    assert count(CLAIMS[:1] * 2) == "2 confirmed"
+    assert count_verdicts(CLAIMS[:1] * 2) == "2 confirmed"
     with pytest.raises(ValueError, match="perhaps"):
         Claim("", "", "", "", "perhaps")
 
 
 @pytest.mark.quick
 def test_the_theses_are_listed():
-    assert "kurt2007" in theses()
+    assert "kurt2007" in list_theses()
     listed = CliRunner().invoke(main, ["reproduce"])
     assert listed.exit_code == 0
     assert "kurt2007" in listed.output

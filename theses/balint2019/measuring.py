@@ -3,7 +3,7 @@
 import drjit as dr
 import numpy as np
 
-from brdfkit.theses.claims import cpu_seconds
+from brdfkit.theses.claims import measure_cpu_seconds
 
 
 def evaluate(shadow):
@@ -19,7 +19,7 @@ def seconds_in_turns(methods, times):
     load that comes and goes meets all of them; the first turn compiles.
     """
     turns = [
-        {label: cpu_seconds(evaluate, method()) for label, method in methods.items()}
+        {label: measure_cpu_seconds(evaluate, method()) for label, method in methods.items()}
         for _ in range(1 + times)
     ]
     return {label: min(turn[label] for turn in turns[1:]) for label in methods}

@@ -6,7 +6,7 @@ from brdfkit.theses.balint2019.measuring import rms
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import Claim, least_seconds, verdict
+from brdfkit.theses.claims import Claim, measure_least_seconds, verdict
 from brdfkit.theses.drawing import figure
 from brdfkit.theses.page import Picture, Section, Table
 
@@ -40,7 +40,7 @@ def run(sources, report):
     for done, (name, (light, settings, _)) in enumerate(METHODS.items()):
         call = renderer(light, settings)
         pictures[name[0]] = call()  # compiles
-        seconds[name[0]] = least_seconds(call, times=TIMES)
+        seconds[name[0]] = measure_least_seconds(call, times=TIMES)
         report(done + 1, len(METHODS))
     rows = [
         (

@@ -4,7 +4,7 @@ from brdfkit.theses.ergun2008.views import RESOLUTION, View, measured
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import UNSTATED, Claim, least_seconds, verdict
+from brdfkit.theses.claims import UNSTATED, Claim, measure_least_seconds, verdict
 from brdfkit.theses.page import Picture, Section, Table
 
 SECONDS = 60
@@ -66,7 +66,9 @@ def figures(view):
     found = []
     for technique in TECHNIQUES.values():
         lit = view.lit(view.shadow(**technique))
-        seconds = least_seconds(lambda how: view.lit(view.shadow(**how)), technique, times=1)
+        seconds = measure_least_seconds(
+            lambda how: view.lit(view.shadow(**how)), technique, times=1
+        )
         found.append((view.wrong(lit), view.psnr(lit), seconds))
     return found
 

@@ -10,7 +10,7 @@ from brdfkit.shadows.hybrid import hybrid_shadow
 from brdfkit.shadows.maps.scenes import SCENES
 from brdfkit.shadows.volumes.light_volumes import LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
-from brdfkit.theses.claims import UNSTATED, Claim, least_seconds, verdict
+from brdfkit.theses.claims import UNSTATED, Claim, measure_least_seconds, verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 15
@@ -76,16 +76,16 @@ def cost_of_volumes(view):
         return LightVolumes(meshes, view.placement.light, camera, pixels=SIZE)
 
     volumes = prepare()
-    shade = least_seconds(lambda: np.array(volumes.lit_share(si.p, si.n)))
-    return least_seconds(prepare), shade, volumes.stencil.memory
+    shade = measure_least_seconds(lambda: np.array(volumes.lit_share(si.p, si.n)))
+    return measure_least_seconds(prepare), shade, volumes.stencil.memory
 
 
 def cost_of_maps(view):
     """The same of a shadow map."""
     shadow = view.shadow()
-    shade = least_seconds(lambda: view.lit(shadow))
+    shade = measure_least_seconds(lambda: view.lit(shadow))
     # a map is only made when it is looked up
-    both = least_seconds(lambda: view.lit(view.shadow()))
+    both = measure_least_seconds(lambda: view.lit(view.shadow()))
     return max(both - shade, 0.0), shade, 4 * RESOLUTION**2
 
 
@@ -146,7 +146,7 @@ def hybrid_claim():
         return view.lit(view.shadow())
 
     wrong = [view.wrong(way()) for way in (by_hybrid, by_map)]
-    times = [least_seconds(way, times=1) for way in (by_hybrid, by_map)]
+    times = [measure_least_seconds(way, times=1) for way in (by_hybrid, by_map)]
     return Claim(
         "Hybrids are weak by speed and by quality.",
         "2.3",

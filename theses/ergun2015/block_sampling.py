@@ -10,7 +10,7 @@ from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.sampling import tree
 from brdfkit.lighting.sampling.block_laws import Hyperbolic
 from brdfkit.lighting.sampling.power_map import cell_power
-from brdfkit.theses.claims import Claim, least_seconds, verdict
+from brdfkit.theses.claims import Claim, measure_least_seconds, verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 60
@@ -141,8 +141,8 @@ def integral_by_samples(rgb, how):
 def time_claim(maps):
     """C4: the time to prepare blocks and law, over that of cumulative sums."""
     power = [cell_power(luminance(rgb)) for rgb in maps.values()]
-    blocks = sum(least_seconds(_prepare_blocks, p) for p in power)
-    sums = sum(least_seconds(_prepare_sums, p) for p in power)
+    blocks = sum(measure_least_seconds(_prepare_blocks, p) for p in power)
+    sums = sum(measure_least_seconds(_prepare_sums, p) for p in power)
     return Claim(
         "To prepare the blocks takes no longer than to prepare cumulative sums.",
         "9.1",

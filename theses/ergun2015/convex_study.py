@@ -16,7 +16,7 @@ from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.visibility.decomposition import decompose
 from brdfkit.lighting.visibility.occluders import Occluders
 from brdfkit.rendering.scene_input.environment import environment, light_by
-from brdfkit.theses.claims import least_seconds
+from brdfkit.theses.claims import measure_least_seconds
 
 SIZE, SPP = 96, 64
 SWEPT = "spot"  # the mesh of which settings are varied, and that moves
@@ -87,7 +87,7 @@ class Study:
 
     def seconds(self, occluders):
         """Seconds of CPU for a picture, the least of three."""
-        return least_seconds(self.render, occluders)
+        return measure_least_seconds(self.render, occluders)
 
     def quality(self, occluders):
         """PSNR [dB] of the picture with the shadows of `occluders`: (linear, as shown)."""

@@ -10,7 +10,7 @@ import numpy as np
 from brdfkit.lighting.visibility.hierarchy import Hierarchy
 from brdfkit.lighting.visibility.hull import Frames
 from brdfkit.lighting.visibility.occluders import CLEARANCE
-from brdfkit.mitsuba_bridge.arrays import Rows, cell
+from brdfkit.mitsuba_bridge.arrays import Rows, find_cell
 
 SIDE = 32  # texels
 MAX_TRIANGLES = 512  # of a field: about the number of its texels
@@ -63,7 +63,7 @@ class HeightFields:
 
         def read(i, before, hit):
             p = o + (near + (mi.Float(i) + 0.5) * step) * d
-            x, y = (cell(c * SIDE, SIDE) for c in (p.x, p.y))
+            x, y = (find_cell(c * SIDE, SIDE) for c in (p.x, p.y))
             height = self.heights.at((field * SIDE + y) * SIDE + x, active=active)
             above = dr.select(height < 0, 0, dr.sign(p.z - height))
             crossed = above * before < 0

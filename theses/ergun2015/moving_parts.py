@@ -11,7 +11,7 @@ from brdfkit.theses.ergun2015.convex_study import GREY, NO_COACD, SETTING, has_c
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.images.errors.psnr import psnr
-from brdfkit.theses.claims import NOT_RUN, Claim, cpu_seconds, verdict
+from brdfkit.theses.claims import NOT_RUN, Claim, measure_cpu_seconds, verdict
 from brdfkit.theses.drawing import figure
 from brdfkit.theses.page import Picture, Section
 
@@ -132,4 +132,4 @@ def update(scene, key, kind):
 
 def median_seconds(function, values):
     """Median seconds of CPU of a call of `function` with each of the `values`."""
-    return float(np.median([cpu_seconds(function, value) for value in values]))
+    return float(np.median([measure_cpu_seconds(function, value) for value in values]))

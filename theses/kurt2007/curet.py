@@ -11,14 +11,14 @@ from brdfkit.fitting.fit import fit
 from brdfkit.materials.loading import load
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
-from brdfkit.model.evaluation import lobe_values, weight_matrix
+from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.regression import losses
 
 
 def error(model, samples):
     """E of a model with values at `Samples`, squares summed over the channels."""
-    plain, squared = lobe_values(model, samples.wi, samples.wo)
-    weights = weight_matrix(model)
+    plain, squared = compute_lobe_values(model, samples.wi, samples.wo)
+    weights = to_weight_matrix(model)
     return error_of(plain @ weights + squared @ weights**2, samples)
 
 

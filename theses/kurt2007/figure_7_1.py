@@ -6,7 +6,7 @@ from brdfkit.theses.kurt2007.curet import PLAIN, samples
 from brdfkit.fitting.fit import fit
 from brdfkit.materials.loading import load
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.model.evaluation import weight_matrix
+from brdfkit.model.evaluation import to_weight_matrix
 from brdfkit.theses.claims import NOT_RUN, Claim, verdict
 from brdfkit.theses.drawing import figure
 from brdfkit.theses.page import Picture, Section, Table
@@ -91,7 +91,7 @@ def _draw(data):
     found = fit(data, f"pca_polynomial:degree={DEGREE}", loss=PLAIN, robust="bisquare")
     shown, angle = select_samples(data, 80), found.values["angle_1_2"]
     z, f = _components(shown.wi, shown.wo, angle), shown.values[:, 1]
-    betas = weight_matrix(found.model)[:, 1]
+    betas = to_weight_matrix(found.model)[:, 1]
     drawn = figure(6.0, 4.6)
     axes = drawn.add_subplot(projection="3d", computed_zorder=False)
     steps = [np.linspace(a, b, 33) for a, b in zip(z.min(axis=0), z.max(axis=0), strict=True)]

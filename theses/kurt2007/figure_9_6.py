@@ -2,13 +2,13 @@
 
 import numpy as np
 from brdfkit.theses.kurt2007.curet import PLAIN
+from brdfkit.theses.kurt2007.neural import decode_network
 from brdfkit.theses.kurt2007.printed import SEVEN
 
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.fitting.fit import fit
 from brdfkit.materials.measured import Measured
 from brdfkit.model import labels
-from brdfkit.model.samples.neural import decode_network
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section
 

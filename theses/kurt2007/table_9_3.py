@@ -2,12 +2,12 @@
 
 import numpy as np
 from brdfkit.theses.kurt2007.curet import BISQUARE, BOUNDS, WLS, error
+from brdfkit.theses.kurt2007.neural import decode_network
 from brdfkit.theses.kurt2007.printed import SEVEN, printed
 
 from brdfkit.fitting.fit import fit
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.model.samples.neural import decode_network
 from brdfkit.rendering import render
 from brdfkit.theses.claims import UNSTATED, Claim, verdict
 from brdfkit.theses.page import Section, Table

@@ -5,7 +5,7 @@ from brdfkit.theses.lesar2018.renderers import RENDERERS
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import Claim, least_seconds, verdict
+from brdfkit.theses.claims import Claim, measure_least_seconds, verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 60
@@ -64,7 +64,7 @@ def time_of(renderer, voxels, frame):
 
     once()  # compiles
     once()  # and is frozen
-    return least_seconds(once, times=TIMES)
+    return measure_least_seconds(once, times=TIMES)
 
 
 def over_middle(times):

@@ -3,7 +3,7 @@
 import drjit as dr
 
 from brdfkit.mitsuba_bridge import phase_functions
-from brdfkit.theses.claims import least_seconds
+from brdfkit.theses.claims import measure_least_seconds
 
 DRAWS, TURNS = 1 << 20, 16  # of which the time is taken
 SIZE, SPP = 256, 16  # of the picture
@@ -95,7 +95,7 @@ def time_of_picture(phase):
         mi.render(scene, spp=SPP).numpy()
 
     picture()  # compiles
-    return least_seconds(picture)
+    return measure_least_seconds(picture)
 
 
 def time_of(draw):
@@ -114,4 +114,4 @@ def time_of(draw):
         dr.sync_thread()
 
     drawn()  # compiles
-    return least_seconds(drawn)
+    return measure_least_seconds(drawn)

@@ -9,7 +9,7 @@ from brdfkit.theses.lesar2018.scans import DENSE, dense, scans
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import Claim, cpu_seconds, verdict
+from brdfkit.theses.claims import Claim, measure_cpu_seconds, verdict
 from brdfkit.theses.drawing import figure
 from brdfkit.theses.page import Picture, Section
 from brdfkit.volumes import TransferFunction
@@ -87,4 +87,4 @@ def first_picture(scan, pair):
         mi.render(loaded, spp=1).numpy()
 
     change(new)  # compiles
-    return cpu_seconds(change, new)
+    return measure_cpu_seconds(change, new)

@@ -1,11 +1,11 @@
 """What the fits of the leaderboard are held to: the truth of a material, from `.eval` alone."""
 
 import numpy as np
+from brdfkit.theses.kurt2007.neural import evaluate_network
 
 import brdfkit as bk
 from brdfkit.core.geometry.directions import from_half_difference, to_half_difference
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.model.samples.neural import evaluate_network
 
 MAX_ANGLE, PAIRS = 80.0, 60_000
 

@@ -15,7 +15,7 @@ from brdfkit.lighting.environments.conventions import parse_convention
 from brdfkit.lighting.environments.resampling import label_parts, look_up
 from brdfkit.materials.measured.coverage import find_largest_angles
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.model.samples.measures import weigh
+from brdfkit.model.samples.measures import compute_measure
 
 MODELS = "ward_duer", "ggx", "ggx+ggx", "abc+student_t"
 LOSSES = "cosine", "log", "cbrt"
@@ -77,7 +77,7 @@ class Judge:
         one of `HUES` [degrees] to the next."""
         samples = select_samples(self.data, 80.0)
         theta_h, theta_d, _ = np.degrees(to_half_difference(samples.wi, samples.wo))
-        light = weigh(samples.extents, "angles")[:, None] * np.maximum(samples.values, 0)
+        light = compute_measure(samples.extents, "angles")[:, None] * np.maximum(samples.values, 0)
         sums = [
             light[(theta_h < 5) & (theta_d >= a) & (theta_d < b)].sum(axis=0)
             for a, b in pairwise(HUES)
@@ -102,7 +102,7 @@ class Judge:
             "grazing": ~mirror & ~back & (lower > 65),
             "other": ~mirror & ~back & (lower <= 65),
         }
-        weight = weigh(samples.extents, "angles")
+        weight = compute_measure(samples.extents, "angles")
         squares = weight * ((own - its) ** 2).mean(axis=1)
         return {
             name: [

@@ -8,7 +8,7 @@ import brdfkit as bk
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.quadrature import directional_albedo
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.model.evaluation import lobe_values, weight_matrix
+from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.regression.losses.loss import squares
 
 LOSSES = "cosine", "log", "cbrt", "plain"
@@ -50,10 +50,10 @@ class Numbers:
     """
 
     def __init__(self, fit):
-        model, weights = fit.model, weight_matrix(fit.model).mean(axis=1)
+        model, weights = fit.model, to_weight_matrix(fit.model).mean(axis=1)
 
         def lobes(wi, wo):
-            return lobe_values(model, wi, wo)[0] * weights
+            return compute_lobe_values(model, wi, wo)[0] * weights
 
         left_out = (*model.weights(), "alpha_v", "f0", "ior")
         found = {n: v for n, v in fit.values.items() if not n.endswith(left_out)}

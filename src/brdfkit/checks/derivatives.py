@@ -13,7 +13,7 @@ from brdfkit.core.array_types import FloatArray, JitColour, JitFloat, MitsubaMod
 from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.core.jit import double_precision
 from brdfkit.model import Model
-from brdfkit.model.evaluation import lobe_values, to_shape_scalars, weight_matrix
+from brdfkit.model.evaluation import compute_lobe_values, to_shape_scalars, to_weight_matrix
 
 NO_SHAPES = "nothing to check: no shape parameters"
 
@@ -40,7 +40,7 @@ def gradient(subject: Subject) -> tuple[bool, str]:
     if unused := [n for n in model.shapes(anisotropic=True) if not has_effect(model, n)]:
         return False, f"{unused[0]} has no effect that Dr.Jit can follow"
     wi, wo = random_pairs(2_000, seed=6, max_degrees=80)
-    weights, worst = weight_matrix(model), 0.0
+    weights, worst = to_weight_matrix(model), 0.0
     for name in free_shapes(model):
         exact = exact_derivative(model, weights, name, wi, wo)
         difference = np.abs(exact - finite_difference(model, name, wi, wo))
@@ -169,14 +169,14 @@ def exact_derivative(
     parameter that follows the parameter `name` changes with it. Where a negative BRDF is clamped at
     0, the derivative is 0.
     """
-    plain, squared = lobe_values(model, wi, wo)
+    plain, squared = compute_lobe_values(model, wi, wo)
     if model.parameters[name].linear:
         lobe = model.weights().index(name)
         derivative = plain[:, [lobe]] + 2 * squared[:, [lobe]] * weights[lobe]
     else:
         plain_slopes, squared_slopes = _lobe_slopes(model, name, wi, wo)
         derivative = plain_slopes @ weights + squared_slopes @ weights**2
-    if not model.signed():
+    if not model.has_signed_weights():
         return derivative
     return np.where(plain @ weights + squared @ weights**2 > 0, derivative, 0)
 

@@ -23,7 +23,7 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured import Measured
 from brdfkit.mitsuba_bridge.bsdf.from_dictionary import BsdfMaterial
 from brdfkit.model import Model
-from brdfkit.model.evaluation import lobe_values
+from brdfkit.model.evaluation import compute_lobe_values
 
 # Angles of incidence of the statistical checks [degrees], and an azimuth [rad] beside the axes
 INCIDENCES = (0, 30, 60, 75, 85)
@@ -70,9 +70,9 @@ class Subject:
             return to_variant_channels(self.rendered.eval(wi, wo), self.rendered)
         if self.model is None:
             return self.material.eval(wi, wo)
-        plain, squared = lobe_values(self.model, wi, wo)
+        plain, squared = compute_lobe_values(self.model, wi, wo)
         values = plain @ self.weights + squared @ self.weights**2
-        return np.maximum(values, 0) if self.model.signed() else values
+        return np.maximum(values, 0) if self.model.has_signed_weights() else values
 
     @property
     def rendered(self) -> Measured:

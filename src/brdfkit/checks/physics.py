@@ -9,7 +9,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.quadrature import TOLERANCE, directional_albedo
 from brdfkit.core.jit import double_precision
-from brdfkit.model.evaluation import lobe_values
+from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.regression.problem.not_finite import require_finite, require_finite_slopes
 
 
@@ -58,7 +58,7 @@ def defined(subject: Subject) -> tuple[bool, str]:
     wi, wo = np.concatenate([wi, wi]), np.concatenate([wi * [-1, -1, 1], wi])
     shapes = {name: getattr(model, name) for name in model.shapes(anisotropic=True)}
     directions = double_precision.to_vector(wi), double_precision.to_vector(wo)
-    plain, _ = lobe_values(model, wi, wo)
+    plain, _ = compute_lobe_values(model, wi, wo)
     try:
         require_finite(model, plain.T, *directions)
         require_finite_slopes(model, shapes, shapes, *directions)

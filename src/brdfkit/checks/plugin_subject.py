@@ -49,7 +49,7 @@ def is_no_model(name: str) -> bool:
     """Return whether a plugin of this name exists and is no `Model`; it may be another BSDF."""
     kind = plugin_files.find_kind(name)
     return kind is not None and (
-        kind != MODELS or labels.model_in(plugin_files.find_plugins(MODELS)[name]) is None
+        kind != MODELS or labels.find_model_in(plugin_files.find_plugins(MODELS)[name]) is None
     )
 
 

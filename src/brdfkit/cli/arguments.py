@@ -18,7 +18,7 @@ def material(name, settings=()):
     """The material of a name or a file; of a model with `settings`, see `model_values`."""
     if not settings:
         return resolve.to_material(name)
-    label = labels.read_files(name)
+    label = labels.load_files(name)
     if not labels.is_label(label):
         raise BrdfkitError(f"{name} is no model: --set works for models only.")
     return labels.model(label)(**model_values(label, settings))

@@ -26,8 +26,8 @@ from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model import Model, labels
-from brdfkit.model.evaluation import with_weights
-from brdfkit.model.samples.measures import weigh, whole
+from brdfkit.model.evaluation import make_model
+from brdfkit.model.samples.measures import compute_measure, integrate_measure
 from brdfkit.regression import Fit, Loss, Picture, as_loss, regress
 from brdfkit.regression.measurement_noise import regress_noisy
 from brdfkit.regression.solvers import AlbedoAtMost, Solver, WeightsAtMost
@@ -141,7 +141,7 @@ def fit(
     """
     began = time.perf_counter()
     require_material_first("fit(material, model)", material)
-    model_class, data = labels.model(labels.read_files(model)), to_measured(material)
+    model_class, data = labels.model(labels.load_files(model)), to_measured(material)
     how: dict[str, Any] = {"seed": seed, "starts": starts, "bounds": bounds, "fixed": fixed}
     how |= {"solver": solver, "constraints": constraints}
     how["anisotropic"] = data.anisotropic if anisotropic is None else anisotropic
@@ -155,7 +155,7 @@ def fit(
 
     def to_fit(found):
         known = wavelengths(data) if spectral else ()
-        fitted = with_weights(model_class, found.shapes, found.weights, known)
+        fitted = make_model(model_class, found.shapes, found.weights, known)
         albedo = light.judge(fitted.eval)
         warnings = [] if light.has_another_unit else albedo.warnings()
         return Fit(
@@ -228,9 +228,9 @@ def tell_weights(loss: Loss | Picture, samples: Any, max_angle: float) -> dict[s
     if isinstance(loss, Picture):
         return {}
     weights = loss.importance(samples)
-    own, covered = weigh(samples.extents, loss.measure), 1.0
+    own, covered = compute_measure(samples.extents, loss.measure), 1.0
     if isinstance(own, np.ndarray):
-        covered = float(own.sum()) / whole(float(max_angle), loss.measure)
+        covered = float(own.sum()) / integrate_measure(float(max_angle), loss.measure)
     return {
         "effective_samples": float(weights.sum() ** 2 / (weights @ weights)),
         "unrepresented": max(1 - covered, 0.0),

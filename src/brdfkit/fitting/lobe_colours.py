@@ -8,7 +8,7 @@ from brdfkit.core.names import join_words
 from brdfkit.materials.measured import Measured
 from brdfkit.model import Model
 from brdfkit.model.samples import Samples
-from brdfkit.model.samples.measures import weigh
+from brdfkit.model.samples.measures import compute_measure
 
 # A lobe is of one hue where its least channel is below this share of its largest, and two hues
 # differ where the cosine between them is smaller than the second
@@ -62,7 +62,7 @@ def note_on_rim(data: Measured, samples: Samples, fitted: Model) -> list[str]:
     rim = samples.at(cosine < np.cos(np.radians(largest - RIM)))
     light = rim.weight * rim.wi[:, 2] * rim.wo[:, 2]
     if data.is_table:  # whose cells are small in the highlight, and many
-        light = light * weigh(rim.extents, "solid_angle")
+        light = light * compute_measure(rim.extents, "solid_angle")
     each = light * np.maximum(rim.values, 0).sum(axis=1)
     if not each.sum() or each.sum() ** 2 < SPREAD * (each**2).sum():
         return []  # dark, or a few bright samples

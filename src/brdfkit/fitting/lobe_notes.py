@@ -10,7 +10,7 @@ from brdfkit.fitting.lobe_colours import note_on_lobe_colours, note_on_rim
 from brdfkit.fitting.lobe_widths import half_widths, lobes_of, notes_on_widths, width_power
 from brdfkit.materials.measured import Measured
 from brdfkit.model import Model
-from brdfkit.model.evaluation import lobe_values, weight_matrix
+from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.model.samples import Samples
 from brdfkit.regression.light import albedo_pixels
 
@@ -53,7 +53,9 @@ def list_lobe_notes(
     >>> ward = models()["ward"](specular_reflectance=208)
     >>> list_lobe_notes(paint, samples, ward, ())    # doctest: +SKIP
     """
-    if fitted.signed():  # a sum of signed terms has no lobes that mean something by themselves
+    if (
+        fitted.has_signed_weights()
+    ):  # a sum of signed terms has no lobes that mean something by themselves
         return []
     albedos = lobe_albedos(fitted)
     diffuse = np.array([lobe.diffuse for lobe in fitted.lobes()])
@@ -74,9 +76,11 @@ def list_lobe_notes(
 
 def lobe_albedos(model: Model) -> NDArray[np.float64]:
     """The directional albedo (incidences, lobes, channels) of each lobe with its weight."""
-    both = albedo_pixels(INCIDENCES).look(lambda wi, wo: np.hstack(lobe_values(model, wi, wo)))
+    both = albedo_pixels(INCIDENCES).look(
+        lambda wi, wo: np.hstack(compute_lobe_values(model, wi, wo))
+    )
     plain, squared = np.split(both[..., None], 2, axis=1)
-    weights = weight_matrix(model)
+    weights = to_weight_matrix(model)
     return plain * weights + squared * weights**2
 
 
@@ -84,7 +88,7 @@ def _list_gains(fitted: Model, albedos: NDArray[np.float64]) -> list[str]:
     """A sentence on each lobe that alone reflects more light than arrives."""
     notes = []
     for name, weight, albedo in zip(
-        fitted.weights(), weight_matrix(fitted), albedos.max(axis=2).T, strict=True
+        fitted.weights(), to_weight_matrix(fitted), albedos.max(axis=2).T, strict=True
     ):
         if albedo.max() > GAIN:
             degrees = INCIDENCES[int(albedo.argmax())]
@@ -165,7 +169,7 @@ def _explain_bound(fitted: Model, name: str, highlight: NDArray[np.float64]) -> 
 
 def _of_lit_lobes(fitted: Model, names: list[str]) -> list[str]:
     """Those of the shape parameters `names` that belong to a lobe that is not black."""
-    lit = weight_matrix(fitted).any(axis=1)
+    lit = to_weight_matrix(fitted).any(axis=1)
     return [name for name in names if lit[lobes_of(fitted, name)].any()]
 
 

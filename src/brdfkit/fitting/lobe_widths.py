@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from brdfkit.core.geometry.directions import cos_theta_h, from_half_difference
 from brdfkit.model import Model
-from brdfkit.model.evaluation import lobe_values, weight_matrix
+from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.model.samples import Samples
 
 # Half angles at which a lobe is evaluated [rad], at this difference angle
@@ -25,7 +25,7 @@ def notes_on_widths(samples: Samples, fitted: Model) -> dict[str, str]:
     notes = {}
     for k, half_width in enumerate(half_widths(fitted) if step else ()):
         own = [n for n in widths if half_width < step / 2 and k in lobes_of(fitted, n)]
-        if not own or not weight_matrix(fitted)[k].any():
+        if not own or not to_weight_matrix(fitted)[k].any():
             continue
         name = min(own, key=lambda n: getattr(fitted, n) ** width_power(fitted, n))
         notes[name] = (
@@ -58,7 +58,7 @@ def half_widths(model: Model) -> NDArray[np.float64]:
     for phi_h in (0.0, np.pi / 2):
         wi, wo = from_half_difference(HALF_ANGLES, THETA_D, np.pi / 2, phi_h)
         above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
-        values = lobe_values(model, wi[above], wo[above])[0]
+        values = compute_lobe_values(model, wi[above], wo[above])[0]
         low = values < values[0] / 2
         half = np.degrees(HALF_ANGLES[above][low.argmax(axis=0)])
         peaked = low.any(axis=0) & (values.max(axis=0) <= values[0] * (1 + 1e-9))
@@ -74,7 +74,7 @@ def lobes_of(model: Model, name: str) -> NDArray[np.intp]:
     wi, wo = from_half_difference(HALF_ANGLES, THETA_D, 1.0, 0.5)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
     before, after = (
-        np.concatenate(lobe_values(m, wi[above], wo[above]))
+        np.concatenate(compute_lobe_values(m, wi[above], wo[above]))
         for m in (model, model.changed(**{name: other}))
     )
     return np.flatnonzero((np.abs(after - before) > 1e-9 * np.abs(before)).any(axis=0))

@@ -4,7 +4,7 @@ from brdfkit.core.names import format_percent
 from brdfkit.fitting.lobe_notes import list_lobe_notes
 from brdfkit.fitting.uncertainty.isotropic_limit import note_on_azimuth
 from brdfkit.materials.auditing.data_findings import list_data_findings
-from brdfkit.model.evaluation import clamped_share
+from brdfkit.model.evaluation import compute_clamped_share
 from brdfkit.regression import Picture
 
 
@@ -27,8 +27,8 @@ def list_notes(data, samples, loss, found, fitted, weighted):
     negative = (samples.values < 0).mean()
     if negative and not loss.linear:
         notes.append(f"{format_percent(100 * negative)} of the {_explain_negative(data)}")
-    if fitted.signed():
-        clamped = clamped_share(fitted)
+    if fitted.has_signed_weights():
+        clamped = compute_clamped_share(fitted)
         notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
     if data.anisotropic and (note := note_on_azimuth(data, samples, loss, fitted)):
         notes.append(note)

@@ -98,7 +98,7 @@ def _find(name: str) -> Material:
     It is a model with this label, unless a file has the same name; otherwise the file's content or
     the known material.
     """
-    label = labels.read_files(name)
+    label = labels.load_files(name)
     if labels.is_label(label) and (label != name or not os.path.isfile(name)):
         return labels.model(label)()
     try:

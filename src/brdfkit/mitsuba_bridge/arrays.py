@@ -54,7 +54,7 @@ class Integers:
         return int(self.values[index]) if active else 0
 
 
-def cell(x, n):
+def find_cell(x, n):
     """The index of the cell around `x`, of `n` cells of length 1; the first and last beyond."""
     import drjit as dr
     import mitsuba as mi
@@ -62,7 +62,7 @@ def cell(x, n):
     return mi.UInt32(dr.clip(x, 0, n - 1))
 
 
-def bracket(x, n):
+def find_bracket(x, n):
     """The bracket around `x` on an axis of `n` nodes; see `core/geometry/multilinear.py`."""
     import drjit as dr
     import mitsuba as mi
@@ -72,7 +72,7 @@ def bracket(x, n):
     return lower, dr.minimum(lower + 1, n - 1), x - mi.Float(lower)
 
 
-def periodic_bracket(x, n):
+def find_periodic_bracket(x, n):
     """The bracket around `x` on a periodic axis, where node n is node 0."""
     import drjit as dr
     import mitsuba as mi
@@ -88,7 +88,7 @@ class Nodes:
     def __init__(self, values):
         self.count, self.rows = len(values), Rows(values)
 
-    def bracket(self, x):
+    def find_bracket(self, x):
         """The bracket around `x`, clamped: (lower node, upper node, share of the upper node)."""
         import drjit as dr
         import mitsuba as mi

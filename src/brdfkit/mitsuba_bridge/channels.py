@@ -8,10 +8,10 @@ about 0 averages out; a mean below 0 becomes 0, as in `Measured.eval`.
 import numpy as np
 
 from brdfkit.core.colours import LUMINANCE, import_colour
-from brdfkit.mitsuba_bridge.arrays import Nodes, Rows, bracket
+from brdfkit.mitsuba_bridge.arrays import Nodes, Rows, find_bracket
 
 
-def channels(values, wavelengths=None):
+def make_channels(values, wavelengths=None):
     """The `Colours` of rows `values` (n, 3), linear sRGB, or (n, 1), achromatic.
 
     With `wavelengths` (channels,) [nm], the `Wavelengths` of rows (n, channels).
@@ -25,7 +25,7 @@ class Colours:
     """Rows of linear sRGB."""
 
     def __init__(self, values):
-        self.rows, self.spectrum = Rows(values), spectrum_of_rgb()
+        self.rows, self.spectrum = Rows(values), make_rgb_spectrum()
 
     def mean(self, corners, si):
         import drjit as dr
@@ -35,7 +35,7 @@ class Colours:
         return self.spectrum(dr.maximum(rgb, 0), si)
 
 
-def spectrum_of_rgb():
+def make_rgb_spectrum():
     """A function (rgb, si) → spectrum of a reflectance in linear sRGB, in the current variant."""
     import drjit as dr
     import mitsuba as mi
@@ -45,16 +45,16 @@ def spectrum_of_rgb():
     return SmoothSpectrum() if mi.is_spectral else lambda rgb, si: rgb
 
 
-def emission_of_rgb():
+def make_rgb_emission():
     """A function (rgb, it) → spectrum of a radiance in linear sRGB, in the current variant.
 
     (1, 1, 1) has the spectrum of the white point, D65.
     """
-    spectrum, light = spectrum_of_rgb(), white()
+    spectrum, light = make_rgb_spectrum(), make_white_light()
     return lambda rgb, it: spectrum(rgb, it) * light(it)
 
 
-def white():
+def make_white_light():
     """A function (interaction) → the factor by which the spectrum of a reflectance becomes light.
 
     It is the spectrum of D65 in spectral variants, 1 in the others.
@@ -91,7 +91,7 @@ class SmoothSpectrum:
 
         spectrum = mi.UnpolarizedSpectrum(0)
         for k, wavelength in enumerate(si.wavelengths):
-            lower, upper, t = bracket((wavelength - self.first) / self.step, self.count)
+            lower, upper, t = find_bracket((wavelength - self.first) / self.step, self.count)
             basis = [self.basis.at(node, mi.Color3f) for node in (lower, upper)]
             spectrum[k] = dr.dot(rgb, dr.lerp(*basis, t))
         return dr.maximum(spectrum, 0)
@@ -112,7 +112,7 @@ class Wavelengths:
 
         corners, spectrum = list(corners), mi.UnpolarizedSpectrum(0)
         for k, wavelength in enumerate(si.wavelengths):
-            *nodes, t = self.nodes.bracket(wavelength)
+            *nodes, t = self.nodes.find_bracket(wavelength)
             means = [self._mean(corners, node) for node in nodes]
             spectrum[k] = dr.lerp(*means, t)
         return spectrum

@@ -3,7 +3,7 @@
 import numpy as np
 
 
-def reference_film(size=8):
+def make_film(size=8):
     """The dictionary of a square film of independent pixels, in colours if there are any."""
     import mitsuba as mi
 
@@ -12,15 +12,15 @@ def reference_film(size=8):
     return {"type": "hdrfilm", "pixel_format": pixels, **edges}
 
 
-def through_unit_cube():
+def make_cube_camera():
     """The dictionary of a camera whose rays all go through the unit cube, along -z."""
     import mitsuba as mi
 
     to_world = mi.ScalarTransform4f().look_at([0.5, 0.5, 3], [0.5, 0.5, 0], [0, 1, 0]).scale(0.4)
-    return {"type": "orthographic", "to_world": to_world, "film": reference_film()}
+    return {"type": "orthographic", "to_world": to_world, "film": make_film()}
 
 
-def beside_a_shadow(integrator):
+def make_shadow_scene(integrator):
     """A scene with the dictionary of an `integrator`, and the radiance (3,) of each of its pixels:
     ρ E cosθ / π.
 
@@ -31,7 +31,7 @@ def beside_a_shadow(integrator):
     albedo, irradiance = 0.5, np.array([0.9, 0.6, 0.3])
     t = mi.ScalarTransform4f
     camera = t().look_at([0, 0, 4], [0, 0, 0], [0, 1, 0])
-    film = reference_film()
+    film = make_film()
     scene = {
         "type": "scene",
         "integrator": integrator,

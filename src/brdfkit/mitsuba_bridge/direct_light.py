@@ -5,18 +5,18 @@ import drjit as dr
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import give_back_interrupts
 from brdfkit.core.projective.body import Empty
-from brdfkit.mitsuba_bridge.properties.declarations import declared
-from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
+from brdfkit.mitsuba_bridge.properties.declarations import derive_plugin
+from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 
 
-def shadowed(mi, parameters):
+def derive_shadow_integrator(mi, parameters):
     """The base class of integrators of direct light that find all shadows before each picture.
 
     A class derived from it has `shadow_of(scene, sensor)`: a function from an emitter of the scene
     to what `direct_light` takes, which raises `Empty` where the light reaches nothing that is seen.
     """
 
-    class Shadowed(declared(mi.SamplingIntegrator, parameters)):
+    class Shadowed(derive_plugin(mi.SamplingIntegrator, parameters)):
         lights = ()
 
         def __init__(self, props):
@@ -24,10 +24,10 @@ def shadowed(mi, parameters):
             self.name = props.plugin_name()
 
         def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
-            refuse_scalar(self.name)
+            require_vectorised(self.name)
             sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
             shadow_of = self.shadow_of(scene, sensor)
-            self.lights = [(each, shadow_or_none(shadow_of, each)) for each in scene.emitters()]
+            self.lights = [(each, find_shadow(shadow_of, each)) for each in scene.emitters()]
             try:
                 return super().render(scene, sensor, seed, spp, develop, evaluate)
             finally:
@@ -52,7 +52,7 @@ class NoShadow:
         return 1
 
 
-def shadow_or_none(shadow_of, emitter):
+def find_shadow(shadow_of, emitter):
     """The shadow of an emitter, `NoShadow` where that is `Empty`."""
     try:
         return shadow_of(emitter)

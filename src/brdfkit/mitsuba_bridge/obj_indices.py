@@ -11,7 +11,7 @@ ELEMENTS = b"v", b"vt", b"vn"  # in the order of a corner: vertex/texture/normal
 
 
 @contextmanager
-def counted_from_the_start(path):
+def use_absolute_indices(path):
     """The `Path` of a mesh without relative indices: the file itself, or a temporary copy."""
     data = path.read_bytes()
     if path.suffix.lower() != ".obj" or not FACE.search(data):
@@ -19,11 +19,11 @@ def counted_from_the_start(path):
         return
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder, "mesh.obj")
-        copy.write_bytes(b"\n".join(_absolute_lines(data.splitlines())))
+        copy.write_bytes(b"\n".join(_make_lines_absolute(data.splitlines())))
         yield copy
 
 
-def _absolute_lines(lines):
+def _make_lines_absolute(lines):
     """The lines of an OBJ with indices from 1: -1 is the last element before a face."""
     count = dict.fromkeys(ELEMENTS, 0)
     for line in lines:
@@ -31,11 +31,13 @@ def _absolute_lines(lines):
         if first in count:
             count[first] += 1
         if first == b"f":
-            line = b"f " + b" ".join(_absolute(corner, count.values()) for corner in corners)
+            line = b"f " + b" ".join(
+                _make_corner_absolute(corner, count.values()) for corner in corners
+            )
         yield line
 
 
-def _absolute(corner, counts):
+def _make_corner_absolute(corner, counts):
     """A corner of a face, as b"-1/-1"; an index before the first becomes 0, which is refused."""
     indices = zip(corner.split(b"/"), counts, strict=False)
     return b"/".join(

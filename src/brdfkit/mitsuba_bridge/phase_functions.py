@@ -2,17 +2,17 @@
 
 import drjit as dr
 
-from brdfkit.mitsuba_bridge.properties.declarations import declared
+from brdfkit.mitsuba_bridge.properties.declarations import derive_plugin
 
 
-def deflection(mi, parameters):
-    """A class derived from `mi.PhaseFunction`, with the `parameters` of `declared`.
+def derive_phase_function(mi, parameters):
+    """A class derived from `mi.PhaseFunction`, with the `parameters` of `derive_plugin`.
 
     A class derived from it adds `density(mu)`, p(μ) [sr⁻¹] at the cosine μ of the angle, 1 for
     straight on, and `cosine(lobe, u)`, a random μ for two numbers of 0 to 1.
     """
 
-    class Deflection(declared(mi.PhaseFunction, parameters)):
+    class Deflection(derive_plugin(mi.PhaseFunction, parameters)):
         def __init__(self, props):
             super().__init__(props)
             self.m_flags = mi.PhaseFunctionFlags.Anisotropic
@@ -44,10 +44,10 @@ def cosine(n, lobe, u):
     return 2 * dr.select(lobe < 0.5, u, u ** (1 / (n + 1))) - 1
 
 
-def even_and_forward(mi, n):
+def define_even_and_forward(mi, n):
     """The class of `mi.PhaseFunction` with the power `n`."""
 
-    class EvenAndForward(deflection(mi, {})):
+    class EvenAndForward(derive_phase_function(mi, {})):
         def density(self, mu):
             return density(n, mu)
 

@@ -35,7 +35,7 @@ def load_scene_file(path, **how):
     return scene
 
 
-def file_scene(source):
+def make_scene_builder(source):
     """A function like those of `brdfkit.rendering.scenes`, which puts the material into a file's
     scene, in the place of one of its BSDFs.
 
@@ -54,7 +54,7 @@ def file_scene(source):
             if shape.bsdf():
                 by_id.setdefault(shape.bsdf().id(), []).append(shape)
         if place not in by_id:
-            raise _no_place(path, place, sorted(by_id))
+            raise _missing_id_error(path, place, sorted(by_id))
         for shape in by_id[place]:
             shape.set_bsdf(bsdf)
         if size:
@@ -72,7 +72,7 @@ def _require_maps(path):
             require_rows(file, f"{path}: {file}")
 
 
-def _no_place(path, place, known):
+def _missing_id_error(path, place, known):
     """The error where no shape has the BSDF that the material should replace."""
     near = nearest(place, known)
     guess = f"did you mean {path}#{near}? " if near else ""

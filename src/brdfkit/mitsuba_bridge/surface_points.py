@@ -13,7 +13,7 @@ a street differ between rays and shadow volumes. As much of t would be half a ho
 import drjit as dr
 
 
-def interaction(ray, t, p, n, found):
+def make_interaction(ray, t, p, n, found):
     """The `mi.SurfaceInteraction3f` at p: u and v are x and y, the tangent is the x axis laid onto
     the surface; where that stands upright, the z axis."""
     import mitsuba as mi
@@ -38,7 +38,7 @@ def clearance(p, t):
     return mi.math.RayEpsilon * dr.maximum(0.025 * t, 0.5 * dr.max(dr.abs(p)))
 
 
-def ray_off_surface(p, n, t, direction):
+def spawn_ray(p, n, t, direction):
     """The `mi.Ray3f` from a surface at `p` with the normal `n`, on the side of its direction."""
     import mitsuba as mi
 

@@ -52,12 +52,12 @@ class Declaration:
         return _derive(cls, tuple(sorted(changed.items()))) if changed else cls
 
     @classmethod
-    def unconfigured(cls):
+    def without_options(cls):
         """The class as it was written, with the default options."""
         return next(base for base in cls.__mro__ if "_chosen" not in vars(base))
 
     @classmethod
-    def in_plugin_file(cls):
+    def is_in_plugin_file(cls):
         """Whether the class was read from a plugin file, brdfkit's or a user's."""
         return cls.__module__.rpartition(".")[0] in plugin_files.PACKAGES_OF_MODELS
 
@@ -67,19 +67,19 @@ class Declaration:
 
         Such a class is defined in a notebook or in a module of the user's.
         """
-        model, name = cls.unconfigured(), cls.type_name()
-        if not cls.in_plugin_file() and _find_source(name) is not model:
+        model, name = cls.without_options(), cls.type_name()
+        if not cls.is_in_plugin_file() and _find_source(name) is not model:
             plugin_files.add_plugins(plugin_files.MODELS, {name: model})
 
     @classmethod
     def type_name(cls):
         """The plugin's type: the name of the model's file, or of the class in snake case."""
-        if cls.in_plugin_file():
+        if cls.is_in_plugin_file():
             return cls.__module__.rpartition(".")[2]
         return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", cls.__name__).lower()
 
     @classmethod
-    def chosen(cls):
+    def changed_options(cls):
         """The options that differ from their defaults, name → value."""
         values = {name: getattr(cls, name) for name in cls.options}
         return {name: v for name, v in values.items() if v != cls.options[name].default}
@@ -87,13 +87,13 @@ class Declaration:
     @classmethod
     def label(cls):
         """The type with the options that differ from their defaults: "lafortune:lobe_count=2"."""
-        options = ",".join(f"{name}={value}" for name, value in cls.chosen().items())
+        options = ",".join(f"{name}={value}" for name, value in cls.changed_options().items())
         return f"{cls.type_name()}:{options}" if options else cls.type_name()
 
     @classmethod
     def made_of(cls):
         """The unconfigured classes that a pickled model needs: its own, then those of its terms."""
-        return (cls.unconfigured(),)
+        return (cls.without_options(),)
 
     @classmethod
     def parameter(cls, name):
@@ -121,12 +121,12 @@ class Declaration:
         ]
 
     @classmethod
-    def anisotropic(cls):
+    def is_anisotropic(cls):
         """True where the BRDF may depend on the surface's azimuth: a parameter follows another."""
         return any(p.follows for p in cls.parameters.values())
 
     @classmethod
-    def signed(cls):
+    def has_signed_weights(cls):
         """True where a weight may be negative: then the BRDF is clamped at 0."""
         return any(p.linear and p.bounds[0] < 0 for p in cls.parameters.values())
 

@@ -16,17 +16,17 @@ def evaluate_model(model, wi, wo):
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
     up = np.array([0.0, 0.0, 1.0])
     wi, wo = np.where(above[:, None], wi, up), np.where(above[:, None], wo, up)
-    return np.where(above[:, None], mix_lobes(model, weight_matrix(model), wi, wo), 0.0)
+    return np.where(above[:, None], mix_lobes(model, to_weight_matrix(model), wi, wo), 0.0)
 
 
 def mix_lobes(model, weights, wi, wo):
     """As `evaluate_model`, with other `weights` (lobes, channels), above the surface."""
-    plain, squared = lobe_values(model, wi, wo)
+    plain, squared = compute_lobe_values(model, wi, wo)
     values = plain @ weights + squared @ weights**2
-    return np.maximum(values, 0) if model.signed() else values
+    return np.maximum(values, 0) if model.has_signed_weights() else values
 
 
-def clamped_share(model, n=20_000):
+def compute_clamped_share(model, n=20_000):
     """The share of direction pairs at which a channel of a signed model is clamped at 0.
 
     The `n` pairs are drawn uniformly in solid angle, by a fixed seed.
@@ -34,19 +34,19 @@ def clamped_share(model, n=20_000):
     z, phi = np.random.default_rng(0).random((2, 2, n))
     sine, phi = np.sqrt(1 - z * z), 2 * np.pi * phi
     wi, wo = np.stack([sine * np.cos(phi), sine * np.sin(phi), z], axis=-1)
-    plain, squared = lobe_values(model, wi, wo)
-    weights = weight_matrix(model)
+    plain, squared = compute_lobe_values(model, wi, wo)
+    weights = to_weight_matrix(model)
     return float((plain @ weights + squared @ weights**2 < 0).any(axis=1).mean())
 
 
-def weight_matrix(model):
+def to_weight_matrix(model):
     """The weights (lobes, channels) of a model with values."""
     weights = [np.atleast_1d(getattr(model, name)) for name in model.weights()]
     channels = max(len(model.wavelengths), *(len(w) for w in weights))
     return np.array([np.broadcast_to(w, channels) for w in weights])
 
 
-def with_weights(model, shapes, weights, wavelengths=()):
+def make_model(model, shapes, weights, wavelengths=()):
     """A model of the class `model` with `shapes` by name and `weights` (channels, lobes)."""
     named = dict(zip(model.weights(), map(tuple, weights.T), strict=True))
     return model(wavelengths=wavelengths, **shapes, **named)
@@ -60,7 +60,7 @@ def to_shape_scalars(model):
 
 
 @in_turn
-def lobe_values(model, wi, wo):
+def compute_lobe_values(model, wi, wo):
     """Two arrays (n, lobes) in sr⁻¹ of direction pairs (n, 3) above the surface.
 
     The first holds the values of each `Lobe.eval`, the second those of each `Lobe.quadratic`, 0 for

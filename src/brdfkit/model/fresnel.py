@@ -5,7 +5,7 @@ grazing incidence. So both can be weights, per channel, and take the place of k_
 otherwise is a shape parameter, beside F₉₀ = 1.
 """
 
-from brdfkit.model.lobes import factored
+from brdfkit.model.lobes import make_factored_lobe
 from brdfkit.model.microfacet import fifth_power, schlick
 from brdfkit.model.model import Model
 from brdfkit.model.parameters import option, weight
@@ -33,7 +33,7 @@ class FresnelModel(Model):
             "f90_reflectance": weight(k_s, "k₉₀ = k_s F₉₀: strength at grazing incidence"),
         }
 
-    def fresnel_lobes(self, D, geometry, sampling, albedo=1.0):
+    def make_fresnel_lobes(self, D, geometry, sampling, albedo=1.0):
         """The lobe, or the two, of the term `D(h)` `geometry(wi, wo)` [sr⁻¹], which lacks k_s F.
 
         `albedo`: about that of the term.
@@ -43,7 +43,7 @@ class FresnelModel(Model):
             def facets(h, cos_d):
                 return D(h) * F(cos_d)
 
-            return factored(facets, geometry, sampling, lambda wi: albedo * F(wi.z))
+            return make_factored_lobe(facets, geometry, sampling, lambda wi: albedo * F(wi.z))
 
         if self.fresnel == "schlick":
             return (lobe(lambda cosine: schlick(self.f0, cosine)),)

@@ -2,8 +2,8 @@
 
     ward    koenderink:order=8    ggx+ggx    oren_nayar:form=full+ward
 
-In a label that a person types, a Python file may stand for the model that it defines: `read_files`
-loads the file. A label from a saved file never goes through `read_files`, for it must not run code.
+In a label that a person types, a Python file may stand for the model that it defines: `load_files`
+loads the file. A label from a saved file never goes through `load_files`, for it must not run code.
 """
 
 import os
@@ -45,7 +45,9 @@ def models() -> Models:
     >>> models()["ward"](alpha_u=0.1)
     ward(diffuse_reflectance=0.4, specular_reflectance=0.2, alpha_u=0.1, alpha_v=0.1)
     """
-    found = {name: model_in(source) for name, source in plugin_files.find_plugins(MODELS).items()}
+    found = {
+        name: find_model_in(source) for name, source in plugin_files.find_plugins(MODELS).items()
+    }
     return Models((name, model) for name, model in found.items() if model is not None)
 
 
@@ -58,7 +60,7 @@ def model(label: str | type[Model]) -> type[Model]:
     if isinstance(label, type) and issubclass(label, Model):
         label.make_known()
         # A plugin file may have changed since the class was read
-        return model(label.label()) if label.in_plugin_file() else label
+        return model(label.label()) if label.is_in_plugin_file() else label
     if not isinstance(label, str):
         raise BrdfkitError(
             f"A {type(label).__name__} names no model; give a name such as 'ward', or a class, "
@@ -68,7 +70,7 @@ def model(label: str | type[Model]) -> type[Model]:
     if "+" in parts or parts != label:
         return model("mixture").configured(models=parts)
     name, _, settings = label.partition(":")
-    found = _find_model(name)
+    found = _find_named_model(name)
     options = {}
     for setting in filter(None, settings.split(",")):
         key, equals, value = setting.partition("=")
@@ -83,12 +85,12 @@ def is_label(word: str) -> bool:
     return all(part.partition(":")[0] in models() for part in word.split("+"))
 
 
-def read_files(label: Any) -> Any:
+def load_files(label: Any) -> Any:
     """Load the Python files that stand for models in a label; the label with the models' names.
 
     What is neither a text nor a `Path` comes back as it is.
 
-    >>> read_files("my_models/felt.py+ggx")    # doctest: +SKIP
+    >>> load_files("my_models/felt.py+ggx")    # doctest: +SKIP
     'felt+ggx'
     """
     if not isinstance(label, str | Path):
@@ -111,12 +113,12 @@ def load_model_file(path: str | Path) -> None:
     """
     (file,) = plugin_files.find_python_files(path)
     plugin_files.require_free_name(file.stem, file)
-    if model_in(file) is None:
+    if find_model_in(file) is None:
         raise BrdfkitError(f"{file} defines no class derived from brdfkit.Model.")
     plugin_files.add_plugins(MODELS, {file.stem: file})
 
 
-def model_in(source: Path | type) -> type[Model] | None:
+def find_model_in(source: Path | type) -> type[Model] | None:
     """The `Model` class that a plugin file defines, None if it defines none; a class for itself.
 
     Raises `BrdfkitError` for a file that defines several.
@@ -136,10 +138,10 @@ def model_in(source: Path | type) -> type[Model] | None:
     return own[0] if own else None
 
 
-def _find_model(name: str) -> type[Model]:
+def _find_named_model(name: str) -> type[Model]:
     """The model of that name; raises `BrdfkitError`, which proposes the nearest."""
     source = plugin_files.find_plugins(MODELS).get(name)
-    found = source and model_in(source)
+    found = source and find_model_in(source)
     if not found:
         raise no_such("model", name, models())
     return found

@@ -37,7 +37,7 @@ class Lobe:
     `quadratic(wi, wo)`: a value to be multiplied by the weight's square, as of light that is
     scattered twice;
     `diffuse`: whether Mitsuba counts the lobe as diffuse, else as glossy;
-    `factors`: the two functions of `factored`, for a lobe that it made.
+    `factors`: the two functions of `make_factored_lobe`, for a lobe that it made.
     """
 
     eval: Callable
@@ -48,7 +48,7 @@ class Lobe:
     factors: tuple[Callable, Callable] | None = None
 
 
-def factored(facets, geometry, sampling, energy=lambda wi: 1.0):
+def make_factored_lobe(facets, geometry, sampling, energy=lambda wi: 1.0):
     """The lobe `facets(h, cos_d)` · `geometry(wi, wo)`, with h the half vector and cos_d = wi·h.
 
     A fit to a table with a linear loss sums over the cells once and for all where the shape
@@ -61,7 +61,7 @@ def factored(facets, geometry, sampling, energy=lambda wi: 1.0):
     return Lobe(value, sampling, energy, factors=(facets, geometry))
 
 
-def components_of(lobes):
+def group_components(lobes):
     """A list of each component's lobe indices: lobes that share a sampling are one component."""
     groups = {}
     for index, lobe in enumerate(lobes):

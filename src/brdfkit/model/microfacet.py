@@ -64,7 +64,7 @@ class Beckmann:
     def sample(self, wi, u):
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
         radius = dr.sqrt(-dr.log(dr.maximum(1 - u.x, 1e-12)))
-        return _from_slope(
+        return _slope_normal(
             type(wi), radius * self.alpha_u * cos_phi, radius * self.alpha_v * sin_phi
         )
 
@@ -175,7 +175,7 @@ class Visible:
         return self.distribution.pdf(wi, h, cos_d) * dr.minimum(seen, 2)
 
 
-def _from_slope(vector, x, y):
+def _slope_normal(vector, x, y):
     """The unit normal of a facet with slopes `x` and `y`, of the type `vector`."""
     inverse = dr.rsqrt(1 + x * x + y * y)
     return vector(x * inverse, y * inverse, inverse)

@@ -24,13 +24,19 @@ from numpy.typing import ArrayLike, NDArray
 from brdfkit.core.discovery.plugin_pages import read_page
 from brdfkit.core.documents import Document, Folded, Shown
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.images.thumbnails import thumbnails
+from brdfkit.images.thumbnails import make_thumbnails
 from brdfkit.model.declaration import Declaration
 from brdfkit.model.evaluation import evaluate_model
 from brdfkit.model.lobes import Lobe
 from brdfkit.model.pickling import reduce_model
-from brdfkit.model.value_table import value_table
-from brdfkit.model.weights import check_wavelengths, mitsuba_entries, read_value, rgb_values, short
+from brdfkit.model.value_table import make_value_table
+from brdfkit.model.weights import (
+    check_wavelengths,
+    format_value,
+    read_value,
+    to_mitsuba_entries,
+    to_rgb_values,
+)
 
 
 class Model(Shown, Declaration):
@@ -83,7 +89,7 @@ class Model(Shown, Declaration):
                 value = parameter.default
             what = f"{self.type_name()}: {name}"
             value = read_value(value, parameter.linear, self.wavelengths, what)
-            if problem := parameter.problem_with(value):
+            if problem := parameter.find_problem(value):
                 raise BrdfkitError(f"{what} = {problem}.")
             self.__dict__[name] = value
 
@@ -120,7 +126,7 @@ class Model(Shown, Declaration):
         )
 
     @classmethod
-    def determined(cls, samples):
+    def determine_parameters(cls, samples):
         """Shape parameters by name that are computed from the measured directions, not searched."""
         return {}
 
@@ -173,7 +179,7 @@ class Model(Shown, Declaration):
         A colour outside sRGB is clipped to the weight's bounds. Lobes with squares of weights
         (``oren_nayar``, ``eon``) have the square of the colour, not the colour of the square.
         """
-        return type(self)(**rgb_values(self)) if self.wavelengths else self
+        return type(self)(**to_rgb_values(self)) if self.wavelengths else self
 
     @property
     def name(self) -> str:
@@ -187,9 +193,9 @@ class Model(Shown, Declaration):
     def scene_dict(self) -> dict[str, Any]:
         """The dictionary for `mitsuba.load_dict`; of a spectral model for the current variant."""
         self.make_known()
-        entries = {"type": self.type_name(), **self.chosen()}
+        entries = {"type": self.type_name(), **self.changed_options()}
         shown = self if self.wavelengths and _is_spectral() else self.rgb
-        return entries | mitsuba_entries(shown)
+        return entries | to_mitsuba_entries(shown)
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and self.arguments == other.arguments
@@ -206,8 +212,8 @@ class Model(Shown, Declaration):
         return Document(
             f"{self.label()}: {shown.sentence}",
             (
-                *thumbnails(self.name, self.rgb.eval),
-                value_table(self),
+                *make_thumbnails(self.name, self.rgb.eval),
+                make_value_table(self),
                 Folded(f"the page of {self.type_name()}", str(shown)),
             ),
         )
@@ -216,7 +222,9 @@ class Model(Shown, Declaration):
         return repr(self)
 
     def __repr__(self) -> str:
-        values = ", ".join(f"{name}={short(value)}" for name, value in self.arguments.items())
+        values = ", ".join(
+            f"{name}={format_value(value)}" for name, value in self.arguments.items()
+        )
         return f"{self.label()}({values})"
 
 

@@ -43,10 +43,10 @@ class Parameter:
             )
         if self.log and low <= 0:
             raise BrdfkitError(f"{self.meaning!r}: log=True needs bounds above 0.")
-        if self.default is not None and (problem := self.problem_with(self.default)):
+        if self.default is not None and (problem := self.find_problem(self.default)):
             raise BrdfkitError(f"{self.meaning!r}: the default {problem}.")
 
-    def problem_with(self, value):
+    def find_problem(self, value):
         """What is wrong with `value`, one number or several; None where all are within bounds."""
         low, high = self.bounds
         given = np.asarray(value)
@@ -93,7 +93,7 @@ class Option:
 
         Raises `BrdfkitError`, which calls the option `what`.
         """
-        value = type(self.default)(given) if _is_a(type(self.default), given) else given
+        value = type(self.default)(given) if _is_convertible(type(self.default), given) else given
         if type(value) is not type(self.default) or (self.choices and value not in self.choices):
             one_of = " or ".join(map(str, self.choices)) if self.choices else "of another kind"
             raise BrdfkitError(f"{what} = {given} should be {one_of}.")
@@ -105,7 +105,7 @@ def option(default, choices, meaning):
     return Option(default, choices, meaning)
 
 
-def _is_a(kind, given):
+def _is_convertible(kind, given):
     """Whether `given` is a value of the type `kind`, or a word for one."""
     try:
         return kind(given) == given or str(kind(given)) == given

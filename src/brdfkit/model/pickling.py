@@ -47,8 +47,8 @@ class UsersClass:
 
 def reduce_model(model):
     """What `pickle` stores of a model, as `object.__reduce__` returns it."""
-    classes = tuple(map(_portable, model.made_of()))
-    return restored, (classes, model.chosen(), model.arguments)
+    classes = tuple(map(_make_portable, model.made_of()))
+    return restored, (classes, model.changed_options(), model.arguments)
 
 
 def restored(classes, options, values):
@@ -58,7 +58,7 @@ def restored(classes, options, values):
     return own.configured(**options)(**values)
 
 
-def _portable(cls):
+def _make_portable(cls):
     """What stands for a class in a pickle: `UsersClass` for one of a user's file, else itself."""
     if cls.__module__.rpartition(".")[0] != plugin_files.USERS:
         return cls

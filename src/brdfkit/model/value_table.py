@@ -10,7 +10,7 @@ from brdfkit.core.documents.parts import BAD
 MOST = 3  # numbers of a weight that are shown; of more the least and the most
 
 
-def value_table(model, errors=None, at_bounds=()):
+def make_value_table(model, errors=None, at_bounds=()):
     """The `Table` of a `Model` with values.
 
     `errors`: standard errors in the form of ``model.values``, NaN where there is none; `at_bounds`:
@@ -18,33 +18,33 @@ def value_table(model, errors=None, at_bounds=()):
     """
     return Table(
         tuple(
-            _row(model, name, value, errors[name] if errors else np.nan, name in at_bounds)
+            _make_row(model, name, value, errors[name] if errors else np.nan, name in at_bounds)
             for name, value in model.values.items()
         )
     )
 
 
-def _row(model, name, value, error, is_on_bound):
+def _make_row(model, name, value, error, is_on_bound):
     parameter = model.parameters[name]
     low, high = parameter.bounds
     within = f" ({low:g} to {high:g})" if math.isfinite(high) else ""
     colour = value if isinstance(value, tuple) and not model.wavelengths else ()
-    numbers = _numbers(value, error, model.wavelengths)
-    shown = Cell(numbers, colour=colour, place=None if colour else _place(value, parameter))
+    numbers = _format_numbers(value, error, model.wavelengths)
+    shown = Cell(numbers, colour=colour, place=None if colour else _find_place(value, parameter))
     note = Cell("on its bound", kind=BAD) if is_on_bound else ""
     return Cell(name, hint=parameter.meaning + within), shown, note
 
 
-def _numbers(value, error, wavelengths):
+def _format_numbers(value, error, wavelengths):
     """The numbers of a parameter in words, with their standard errors."""
     values = np.atleast_1d(value)
     errors = np.broadcast_to(error, values.shape)
     if len(values) > MOST:
         return _summarise(values, errors, wavelengths)
-    return "  ".join(map(_with_error, values, errors))
+    return "  ".join(map(_format_with_error, values, errors))
 
 
-def _with_error(value, error):
+def _format_with_error(value, error):
     """A value with its standard error, if it has one."""
     return f"{value:.6g}" if np.isnan(error) else f"{value:.6g} ± {error:.2g}"
 
@@ -59,7 +59,7 @@ def _summarise(values, errors, wavelengths):
     return f"{least} to {most}{error}"
 
 
-def _place(value, parameter):
+def _find_place(value, parameter):
     """Where the value of a shape parameter lies between its bounds, 0 to 1; None of a weight."""
     if parameter.linear:
         return None

@@ -45,7 +45,7 @@ def read_value(value, per_channel, wavelengths, what):
     raise BrdfkitError(f"{what} = {given} should be {expected}.")
 
 
-def rgb_values(model):
+def to_rgb_values(model):
     """The values by name of a model with wavelengths, its weights in linear sRGB.
 
     A colour outside sRGB is clipped to the bounds of its weight.
@@ -58,19 +58,19 @@ def rgb_values(model):
     return values
 
 
-def mitsuba_entries(model):
+def to_mitsuba_entries(model):
     """The values of a model by name, as Mitsuba takes them: a colour, a spectrum or a number."""
     entries = {}
     for name, value in model.free_values.items():
         if isinstance(value, tuple) and model.wavelengths:
-            value = _spectrum(value, model.wavelengths, f"{model.type_name()}: {name}")
+            value = _make_spectrum(value, model.wavelengths, f"{model.type_name()}: {name}")
         elif isinstance(value, tuple):
             value = {"type": "rgb", "value": list(value * 3 if len(value) == 1 else value)}
         entries[name] = value
     return entries
 
 
-def _spectrum(value, wavelengths, what):
+def _make_spectrum(value, wavelengths, what):
     """The spectrum of one number per wavelength: linear between these, constant beyond."""
     if min(value) < 0:
         raise BrdfkitError(
@@ -88,7 +88,7 @@ def _spectrum(value, wavelengths, what):
     }
 
 
-def short(value):
+def format_value(value):
     """A value as a short text."""
     if not isinstance(value, tuple):
         return f"{value:.4g}"

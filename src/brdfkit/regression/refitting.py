@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.model.evaluation import weight_matrix, with_weights
+from brdfkit.model.evaluation import make_model, to_weight_matrix
 from brdfkit.regression import losses
 from brdfkit.regression.losses.named_losses import as_loss
 from brdfkit.regression.losses.picture import Picture
@@ -67,7 +67,7 @@ class Refit:
     def weights(self):
         """The weights (1, channels, lobes) of the fit."""
         channels = self.samples.values.shape[1]
-        matrix = weight_matrix(self.fit.model)
+        matrix = to_weight_matrix(self.fit.model)
         return np.broadcast_to(matrix, (len(matrix), channels)).T[None].copy()
 
     @property
@@ -112,4 +112,4 @@ class Refit:
     def values(self, shapes, weights):
         """All values of the model by name, of `shapes` by name and `weights`."""
         model, wavelengths = type(self.fit.model), self.fit.wavelengths
-        return with_weights(model, shapes, weights[0], wavelengths).values
+        return make_model(model, shapes, weights[0], wavelengths).values

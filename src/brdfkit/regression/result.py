@@ -12,9 +12,9 @@ from brdfkit.core.discovery.plugin_pages import read_page
 from brdfkit.core.documents import Document, Folded, Paragraph, Shown
 from brdfkit.core.documents.parts import BAD, SOFT
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.images.thumbnails import thumbnails
+from brdfkit.images.thumbnails import make_thumbnails
 from brdfkit.model import Model
-from brdfkit.model.value_table import value_table
+from brdfkit.model.value_table import make_value_table
 from brdfkit.regression.albedo_cells import albedo_line
 from brdfkit.regression.certainty import Certainty, intervals
 from brdfkit.regression.light import Albedo
@@ -240,8 +240,8 @@ class Fit(Shown):
         return Document(
             f"{self.name} fitted to {self.data}: {self.loss_label} {self.loss:.6g}",
             (
-                *thumbnails(self.name, self.rgb.eval),
-                value_table(self.model, self.standard_errors, self.at_bounds),
+                *make_thumbnails(self.name, self.rgb.eval),
+                make_value_table(self.model, self.standard_errors, self.at_bounds),
                 *((Paragraph(albedo_line(self.albedo)),) if self.albedo else ()),
                 *(Paragraph(note, BAD if note in self.warnings else "") for note in self.notes),
                 *(Paragraph(note) for note in old),

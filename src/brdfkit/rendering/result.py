@@ -13,8 +13,8 @@ import numpy as np
 from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.core.documents.parts import BAD
 from brdfkit.core.files import write_safely
-from brdfkit.images.errors import ImageErrors, image_errors
-from brdfkit.images.errors.noise import samples_for
+from brdfkit.images.errors import ImageErrors, compare_pictures
+from brdfkit.images.errors.noise import estimate_samples
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.rendering.montage import COLUMNS, TILE, montage, picture_suffix, write_exr
@@ -120,7 +120,7 @@ class Rendering(Shown):
         --------
         >>> print(render(["car_paint", "ward"]).errors())    # doctest: +SKIP
         """
-        return image_errors(self.pictures, self.other_seed, self.mask)
+        return compare_pictures(self.pictures, self.other_seed, self.mask)
 
     def write(self, path: str | Path) -> None:
         """Write the pictures to a file.
@@ -212,7 +212,7 @@ class Rendering(Shown):
         floor, requested = self.noise_floor, self.requested_noise_floor
         if requested is None or not isfinite(floor) or floor >= requested:
             return ""
-        needed = float(f"{samples_for(requested, floor, self.spp):.2g}")
+        needed = float(f"{estimate_samples(requested, floor, self.spp):.2g}")
         many = f"about {needed:,.0f}" if needed < BILLION else "more than a billion"
         return f"The noise floor is {floor:.1f} dB; {requested:g} dB take {many} samples per pixel."
 

@@ -10,7 +10,7 @@ from math import isqrt
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.images.errors.noise import Accumulated, samples_for
+from brdfkit.images.errors.noise import Accumulated, estimate_samples
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.rendering.progressive import Progressive
 
@@ -91,7 +91,7 @@ def _passes_needed(passes, done, halves, noise_floor, mask):
     floor = psnr(halves.picture, halves.other_seed, mask)
     if not floor < noise_floor:  # or unknown, where nothing shows the material
         return done
-    samples = samples_for(noise_floor, floor, sum(halves.spp))
+    samples = estimate_samples(noise_floor, floor, sum(halves.spp))
     needed = np.searchsorted(np.cumsum(passes), samples) + 1
     return int(np.clip(needed, done + 1, len(passes)))
 

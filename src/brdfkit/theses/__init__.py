@@ -11,8 +11,8 @@ from pathlib import Path
 
 from brdfkit.theses.claims import Claim as Claim
 from brdfkit.theses.reproducing import Reproduction as Reproduction
+from brdfkit.theses.reproducing import list_theses as list_theses
 from brdfkit.theses.reproducing import reproduce as reproduce
-from brdfkit.theses.reproducing import theses as theses
 
 # The theses themselves lie beside `plugins/`; the wheel contains a copy of them here
 __path__.append(str(Path(__file__).resolve().parents[3] / "theses"))

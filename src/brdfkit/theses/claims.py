@@ -4,16 +4,16 @@ import time
 from dataclasses import dataclass
 
 
-def cpu_seconds(function, *arguments):
+def measure_cpu_seconds(function, *arguments):
     """Seconds of CPU of a call of `function`."""
     start = time.process_time()
     function(*arguments)
     return time.process_time() - start
 
 
-def least_seconds(function, *arguments, times=3):
+def measure_least_seconds(function, *arguments, times=3):
     """The least seconds of CPU of a few calls."""
-    return min(cpu_seconds(function, *arguments) for _ in range(times))
+    return min(measure_cpu_seconds(function, *arguments) for _ in range(times))
 
 
 CONFIRMED, REFUTED, UNSTATED, NOT_RUN = "confirmed", "not confirmed", "not stated", "not run"
@@ -58,10 +58,10 @@ def verdict(holds):
     return CONFIRMED if holds else REFUTED
 
 
-def count(claims):
+def count_verdicts(claims):
     """How many claims have each verdict, in words, without those that none has.
 
-    >>> count([Claim("", "", "", "", "confirmed")])
+    >>> count_verdicts([Claim("", "", "", "", "confirmed")])
     '1 confirmed'
     """
     found = [c.verdict for c in claims]

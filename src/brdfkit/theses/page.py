@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from brdfkit.core.files import write_safely
-from brdfkit.theses.claims import Claim, count
+from brdfkit.theses.claims import Claim, count_verdicts
 
 HEAD = "claim", "where", "printed", "ours", "verdict"
 RESOLUTION = 90  # dots per inch
@@ -52,44 +52,46 @@ def write_page(file, title, introduction, sections, missing=()):
     paths = {picture.name: _picture_path(file, picture) for picture in pictures}
     for picture in pictures:
         with write_safely(paths[picture.name]) as beside:
-            beside.write_bytes(_png(picture.figure))
+            beside.write_bytes(_encode_png(picture.figure))
     with write_safely(file) as beside:
-        beside.write_text(_page(file, title, introduction, sections, missing), encoding="utf-8")
+        beside.write_text(
+            _format_page(file, title, introduction, sections, missing), encoding="utf-8"
+        )
     return [file, *paths.values()]
 
 
-def _page(file, title, introduction, sections, missing):
+def _format_page(file, title, introduction, sections, missing):
     claims = [claim for section in sections for claim in section.claims]
     blocks = [f"# {title}", introduction.strip()]
     if missing:
         blocks.append(f"**Not finished**: {', '.join(missing)}.")
-    blocks += ["## The claims", f"{len(claims)} claims: {count(claims)}."]
-    blocks.append(_table(HEAD, [_row(claim) for claim in claims]))
+    blocks += ["## The claims", f"{len(claims)} claims: {count_verdicts(claims)}."]
+    blocks.append(_format_table(HEAD, [_format_claim(claim) for claim in claims]))
     for section in sections:
         blocks += [f"## {section.title}", section.text.strip()]
-        blocks += [_why(claim) for claim in section.claims if claim.why]
+        blocks += [_format_reason(claim) for claim in section.claims if claim.why]
         for table in section.tables:
-            blocks += [_table(table.columns, table.rows), table.caption]
+            blocks += [_format_table(table.columns, table.rows), table.caption]
         for picture in section.pictures:
             path = _picture_path(file, picture).name
             blocks += [f"![{section.title}]({path})", picture.caption]
     return "\n\n".join(filter(None, blocks)) + "\n"
 
 
-def _row(claim):
+def _format_claim(claim):
     return claim.says, claim.where, claim.printed, claim.ours, f"**{claim.verdict}**"
 
 
-def _why(claim):
+def _format_reason(claim):
     return f"- *{claim.says}* **{claim.verdict}.** {claim.why}"
 
 
-def _table(columns, rows):
+def _format_table(columns, rows):
     lines = [columns, ["---"] * len(columns), *rows]
-    return "\n".join("| " + " | ".join(_cell(c) for c in line) + " |" for line in lines)
+    return "\n".join("| " + " | ".join(_format_cell(c) for c in line) + " |" for line in lines)
 
 
-def _cell(text):
+def _format_cell(text):
     return " ".join(str(text).split()).replace("|", "∣")
 
 
@@ -97,7 +99,7 @@ def _picture_path(file, picture):
     return file.with_name(f"{file.stem}_{picture.name}.png")
 
 
-def _png(figure):
+def _encode_png(figure):
     """A figure as the bytes of a PNG with a palette: a third of the size."""
     from PIL import Image
 

@@ -14,7 +14,7 @@ from brdfkit.core.documents import Document, Shown, Table
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.files import make_folder, require_writable
 from brdfkit.core.progress_bar import Progress
-from brdfkit.theses.claims import Claim, count
+from brdfkit.theses.claims import Claim, count_verdicts
 from brdfkit.theses.page import write_page
 from brdfkit.theses.sources import Sources, find_sources
 
@@ -43,18 +43,18 @@ class Reproduction(Shown):
     def document(self) -> Document:
         """The claims, each with its verdict, what is printed and what came out."""
         rows = tuple((c.verdict, f"{c.says} ({c.where})", c.printed, c.ours) for c in self.claims)
-        title = f"{self.name}: {len(self.claims)} claims: {count(self.claims)}"
+        title = f"{self.name}: {len(self.claims)} claims: {count_verdicts(self.claims)}"
         return Document(title, (Table(rows, ("verdict", "claim", "printed", "here")),))
 
 
-def theses() -> dict[str, str]:
+def list_theses() -> dict[str, str]:
     """The theses that can be reproduced: name → title.
 
-    >>> list(theses())
+    >>> list(list_theses())
     ['balint2019', 'ergun2008', 'ergun2015', 'kurt2007', 'lesar2018']
     """
     found = pkgutil.iter_modules(sys.modules[__package__].__path__)
-    return {f.name: _thesis(f.name).TITLE for f in found if f.ispkg}
+    return {f.name: _import_thesis(f.name).TITLE for f in found if f.ispkg}
 
 
 def reproduce(
@@ -101,9 +101,9 @@ def reproduce(
     --------
     >>> print(reproduce("kurt2007", path="docs/reproduce"))    # doctest: +SKIP
     """
-    if name not in theses():
-        raise no_such("thesis", name, theses())
-    thesis = _thesis(name)
+    if name not in list_theses():
+        raise no_such("thesis", name, list_theses())
+    thesis = _import_thesis(name)
     for part in parts or ():
         if part not in thesis.PARTS:
             raise no_such("part", part, thesis.PARTS, where=name)
@@ -121,7 +121,9 @@ def reproduce(
         for number, module in enumerate(modules):
             before = sum(m.SECONDS for m in modules[:number])
             report(before, total)
-            sections.append(module.run(sources, _share(report, before, module.SECONDS, total)))
+            sections.append(
+                module.run(sources, _scale_progress(report, before, module.SECONDS, total))
+            )
     except KeyboardInterrupt:
         if not sections:
             raise
@@ -141,10 +143,10 @@ def _require_packages(thesis: ModuleType, sources: Sources) -> None:
             )
 
 
-def _thesis(name: str) -> ModuleType:
+def _import_thesis(name: str) -> ModuleType:
     return importlib.import_module(f"{__package__}.{name}")
 
 
-def _share(report, before, seconds, total):
+def _scale_progress(report, before, seconds, total):
     """The progress of a part as that of all: the parts count by how long they take."""
     return lambda done, of: report(before + seconds * done / of, total)

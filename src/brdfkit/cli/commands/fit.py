@@ -89,7 +89,7 @@ def fit(
     if not rendered:
         _refuse_for_pictures("scene", "environment", "spp", "noise_floor", "size")
     _refuse_models(files)
-    names = list(dict.fromkeys(map(labels.read_files, names or labels.models())))
+    names = list(dict.fromkeys(map(labels.load_files, names or labels.models())))
     for name in names:
         if name != BEST:
             labels.model(name)

@@ -20,7 +20,7 @@ def models(name, console):
     if name is None:
         _print_list(labels.models(), console)
     else:
-        print_model(labels.model(labels.read_files(name)), console)
+        print_model(labels.model(labels.load_files(name)), console)
 
 
 def _print_list(models, console):

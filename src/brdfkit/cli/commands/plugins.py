@@ -53,10 +53,10 @@ def _print_page(kind, name, console):
     from brdfkit.cli.commands.models import print_model, print_references
     from brdfkit.core.discovery.plugin_files import MODELS, find_plugins, import_plugin
     from brdfkit.core.discovery.plugin_pages import read_page
-    from brdfkit.model.labels import model_in
+    from brdfkit.model.labels import find_model_in
 
     source = find_plugins(kind)[name]
-    if kind == MODELS and (model := model_in(source)):
+    if kind == MODELS and (model := find_model_in(source)):
         print_model(model, console)
         return
     parameters = getattr(import_plugin(source), "PARAMETERS", {})

@@ -46,11 +46,11 @@ def reproduce(name, output, data, tables, parts, console):
     missing, its source is named. Ctrl-C keeps the parts that are finished.
     """
     from brdfkit.cli.arguments import results_folder
+    from brdfkit.theses import list_theses
     from brdfkit.theses import reproduce as run
-    from brdfkit.theses import theses
 
     if name is None:
-        _print_theses(theses(), console)
+        _print_theses(list_theses(), console)
         return
     with results_folder(output), console.progress(f"reproduce {name}") as progress:
         found = run(
@@ -75,12 +75,12 @@ def _print_theses(found, console):
 
 
 def _print(found, console):
-    from brdfkit.theses.claims import count
+    from brdfkit.theses.claims import count_verdicts
 
     if console.as_json:
         console.json(found)
         return
     rows = [(c.verdict, c.says, c.where, c.printed, c.ours) for c in found.claims]
-    title = f"{found.name}: {len(rows)} claims: {count(found.claims)}"
+    title = f"{found.name}: {len(rows)} claims: {count_verdicts(found.claims)}"
     console.table(["verdict", "claim", "where", "printed", "ours"], rows, title=title)
     console.list_written(found.written)

@@ -68,7 +68,7 @@ def svbrdf(
     values, output = parse_settings(fixed, "--fixed"), output or folder / "maps"
     interrupted = False
     with results_folder(output), console.progress("fit maps") as progress:
-        check_folder(labels.model(labels.read_files(model)), output)
+        check_folder(labels.model(labels.load_files(model)), output)
         try:
             found = fit_maps(
                 folder,

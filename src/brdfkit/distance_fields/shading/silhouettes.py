@@ -25,7 +25,7 @@ from brdfkit.core.jit.loops import record_loops
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.shading.visible_point import NORMAL_STEP, VisiblePoint, ray_cone
 from brdfkit.distance_fields.tracing.hits import normal
-from brdfkit.mitsuba_bridge.surface_points import interaction
+from brdfkit.mitsuba_bridge.surface_points import make_interaction
 
 BAND_WIDTH = 4.0  # ε over ρ
 MAX_STEPS = 512  # of a march, as in `cone_trace`
@@ -73,7 +73,7 @@ def find_near_miss(
         ball = dr.maximum(field.distance(ray(t)) / field.lipschitz, precision / 2)
         n = normal(field.distance, ray(t), dr.maximum(ball, NORMAL_STEP * precision))
         n = dr.normalize(n - ray.d * (dr.dot(n, ray.d) + GRAZING_COSINE))
-        seen = VisiblePoint(interaction(ray, t, ray(t), n, found), ray(t), ball, found, field)
+        seen = VisiblePoint(make_interaction(ray, t, ray(t), n, found), ray(t), ball, found, field)
     return NearMiss(seen, gap(t), BAND_WIDTH * rho(t))
 
 

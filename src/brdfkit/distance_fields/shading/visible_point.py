@@ -21,7 +21,7 @@ from brdfkit.core.jit.loops import record_loops
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.tracing.cone_tracing import cone_trace
 from brdfkit.distance_fields.tracing.hits import normal, reattach
-from brdfkit.mitsuba_bridge.surface_points import interaction
+from brdfkit.mitsuba_bridge.surface_points import make_interaction
 
 NORMAL_STEP = 10.0  # half the differences of normals, over `precision`; less than all details
 SMALL_BALL = 1 / 8  # the radius of the small ball over that of the first
@@ -71,7 +71,7 @@ def find_visible_point(
         ahead = dr.select(closer.found, closer.t - t, 0)
     n = normal(f, ray(t + ahead), dr.maximum(gap, NORMAL_STEP * precision))
     ahead = ahead + dr.detach(gap / dr.maximum(-dr.dot(n, ray.d), LEAST_COSINE))
-    si = interaction(ray, t, ray(t + ahead), n, hit.found)
+    si = make_interaction(ray, t, ray(t + ahead), n, hit.found)
     return VisiblePoint(si, ray(t), ball, hit.found, field)
 
 

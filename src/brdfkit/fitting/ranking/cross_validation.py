@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.model.evaluation import with_weights
+from brdfkit.model.evaluation import make_model
 from brdfkit.regression.light import Albedo
 
 # Starts of the fits without a fold: they begin where the fit of all samples ended
@@ -41,7 +41,7 @@ def cross_validate(model, held_out, appearance, light, anisotropic, seed, report
     report(1)
 
     errors = errors_held_out(model, held_out, whole.shapes, how, lambda done: report(1 + done))
-    brdf, certainty = with_weights(model, whole.shapes, whole.weights).eval, whole.certainty
+    brdf, certainty = make_model(model, whole.shapes, whole.weights).eval, whole.certainty
     albedo = light.judge(brdf)
     return Validated(
         errors,

@@ -13,7 +13,7 @@ import numpy as np
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import half_azimuth, to_half_difference
 from brdfkit.images.ball import Pixels
-from brdfkit.model.evaluation import with_weights
+from brdfkit.model.evaluation import make_model
 from brdfkit.model.samples import Samples
 from brdfkit.regression import Loss, Picture, losses, regress
 from brdfkit.regression.losses.loss import squares
@@ -76,7 +76,7 @@ class HeldOut:
         if self.pixels is None:
             return squares(self.loss, values, samples)
         pixels = self.pixels.at(of_pixels)
-        brdf = with_weights(model, solution.shapes, solution.weights).eval
+        brdf = make_model(model, solution.shapes, solution.weights).eval
         apart = squares(self.loss.of_pixels, pixels.look(brdf), _as_samples(pixels))
         return np.concatenate([squares(losses.named["log"], values, samples), apart])
 

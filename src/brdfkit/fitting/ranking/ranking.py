@@ -138,7 +138,7 @@ def _find_classes(models: Any) -> dict[str, type[Model]]:
     if models is None:
         models = candidates()
     several = isinstance(models, Iterable) and not isinstance(models, str)
-    found = [labels.model(labels.read_files(m)) for m in (models if several else [models])]
+    found = [labels.model(labels.load_files(m)) for m in (models if several else [models])]
     if not found:
         raise BrdfkitError("There is no model to rank; name at least one.")
     return {model.label(): model for model in found}

@@ -26,7 +26,7 @@ def plan(files: Any, models: Any, settings: dict[str, Any]) -> list[Task]:
     has a task with its failure. Raises `BrdfkitError` for what is no model, and where there is no
     file or no model.
     """
-    classes = [labels.model(labels.read_files(m)) for m in _as_list(models, "model")]
+    classes = [labels.model(labels.load_files(m)) for m in _as_list(models, "model")]
     defined = {c.label(): _checksums_of_files(c) for c in classes}
     tasks: dict[str, Task] = {}
     for file in _as_list(files, "file"):
@@ -77,7 +77,7 @@ def _checksums_of_files(model: type[Model]) -> dict[str, str]:
     """The SHA-256 by path of the user's files that define a model."""
     found = {}
     for part in model.made_of():
-        if not part.in_plugin_file():
+        if not part.is_in_plugin_file():
             raise BrdfkitError(
                 f"{part.__name__} is defined in no file of its own, which other processes could "
                 "load; write it to one and name that."

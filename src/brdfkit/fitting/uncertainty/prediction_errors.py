@@ -11,7 +11,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.fitting.settings import fitted_samples
 from brdfkit.materials.resolve import MaterialLike, to_material
-from brdfkit.model.evaluation import lobe_values
+from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.regression import Fit
 from brdfkit.regression.losses.loss import squares
 from brdfkit.regression.losses.named_losses import as_loss
@@ -96,7 +96,7 @@ def prediction_error(
     _require_linear(fit, samples)
     # raises for weights, constraints and standard errors, not known here
     Refit(fit, samples).require_least()
-    Z = lobe_values(fit.model, samples.wi, samples.wo)[0]
+    Z = compute_lobe_values(fit.model, samples.wi, samples.wo)[0]
     # (Z'WZ)⁻¹ Z'W, of the weights W of the loss
     root = _root_weights(as_loss(fit.loss_name), samples)
     solve = np.linalg.pinv(root[:, None] * Z) * root
@@ -131,7 +131,7 @@ def _to_numbers(sigma, channels):
 def _require_linear(fit, samples):
     """Raise `BrdfkitError` unless the values of a fit are linear in the measured ones."""
     model, settings = type(fit.model), fit.settings
-    given = {*model.determined(samples), *settings.get("fixed", ())}
+    given = {*model.determine_parameters(samples), *settings.get("fixed", ())}
     sought = [name for name in model.shapes(settings.get("anisotropic")) if name not in given]
     reason = None
     if sought:

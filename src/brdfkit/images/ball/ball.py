@@ -5,8 +5,8 @@ from functools import cache
 import numpy as np
 
 from brdfkit.images.ball.half_vectors import HalfVectors
-from brdfkit.images.ball.normals import facing
-from brdfkit.images.ball.pixels import add_up, draw_directions
+from brdfkit.images.ball.normals import find_normals
+from brdfkit.images.ball.pixels import draw_directions, sum_pairs
 
 LIGHT = "studio"
 # Directions of each pixel, by the light and as many by the BRDF
@@ -15,20 +15,20 @@ DIRECTIONS = 40
 WHITE = 0.8
 
 
-def ball(brdf, side):
+def draw_ball(brdf, side):
     """The picture (side, side, channels) of a ball of a BRDF (wi, wo) → (n, channels), linear, and
     how much of each pixel the ball covers (side, side).
 
     The light and the exposure are the same for all materials.
     """
-    x, y, cover = _disc(side)
-    values = _look(brdf, x[cover > 0], y[cover > 0]) * _exposure()
+    x, y, cover = _place_pixels(side)
+    values = _compute_radiance(brdf, x[cover > 0], y[cover > 0]) * _compute_exposure()
     picture = np.zeros((side, side, values.shape[1]))
     picture[cover > 0] = values
     return picture, cover
 
 
-def _disc(side):
+def _place_pixels(side):
     """Places x, y of the pixels of a disc of radius 1, and the shares of them that it covers."""
     at = (np.arange(side) + 0.5) / side * 2 - 1
     x, y = np.meshgrid(at, -at)
@@ -38,21 +38,23 @@ def _disc(side):
     return x * inside, y * inside, cover
 
 
-def _look(brdf, x, y):
+def _compute_radiance(brdf, x, y):
     """The radiance (n, channels) that is seen of the ball at places `x`, `y` (n,)."""
     from scipy.stats import qmc
 
     # All pixels by the same points: their errors are alike, and the picture has no grain
     points = np.stack([qmc.Halton(3, rng=seed).random(DIRECTIONS) for seed in range(2)])
     for_light, for_brdf = np.repeat(points[:, None], len(x), axis=1)
-    normals, half_vectors = facing(x, y), HalfVectors(brdf)
+    normals, half_vectors = find_normals(x, y), HalfVectors(brdf)
     wi, wo, shares = draw_directions(normals, LIGHT, half_vectors, 90.0, for_light, for_brdf)
-    return add_up(np.maximum(brdf(wi, wo), 0), shares, 2 * DIRECTIONS)
+    return sum_pairs(np.maximum(brdf(wi, wo), 0), shares, 2 * DIRECTIONS)
 
 
 @cache
-def _exposure():
+def _compute_exposure():
     """The factor of radiances by which a matt white ball is as bright as it should be."""
-    x, y, cover = _disc(32)
-    white = _look(lambda wi, wo: np.full((len(wi), 1), WHITE / np.pi), x[cover > 0], y[cover > 0])
+    x, y, cover = _place_pixels(32)
+    white = _compute_radiance(
+        lambda wi, wo: np.full((len(wi), 1), WHITE / np.pi), x[cover > 0], y[cover > 0]
+    )
     return WHITE / np.percentile(white, 99)

@@ -34,15 +34,20 @@ def hall(w):
         ((320, 30), 500),
     )
     return 0.1 * (1 + np.maximum(w[:, 2], 0)) + sum(
-        radiance * _disc(w, *place, radius=1.2) for place, radiance in lamps
+        radiance * _is_in_disc(w, *place, radius=1.2) for place, radiance in lamps
     )
 
 
 def sky(w):
     """A clear sky, brightest about a low sun that stands behind the ball to the right."""
     sun = 56, 27
-    glow = 3 * np.exp(6 * (w @ _towards(*sun) - 1))
-    above = 0.25 + 0.5 * (1 - np.maximum(w[:, 2], 0)) ** 2 + glow + 150 * _disc(w, *sun, radius=2.5)
+    glow = 3 * np.exp(6 * (w @ _direction_to(*sun) - 1))
+    above = (
+        0.25
+        + 0.5 * (1 - np.maximum(w[:, 2], 0)) ** 2
+        + glow
+        + 150 * _is_in_disc(w, *sun, radius=2.5)
+    )
     return np.where(w[:, 2] < 0, 0.25, above)
 
 
@@ -50,20 +55,20 @@ def studio(w):
     """A dim room with a softbox at the upper left in front, and a smaller one at the right."""
     grey = np.where(w[:, 2] < 0, 0.15, 0.05 + 0.25 * w[:, 2])
     softbox, other = (234, 38), (117, 13)
-    return grey + 3.3 * _disc(w, *softbox, radius=22) + 2 * _disc(w, *other, radius=12)
+    return grey + 3.3 * _is_in_disc(w, *softbox, radius=22) + 2 * _is_in_disc(w, *other, radius=12)
 
 
 LIGHTS = {light.__name__: light for light in (court, hall, sky, studio)}
 
 
-def _towards(azimuth, elevation):
+def _direction_to(azimuth, elevation):
     """The unit vector (3,) to an `azimuth`, from north (+y) to east (+x), and `elevation`."""
     return from_angles(np.radians(90 - elevation), np.radians(90 - azimuth))
 
 
-def _disc(w, azimuth, elevation, radius):
+def _is_in_disc(w, azimuth, elevation, radius):
     """1 where a direction is nearer than `radius` to the disc's centre, else 0; [degrees]."""
-    return 1.0 * (w @ _towards(azimuth, elevation) > np.cos(np.radians(radius)))
+    return 1.0 * (w @ _direction_to(azimuth, elevation) > np.cos(np.radians(radius)))
 
 
 class LightSampling:
@@ -101,6 +106,6 @@ class LightSampling:
 
 
 @cache
-def sampling_of(name):
+def get_sampling(name):
     """The `LightSampling` of the light called `name`, made once."""
     return LightSampling(LIGHTS[name])

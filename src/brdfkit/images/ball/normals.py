@@ -23,11 +23,11 @@ def draw_normals(count, light, half_vectors, rng):
     *point, way, source = qmc.Halton(5, rng=rng).random(count).T
     points = np.stack(point, axis=1)
     centres = normalize(VIEW + light.sample(qmc.Halton(3, rng=rng).random(SOURCES)))
-    about = turn_frames(centres[(source * SOURCES).astype(int)])
+    about = make_frames(centres[(source * SOURCES).astype(int)])
     normals = (half_vectors.draw(points)[:, None] @ about)[:, 0]
     # Those that face away go to the disc, too
     spread = (way < 0.5) | (normals @ VIEW < 1e-3)
-    normals = np.where(spread[:, None], _spread(points), normals)
+    normals = np.where(spread[:, None], _spread_normals(points), normals)
     # Densities per solid angle of both ways, mixed by how many normals each draws
     even = normals @ VIEW / np.pi
     bright = half_vectors.density(np.arccos(np.minimum(normals @ centres.T, 1))).mean(axis=1)
@@ -35,13 +35,13 @@ def draw_normals(count, light, half_vectors, rng):
     return normals, weights
 
 
-def _spread(u):
+def _spread_normals(u):
     """Normals (n, 3), even over the disc, for points `u` (n, 3) of the unit cube."""
     radius, phi = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1]
-    return facing(radius * np.cos(phi), radius * np.sin(phi))
+    return find_normals(radius * np.cos(phi), radius * np.sin(phi))
 
 
-def facing(x, y):
+def find_normals(x, y):
     """Normals (n, 3) of the points of the ball that are seen at `x` to the right and `y` upwards
     (n,) of its middle, within the disc of radius 1."""
     right = normalize(np.cross((0.0, 0.0, 1.0), VIEW))
@@ -50,7 +50,7 @@ def facing(x, y):
     return np.stack([x, y, z], axis=1) @ np.stack([right, up, VIEW])
 
 
-def turn_frames(normals):
+def make_frames(normals):
     """Matrices (n, 3, 3) from the world to the frame of each normal (n, 3): x runs along the ball's
     parallels, along which `render` brushes an anisotropic material."""
     x = normalize(np.cross((0.0, 0.0, 1.0), normals))

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.images.ball.half_vectors import HalfVectors
-from brdfkit.images.ball.lights import LIGHTS, sampling_of
-from brdfkit.images.ball.normals import VIEW, draw_normals, turn_frames
+from brdfkit.images.ball.lights import LIGHTS, get_sampling
+from brdfkit.images.ball.normals import VIEW, draw_normals, make_frames
 
 # Pixels of all pictures; directions of each, by the light and as many by the material
 PIXELS, DIRECTIONS = 960, 64
@@ -36,9 +36,9 @@ class Pixels:
 
     def look(self, brdf):
         """The pixels (pixels, channels) of another BRDF (wi, wo) → (n, channels)."""
-        return add_up(brdf(self.wi, self.wo), self.shares, self.pairs)
+        return sum_pairs(brdf(self.wi, self.wo), self.shares, self.pairs)
 
-    def first(self, count):
+    def take_first(self, count):
         """The first `count` pixels."""
         return self.at(slice(count))
 
@@ -72,11 +72,11 @@ def draw_pixels(lights, brdf, max_angle=90.0, seed=0, pixels=PIXELS, directions=
 
 def _draw_picture(name, brdf, half_vectors, max_angle, rng, pixels, directions):
     """Of one picture, wi and wo (pixels, pairs, 3), shares (pixels, pairs), values and weights."""
-    light, pairs = sampling_of(name), 2 * directions
+    light, pairs = get_sampling(name), 2 * directions
     normals, weights = draw_normals(pixels, light, half_vectors, rng)
     points = [_stratify(rng, pixels, directions) for _ in range(2)]
     wi, wo, shares = draw_directions(normals, name, half_vectors, max_angle, *points)
-    values = add_up(brdf(wi, wo), shares, pairs)
+    values = sum_pairs(brdf(wi, wo), shares, pairs)
     exposure = 1 / (_find_white(values.max(axis=1), weights) or 1.0)
     shape = pixels, pairs
     return (
@@ -94,8 +94,8 @@ def draw_directions(normals, name, half_vectors, max_angle, for_light, for_brdf)
 
     `for_light`, `for_brdf`: points (n, directions, 3) of the unit cube, by which each is drawn.
     """
-    light, shape = sampling_of(name), for_light.shape
-    frames, directions = turn_frames(normals), shape[1]
+    light, shape = get_sampling(name), for_light.shape
+    frames, directions = make_frames(normals), shape[1]
     wo = np.repeat((frames @ VIEW)[:, None], 2 * directions, axis=1)
     # Directions in each normal's frame: drawn by the light in the world, and by the BRDF there
     by_light = light.sample(for_light.reshape(-1, 3)).reshape(shape)
@@ -120,7 +120,7 @@ def _find_white(values, weights):
     return values[order][np.searchsorted(sums, (1 - BRIGHTER) * sums[-1])]
 
 
-def add_up(values, shares, pairs):
+def sum_pairs(values, shares, pairs):
     """The pixels (pixels, channels) of which the pairs have these `values` (n, channels)."""
     return (shares[:, None] * values).reshape(-1, pairs, values.shape[1]).sum(axis=1)
 

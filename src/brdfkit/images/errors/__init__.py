@@ -5,4 +5,4 @@ count.
 """
 
 from brdfkit.images.errors.image_errors import ImageErrors as ImageErrors
-from brdfkit.images.errors.image_errors import image_errors as image_errors
+from brdfkit.images.errors.image_errors import compare_pictures as compare_pictures

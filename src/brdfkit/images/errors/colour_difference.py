@@ -25,7 +25,7 @@ def ciede2000(reference, picture):
     a value is not finite.
     """
     with np.errstate(invalid="ignore"):
-        return _between(_lab(reference), _lab(picture))
+        return _compare_lab(_to_lab(reference), _to_lab(picture))
 
 
 def delta_e_itp(reference, picture):
@@ -34,10 +34,10 @@ def delta_e_itp(reference, picture):
     It is made for high dynamic range, and so for absolute luminances: 1 is shown at 203 cd/m².
     """
     with np.errstate(invalid="ignore"):
-        return 720 * np.linalg.norm(_itp(reference) - _itp(picture), axis=-1)
+        return 720 * np.linalg.norm(_to_itp(reference) - _to_itp(picture), axis=-1)
 
 
-def _lab(rgb):
+def _to_lab(rgb):
     """CIE L*, a* and b*, each (...), of linear sRGB (..., 3)."""
     t = rgb @ TO_XYZ.T / WHITE_XYZ
     f = np.where(t > (6 / 29) ** 3, np.cbrt(t), t * (29 / 6) ** 2 / 3 + 4 / 29)
@@ -45,10 +45,10 @@ def _lab(rgb):
     return 116 * y - 16, 500 * (x - y), 200 * (y - z)
 
 
-def _between(first, other):
+def _compare_lab(first, other):
     """ΔE2000 of colours (L*, a*, b*), in the symbols of [Luo et al. 2001]."""
     (L1, a1, b1), (L2, a2, b2) = first, other
-    G = 0.5 * (1 - _share((np.hypot(a1, b1) + np.hypot(a2, b2)) / 2))
+    G = 0.5 * (1 - _chroma_share((np.hypot(a1, b1) + np.hypot(a2, b2)) / 2))
     a1, a2 = (1 + G) * a1, (1 + G) * a2
     C1, C2 = np.hypot(a1, b1), np.hypot(a2, b2)
     h1, h2 = (np.degrees(np.arctan2(b, a)) % 360 for a, b in ((a1, b1), (a2, b2)))
@@ -67,17 +67,17 @@ def _between(first, other):
     S_L = 1 + 0.015 * (L - 50) ** 2 / np.sqrt(20 + (L - 50) ** 2)
     S_C, S_H = 1 + 0.045 * C, 1 + 0.015 * C * T
     Δθ = 30 * np.exp(-((((h % 360) - 275) / 25) ** 2))
-    R_T = -2 * _share(C) * np.sin(np.radians(2 * Δθ))
+    R_T = -2 * _chroma_share(C) * np.sin(np.radians(2 * Δθ))
     l, c, H = ΔL / S_L, ΔC / S_C, ΔH / S_H
     return np.sqrt(l**2 + c**2 + H**2 + R_T * c * H)
 
 
-def _share(C):
+def _chroma_share(C):
     """√(C⁷ / (C⁷ + 25⁷)): how near a chroma is to those that are seen less finely."""
     return np.sqrt(C**7 / (C**7 + 25.0**7))
 
 
-def _itp(rgb):
+def _to_itp(rgb):
     """I, T and P (..., 3), by PQ's curve [ITU-R 2019], of linear sRGB (..., 3)."""
     y = (WHITE * np.maximum(rgb, 0) @ (TO_LMS @ TO_2020 @ TO_XYZ).T / 10_000) ** (2610 / 16384)
     pq = ((3424 / 4096 + 2413 / 128 * y) / (1 + 2392 / 128 * y)) ** (2523 / 32)

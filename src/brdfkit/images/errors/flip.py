@@ -25,7 +25,7 @@ def flip(reference, picture, mask):
     """
     from flip_evaluator import evaluate
 
-    start, stop = exposures(reference, mask)
+    start, stop = find_exposures(reference, mask)
     if not np.isfinite(start):
         return np.nan
     pictures, inside = crop_to_mask([np.maximum(p, 0) for p in (reference, picture)], mask)
@@ -40,7 +40,7 @@ def flip(reference, picture, mask):
     return float(errors[inside].mean(dtype=float))
 
 
-def exposures(reference, mask):
+def find_exposures(reference, mask):
     """The shortest and the longest exposure [stops] for a reference; inf for a black one."""
     seen = luminance(np.maximum(reference[mask], 0))
     brightest, median = np.percentile(seen, [PEAK, 50])

@@ -85,7 +85,7 @@ class ImageErrors(Shown):
         return Document(title, (Table(tuple(rows), self.columns, (floor,)), *remarks))
 
 
-def image_errors(pictures, other_seed=None, mask=None):
+def compare_pictures(pictures, other_seed=None, mask=None):
     """The `ImageErrors` of `pictures` by name, of which the first is the reference.
 
     `other_seed`: the reference as another seed would give it, or None, which leaves the floor
@@ -99,16 +99,20 @@ def image_errors(pictures, other_seed=None, mask=None):
     found, absent = {}, []  # errors of the pictures and, last, of noise, by metric
     for key, metric in METRICS.items():
         try:
-            found[key] = [_error(metric, first, picture, mask) for picture in compared]
+            found[key] = [_compute_error(metric, first, picture, mask) for picture in compared]
         except ImportError:
             absent.append(metric)
     by_name = {n: {key: row[k] for key, row in found.items()} for k, n in enumerate(names)}
     floor = {key: row[-1] for key, row in found.items()}
-    notes = [*_nothing_seen(mask), *_not_finite(pictures, mask), *_missing(absent)]
+    notes = [
+        *_describe_empty_mask(mask),
+        *_describe_not_finite(pictures, mask),
+        *_describe_missing(absent),
+    ]
     return ImageErrors(reference, by_name, floor, find_peak(first, mask), tuple(notes))
 
 
-def _error(metric, reference, picture, mask):
+def _compute_error(metric, reference, picture, mask):
     """The error of a picture; nan where there is none, where either is not finite, and where the
     mask is empty."""
     if picture is None or not mask.any() or not np.isfinite([reference[mask], picture[mask]]).all():
@@ -116,13 +120,13 @@ def _error(metric, reference, picture, mask):
     return metric.function(reference, picture, mask)
 
 
-def _nothing_seen(mask):
+def _describe_empty_mask(mask):
     """A sentence where the mask is empty."""
     if not mask.any():
         yield "No pixel shows the material, which leaves all errors unknown: render it larger."
 
 
-def _not_finite(pictures, mask):
+def _describe_not_finite(pictures, mask):
     """A sentence on each picture that is not finite."""
     for name, picture in pictures.items():
         broken = (~np.isfinite(picture[mask]).all(axis=-1)).sum()
@@ -131,7 +135,7 @@ def _not_finite(pictures, mask):
             yield f"{name} is not finite in {pixels}, which leaves its errors unknown."
 
 
-def _missing(metrics):
+def _describe_missing(metrics):
     """A sentence on `metrics` whose packages are not installed."""
     if metrics:
         titles = " and ".join(metric.title for metric in metrics)

@@ -55,7 +55,7 @@ class Metric:
         return not (value >= floor if self.more else value <= floor)
 
 
-def _percentile(differences, share):
+def _percentile_of(differences, share):
     """The metric that takes a percentile of per-pixel `differences`."""
 
     def of(reference, picture, mask):
@@ -66,9 +66,9 @@ def _percentile(differences, share):
 
 METRICS = {
     "psnr": Metric("PSNR [dB]", psnr, 1, more=True),
-    "delta_e_2000": Metric("ΔE2000 [median]", _percentile(ciede2000, 50), 2),
-    "delta_e_2000_95": Metric("ΔE2000 [95 %]", _percentile(ciede2000, 95), 2),
-    "delta_e_itp_95": Metric("ΔE ITP [95 %]", _percentile(delta_e_itp, 95), 2),
+    "delta_e_2000": Metric("ΔE2000 [median]", _percentile_of(ciede2000, 50), 2),
+    "delta_e_2000_95": Metric("ΔE2000 [95 %]", _percentile_of(ciede2000, 95), 2),
+    "delta_e_itp_95": Metric("ΔE ITP [95 %]", _percentile_of(delta_e_itp, 95), 2),
     "flip": Metric("FLIP", flip, 4, package="flip-evaluator"),
     "ssim": Metric("SSIM", ssim, 4, more=True, package="scikit-image"),
 }

@@ -97,12 +97,12 @@ class Accumulated:
         return np.sqrt(deviations / (self.passes - 1) / self.spp).astype(np.float32)
 
 
-def samples_for(decibels, floor, spp):
+def estimate_samples(decibels, floor, spp):
     """About how many samples per pixel give a noise floor of `decibels`; `spp` give `floor` [dB].
 
     The squared error of the noise falls with their number, so that twice as many give 3 dB.
 
-    >>> samples_for(46, 40, 100)
+    >>> estimate_samples(46, 40, 100)
     398.1071705534973
     """
     return spp * 10 ** min((decibels - floor) / 10, 100.0)

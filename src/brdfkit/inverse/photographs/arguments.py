@@ -51,7 +51,7 @@ def to_texel_parameters(
     weights may be negative.
     """
     model = labels.model(label)
-    if model.signed():
+    if model.has_signed_weights():
         raise BrdfkitError(f"{label}: its weights may be below 0; choose another model, as ggx.")
     shapes, fixed = model.shapes(anisotropic), to_dictionary("fixed", fixed)
     for name in fixed:

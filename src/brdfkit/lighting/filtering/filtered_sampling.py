@@ -15,7 +15,7 @@ from brdfkit.lighting.filtering.scene_bsdfs import (
     is_same_everywhere,
 )
 from brdfkit.lighting.filtering.view_directions import ViewDirections
-from brdfkit.mitsuba_bridge.channels import emission_of_rgb
+from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
 
 class FilteredSampling:
@@ -71,7 +71,7 @@ class FilteredSampling:
         import drjit as dr
         import mitsuba as mi
 
-        bsdf, spectrum = si.bsdf(), emission_of_rgb()
+        bsdf, spectrum = si.bsdf(), make_rgb_emission()
         c, types, constant = split_constant(bsdf, si, active, separate)
 
         def add_direction(i: JitInt, total: JitColour) -> tuple[JitInt, JitColour]:

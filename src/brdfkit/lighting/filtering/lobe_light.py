@@ -20,9 +20,9 @@ from brdfkit.core.array_types import (
 from brdfkit.lighting.filtering.filtered_light import Light
 from brdfkit.lighting.filtering.scene_bsdfs import CacheByValues, distinct_bsdfs, is_isotropic
 from brdfkit.lighting.spherical_gaussians.lobe_table import LobeTable, lobe_table
-from brdfkit.mitsuba_bridge.arrays import Rows, bracket, periodic_bracket
+from brdfkit.mitsuba_bridge.arrays import Rows, find_bracket, find_periodic_bracket
 from brdfkit.mitsuba_bridge.bsdf.from_dictionary import eval_bsdf
-from brdfkit.mitsuba_bridge.channels import emission_of_rgb
+from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
 AZIMUTHS = 16  # of the views of an anisotropic BSDF
 
@@ -52,7 +52,7 @@ class LobeLight:
             if not mi.has_flag(each.flags(), mi.BSDFFlags.BackSide):
                 here &= si.wi.z > 0
             total = dr.select(here, lobes.radiance(si, light, here), total)
-        return emission_of_rgb()(total, si)
+        return make_rgb_emission()(total, si)
 
     def fit(self, bsdf: MitsubaObject) -> "ViewedLobes":
         """Fit lobes to a BSDF, which takes a few seconds."""
@@ -119,13 +119,13 @@ class ViewedLobes:
         """
         import drjit as dr
 
-        lower, upper, t = bracket(dr.safe_acos(wo.z) / self.step, self.views)
+        lower, upper, t = find_bracket(dr.safe_acos(wo.z) / self.step, self.views)
         rows = (lower, 1 - t), (upper, t)
         columns: tuple[tuple[JitInt, JitFloat], ...] = ((0, 1),)
         phi = dr.atan2(wo.y, wo.x)
         if self.azimuths > 1:
             turn = phi / (2 * dr.pi) * self.azimuths
-            left, right, s = periodic_bracket(turn, self.azimuths)
+            left, right, s = find_periodic_bracket(turn, self.azimuths)
             columns = (left, 1 - s), (right, s)
         views = [(i * self.azimuths + j, a * b) for i, a in rows for j, b in columns]
         return views, *dr.sincos(phi)

@@ -21,8 +21,8 @@ from brdfkit.core.geometry.vectors import reflect
 from brdfkit.lighting.filtering.bsdf_directions import Directions, split_constant
 from brdfkit.lighting.filtering.filtered_light import Light
 from brdfkit.lighting.filtering.scene_bsdfs import has_matte_part, is_isotropic
-from brdfkit.mitsuba_bridge.arrays import Rows, cell
-from brdfkit.mitsuba_bridge.channels import emission_of_rgb
+from brdfkit.mitsuba_bridge.arrays import Rows, find_cell
+from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
 ISOTROPIC, ANISOTROPIC = (256, 1), (96, 64)  # polar angles and azimuths of the views
 ADJACENT = 5  # polar angles over which the median of a direction's weights is taken
@@ -70,10 +70,10 @@ class ViewDirections:
         import drjit as dr
         import mitsuba as mi
 
-        row = cell(dr.safe_acos(dr.abs(wi.z)) * (2 / dr.pi * self.angles), self.angles)
+        row = find_cell(dr.safe_acos(dr.abs(wi.z)) * (2 / dr.pi * self.angles), self.angles)
         turn = dr.atan2(wi.y, wi.x) / (2 * dr.pi) * self.azimuths + 0.5
         turn -= self.azimuths * dr.floor(turn / self.azimuths)
-        view = row * self.azimuths + cell(turn, self.azimuths)
+        view = row * self.azimuths + find_cell(turn, self.azimuths)
         return view + dr.select(wi.z < 0, mi.UInt32(self.angles * self.azimuths), 0)
 
     def radiance(self, si: MitsubaObject, light: Light, active: JitMask) -> JitColour:
@@ -102,7 +102,7 @@ class ViewDirections:
         c = self.constants.at(view, mi.Vector4f, active)
         received = light.irradiance(si.to_world(mi.Vector3f(0, 0, dr.sign(si.wi.z))))
         total = total / directions.per_ray + dr.pi * mi.Color3f(c.x, c.y, c.z) * received
-        return emission_of_rgb()(dr.maximum(dr.select(active, total, 0), 0), si)
+        return make_rgb_emission()(dr.maximum(dr.select(active, total, 0), 0), si)
 
 
 def _make_points(views: FloatArray) -> MitsubaObject:

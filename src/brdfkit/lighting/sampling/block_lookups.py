@@ -11,7 +11,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray, JitFloat, JitInt, JitMask, JitVector
 from brdfkit.lighting.sampling.block_slopes import draw_on_line, line_density
 from brdfkit.lighting.sampling.tree import Tree
-from brdfkit.mitsuba_bridge.arrays import Integers, Rows, cell
+from brdfkit.mitsuba_bridge.arrays import Integers, Rows, find_cell
 
 
 class BlockDensities:
@@ -48,7 +48,7 @@ class TextureLookup:
 
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
         """Return the density at a point."""
-        index = cell(y, self.rows) * self.columns + cell(x, self.columns)
+        index = find_cell(y, self.rows) * self.columns + find_cell(x, self.columns)
         return self.densities.at(self.texels.at(index, active), x, y, active)
 
 
@@ -83,9 +83,9 @@ class GridLookup:
         import mitsuba as mi
 
         # All blocks of a list are tried with the same cell, so that one of them holds an edge
-        column, row = (mi.Float(cell(a, n)) for a, n in ((x, self.width), (y, self.height)))
-        square = cell((row + 0.5) * (self.rows / self.height), self.rows) * self.columns
-        square = square + cell((column + 0.5) * (self.columns / self.width), self.columns)
+        column, row = (mi.Float(find_cell(a, n)) for a, n in ((x, self.width), (y, self.height)))
+        square = find_cell((row + 0.5) * (self.rows / self.height), self.rows) * self.columns
+        square = square + find_cell((column + 0.5) * (self.columns / self.width), self.columns)
 
         def is_outside(i: JitInt) -> JitMask:
             box = self.densities.boxes.at(self.listed.at(i, active), mi.Vector4f, active)

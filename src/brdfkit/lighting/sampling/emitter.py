@@ -23,16 +23,16 @@ from brdfkit.core.array_types import (
 from brdfkit.core.colours import luminance
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.lighting.sampling.power_map import require_light, subtract_mean
-from brdfkit.mitsuba_bridge.channels import emission_of_rgb
+from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 from brdfkit.mitsuba_bridge.properties.declarations import (
     Setting,
-    declared,
+    derive_plugin,
     flag,
     number,
     picture,
     text,
 )
-from brdfkit.mitsuba_bridge.properties.picture_file import pixels_of, read_pixels
+from brdfkit.mitsuba_bridge.properties.picture_file import read_pixels, to_pixels
 
 MAP_PARAMETERS = {
     "filename": text("", "the map: a picture, azimuth across and polar angle down"),
@@ -50,7 +50,7 @@ def environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]) -> An
     A derived class has `make_sampler(brightness)`, which returns a map sampler.
     """
 
-    class EnvironmentEmitter(declared(mi.Emitter, parameters)):  # type: ignore[misc]
+    class EnvironmentEmitter(derive_plugin(mi.Emitter, parameters)):  # type: ignore[misc]
         # the base class depends on the variant
         make_sampler: Any
 
@@ -61,7 +61,7 @@ def environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]) -> An
             self.m_flags = mi.EmitterFlags.Infinite | mi.EmitterFlags.SpatiallyVarying
             self.data = mi.TensorXf(_load_pixels(mi, self.name, self.filename, self.bitmap))
             self.to_local = self.world_transform().inverse()
-            self.spectrum = emission_of_rgb()
+            self.spectrum = make_rgb_emission()
             self.parameters_changed(["data"])
 
         def traverse(self, callback: Any) -> None:
@@ -155,7 +155,7 @@ def _load_pixels(
     if bitmap is None:
         pixels = read_pixels(str(mi.file_resolver().resolve(filename)), source)
     else:
-        pixels = pixels_of(bitmap)
+        pixels = to_pixels(bitmap)
     if pixels.min(initial=0) < 0:
         raise BrdfkitError(f"{source} has values below 0; mend them.")
     require_light(source, pixels)

@@ -11,7 +11,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitFloat, JitInt, JitMask, JitVector
 from brdfkit.core.geometry import dual_paraboloid
 from brdfkit.lighting.visibility.hull import Hull
-from brdfkit.mitsuba_bridge.arrays import Integers, Rows, cell
+from brdfkit.mitsuba_bridge.arrays import Integers, Rows, find_cell
 
 SMALLEST_SIDE = 8  # texels
 CHUNK = 1024  # texels that are computed at once
@@ -52,7 +52,7 @@ class RasterisedPlaneMap:
 
         side = self.sides.at(part, active)
         s, t = dual_paraboloid.to_disc(direction.x, direction.y, direction.z)
-        x, y = (cell((c + 1) * 0.5 * mi.Float(side), side) for c in (s, t))
+        x, y = (find_cell((c + 1) * 0.5 * mi.Float(side), side) for c in (s, t))
         y = y + dr.select(direction.z < 0, side, 0)
         plane = self.atlas.at(self.first.at(part, active) + y * side + x, mi.Vector4f, active)
         return mi.Vector3f(plane.x, plane.y, plane.z), plane.w

@@ -12,7 +12,7 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.directions import to_angles
 from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Table
-from brdfkit.model.samples.coordinates import coordinates
+from brdfkit.model.samples.coordinates import compute_coordinates
 
 LEAST_FACTOR = 4  # over the largest neighbour; rough and smooth paints, cloth and stone reach 3.4
 NEIGHBOURS = 6  # of a scattered sample
@@ -86,7 +86,7 @@ def _find_largest_nearby(data: Measured, values: FloatArray) -> FloatArray:
     from scipy.spatial import cKDTree
 
     samples, valid = data.samples, np.flatnonzero(data.samples.valid)
-    here = coordinates(samples.wi[valid], samples.wo[valid], data.anisotropic)
+    here = compute_coordinates(samples.wi[valid], samples.wo[valid], data.anisotropic)
     around = np.full(len(values), np.nan)
     if len(valid) > NEIGHBOURS:
         _, nearest = cKDTree(here).query(here, k=NEIGHBOURS + 1)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured.measured_data import MeasuredData
-from brdfkit.model.samples.coordinates import coordinates, sample_coordinates
+from brdfkit.model.samples.coordinates import compute_coordinates, compute_sample_coordinates
 from brdfkit.model.samples.measures import REACH
 from brdfkit.regression.light import FOUR, ONE, OTHER_UNIT
 
@@ -119,12 +119,12 @@ def _make_nearness_test(data: MeasuredData) -> Callable[[FloatArray, FloatArray]
 
     if data._table is not None:
         table, known = data._table, np.isfinite(data._table.values).all(axis=-1)
-        return lambda wi, wo: known[table.cells_of(wi, wo)]
+        return lambda wi, wo: known[table.find_cells(wi, wo)]
     samples = data.samples.at(data.samples.valid)
-    tree = cKDTree(sample_coordinates(samples.wi, samples.wo, data.anisotropic))
+    tree = cKDTree(compute_sample_coordinates(samples.wi, samples.wo, data.anisotropic))
 
     def is_near(wi: FloatArray, wo: FloatArray) -> BoolArray:
-        points = coordinates(wi, wo, data.anisotropic)
+        points = compute_coordinates(wi, wo, data.anisotropic)
         return tree.query(points, distance_upper_bound=REACH)[0] <= REACH
 
     return is_near

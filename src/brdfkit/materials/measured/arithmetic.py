@@ -15,7 +15,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.measured.measured_data import Data, Lookup
 from brdfkit.materials.measured.validation import require_max_angle
 from brdfkit.model.samples import Table
-from brdfkit.model.samples.samples import require_some
+from brdfkit.model.samples.samples import require_valid
 
 
 def mix_channels(
@@ -68,7 +68,7 @@ def subtract(data: Data, brdf: Any, max_angle: float) -> Data:
     values = np.full(samples.values.shape, np.nan)
     values[inside] = samples.values[inside] - subtrahend
     valid = np.isfinite(values).all(axis=1)
-    require_some(valid, name, values, data.channels)
+    require_valid(valid, name, values, data.channels)
     if data._table is None:
         differences = replace(samples, values=values, valid=valid)
         return replace(data, name=name, _samples=differences, _lookup=None)

@@ -11,7 +11,7 @@ import numpy as np
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.measured.measured_data import Data, MeasuredData
-from brdfkit.model.samples.samples import require_some
+from brdfkit.model.samples.samples import require_valid
 
 LEAST_COSINE = 1e-3  # a smaller cosine is not divided out: the quotient would be noise
 # The notes that say what was mended, by their keys
@@ -55,7 +55,7 @@ def _divide(data: Data) -> Data:
     samples, errors = data.samples, data.standard_error
     cosine, low = find_cosines(samples.wo)
     values, valid = samples.values / cosine, samples.valid & ~low
-    require_some(valid, data.name, values, data.channels)
+    require_valid(valid, data.name, values, data.channels)
     return replace(
         data,
         info=data.info | DIVIDED,

@@ -27,7 +27,7 @@ from brdfkit.core.geometry.directions import to_half_difference
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.materials.measured.measured_data import Lookup
 from brdfkit.model import labels
-from brdfkit.model.evaluation import lobe_values
+from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.model.samples import Samples
 from brdfkit.model.samples.coordinates import (
     HIGHLIGHT,
@@ -191,7 +191,9 @@ def _evaluate_sum(
     terms: Iterable[tuple[Any, list[FloatArray]]], wi: FloatArray, wo: FloatArray
 ) -> FloatArray:
     """Return the sum (n, channels) of two models, the `terms`, with weights (lobes, channels)."""
-    first, second = (lobe_values(model, wi, wo)[0] @ np.array(weights) for model, weights in terms)
+    first, second = (
+        compute_lobe_values(model, wi, wo)[0] @ np.array(weights) for model, weights in terms
+    )
     return first + second
 
 

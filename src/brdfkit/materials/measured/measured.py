@@ -16,7 +16,7 @@ from brdfkit.core.array_types import ArrayLike
 from brdfkit.core.colours import RGB
 from brdfkit.core.documents import Document, Shown
 from brdfkit.core.jit.threads import cached_in_turn, in_turn
-from brdfkit.images.thumbnails import thumbnails
+from brdfkit.images.thumbnails import make_thumbnails
 from brdfkit.materials.measured.albedos import MeasuredAlbedo, compute_measured_albedo
 from brdfkit.materials.measured.arithmetic import mix_channels, subtract
 from brdfkit.materials.measured.conventions import mend
@@ -218,7 +218,9 @@ class Measured(Shown, FromAngles):
     def document(self) -> Document:
         """Return the measurement as a document: its size, its look and the notes of its file."""
         notes = tuple((key.replace("_", " "), str(value)) for key, value in self.info.items())
-        pictures = thumbnails(self.name, lambda wi, wo: to_rgb_or_mean(self).rendered.eval(wi, wo))
+        pictures = make_thumbnails(
+            self.name, lambda wi, wo: to_rgb_or_mean(self).rendered.eval(wi, wo)
+        )
         return Document(self.summary, (*pictures, documents.Table(notes)))
 
     @cached_in_turn

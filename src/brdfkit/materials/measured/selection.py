@@ -43,7 +43,7 @@ def select_samples(
         factors = factors / (factors.max(initial=0) or 1)  # so that no square overflows
     standard_error = data.standard_error if errors else None
     if data.is_table:
-        samples = Samples.of_cells(data.table, max_angle, factors, standard_error)
+        samples = Samples.from_cells(data.table, max_angle, factors, standard_error)
     else:
         weight = data.samples.weight * (1 if factors is None else factors)
         samples = replace(data.samples, weight=weight, errors=standard_error)

@@ -16,7 +16,7 @@ from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.colours import RGB
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import to_printable
-from brdfkit.model.samples.samples import require_some
+from brdfkit.model.samples.samples import require_valid
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def check_table(
             f"{name}: phi_d_period is {phi_d_period:g}; give π or, for a table that is not "
             "reciprocal, 2π."
         )
-    require_some(np.isfinite(values).all(axis=-1), name, values, channels)
+    require_valid(np.isfinite(values).all(axis=-1), name, values, channels)
     return np.where(np.isinf(values), np.nan, values) if np.isinf(values).any() else values
 
 

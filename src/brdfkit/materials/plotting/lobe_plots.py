@@ -14,7 +14,7 @@ from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.figures import Plot
 from brdfkit.core.names import make_unique
-from brdfkit.images.thumbnails.lobes import Radius
+from brdfkit.images.thumbnails import Radius
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.plotting.plane_of_incidence import choose_angles, compute_lobe, is_scattered
 from brdfkit.materials.resolve import MaterialLike, to_materials

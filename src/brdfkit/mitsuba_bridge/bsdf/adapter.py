@@ -12,21 +12,21 @@ import drjit as dr
 from brdfkit.core.geometry.quadrature import spread_by_cosine
 from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate
 from brdfkit.mitsuba_bridge.bsdf.surface_response import Point
-from brdfkit.mitsuba_bridge.bsdf.textures import textured_frame
-from brdfkit.model.lobes import components_of
+from brdfkit.mitsuba_bridge.bsdf.textures import define_textured_frame
+from brdfkit.model.lobes import group_components
 
 # Outgoing directions over which `eval_diffuse_reflectance` averages
 FROM_ABOVE = spread_by_cosine(64)
 
 
-def define(mi, model):
+def define_bsdf(mi, model):
     """The class of `mi.BSDF` that evaluates and samples `model` in the current variant."""
-    groups = components_of(model().lobes())
-    signed = signed_components(model, groups)
-    kinds = component_kinds(mi, model, groups)
-    components = component_flags(mi, model, kinds, signed)
+    groups = group_components(model().lobes())
+    signed = find_signed_components(model, groups)
+    kinds = find_component_kinds(mi, model, groups)
+    components = find_component_flags(mi, model, kinds, signed)
 
-    class Plugin(textured_frame(mi, model)):
+    class Plugin(define_textured_frame(mi, model)):
         def __init__(self, props):
             super().__init__(props)
             self.tables = {}
@@ -47,7 +47,9 @@ def define(mi, model):
                 self.tables.get(k, lobes[group[0]].sampling) for k, group in enumerate(groups)
             ]
             enabled = [ctx.is_enabled(kind, k) for k, kind in enumerate(kinds)]
-            return Point(mi, wi, weights, lobes, model.signed(), groups, samplings, enabled)
+            return Point(
+                mi, wi, weights, lobes, model.has_signed_weights(), groups, samplings, enabled
+            )
 
         def eval_diffuse_reflectance(self, si, active=True):
             """Albedo of the diffuse lobes at normal incidence, by quadrature."""
@@ -55,19 +57,19 @@ def define(mi, model):
             diffuse = [i for i, lobe in enumerate(normal.lobes) if lobe.diffuse]
             total = mi.UnpolarizedSpectrum(0)
             for direction in FROM_ABOVE:
-                total += dr.pi * normal.sum_of(diffuse, mi.Vector3f(*map(float, direction)))
+                total += dr.pi * normal.evaluate_lobes(diffuse, mi.Vector3f(*map(float, direction)))
             return mi.Spectrum(dr.select(active, total / len(FROM_ABOVE), 0))
 
     return Plugin
 
 
-def signed_components(model, groups):
+def find_signed_components(model, groups):
     """The components, as indices of `groups`, in which a weight may be negative."""
     linear = [model.parameters[name] for name in model.weights()]
     return [k for k, group in enumerate(groups) if any(linear[i].bounds[0] < 0 for i in group)]
 
 
-def component_kinds(mi, model, groups):
+def find_component_kinds(mi, model, groups):
     """Mitsuba's flag of each component, diffuse or glossy: that of its first lobe."""
     flags, lobes = mi.BSDFFlags, model().lobes()
     return [
@@ -76,13 +78,13 @@ def component_kinds(mi, model, groups):
     ]
 
 
-def component_flags(mi, model, kinds, signed):
+def find_component_flags(mi, model, kinds, signed):
     """All flags of each component except for `SpatiallyVarying`.
 
     Of an anisotropic model, glossy and signed components are anisotropic.
     """
     flags = mi.BSDFFlags
-    anisotropic = flags.Anisotropic if model.anisotropic() else flags.Empty
+    anisotropic = flags.Anisotropic if model.is_anisotropic() else flags.Empty
     turning = [k for k, kind in enumerate(kinds) if kind == flags.GlossyReflection or k in signed]
     return [
         kind | flags.FrontSide | (anisotropic if k in turning else flags.Empty)

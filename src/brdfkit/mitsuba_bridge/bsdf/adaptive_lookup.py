@@ -10,7 +10,7 @@ import drjit as dr
 
 from brdfkit.core.geometry import multilinear
 from brdfkit.core.geometry.vectors import cos_theta_d, half_vector, reflect
-from brdfkit.mitsuba_bridge.arrays import Nodes, bracket
+from brdfkit.mitsuba_bridge.arrays import Nodes, find_bracket
 
 # The least x of a half vector, 0.02 µrad from the normal: at x = 0 its density is infinite
 INNERMOST = 1e-4
@@ -39,7 +39,7 @@ class AdaptiveLookup:
         """(index, share) of the stored incidences around `wi`; the shares add up to 1."""
         angles = self._angles(self._fold(wi, wi))
         axes = [(nodes, x) for nodes, x in zip(self.nodes, angles, strict=True) if nodes.count > 1]
-        brackets, shape = [nodes.bracket(x) for nodes, x in axes], [n.count for n, _ in axes]
+        brackets, shape = [nodes.find_bracket(x) for nodes, x in axes], [n.count for n, _ in axes]
         return [
             (multilinear.to_flat_index(at, shape), t)
             for at, t in multilinear.list_corners(brackets)
@@ -58,7 +58,9 @@ class AdaptiveLookup:
             phi_i, theta_i = self._angles(wi)
             factor *= self.ndf.eval(m) / (4 * self.sigma.eval(_to_square(theta_i, phi_i)))
         n = self.n
-        for cell, share in multilinear.list_corners([bracket(x * (n - 1), n) for x in (u.y, u.x)]):
+        for cell, share in multilinear.list_corners(
+            [find_bracket(x * (n - 1), n) for x in (u.y, u.x)]
+        ):
             for incidence, weight in incidences:
                 yield (
                     incidence * n * n + multilinear.to_flat_index(cell, (n, n)),

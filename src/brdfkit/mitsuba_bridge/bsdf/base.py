@@ -13,7 +13,7 @@ COSINE_SHARE = 0.1
 COSINE = Cosine()
 
 
-def frame(mi):
+def define_frame(mi):
     """The base class of brdfkit's BSDFs in the current variant.
 
     A derived class defines `at(ctx, si, wi, active)`, the BSDF at a point of a surface, seen from
@@ -43,7 +43,7 @@ def frame(mi):
             sample.pdf = dr.select(active, pdf, 0)
             sample.eta = 1.0
             sample.sampled_component = component
-            sample.sampled_type = self.kind_of(component)
+            sample.sampled_type = self.find_kind(component)
             pdf = dr.select(active, pdf, 1)
             weight = dr.select(active, value / dr.detach(pdf), 0)
             return sample, mi.depolarizer(weight)
@@ -61,7 +61,7 @@ def frame(mi):
         def pdf(self, ctx, si, wo, active=True):
             return self.eval_pdf(ctx, si, wo, active)[1]
 
-        def kind_of(self, component):
+        def find_kind(self, component):
             """Mitsuba's kind of reflection of a component: its flag without side and anisotropy."""
             kinds = [int(c) & int(mi.BSDFFlags.Reflection) for c in self.m_components]
             kind = mi.UInt32(kinds[0])

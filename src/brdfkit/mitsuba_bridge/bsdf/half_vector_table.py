@@ -14,7 +14,7 @@ import numpy as np
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.multilinear import list_corners, to_flat_index
 from brdfkit.core.geometry.vectors import angle, azimuth, cos_theta_d, half_vector, reflect
-from brdfkit.mitsuba_bridge.arrays import BELOW_ONE, Rows, bracket, periodic_bracket
+from brdfkit.mitsuba_bridge.arrays import BELOW_ONE, Rows, find_bracket, find_periodic_bracket
 
 
 class HalfVectorTable:
@@ -34,7 +34,7 @@ class HalfVectorTable:
         self.azimuths, self.angles, self.cells = azimuths, angles, cells
         theta_i = (np.arange(angles) + 0.5) / angles * np.pi / 2
         phi_i = np.arange(azimuths) / azimuths * 2 * np.pi
-        light = np.concatenate([_cell_light(f, theta_i, phi, cells, points) for phi in phi_i])
+        light = np.concatenate([_integrate_cells(f, theta_i, phi, cells, points) for phi in phi_i])
         self.albedo = light.sum(axis=(1, 2))
 
         # Shares by which a row of cells (theta_h) and a cell in it (phi_h) are drawn
@@ -65,9 +65,9 @@ class HalfVectorTable:
         """Density of `wo` per solid angle."""
         n_h, n_p = self.cells
         h = half_vector(wi, wo)
-        row = _cell(dr.sqrt(angle(h) / (dr.pi / 2)), n_h)
+        row = _find_cell(dr.sqrt(angle(h) / (dr.pi / 2)), n_h)
         turn = (azimuth(h) - azimuth(wi)) / (2 * dr.pi)
-        cell = row * n_p + _cell(turn - dr.floor(turn), n_p)
+        cell = row * n_p + _find_cell(turn - dr.floor(turn), n_p)
         density = 0
         for incidence, share in self.incidences(wi):
             density += share * self.density.at(incidence * (n_h * n_p) + cell)
@@ -81,10 +81,10 @@ class HalfVectorTable:
 
     def _brackets(self, wi):
         """The brackets of `wi` among the azimuths, if there are several, and the polar angles."""
-        theta = bracket(angle(wi) / (dr.pi / 2) * self.angles - 0.5, self.angles)
+        theta = find_bracket(angle(wi) / (dr.pi / 2) * self.angles - 0.5, self.angles)
         if self.azimuths == 1:
             return [theta]
-        phi = periodic_bracket(azimuth(wi) / (2 * dr.pi) * self.azimuths, self.azimuths)
+        phi = find_periodic_bracket(azimuth(wi) / (2 * dr.pi) * self.azimuths, self.azimuths)
         return [phi, theta]
 
     def _choose_incidence(self, wi, z):
@@ -103,7 +103,7 @@ class HalfVectorTable:
         return incidence
 
 
-def _cell_light(f, theta_i, phi_i, cells, points):
+def _integrate_cells(f, theta_i, phi_i, cells, points):
     """The share of the light that each cell of half vectors reflects: f cosθ_o dω_o.
 
     It has the shape (incidences, theta_h, phi_h, channels). The incidences have the polar angles
@@ -174,7 +174,7 @@ def _draw_cell(sums, start, n, x):
     return cell, dr.clip((x - low) / (high - low), 0, 1)
 
 
-def _cell(position, n):
+def _find_cell(position, n):
     """The index of the cell at a `position` in [0, 1] among `n` even ones."""
     import mitsuba as mi
 

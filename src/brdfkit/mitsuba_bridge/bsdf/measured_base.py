@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from brdfkit.core.geometry.vectors import mask_below_horizon
-from brdfkit.mitsuba_bridge.bsdf.base import COSINE, COSINE_SHARE, frame
+from brdfkit.mitsuba_bridge.bsdf.base import COSINE, COSINE_SHARE, define_frame
 
 
-def measured_frame(mi):
+def define_measured_frame(mi):
     """The base class of a measurement's plugins in the current variant.
 
     A derived class calls `draw_by` in its constructor and defines
@@ -21,7 +21,7 @@ def measured_frame(mi):
 
     flags = mi.BSDFFlags
 
-    class MeasuredFrame(frame(mi)):
+    class MeasuredFrame(define_frame(mi)):
         def draw_by(self, sampling, anisotropic, cosine_share=COSINE_SHARE):
             """Draw by a `brdfkit.model.lobes.Sampling`, a share of the samples by the cosine."""
             self.sampling, self.cosine_share = sampling, cosine_share

@@ -7,7 +7,7 @@ parameter changes, with the mean of each texture.
 import numpy as np
 
 from brdfkit.mitsuba_bridge.bsdf.half_vector_table import HalfVectorTable
-from brdfkit.model.evaluation import lobe_values
+from brdfkit.model.evaluation import compute_lobe_values
 
 # Coarse tables: the models with signed weights are smooth polynomials
 ISOTROPIC = {"azimuths": 1, "angles": 32, "cells": (24, 20), "points": 2}
@@ -30,14 +30,14 @@ def tabulate(model, weights, lobes):
         values = np.empty((len(wi), weights.shape[1]))
         for start in range(0, len(wi), BATCH):
             rows = slice(start, start + BATCH)
-            plain, _ = lobe_values(model, wi[rows], wo[rows])
+            plain, _ = compute_lobe_values(model, wi[rows], wo[rows])
             values[rows] = plain[:, lobes] @ weights
         return np.maximum(values, 0)
 
-    return HalfVectorTable(f, **(ANISOTROPIC if model.anisotropic() else ISOTROPIC))
+    return HalfVectorTable(f, **(ANISOTROPIC if model.is_anisotropic() else ISOTROPIC))
 
 
-def texture_mean(texture, default):
+def average_texture(texture, default):
     """The mean (channels,) of a texture over the unit square.
 
     It is `default` for a mesh attribute, whose values only the mesh has.

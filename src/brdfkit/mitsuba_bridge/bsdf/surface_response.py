@@ -73,9 +73,9 @@ class Point:
     def value(self, wo):
         """BRDF [sr⁻¹] of the enabled components."""
         groups = zip(self.groups, self.enabled, strict=True)
-        return self.sum_of([i for group, enabled in groups if enabled for i in group], wo)
+        return self.evaluate_lobes([i for group, enabled in groups if enabled for i in group], wo)
 
-    def sum_of(self, chosen, wo):
+    def evaluate_lobes(self, chosen, wo):
         """BRDF [sr⁻¹] of the lobes with the indices `chosen`: the sum of weight times lobe."""
         value = self.mi.UnpolarizedSpectrum(0)
         for i in chosen:

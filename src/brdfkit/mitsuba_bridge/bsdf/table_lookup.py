@@ -4,26 +4,26 @@ import drjit as dr
 
 from brdfkit.core.geometry import multilinear
 from brdfkit.core.geometry.vectors import angle, azimuth, half_vector
-from brdfkit.mitsuba_bridge.arrays import bracket, periodic_bracket
+from brdfkit.mitsuba_bridge.arrays import find_bracket, find_periodic_bracket
 
 
-def corners(table, wi, wo):
+def find_corners(table, wi, wo):
     """(index, share) of the cells of a `brdfkit.model.samples.Table` around a direction pair."""
-    theta_h, theta_d, phi_d, phi_h = half_difference(wi, wo)
+    theta_h, theta_d, phi_d, phi_h = to_half_difference(wi, wo)
     n_h, n_d, n_p = table.shape[-3:]
     axes = [
-        bracket(dr.sqrt(theta_h / (dr.pi / 2)) * n_h - 0.5, n_h),
-        bracket(theta_d / (dr.pi / 2) * n_d - 0.5, n_d),
-        periodic_bracket(phi_d / table.phi_d_period * n_p - 0.5, n_p),
+        find_bracket(dr.sqrt(theta_h / (dr.pi / 2)) * n_h - 0.5, n_h),
+        find_bracket(theta_d / (dr.pi / 2) * n_d - 0.5, n_d),
+        find_periodic_bracket(phi_d / table.phi_d_period * n_p - 0.5, n_p),
     ]
     if table.anisotropic:
         n_a = table.shape[0]
-        axes.insert(0, periodic_bracket(phi_h / (2 * dr.pi) * n_a - 0.5, n_a))
+        axes.insert(0, find_periodic_bracket(phi_h / (2 * dr.pi) * n_a - 0.5, n_a))
     for cells, share in multilinear.list_corners(axes):
         yield multilinear.to_flat_index(cells, table.shape), share
 
 
-def half_difference(wi, wo):
+def to_half_difference(wi, wo):
     """(theta_h, theta_d, phi_d, phi_h) of two directions."""
     h = half_vector(wi, wo)
     sin_h = dr.safe_sqrt(h.x * h.x + h.y * h.y)

@@ -5,12 +5,12 @@ import math
 import drjit as dr
 import numpy as np
 
-from brdfkit.mitsuba_bridge.bsdf.base import frame
-from brdfkit.mitsuba_bridge.bsdf.signed_sum import texture_mean
+from brdfkit.mitsuba_bridge.bsdf.base import define_frame
+from brdfkit.mitsuba_bridge.bsdf.signed_sum import average_texture
 from brdfkit.mitsuba_bridge.properties import conversions
 
 
-def textured_frame(mi, model):
+def define_textured_frame(mi, model):
     """The base class of the BSDF of `model` in the current variant.
 
     It has a texture for every parameter in `textures`, by name, except for those that follow
@@ -18,7 +18,7 @@ def textured_frame(mi, model):
     """
     defaults = model()
 
-    class TexturedFrame(frame(mi)):
+    class TexturedFrame(define_frame(mi)):
         def __init__(self, props):
             super().__init__(props)
             self.textures = {}
@@ -55,7 +55,7 @@ def textured_frame(mi, model):
             """Means over the textures: shape parameters by name, and weights (lobes, channels)."""
             means = {}
             for name, texture in self.textures.items():
-                mean = texture_mean(texture, getattr(defaults, name)) * self.scale(name)
+                mean = average_texture(texture, getattr(defaults, name)) * self.scale(name)
                 means[name] = np.clip(mean, *model.parameters[name].bounds)
             weights = [means.pop(name) for name in model.weights()]
             return {name: m[0] for name, m in means.items()}, np.stack(

@@ -22,7 +22,7 @@ def require_within_bounds(props, model, name):
     """Raise `BrdfkitError` for a constant parameter out of bounds; textures are not checked."""
     value = props.get(name, None)
     if isinstance(value, float | int) or is_colour(value):
-        problem = model.parameters[name].problem_with(np.array(value, float))
+        problem = model.parameters[name].find_problem(np.array(value, float))
         if problem:
             raise BrdfkitError(f"{model.type_name()}: {name} = {problem}.")
 

@@ -15,9 +15,9 @@ from brdfkit.core.arguments import describe_range, is_number
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.properties.conversions import is_colour
 from brdfkit.mitsuba_bridge.properties.volumes import (
-    constant_volume,
+    make_coloured_volume,
+    make_constant_volume,
     require_volume,
-    volume_of_colour,
 )
 
 
@@ -176,16 +176,16 @@ def volume(default, meaning, coloured=True, least=0.0):
             require_volume(value, coloured, least)
             return value
         if coloured and is_colour(value):
-            return volume_of_colour(value)
+            return make_coloured_volume(value)
         if not is_number(value):
             constant = "a number or a colour" if coloured else "or a number"
             raise ValueError(f"a volume, such as a gridvolume, {constant}")
-        return constant_volume(_to_number(value, (least, math.inf)))
+        return make_constant_volume(_to_number(value, (least, math.inf)))
 
     return Setting(default, None, meaning, read, differentiable=True)
 
 
-def read(settings, get, owner):
+def read_settings(settings, get, owner):
     """Name → value of `settings` (name → `Setting`), from `get(name, default)`.
 
     Raises `BrdfkitError`, which names the `owner`, for a value that is none of the allowed ones.
@@ -201,7 +201,7 @@ def read(settings, get, owner):
     return found
 
 
-def declared(base, parameters):
+def derive_plugin(base, parameters):
     """A class derived from `base`, one of Mitsuba's, with the `parameters` (name → `Setting`).
 
     Each is an attribute of an instance; the differentiable ones are exposed to optimisers.
@@ -210,7 +210,7 @@ def declared(base, parameters):
     class Declared(base):
         def __init__(self, props):
             super().__init__(props)
-            for name, value in read(parameters, props.get, props.plugin_name()).items():
+            for name, value in read_settings(parameters, props.get, props.plugin_name()).items():
                 setattr(self, name, value)
 
         def traverse(self, callback):

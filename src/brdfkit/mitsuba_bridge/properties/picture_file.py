@@ -70,10 +70,10 @@ def read_pixels(path, name):
 
     if Path(path).is_file():
         require_rows(path, name)
-    return load_by_mitsuba(lambda file, parallel: pixels_of(mi.Bitmap(file)), str(path), name)
+    return load_by_mitsuba(lambda file, parallel: to_pixels(mi.Bitmap(file)), str(path), name)
 
 
-def pixels_of(bitmap):
+def to_pixels(bitmap):
     """The pixels (height, width, 3) of a `mitsuba.Bitmap`."""
     import mitsuba as mi
 

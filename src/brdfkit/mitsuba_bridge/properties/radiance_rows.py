@@ -26,7 +26,7 @@ def require_rows(path, name):
     at = size.end()
     try:
         for row in range(height):
-            at = _after_row(data, at, width)
+            at = _find_row_end(data, at, width)
             if at is None:
                 raise BrdfkitError(f"{name}: its row {row + 1} is damaged.")
     except IndexError:
@@ -38,7 +38,7 @@ def _is_packed(data, at, width):
     return data[at : at + 4] == bytes((2, 2, width >> 8, width & 255))
 
 
-def _after_row(data, at, width):
+def _find_row_end(data, at, width):
     """Where the row that begins there ends; None for one that is not packed or damaged."""
     if not _is_packed(data, at, width):
         data[at + 3]  # raises an IndexError where the file ends

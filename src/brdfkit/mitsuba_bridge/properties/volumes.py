@@ -26,14 +26,14 @@ def require_volume(volume, coloured, least=0.0):
             raise ValueError(f"a volume of finite values{limit}")
 
 
-def constant_volume(value):
+def make_constant_volume(value):
     """A volume of one `value`, a number or a dictionary of Mitsuba's."""
     import mitsuba as mi
 
     return mi.load_dict({"type": "constvolume", "value": value}, parallel=False)
 
 
-def volume_of_colour(colour):
+def make_coloured_volume(colour):
     """A volume of one colour, in linear sRGB.
 
     In spectral variants it is a grid: Mitsuba's constvolume clips a colour above 1 there, unsaid.
@@ -44,6 +44,6 @@ def volume_of_colour(colour):
     if not np.isfinite(colour).all() or colour.min() < 0:
         raise ValueError("a colour of finite values, not negative")
     if not mi.is_spectral:
-        return constant_volume({"type": "rgb", "value": colour.tolist()})
+        return make_constant_volume({"type": "rgb", "value": colour.tolist()})
     grid = mi.VolumeGrid(np.broadcast_to(colour, (2, 2, 2, 3)).copy())
     return mi.load_dict({"type": "gridvolume", "grid": grid}, parallel=False)

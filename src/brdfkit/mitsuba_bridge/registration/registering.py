@@ -15,7 +15,7 @@ from brdfkit.mitsuba_bridge.properties.conversions import require_known
 from brdfkit.model import Model, labels
 
 
-def refuse_scalar(plugin):
+def require_vectorised(plugin):
     """Raise `BrdfkitError` in scalar variants, for a `plugin` of this name that needs arrays."""
     import mitsuba as mi
 
@@ -45,21 +45,24 @@ def register_all():
         for name in plugin_files.find_plugins(kind):
             if (variant, kind, name) not in _registered:
                 _registered.add((variant, kind, name))
-                getattr(mi, register)(name, lambda props, k=kind, n=name: _make(k, n, props))
+                getattr(mi, register)(name, lambda props, k=kind, n=name: _make_plugin(k, n, props))
 
 
-def _make(kind, name, props):
+def _make_plugin(kind, name, props):
     """An instance, in the current variant, of the class that the plugin's file defines now."""
     import mitsuba as mi
 
     source = plugin_files.find_plugins(kind)[name]
-    model = labels.model_in(source) if kind == MODELS else None
+    model = labels.find_model_in(source) if kind == MODELS else None
     if model is None:
         module = plugin_files.import_plugin(source)
-        made, known = _define(module, mi.variant())(props), getattr(module, "PARAMETERS", None)
+        made, known = (
+            _define_plugin(module, mi.variant())(props),
+            getattr(module, "PARAMETERS", None),
+        )
     else:
         options = {option: props[option] for option in model.options if option in props}
-        made = _define(model.configured(**options), mi.variant())(props)
+        made = _define_plugin(model.configured(**options), mi.variant())(props)
         known = [*model.parameters, *model.options]
     if known is not None:  # else the plugin reads its properties by itself
         require_known(props, name, known)
@@ -67,7 +70,7 @@ def _make(kind, name, props):
 
 
 @cache
-def _define(source, _variant):
+def _define_plugin(source, _variant):
     """Mitsuba's class for a `Model`, or what the ``define(mi)`` of a module returns.
 
     Raises `BrdfkitError` where a module's ``define`` raises an error or returns nothing to call.
@@ -75,7 +78,7 @@ def _define(source, _variant):
     import mitsuba as mi
 
     if isinstance(source, type) and issubclass(source, Model):
-        return adapter.define(mi, source)
+        return adapter.define_bsdf(mi, source)
     try:
         found = source.define(mi)
     except BrdfkitError:

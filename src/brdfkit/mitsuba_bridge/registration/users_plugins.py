@@ -41,15 +41,15 @@ def load_plugins(path: str | Path) -> dict[str, str]:
     files = {}
     if not str(path):
         raise BrdfkitError("The path is empty; name a folder of plugins, or a file.")
-    for file in _files(Path(path).absolute()):
+    for file in _find_files(Path(path).absolute()):
         plugin_files.require_free_name(file.stem, file)
-        files[file] = _kind(file)
+        files[file] = _find_kind(file)
     for kind in KINDS:
         plugin_files.add_plugins(kind, {file.stem: file for file, k in files.items() if k == kind})
     return {file.stem: kind for file, kind in sorted(files.items())}
 
 
-def _files(path):
+def _find_files(path):
     """The plugin files at `path`: a file, a folder of one kind, or a folder of such folders."""
     _refuse_misspelt(path)
     folders = [path / kind for kind in KINDS if (path / kind).is_dir()]
@@ -66,13 +66,13 @@ def _refuse_misspelt(path):
             raise BrdfkitError(f"{folder} is no kind of plugin; rename it {kind}/.")
 
 
-def _kind(file):
+def _find_kind(file):
     """The kind of a plugin file: its folder's name, but for a file that defines a `Model`.
 
     Raises `BrdfkitError` for a file that holds no plugin or lies in no folder of a kind.
     """
     module = plugin_files.import_plugin(file)
-    if labels.model_in(file) is not None:
+    if labels.find_model_in(file) is not None:
         return MODELS
     if file.parent.name not in KINDS:
         raise BrdfkitError(

@@ -41,13 +41,13 @@ def anisotropic_coordinates(wi, wo):
     )
 
 
-def coordinates(wi, wo, anisotropic):
+def compute_coordinates(wi, wo, anisotropic):
     """Points of direction pairs (n, 3) on an isotropic material or another one."""
     return anisotropic_coordinates(wi, wo) if anisotropic else isotropic_coordinates(wi, wo)
 
 
-def sample_coordinates(wi, wo, anisotropic):
+def compute_sample_coordinates(wi, wo, anisotropic):
     """Points of samples at direction pairs (n, 3): (n, 3), or (2n, 4) of an anisotropic material,
     where those of the pairs in both orders stand one behind the other."""
-    points = coordinates(wi, wo, anisotropic)
-    return np.concatenate([points, coordinates(wo, wi, True)]) if anisotropic else points
+    points = compute_coordinates(wi, wo, anisotropic)
+    return np.concatenate([points, compute_coordinates(wo, wi, True)]) if anisotropic else points

@@ -21,8 +21,8 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.directions import from_half_difference, to_half_difference
-from brdfkit.model.samples.cells import least_cosine
-from brdfkit.model.samples.coordinates import coordinates, sample_coordinates
+from brdfkit.model.samples.cells import minimum_cosine
+from brdfkit.model.samples.coordinates import compute_coordinates, compute_sample_coordinates
 
 # The power of s that is the density of a measure in the angles; without one, each sample counts 1
 MEASURES: dict[str, float | None] = {
@@ -44,7 +44,7 @@ BINS = 90
 GRID = 180, 90, 90
 
 
-def weigh(extents: FloatArray | None, measure: str) -> FloatArray | float:
+def compute_measure(extents: FloatArray | None, measure: str) -> FloatArray | float:
     """How much each sample counts by a measure's name; `extents` (n, 2), or None if unknown."""
     power = MEASURES[measure]
     if power is None or extents is None:
@@ -61,13 +61,13 @@ def density(theta_h: FloatArray, theta_d: FloatArray) -> FloatArray:
 
 
 @cache
-def whole(max_angle: float, measure: str) -> float:
+def integrate_measure(max_angle: float, measure: str) -> float:
     """A measure of all pairs with both angles below `max_angle` [degrees], φ_d over 2π."""
     steps = [(np.arange(n) + 0.5) / n for n in GRID]
     theta_h, theta_d, phi_d = np.meshgrid(*steps, indexing="ij")
     theta_h, theta_d, phi_d = theta_h * np.pi / 2, theta_d * np.pi / 2, phi_d * 2 * np.pi
     wi, wo = from_half_difference(theta_h, theta_d, phi_d)
-    least = least_cosine(max_angle)
+    least = minimum_cosine(max_angle)
     inside = (wi[..., 2] > least) & (wo[..., 2] > least)
     cell = (np.pi / 2) ** 2 * 2 * np.pi / inside.size
     return float(cell * np.sum(density(theta_h, theta_d)[inside] ** MEASURES[measure]))
@@ -81,10 +81,10 @@ def estimate_extents(
     from scipy.spatial import cKDTree
 
     points_i, points_o, volumes = _spread_points(wi, wo, anisotropic, max_angle)
-    places = sample_coordinates(wi, wo, anisotropic)
+    places = compute_sample_coordinates(wi, wo, anisotropic)
     places, same = np.unique(places.round(6), axis=0, return_inverse=True)
     same = same.ravel()
-    distance, nearest = cKDTree(places).query(coordinates(points_i, points_o, anisotropic))
+    distance, nearest = cKDTree(places).query(compute_coordinates(points_i, points_o, anisotropic))
     near = distance <= REACH
     sums = np.stack(
         [np.bincount(nearest[near], volume[near], len(places)) for volume in volumes.T], axis=1
@@ -120,7 +120,7 @@ def _spread_points(wi, wo, anisotropic, max_angle):
     theta_d, phi_d = u[:, 1] * np.pi / 2, u[:, 2] * 2 * np.pi
     turn = (2 * np.pi * u[:, 3],) if anisotropic else ()
     pairs = from_half_difference(theta_h, theta_d, phi_d, *turn)
-    least = least_cosine(max_angle)
+    least = minimum_cosine(max_angle)
     kept = (pairs[0][:, 2] > least) & (pairs[1][:, 2] > least)
     angles = (np.pi / 2) ** 2 * 2 * np.pi / len(u) * (np.diff(edges) / shares)[bins]
     volumes = np.stack([angles, angles * density(theta_h, theta_d)], axis=1)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.model.samples.cells import as_columns, directions_within, least_cosine
+from brdfkit.model.samples.cells import copy_columns, find_directions_within, minimum_cosine
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +55,7 @@ class Samples:
         usable = _find_usable(wi, wo, values)
         if valid is not None:
             usable &= _check_mask(valid, len(wi), name)
-        require_some(usable, name, values, channels)
+        require_valid(usable, name, values, channels)
         return cls(wi, wo, values, usable, np.ones(len(usable)))
 
     @classmethod
@@ -66,22 +66,22 @@ class Samples:
         return cls(wi, wo, values, _find_usable(wi, wo, values), np.ones(len(wi)))
 
     @classmethod
-    def of_cells(cls, table, max_angle, factors=None, errors=None):
+    def from_cells(cls, table, max_angle, factors=None, errors=None):
         """As `from_table`, of the known cells with both angles below `max_angle` [degrees].
 
         `factors`: of the weights, (cells,), and `errors` (cells, channels): of all cells, in C
         order.
         """
         axes = tuple(tuple(axis.tolist()) for axis in table.centres)
-        cells, wi, wo = directions_within(axes, float(max_angle))
+        cells, wi, wo = find_directions_within(axes, float(max_angle))
         values = table.values.reshape(-1, table.values.shape[-1])
-        values = as_columns(values, cells)
+        values = copy_columns(values, cells)
         known = np.isfinite(values).all(axis=1)
         n_h, n_d, n_p = table.shape[-3:]
         pairs = cells // n_p
         half_vectors = pairs // n_d
         weight = np.ones(len(cells)) if factors is None else factors[cells]
-        extents = as_columns(table.extents.reshape(-1, 2), pairs % (n_h * n_d))
+        extents = copy_columns(table.extents.reshape(-1, 2), pairs % (n_h * n_d))
         own = None if errors is None else errors[cells]
         samples = cls(wi, wo, values, known, weight, extents, (half_vectors, pairs), own)
         return samples if known.all() else samples.at(known)
@@ -93,18 +93,18 @@ class Samples:
 
     def within(self, max_angle):
         """A mask (n,) of the valid samples with θ_i and θ_o below `max_angle` [degrees]."""
-        cos_min = least_cosine(max_angle)
+        cos_min = minimum_cosine(max_angle)
         return self.valid & (self.wi[:, 2] > cos_min) & (self.wo[:, 2] > cos_min)
 
     def at(self, rows):
         """The `Samples` of these `rows` (a mask or indices)."""
-        vectors = (as_columns(a, rows) for a in (self.wi, self.wo, self.values))
+        vectors = (copy_columns(a, rows) for a in (self.wi, self.wo, self.values))
         cells = self.cells and tuple(numbers[rows] for numbers in self.cells)
         extents, errors = (None if of is None else of[rows] for of in (self.extents, self.errors))
         return Samples(*vectors, self.valid[rows], self.weight[rows], extents, cells, errors)
 
 
-def require_some(valid, name, values, channels):
+def require_valid(valid, name, values, channels):
     """Raise `BrdfkitError` where no sample is valid, by the mask `valid` (...); it names the
     `channels` that have no finite one among the `values` (..., channels)."""
     if not valid.any():

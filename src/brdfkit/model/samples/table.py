@@ -80,7 +80,7 @@ class Table:
         *phi_h, theta_h, theta_d, phi_d = np.meshgrid(*self.centres, indexing="ij")
         return from_half_difference(theta_h, theta_d, phi_d, *phi_h)
 
-    def cells_of(self, wi, wo):
+    def find_cells(self, wi, wo):
         """The indices, an array (n,) for each axis, of the cells of direction pairs (n, 3)."""
         theta_h, theta_d, phi_d = to_half_difference(wi, wo)
         places = [

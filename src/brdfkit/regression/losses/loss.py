@@ -25,7 +25,7 @@ from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.double_precision import differentiate
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.model.samples.measures import MEASURES, weigh
+from brdfkit.model.samples.measures import MEASURES, compute_measure
 
 Weights: TypeAlias = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
@@ -88,7 +88,7 @@ class Loss:
     def importance(self, samples: Any) -> NDArray[np.float64]:
         """w (n,) of `Samples`, with how much each sample counts, so that Σ_n is a mean."""
         weights = self._weigh(samples.wi[:, 2]) * samples.weight
-        weights = weights * weigh(samples.extents, self.measure)
+        weights = weights * compute_measure(samples.extents, self.measure)
         total = weights.sum() * (samples.values.shape[1] if self.channel_mean else 1)
         return weights / total if total else weights
 

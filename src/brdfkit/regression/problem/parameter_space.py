@@ -65,7 +65,9 @@ class Space:
     def on(cls, samples, model, bounds, fixed, anisotropic):
         """The space of a fit to `Samples`, whose directions determine some parameters, unless these
         have `bounds` or are `fixed`; see `of`."""
-        determined = {n: v for n, v in model.determined(samples).items() if n not in bounds}
+        determined = {
+            n: v for n, v in model.determine_parameters(samples).items() if n not in bounds
+        }
         return cls.of(model, bounds, determined | fixed, anisotropic)
 
     def table(self, u):

@@ -35,7 +35,7 @@ class PictureProblem(PixelProblem):
     def few(self, rng):
         """The same problem on few samples and pixels, by which starts are compared."""
         samples = _part(self.model, self.samples, self.space, FEW_SAMPLES, rng)
-        pixels = self.pixels.first(math.ceil(len(self.pixels.values) * FEW_PIXELS))
+        pixels = self.pixels.take_first(math.ceil(len(self.pixels.values) * FEW_PIXELS))
         return PictureProblem(self.model, samples, self.picture, self.space, pixels)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from brdfkit.core.arguments import to_positive
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.model.evaluation import with_weights
+from brdfkit.model.evaluation import make_model
 from brdfkit.regression.problem.parameter_space import join, limits, split
 
 # Constraints are met to the first, and active where they have less than the second to spare
@@ -77,7 +77,7 @@ class Custom:
 
     def _values(self, problem, z):
         u, weights = split(z[None], len(problem.space.names), problem.channels)
-        shown = with_weights(problem.columns.model, problem.space.values(u[0]), weights[0])
+        shown = make_model(problem.columns.model, problem.space.values(u[0]), weights[0])
         try:
             found = self.function(shown)
         except Exception as error:

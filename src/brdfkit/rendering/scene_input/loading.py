@@ -70,7 +70,7 @@ def find_scene(given):
         return scene(place)
     suffix = suffix_of(given)
     if suffix == scene_file.SUFFIX:
-        return scene_file.file_scene(given)
+        return scene_file.make_scene_builder(given)
     if suffix in mesh_file.SUFFIXES:
         return mesh_file.mesh_scene(given)
     raise BrdfkitError(

@@ -6,7 +6,7 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_file
-from brdfkit.mitsuba_bridge.obj_indices import counted_from_the_start
+from brdfkit.mitsuba_bridge.obj_indices import use_absolute_indices
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.scene_input.upright import guess_up
 from brdfkit.rendering.scenes._meshes import mesh
@@ -52,7 +52,7 @@ def read(path, up=""):
     """
     import mitsuba as mi
 
-    with counted_from_the_start(path) as file:
+    with use_absolute_indices(path) as file:
 
         def load(**how):
             plugin = {"type": path.suffix.lower()[1:], "filename": str(file)}

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from brdfkit.images.thumbnails.lobes import Radius
+from brdfkit.images.thumbnails import Radius
 from brdfkit.materials.plotting.plane_of_incidence import choose_angles, compute_lobe, is_scattered
 from brdfkit.reporting.charts.svg import BOTTOM, HEIGHT, TOP, Axis, Chart, linear
 

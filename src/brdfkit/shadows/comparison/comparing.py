@@ -13,7 +13,7 @@ from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.core.progress_bar import Progress
-from brdfkit.mitsuba_bridge.registration.registering import refuse_scalar
+from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 from brdfkit.shadows.comparison.arguments import to_names, to_scene, to_size, to_texels
 from brdfkit.shadows.comparison.comparison import ShadowComparison
 from brdfkit.shadows.comparison.exact_shadow import LitView
@@ -91,7 +91,7 @@ def compare(
     >>> bk.shadows.compare("street", ["focused", "trapezoidal"])    # doctest: +SKIP
     """
     use_variant()
-    refuse_scalar("compare")
+    require_vectorised("compare")
     projections = PROJECTIONS if projections is None else projections
     filters = FILTERS if filters is None else filters
     named = {"projection": projections, "filter": filters, "partition": partitions}

@@ -8,7 +8,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray, IntArray, JitColour, MitsubaObject
-from brdfkit.mitsuba_bridge.surface_points import ray_off_surface
+from brdfkit.mitsuba_bridge.surface_points import spawn_ray
 from brdfkit.shadows.volumes.mesh import Mesh
 
 
@@ -88,7 +88,7 @@ class LitView:
         import mitsuba as mi
 
         ds, _ = self.to_light
-        ray = ray_off_surface(self.si.p, self.si.n, self.si.t, ds.d)
+        ray = spawn_ray(self.si.p, self.si.n, self.si.t, ds.d)
         ray.maxt = ds.dist * (1 - mi.math.ShadowEpsilon)
         return np.array(~self.scene.ray_test(ray, self.si.is_valid()))
 

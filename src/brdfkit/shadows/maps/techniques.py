@@ -13,7 +13,7 @@ from typing import Any
 
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.errors import no_such
-from brdfkit.mitsuba_bridge.properties.declarations import Setting, read
+from brdfkit.mitsuba_bridge.properties.declarations import Setting, read_settings
 from brdfkit.shadows.maps import filters, partitions, projections
 from brdfkit.shadows.maps.depth_pass import render_depths
 
@@ -72,7 +72,8 @@ def make_techniques(names: Mapping[str, str], values: Mapping[str, Any]) -> dict
             raise no_such("setting", name, known, " + ".join(names.values()))
     return {
         kind: partial(
-            getattr(FILES[kind][name], MAKERS[kind][1]), **read(settings[kind], values.get, name)
+            getattr(FILES[kind][name], MAKERS[kind][1]),
+            **read_settings(settings[kind], values.get, name),
         )
         for kind, name in names.items()
     }

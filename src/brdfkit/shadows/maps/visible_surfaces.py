@@ -10,7 +10,7 @@ from brdfkit.core.projective.body import Empty
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import project_all
 from brdfkit.core.projective.light import Light
-from brdfkit.mitsuba_bridge.surface_points import ray_off_surface
+from brdfkit.mitsuba_bridge.surface_points import spawn_ray
 
 SIDE = 128  # rays across a picture and down it
 
@@ -56,7 +56,7 @@ def is_lit(scene: MitsubaObject, light: Light, surfaces: VisibleSurfaces) -> Boo
     to_light = light.directions_from(surfaces.points)
     p, n = mi.Point3f(surfaces.points.T), mi.Normal3f(surfaces.normals.T)
     d = mi.Vector3f(to_light.T)
-    ray = ray_off_surface(p, n, mi.Float(surfaces.distances), d)
+    ray = spawn_ray(p, n, mi.Float(surfaces.distances), d)
     if not light.is_directional:
         distances = np.linalg.norm(light.point[:3] - surfaces.points, axis=1)
         ray.maxt = mi.Float(distances * (1 - 1e-4))

@@ -18,7 +18,7 @@ import numpy as np
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.mitsuba_bridge.channels import emission_of_rgb, spectrum_of_rgb, white
+from brdfkit.mitsuba_bridge.channels import make_rgb_emission, make_rgb_spectrum, make_white_light
 from brdfkit.volumes.light.majorants import Majorants, compute_majorants
 from brdfkit.volumes.light.tracking import estimate_transmittance, split_light
 from brdfkit.volumes.rays.box import intersect_box
@@ -57,7 +57,11 @@ class Medium:
         # The meaning of RGB if σ is a transfer function
         function = getattr(extinction, "function", None)
         self.colour = None if function is None else function.colour
-        self.reflectance, self.light, self.white = spectrum_of_rgb(), emission_of_rgb(), white()
+        self.reflectance, self.light, self.white = (
+            make_rgb_spectrum(),
+            make_rgb_emission(),
+            make_white_light(),
+        )
 
     def update_majorants(self, local: bool) -> None:
         """Compute the majorants again, for coarse cells if `local`, otherwise one for all.

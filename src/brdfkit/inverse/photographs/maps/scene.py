@@ -47,7 +47,7 @@ def _parameter_names(maps: Iterable[str]) -> list[str]:
 def _plugin(label: str) -> dict[str, Any]:
     """Return the type and the options of the Mitsuba plugin for a model's label."""
     model = labels.model(label)
-    return {"type": model.type_name(), **model.chosen()}
+    return {"type": model.type_name(), **model.changed_options()}
 
 
 def _bitmap(values: FloatArray) -> dict[str, Any]:
