@@ -6,7 +6,6 @@ The pages are written to `docs/api/`, which git ignores. Names of them in signat
 import inspect
 import sys
 from pathlib import Path
-from types import FunctionType, ModuleType
 
 from docutils import nodes
 from numpy.typing import ArrayLike
@@ -22,8 +21,7 @@ PUBLIC = {name: getattr(brdfkit, name) for name in brdfkit.__all__ if not name.s
 KINDS = {
     "What you call": inspect.isfunction,
     "What goes in and comes out": lambda thing: isinstance(thing, type) and not is_error(thing),
-    "Collections": lambda thing: not isinstance(thing, type | ModuleType | FunctionType),
-    "Rooms, with names of their own": inspect.ismodule,
+    "Subnamespaces": inspect.ismodule,
     "Errors": lambda thing: isinstance(thing, type) and is_error(thing),
 }
 
@@ -60,16 +58,29 @@ def sentence(thing):
 
 
 def page(name):
-    thing = PUBLIC[name]
-    directive = "autofunction" if inspect.isfunction(thing) else "autoclass"
-    options = (
-        "" if inspect.isfunction(thing) else "   :members:\n   :inherited-members: Exception\n"
-    )
-    if inspect.ismodule(thing):
-        directive, options = "automodule", "   :members:\n   :imported-members:\n"
-    elif not isinstance(thing, type) and not inspect.isfunction(thing):
-        directive, options = "autodata", "   :no-value:\n"
-    return f"{name}\n{'=' * len(name)}\n\n.. {directive}:: brdfkit.{name}\n{options}"
+    """The page of a name; of a subnamespace with an entry for each of its names."""
+    entries = [entry(name, PUBLIC[name])]
+    if inspect.ismodule(PUBLIC[name]):
+        entries = [f".. automodule:: {PUBLIC[name].__name__}\n   :no-index:\n"]
+        entries += [entry(f"{name}.{one}", thing) for one, thing in names_of(PUBLIC[name]).items()]
+    return "\n".join([f"{name}\n{'=' * len(name)}\n", *entries])
+
+
+def entry(name, thing):
+    """The directive that documents `brdfkit.NAME`."""
+    if inspect.isfunction(thing):
+        return f".. autofunction:: brdfkit.{name}\n"
+    if isinstance(thing, type):
+        return f".. autoclass:: brdfkit.{name}\n   :members:\n   :inherited-members: Exception\n"
+    return f".. autodata:: brdfkit.{name}\n   :no-value:\n"
+
+
+def names_of(space):
+    """Name → thing of a subnamespace, without modules and the names that brdfkit has itself."""
+    names = [name for name in dir(space) if not name.startswith("_")]
+    things = {name: getattr(space, name) for name in names}
+    own = {name: thing for name, thing in things.items() if thing is not PUBLIC.get(name)}
+    return {name: thing for name, thing in own.items() if not inspect.ismodule(thing)}
 
 
 def shorten(app, what, name, thing, options, signature, returned):
@@ -88,6 +99,10 @@ def resolve(app, env, node, content):
     if name in PUBLIC:
         words = f"api/{name}", f"brdfkit.{name}", content
         return make_refnode(app.builder, node["refdoc"], *words)
+    for space in filter(lambda one: inspect.ismodule(PUBLIC[one]), PUBLIC):
+        if name in names_of(PUBLIC[space]) and is_ours(module):
+            words = f"api/{space}", f"brdfkit.{space}.{name}", content
+            return make_refnode(app.builder, node["refdoc"], *words)
     return source(env, node["refdoc"], module, content) if is_ours(module) else content
 
 

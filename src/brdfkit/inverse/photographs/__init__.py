@@ -14,7 +14,6 @@ public function, which runs the parts below one after the other:
 """
 
 from brdfkit.inverse.photographs.capture.capture import Capture as Capture
-from brdfkit.inverse.photographs.capture.capture_file import load_capture as load_capture
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole as Pinhole
 from brdfkit.inverse.photographs.result.result import Svbrdf as Svbrdf
 from brdfkit.inverse.photographs.svbrdf import svbrdf as svbrdf
