@@ -102,9 +102,9 @@ MEASURED = {
     "plaster": "gaussian --slope 0.8 --facets paint:0.85,0.8,0.7 --error 0.03",
     "satin_plastic": "gaussian --slope 0.15 --facets plastic:0.02,0.25,0.2 --facet-alpha 0.1",
     "brushed_aluminium": "brushed --slope 0.3 --stretch 10 --facets Al --facet-alpha 0.15 "
-    "--cells 24,15,12,18",
+    "--shape 24,15,12,18",
     "gold_brocade": "woven --slope 0.2 --thickness 0.7 --facets plastic:0.35,0.02,0.06 --facets Au "
-    "--facet-alpha 0.15 --cells 24,15,12,18 --error 0.1",
+    "--facet-alpha 0.15 --shape 24,15,12,18 --error 0.1",
 }
 
 

@@ -945,18 +945,23 @@ def test_python_knows_the_command_line(tmp_path):
 
 @pytest.mark.quick
 def test_shape_parameters_are_fixed_bounded_and_tied(cli):
-    words = "fit", "paint.binary", "-m", "ggx", "--fix", "f0=0.04", "--bound", "alpha_u=0.3,0.4"
-    result = cli(*words, "--tie", "--json")
+    words = "fit", "paint.binary", "-m", "ggx", "--fixed", "f0=0.04", "--bound", "alpha_u=0.3,0.4"
+    result = cli(*words, "--isotropic", "--json")
     assert_fine(result)
     (found,) = json.loads(result.stdout)["fits"]
     assert found["parameters"]["f0"] == 0.04
     assert 0.3 <= found["parameters"]["alpha_u"] == found["parameters"]["alpha_v"] <= 0.4
     assert "Nothing was saved; -o FOLDER keeps the fits." in cli(*words).stdout
-    for given in (["--fix", "f0=0.04"], ["--tie"]):
+    for given in (["--fixed", "f0=0.04"], ["--isotropic"]):
         result = cli("render", "ggx", *given)
         assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
         assert f"{given[0]} is for brdfkit fit and report, and render fits nothing" in result.stderr
-    for wrong in (["--fix", "f0"], ["--bound", "f0=1"], ["--fix", "f0=x"], ["--bound", "a=1,2,3"]):
+    for wrong in (
+        ["--fixed", "f0"],
+        ["--bound", "f0=1"],
+        ["--fixed", "f0=x"],
+        ["--bound", "a=1,2,3"],
+    ):
         result = cli("fit", "paint.binary", "-m", "ggx", *wrong)
         assert (result.exit_code, result.stderr.count("\n")) == (2, 1)
         name = wrong[1].partition("=")[0]

@@ -25,7 +25,7 @@ SMALL = {  # command: what makes it answer at once
     "render": SMALL_PICTURE,
     "report": SMALL_PICTURE,
     "gallery": ("--size", "32"),
-    "measure": ("--spp", "128", "--cells", "3,2,4"),
+    "measure": ("--spp", "128", "--shape", "3,2,4"),
 }
 
 

@@ -555,7 +555,7 @@ def test_the_command_goes_past_bad_files(cli):
     ("words", "said"),
     [
         (["--render"], "--render shows one material"),
-        (["-j", "0"], "--jobs"),
+        (["-j", "0"], "--workers"),
         (["--loss", "nope"], "nope"),
         (["-m", "nope"], "nope"),
     ],

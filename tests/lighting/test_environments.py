@@ -449,7 +449,7 @@ def test_commands(make, tmp_path, capsys, monkeypatch):
     assert (code, found["width"], found["written"]) == (0, 256, ["sky.png"])
     assert found["brightest_share"] > 0.5
     assert "brightest 1 %" in run(capsys, "info", "studio")[1]
-    words = "convert", "compass", "cross.exr", "--to", "cross", "--turn", "90", "--height", "96"
+    words = "convert", "compass", "cross.exr", "--target", "cross", "--turn", "90", "--height", "96"
     assert run(capsys, *words)[:2] == (0, "written: cross.exr\n")
     assert read_map("cross.exr").shape == (96, 128, 3)
     assert np.allclose(read_map("cross.exr")[48, 34], make.COLOURS["-x"], atol=0.01)

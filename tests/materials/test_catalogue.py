@@ -216,7 +216,7 @@ def test_measured_again_the_values_agree(measured, make, module_in_llvm, name):
     catalogue = measured[name].table
     third = tuple(slice(1, None, 3) for _ in catalogue.shape)
     cells = ",".join(str(n // 3) for n in catalogue.shape)
-    again = make.measured(name, "--cells", cells, "--seed", "1", "--error", "0.1", "--spp", "1024")
+    again = make.measured(name, "--shape", cells, "--seed", "1", "--error", "0.1", "--spp", "1024")
     assert np.allclose(again.table.directions()[0], catalogue.directions()[0][third], atol=1e-12)
     errors = measured[name].standard_error.reshape(catalogue.values.shape)[third]
     other = again.standard_error.reshape(again.table.values.shape)

@@ -243,7 +243,7 @@ def test_the_command(tmp_path, capsys):
     file.write_text(SCENE)
     page = tmp_path / "page.html"
     words = ["shadows", str(file), "--projection", "focused", "--filter", "depth", "-o", str(page)]
-    sizes = ["--map", "64", "--size", "32"]
+    sizes = ["--resolution", "64", "--size", "32"]
     main([*words, *sizes, "--json"], standalone_mode=False)
     printed = json.loads(capsys.readouterr().out)
     assert printed["lights"] == 1
@@ -268,7 +268,9 @@ def test_the_command_prints_a_line_for_each_technique_into_a_pipe(tmp_path, caps
     file = tmp_path / "scene.xml"
     file.write_text(SCENE)
     words = ["--projection", "focused", "--projection", "uniform", "--filter", "depth"]
-    main(["shadows", str(file), *words, "--map", "32", "--size", "16"], standalone_mode=False)
+    main(
+        ["shadows", str(file), *words, "--resolution", "32", "--size", "16"], standalone_mode=False
+    )
     lines = capsys.readouterr().out.splitlines()
     for name in ("focused", "uniform"):
         (line,) = (line for line in lines if line.split()[:1] == [name])

@@ -15,7 +15,7 @@ from brdfkit.core.interrupts import exit_status, is_stopped, stop_on_signals
 from brdfkit.core.names import to_printable
 
 NO_ROOM = errno.ENOSPC, errno.EDQUOT, errno.EIO  # writing to standard output, a file, failed
-OF_FITS = "--fix", "--bound", "--tie"
+OF_FITS = "--fixed", "--bound", "--isotropic", "--anisotropic"
 LONGEST = 2000  # characters of a sentence
 
 

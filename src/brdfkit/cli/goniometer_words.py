@@ -24,9 +24,9 @@ def facets(words, alpha):
     return [_bsdf(word, alpha) for word in words]
 
 
-def cells(text):
+def shape(text):
     """The shape of a table, of ``N,N,N`` or ``N,N,N,N``; None of None."""
-    return text and _numbers(text, int, f"The cells {text!r} should read N,N,N or N,N,N,N.")
+    return text and _numbers(text, int, f"The shape {text!r} should read N,N,N or N,N,N,N.")
 
 
 def command_line(parameters):

@@ -6,17 +6,17 @@ from brdfkit.cli.errors import say
 from brdfkit.core.interrupts import exit_status
 
 
-def fit_many(files, names, settings, output, jobs, judge, console):
+def fit_many(files, names, settings, output, workers, judge, console):
     """Fit the models of these `names` to all `files`, and print their errors.
 
-    `output`: the folder for the fits, or None; `jobs`: how many processes, or None; `judge`:
-    whether to tell errors that were held out and pictures, too. What fails is said in one sentence
-    each; the exit status is then 2.
+    `output`: the folder for the fits, or None; `workers`: the number of processes, or None;
+    `judge`: whether to tell errors that were held out and pictures, too. What fails is said in one
+    sentence each; the exit status is then 2.
     """
     from brdfkit.cli.arguments import results_folder
     from brdfkit.fitting.sweeping import sweep
 
-    options = {"folder": output, "workers": jobs, "judge": judge}
+    options = {"folder": output, "workers": workers, "judge": judge}
     what = f"fit {len(names)} models to {len(files)} materials"
     with results_folder(output), console.progress(what) as progress:
         found = sweep(files, names, settings=settings, **options, progress=progress)

@@ -44,13 +44,22 @@ def fit_options(default, others="FILE.py with one, or best"):
     def add(command):
         @functools.wraps(command)
         def with_settings(
-            *args, loss, robust, solver, albedo_at_most, max_angle, fixed, bounds, tie, **kwargs
+            *args,
+            loss,
+            robust,
+            solver,
+            albedo_at_most,
+            max_angle,
+            fixed,
+            bounds,
+            anisotropic,
+            **kwargs,
         ):
             from brdfkit.regression.solvers import AlbedoAtMost
 
             _require_one_each(kwargs["names"])
             how = {"loss": loss, "robust": robust, "solver": solver, "max_angle": max_angle}
-            how |= {"fixed": parse_settings(fixed, "--fix"), "anisotropic": False if tie else None}
+            how |= {"fixed": parse_settings(fixed, "--fixed"), "anisotropic": anisotropic}
             how["bounds"] = parse_settings(bounds, "--bound", "LOW,HIGH")
             how["constraints"] = () if albedo_at_most is None else AlbedoAtMost(albedo_at_most)
             return command(*args, how=how, **kwargs)
@@ -117,8 +126,7 @@ def _fit_options(default, others):
             help="Use the samples with both angles below this one [degrees].",
         ),
         click.option(
-            "--fix",
-            "fixed",
+            "--fixed",
             multiple=True,
             metavar="NAME=VALUE",
             help="Keep a shape parameter at a value, as f0=0.04; repeat it for more.",
@@ -131,7 +139,10 @@ def _fit_options(default, others):
             help="Search a shape parameter between these, as alpha_u=0.01,0.5; repeat it for more.",
         ),
         click.option(
-            "--tie", is_flag=True, help="Let alpha_v and its like follow alpha_u: no grooves."
+            "--anisotropic/--isotropic",
+            default=None,
+            help="Whether alpha_v and similar parameters are searched, or follow alpha_u. "
+            "Default: as the measurement is.",
         ),
     )
 

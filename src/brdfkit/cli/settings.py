@@ -1,4 +1,4 @@
-"""Reads NAME=VALUE behind options such as --set, --fix and --bound."""
+"""Reads NAME=VALUE behind options such as --set, --fixed and --bound."""
 
 from brdfkit.core.errors import BrdfkitError
 

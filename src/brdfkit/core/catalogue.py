@@ -35,7 +35,7 @@ class MapCollection:
     """A public collection of environment maps, as the index describes it.
 
     `licence` (a word) and `terms` (a sentence) are the owners' conditions, `page` is the web page
-    with the files. `convention` is the word for `brdfkit convert --from`, or says why it is
+    with the files. `convention` is the word for `brdfkit convert --source`, or says why it is
     unknown.
     """
 

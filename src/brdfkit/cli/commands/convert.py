@@ -13,8 +13,8 @@ from brdfkit.core.errors import BrdfkitError
 @click.argument("output", type=click.Path(path_type=Path))
 @values_option
 @mend_options
-@click.option("--from", "source", metavar="CONVENTION", help="Of MAP. Default: mitsuba.")
-@click.option("--to", "target", metavar="CONVENTION", help="Of OUTPUT, a map. Default: mitsuba.")
+@click.option("--source", metavar="CONVENTION", help="Of MAP. Default: mitsuba.")
+@click.option("--target", metavar="CONVENTION", help="Of OUTPUT, a map. Default: mitsuba.")
 @click.option("--turn", type=float, metavar="DEGREES", help="Turn a map's light, anticlockwise.")
 @click.option("--mirror", is_flag=True, help="Exchange left and right of a map.")
 @click.option("--height", type=int, help="Rows of a map; default: pixels stay as large.")
@@ -47,8 +47,8 @@ def convert(thing, output, values, mends, console, **how):
         return
     if given:
         raise BrdfkitError(
-            f"{thing} is no environment map, .exr or .hdr: --from, --to, --turn, --mirror and "
-            "--height are for maps only."
+            f"{thing} is no environment map, .exr or .hdr: --source, --target, --turn, --mirror "
+            "and --height are for maps only."
         )
     with console.progress(f"convert {thing}"):
         source = measured_material(thing, mends) if mends else material(thing, values)

@@ -31,10 +31,10 @@ from brdfkit.core.interrupts import Interrupted, exit_status
 )
 @click.option(
     "-j",
-    "--jobs",
+    "--workers",
     type=click.IntRange(min=1),
     metavar="N",
-    help="Processes, for several FILEs. Default: one for each core.",
+    help="Number of processes, for several FILEs. Default: one for each core.",
 )
 @click.option(
     "--judge",
@@ -53,7 +53,7 @@ def fit(
     how,
     mends,
     output,
-    jobs,
+    workers,
     judge,
     rendered,
     spectral,
@@ -99,7 +99,7 @@ def fit(
         _refuse_to_mend(mends)
         if rendered:
             raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
-        fit_many(files, names, how, output, jobs, judge, console)
+        fit_many(files, names, how, output, workers, judge, console)
         return
     if judge:
         raise BrdfkitError("--judge is for several FILEs; -m best judges all models of one FILE.")

@@ -35,7 +35,7 @@ from brdfkit.core.interrupts import exit_status
     help="Seed of the random surface.",
 )
 @click.option(
-    "--cells",
+    "--shape",
     metavar="N,N,N",
     help="Cells of the table in theta_h, theta_d, phi_d; brushed and woven: phi_h before them.",
 )
@@ -50,7 +50,7 @@ from brdfkit.core.interrupts import exit_status
 )
 @writing_options
 def measure(
-    geometry, facets, facet_alpha, specimen, cells, error, spp, seed, output, console, **relief
+    geometry, facets, facet_alpha, specimen, shape, error, spp, seed, output, console, **relief
 ):
     """Measure the BRDF of microgeometry.
 
@@ -66,14 +66,14 @@ def measure(
     # relief: --slope, --stretch, --thickness
     output = words.measurement_file(output or Path(f"{geometry}.npz"))
     surface = words.surface(geometry, **relief, seed=specimen)
-    made_of, cells = words.facets(facets, facet_alpha), words.cells(cells)
+    made_of, shape = words.facets(facets, facet_alpha), words.shape(shape)
     context = click.get_current_context()
     notes = {"command": words.command_line(context.params)}
     with console.progress(f"measure {geometry}") as progress:
         found = measure_surface(
             surface,
             made_of,
-            shape=cells,
+            shape=shape,
             error=error,
             spp=spp,
             name=output.stem,

@@ -41,8 +41,7 @@ def technique(kind, default, help):
     help="A technique without maps to look up: shadow_volume or hybrid_shadow; may be repeated.",
 )
 @click.option(
-    "--map",
-    "resolution",
+    "--resolution",
     default=512,
     show_default=True,
     type=click.IntRange(1, 16384),

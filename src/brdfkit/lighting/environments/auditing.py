@@ -120,7 +120,7 @@ class EnvironmentAudit(Shown):
         if abs(self.width / self.height / LATLONG - 1) > ASPECT_TOLERANCE:
             sentences.append(
                 f"{self.width} × {self.height} pixels are not twice as wide as high: perhaps "
-                "another layout than latitude and longitude; 'brdfkit convert --from' makes it one"
+                "another layout than latitude and longitude; 'brdfkit convert --source' converts it"
             )
         if self.eight_bit:
             sentences.append(EIGHT_BIT_WARNING)

@@ -79,7 +79,7 @@ def load_radiance(source: str | Path | AnyArray, aspect: float = LATLONG) -> tup
     if abs(width / height / aspect - 1) > 0.05:
         raise BrdfkitError(
             f"{name}: the map has {width}×{height} pixels, and its layout {aspect:.3g} times as "
-            "many columns as rows; name its layout to 'brdfkit convert --from'."
+            "many columns as rows; name its layout to 'brdfkit convert --source'."
         )
     if not (np.isfinite(rgb).all() and rgb.min() >= 0):
         raise BrdfkitError(f"{name}: the map has a value that is negative or not finite; mend it.")
