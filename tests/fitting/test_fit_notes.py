@@ -16,7 +16,7 @@ from brdfkit.fitting.lobe_widths import half_angle_step, half_widths
 from brdfkit.materials.extrapolation import describe_extrapolation, note_extrapolation
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.reporting.parameters import describe
+from brdfkit.reporting.parameters import describe_fit
 
 pytestmark = pytest.mark.quick
 
@@ -217,7 +217,7 @@ def test_all_that_show_a_fit_show_its_notes(tmp_path):
     assert len(notes) == 2
     for note in notes:
         assert note in " ".join(str(found).split())
-        assert note in describe(found)["remarks"]
+        assert note in describe_fit(found)["remarks"]
     found = bk.fit(path, "ward")
     done = CliRunner().invoke(main, ["fit", str(path), "-m", "ward", "--json"])
     assert json.loads(done.output)["fits"][0]["notes"] == list(found.notes)

@@ -28,15 +28,20 @@ from brdfkit.model.samples import Table
 from brdfkit.regression.robust.reweighting import WEIGHTS
 from brdfkit.reporting import many_files, origin, report
 from brdfkit.reporting.charts import svg
-from brdfkit.reporting.charts.svg import errors_table
 from brdfkit.reporting.pictures import pixels
 from brdfkit.reporting.pictures.defaults import MODELS
 from brdfkit.reporting.pictures.defaults import SIZE as SIZE_OF_REPORTS
 from brdfkit.reporting.pictures.picture_errors import PictureError
 from brdfkit.reporting.pictures.pictures import render_pictures
-from brdfkit.reporting.verdict import fit_errors
-from brdfkit.reporting.verdict.picture_verdict import visibility
-from brdfkit.reporting.verdict.verdict import in_words, verdict
+from brdfkit.reporting.verdict.fit_errors import (
+    FitErrors,
+    compute_fit_errors,
+    format_factor,
+    make_errors_table,
+    order_fits,
+)
+from brdfkit.reporting.verdict.picture_verdict import describe_visibility
+from brdfkit.reporting.verdict.verdict import write_verdict
 
 NAME = 'a<b>&"c"</script>'
 SIZE, SPP = 48, 16
@@ -151,7 +156,7 @@ def test_equal_input_gives_equal_bytes_however_many_threads(written, material, f
     threads = dr.thread_count()
     try:
         dr.set_thread_count(3)
-        again = report.report(material, fits, tmp_path / "report.html", **SMALL)
+        again = report.report(material, fits, path=tmp_path / "report.html", **SMALL)
     finally:
         dr.set_thread_count(threads)
     assert again.read_bytes() == written[0].read_bytes()
@@ -159,7 +164,7 @@ def test_equal_input_gives_equal_bytes_however_many_threads(written, material, f
 
 def test_three_fits_are_below_three_megabytes(written):
     """Of noisy pixels, which hardly shrink, there are as many bytes as there are pixels."""
-    page, packed = len(written[0].read_bytes()), written[1].said["pixels"]
+    page, packed = len(written[0].read_bytes()), written[1].page["pixels"]
     small = [sum(map(len, packed[kind])) for kind in ("pictures", "differences")]
     full = [size * (SIZE_OF_REPORTS / SIZE) ** 2 for size in small]
     assert page - sum(small) + full[0] * 4 / 3 + full[1] * 3 / 2 < 2_500_000  # and 3 more charts
@@ -172,7 +177,7 @@ def unpack(text):
 
 
 def test_the_pixels_are_linear_light_to_half_a_step(written, rendering):
-    packed = written[1].said["pixels"]
+    packed = written[1].page["pixels"]
     for text, picture in zip(packed["pictures"], rendering, strict=True):
         codes = unpack(text).reshape(3, SIZE, SIZE)
         light = np.where(codes, 2.0 ** (packed["darkest"] + codes / packed["steps"]), 0)
@@ -181,7 +186,7 @@ def test_the_pixels_are_linear_light_to_half_a_step(written, rendering):
 
 def test_a_difference_is_kept_to_a_few_hundredths_where_it_is_small():
     given = np.array([[0.0, 0.5, 1.0, 5.0, 100.0, 300.0, np.nan]])
-    kept = pixels.HIGHEST * (pixels.encode_difference(given) / 255) ** 2
+    kept = pixels.LARGEST_DIFFERENCE * (pixels.encode_difference(given) / 255) ** 2
     np.testing.assert_allclose(kept[0, :4], given[0, :4], atol=0.08)
     assert kept[0, 4:].tolist() == [100, 100, 0]
 
@@ -192,15 +197,15 @@ def test_the_verdict_is_what_the_samples_say(written, material, fits):
     assert said.verdict.startswith("ward is best by every loss and by its picture. Half of the")
     # the ratio of every measured and modelled value
     samples = material.samples.at(material.samples.within(80))
-    measured, rows = samples.values.ravel(), said.said["errors"]["rows"]
+    measured, rows = samples.values.ravel(), said.page["errors"]["rows"]
     for fit, row in zip(reversed(fits), rows, strict=True):
         ratio = fit.eval(samples.wi, samples.wo).ravel()[measured > 0] / measured[measured > 0]
         factors = np.quantile(np.maximum(ratio, 1 / ratio), [0.5, 0.95])
-        for text, factor in zip((row["typical"], row["most"]), factors, strict=True):
+        for text, factor in zip((row["typical"], row["large"]), factors, strict=True):
             assert abs(float(text) - factor) < (0.006 if "." in text else 0.51)  # as it is rounded
     head = re.search(r"within a factor of ([\d.]+), 95\s% within ([\d.]+), ", said.verdict)
-    assert head.groups() == (rows[0]["typical"], rows[0]["most"])
-    assert "Its lead over the others is more than noise." in said.said["more"]
+    assert head.groups() == (rows[0]["typical"], rows[0]["large"])
+    assert "Its lead over the others is more than noise." in said.page["more"]
 
 
 def test_the_light_is_shown_beside_the_measured_and_marked_where_it_is_wrong(
@@ -222,14 +227,14 @@ def test_the_light_is_shown_beside_the_measured_and_marked_where_it_is_wrong(
 def test_equal_fits_are_tied_and_worse_ones_are_not(material, fits):
     lambert, ward = fits
     near = bk.fit(material, "ward", max_angle=79)
-    tied = [one.tied for one in fit_errors.standings(material, [ward, near, lambert], "log")]
+    tied = [one.is_tied for one in compute_fit_errors(material, [ward, near, lambert], "log")]
     assert tied == [True, True, False]
 
 
 def stood(error, numbers, tied):
-    """A `Standing` by log and cbrt, of which cbrt likes few numbers."""
+    """A `FitErrors` by log and cbrt, of which cbrt likes few numbers."""
     errors = {"log": error, "cbrt": numbers / 10}
-    return fit_errors.Standing(errors, (0.2, 0.3, 1.1), 1.1, 1.4, 1.2, (75, 90), numbers, tied)
+    return FitErrors(errors, (0.2, 0.3, 1.1), 1.1, 1.4, 1.2, (75, 90), numbers, tied)
 
 
 def psnr_and_delta(psnr, floor=50.0, delta=0.1, noise=0.1):
@@ -241,16 +246,16 @@ def psnr_and_delta(psnr, floor=50.0, delta=0.1, noise=0.1):
 
 def test_of_tied_fits_the_one_with_the_fewest_numbers_is_taken():
     found = [stood(0.30, 13, True), stood(0.31, 8, True), stood(0.5, 7, False)]
-    order = fit_errors.in_order(found, "log")
+    order = order_fits(found, "log")
     assert order == [1, 0, 2]
     names, found = ["ggx", "ggx+ggx", "ward"], [found[k] for k in order]
-    head, more = verdict(names, found, psnr_and_delta((40.0, 40.8, 20.0)), "log")
+    head, more = write_verdict(names, found, psnr_and_delta((40.0, 40.8, 20.0)), "log")
     assert head.startswith(
         "ggx is enough: ggx+ggx, with 5 more numbers, is no better by more than noise. Half of "
     )
     assert more[0] == "By cbrt, ward is ahead."
     assert "In the picture ggx+ggx comes nearest: PSNR 40.8 dB, against 40.0 dB of ggx." in more
-    rows = errors_table(found, "log", (0.2, np.nan, np.nan))["rows"]
+    rows = make_errors_table(found, "log", (0.2, np.nan, np.nan))["rows"]
     assert [row["verdict"] for row in rows] == ["take", "tied", ""]
     assert rows[0]["albedos"] == [("0.20", False), ("0.30", False), ("1.10", True)]
 
@@ -258,19 +263,19 @@ def test_of_tied_fits_the_one_with_the_fewest_numbers_is_taken():
 def test_the_verdict_leaves_out_what_is_noise_or_said_already():
     found = [stood(0.3, 8, True), stood(0.5, 8, False)]
     for nearer, floor, told in ((40.8, 50.0, True), (40.8, 42.0, False), (40.01, 90.0, False)):
-        more = verdict(["a", "b"], found, psnr_and_delta((40.0, nearer), floor), "log")[1]
+        more = write_verdict(["a", "b"], found, psnr_and_delta((40.0, nearer), floor), "log")[1]
         assert any("comes nearest" in sentence for sentence in more) == told
     # half are met within 1.1 in all, and 1.2 or 1.12 where they are met worst
     assert more[-1].endswith(
         "75° to 90°: half of the values there are met within a factor of 1.20."
     )
     for cbrt, told in ((0.79, True), (0.796, False)):  # of 0.8
-        other = replace(found[1], errors={"log": 0.5, "cbrt": cbrt})
-        more = verdict(["a", "b"], [found[0], other], psnr_and_delta((40.0, 30.0)), "log")[1]
+        other = replace(found[1], by_loss={"log": 0.5, "cbrt": cbrt})
+        more = write_verdict(["a", "b"], [found[0], other], psnr_and_delta((40.0, 30.0)), "log")[1]
         assert ("By cbrt, b is ahead." in more) == told
-    near = [replace(one, worst=1.12) for one in found]
+    near = [replace(one, worst_factor=1.12) for one in found]
     assert "farthest" not in "".join(
-        verdict(["a", "b"], near, psnr_and_delta((40.0, 30.0)), "log")[1]
+        write_verdict(["a", "b"], near, psnr_and_delta((40.0, 30.0)), "log")[1]
     )
 
 
@@ -285,14 +290,14 @@ def test_the_verdict_leaves_out_what_is_noise_or_said_already():
     ],
 )
 def test_what_noise_hides_is_not_called_visible(delta, noise, words):
-    assert visibility(psnr_and_delta((30.0,), 30.0, delta, noise)).startswith(words)
+    assert describe_visibility(psnr_and_delta((30.0,), 30.0, delta, noise)).startswith(words)
 
 
 @pytest.mark.parametrize(
     ("factor", "words"), [(1.0, "1.00"), (1.5, "1.50"), (14.9, "15"), (np.inf, "1,000 or more")]
 )
 def test_factors_in_words(factor, words):
-    assert in_words(factor) == words
+    assert format_factor(factor) == words
 
 
 def write_materials():
@@ -339,14 +344,14 @@ def test_settings_that_no_option_tells_are_named(material):
     settings = {"solver": "slsqp", "constraints": bk.solvers.AlbedoAtMost(0.9), "max_angle": 70}
     told = bk.fit(material, "lambert", **settings)
     how = {**SMALL, "seed": 0, "scene": "ball", "environment": None}
-    words, untold = origin.command(material, "x.npz", [told], "out/x y.html", **how)
+    words, untold = origin.make_command(material, "x.npz", [told], "out/x y.html", **how)
     assert words.endswith(
         "--max-angle 70 --solver slsqp --albedo-at-most 0.9 --spp 16 --size 48 "
         "--seed 0 -o 'x y.html'"
     )
     assert untold == []
     ward = bk.fit(material, "ward", loss="log", bounds={"alpha_u": (0.1, 0.3)}, seed=3, starts=1)
-    _, untold = origin.command(material, None, [told, ward], "x.html", **how)
+    _, untold = origin.make_command(material, None, [told, ward], "x.html", **how)
     assert {"loss", "bounds", "seed", "starts"} <= set(untold)
 
 
@@ -414,9 +419,9 @@ def test_in_python_models_and_the_file_have_defaults(here):
 
 
 def test_lines_that_lie_on_each_other_are_all_seen():
-    assert len({svg.fit_class(number) for number in range(18)}) == 18
-    chart = svg.Chart("", *[svg.linear("", 0, 1, ())] * 2)
-    chart.fits([([0, 1], [0, 1])] * 5)
+    assert len({svg.choose_class(number) for number in range(18)}) == 18
+    chart = svg.Chart("", *[svg.linear_axis("", 0, 1, ())] * 2)
+    chart.add_fits([([0, 1], [0, 1])] * 5)
     drawn = [line.split() for line in re.findall(r'class="line (fit-[^"]*)"', chart.svg)]
     solid, broken = ([k[0] for k in drawn if len(k) == n] for n in (1, 2))
     assert [k[0] for k in drawn] == solid + broken
@@ -641,7 +646,7 @@ def test_another_fit_and_the_difference_are_shown(tab, rendering):
     choose(tab, "mode", "difference")
     assert tab.locator(".tag.right").inner_text() == "ΔE of lambert"
     difference = bk.rendering.montage.ciede2000(rendering[0], rendering[2])
-    expected = 255 * mpl.colormaps["magma"](difference / pixels.MOST)[..., :3]
+    expected = 255 * mpl.colormaps["magma"](difference / pixels.BRIGHT_DIFFERENCE)[..., :3]
     assert np.abs(drawn(tab, 1) - expected).max() < 10  # a step of ΔE is some steps of the scale
     assert tab.locator(".viewer .scale").is_visible()
 
@@ -772,9 +777,11 @@ def test_what_cannot_be_compared_is_refused_in_a_sentence(here):
 def test_unknown_errors_are_not_taken_for_figures():
     broken = psnr_and_delta((np.nan,), 30.0, np.nan, 1.0)
     assert broken["psnr"].first is None
-    assert "not finite" in visibility(broken)
+    assert "not finite" in describe_visibility(broken)
     half_known = PictureError(METRICS["psnr"], (np.nan, 20.0), 30.0)
     assert half_known.first == 1
     # after Ctrl-C in the second pass the noise is not known
-    assert "noise" not in visibility(psnr_and_delta((30.0,), np.nan, 0.5, np.nan))
-    assert visibility(psnr_and_delta((30.0,), np.nan, 0.5, np.nan)).startswith("its picture cannot")
+    assert "noise" not in describe_visibility(psnr_and_delta((30.0,), np.nan, 0.5, np.nan))
+    assert describe_visibility(psnr_and_delta((30.0,), np.nan, 0.5, np.nan)).startswith(
+        "its picture cannot"
+    )

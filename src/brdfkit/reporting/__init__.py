@@ -1,7 +1,7 @@
-"""`report`: a measured material beside the models fitted to it, as one HTML file for any browser.
+"""Writes the report of a measured material: one HTML file that compares it with fitted models.
 
-`report.py` does it step by step: the fits (`fits.py`), the pictures (`pictures/pictures.py`), what
-they say as plain data (`contents.py`, of a file for each section), and the page
-(`core/pages/page.py`), whose template, style and script are in `templates/`. `many_files.py` does
-so for many files, with a page that leads to their reports.
+`report.py` holds the public function. It fits the models (`fits.py`), renders pictures
+(`pictures/`), compares the fits (`verdict/`), draws charts (`charts/`), and collects all of it as
+plain data (`contents.py`) for the template `core/pages/templates/report.html`. `many_files.py`
+writes reports of many files, and a page with links to them.
 """

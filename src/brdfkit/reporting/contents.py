@@ -1,8 +1,11 @@
-"""What a report says, as plain data for its template: the fits in their order, the one to take
-first."""
+"""Collects what a report shows, as plain data for its template."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,30 +13,47 @@ import numpy as np
 from brdfkit.core.names import make_unique
 from brdfkit.core.pages.images import encode_jpeg, halve
 from brdfkit.core.version import __version__
+from brdfkit.fitting.ranking import Ranking
 from brdfkit.fitting.ranking.result import COLUMNS
 from brdfkit.materials.auditing import audit
-from brdfkit.regression import losses
+from brdfkit.materials.measured import Measured
+from brdfkit.regression import Fit, losses
 from brdfkit.rendering.montage import colour_differences
-from brdfkit.reporting import origin, parameters
-from brdfkit.reporting.charts.albedos import albedo_chart, is_guessed
-from brdfkit.reporting.charts.lobes import lobe_charts
-from brdfkit.reporting.charts.slices import slice_charts
-from brdfkit.reporting.charts.svg import errors_table
-from brdfkit.reporting.pictures.picture_errors import PictureError, picture_errors
-from brdfkit.reporting.pictures.pixels import for_script
-from brdfkit.reporting.verdict.fit_errors import in_order, ranked_by, standings
-from brdfkit.reporting.verdict.verdict import verdict
+from brdfkit.rendering.result import Rendering
+from brdfkit.reporting.charts.albedos import draw_albedo, is_extrapolated
+from brdfkit.reporting.charts.lobes import draw_lobes
+from brdfkit.reporting.charts.slices import draw_slices
+from brdfkit.reporting.origin import describe_provenance, describe_scene, make_command
+from brdfkit.reporting.parameters import describe_fit
+from brdfkit.reporting.pictures.picture_errors import PictureError, compute_picture_errors
+from brdfkit.reporting.pictures.pixels import pack_for_script
+from brdfkit.reporting.verdict.fit_errors import (
+    choose_ranking_loss,
+    compute_fit_errors,
+    make_errors_table,
+    order_fits,
+)
+from brdfkit.reporting.verdict.verdict import write_verdict
 
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """What a report says: `said` for its template; and for the page of many reports the `names` of
-    the fits, that to take first, with its `error` by the `loss`, the `picture_errors`, the
-    `findings` of the audit, the `warnings` about the light of the fits, and small pictures of the
-    measurement and the first fit; and the samples per pixel that there are, and that were asked
-    for."""
+    """What a report shows.
 
-    said: dict[str, Any]
+    page : the variables of its template.
+    material : the name of the material.
+    verdict : the sentences at the head.
+    names : the names of the fits, the one to take first.
+    loss : the name of the loss that ranks the fits.
+    error : the first fit's error by it.
+    picture_errors : the errors of the pictures.
+    findings : the findings of the audit.
+    warnings : sentences about fits that reflect too much or too little light.
+    thumbnails : small pictures of the measurement and of the first fit.
+    spp, requested : samples per pixel that the pictures have, and that were requested.
+    """
+
+    page: dict[str, Any]
     material: str
     verdict: str
     names: list[str]
@@ -47,27 +67,36 @@ class Contents:
     requested: int
 
     @property
-    def picture_texts(self):
-        """The errors of the best fit's picture as texts."""
+    def picture_texts(self) -> list[str]:
+        """The errors of the first fit's picture as text."""
         return [error.text(error.values[0]) for error in self.picture_errors]
 
 
-def describe(material, fits, rendering, file, path, scene, environment, ranking):
-    """The `Contents` of a report of a `Measured` and its `fits`, with the `Rendering` of both.
+def collect_contents(
+    material: Measured,
+    fits: Sequence[Fit],
+    rendering: Rendering,
+    file: str | Path | None,
+    path: Path,
+    scene: str | Path,
+    environment: str | Path | None,
+    ranking: Ranking | None,
+) -> Contents:
+    """Return the `Contents` of a report on a material and its fits.
 
-    `file`, `path`: what was read, or None, and what is written; `scene`, `environment`: of the
-    pictures;
-    `ranking`: that chose a model, or None.
+    `rendering` has the pictures of both, `file` is the material's file, and `path` that of the
+    report. `scene` and `environment` are those of the pictures; `ranking` chose the model, if any.
     """
-    loss = ranked_by(fits)
-    standing = standings(material, fits, loss)
-    errors, differences = picture_errors(rendering), [*colour_differences(rendering).values()]
+    loss = choose_ranking_loss(fits)
+    errors = compute_fit_errors(material, fits, loss)
+    picture_errors = compute_picture_errors(rendering)
+    differences = [*colour_differences(rendering).values()]
     pictures = [*rendering.pictures.values()]
 
-    # the one to take first
-    order = in_order(standing, loss)
-    fits, standing = [fits[k] for k in order], [standing[k] for k in order]
-    errors = {metric: error.in_order(order) for metric, error in errors.items()}
+    # From here on, the fit to take is the first
+    order = order_fits(errors, loss)
+    fits, errors = [fits[k] for k in order], [errors[k] for k in order]
+    picture_errors = {metric: error.reorder(order) for metric, error in picture_errors.items()}
     differences = [differences[k] for k in order]
     pictures = [pictures[0], *(pictures[1 + k] for k in order)]
     names: list[str] = []
@@ -76,73 +105,75 @@ def describe(material, fits, rendering, file, path, scene, environment, ranking)
     named = zip(names, fits, strict=True)
     warnings = [[f"{name}: {text}" for text in fit.warnings] for name, fit in named]
 
-    head, more = verdict(names, standing, errors, loss, ranking)
-    found = audit(material)
-    known = [one for one in found.noise.relative if np.isfinite(one)]
-    sigma = float(np.median(known)) if known else 0.0
+    verdict, more = write_verdict(names, errors, picture_errors, loss, ranking)
+    audited = audit(material)
+    known = [sigma for sigma in audited.noise.relative if np.isfinite(sigma)]
+    lobes, noise_shown = draw_lobes(material, fits, float(np.median(known)) if known else 0.0)
     size = pictures[0].shape[0]
-    how = {"spp": rendering.spp, "size": size, "seed": rendering.seed}
-    how |= {"scene": scene, "environment": environment}
-    command, untold = origin.command(material, file, fits, path, **how)
-    lobes, noise_shown = lobe_charts(material, fits, sigma)
-    said = {
+    settings: dict[str, Any] = {"spp": rendering.spp, "size": size, "seed": rendering.seed}
+    settings |= {"scene": scene, "environment": environment}
+    command, missing_settings = make_command(material, file, fits, path, **settings)
+    page = {
         "material": material.name,
-        "verdict": head,
+        "verdict": verdict,
         "more": more,
-        "facts": origin.facts(material, file, **how),
+        "provenance": describe_provenance(material, file, **settings),
         "command": command,
-        "untold": untold,
+        "missing_settings": missing_settings,
         "names": names,
         "stills": [encode_jpeg(picture) for picture in pictures],
         "size": size,
-        "shown": origin.scene_in_words(scene, environment),
-        "captions": [_caption(errors, place) for place in range(len(names))],
-        "picture_errors": [*errors.values()],
-        "pixels": for_script([material.name, *names], pictures, differences),
-        "errors": errors_table(standing, loss, material.rgb.albedo.means),
+        "scene": describe_scene(scene, environment),
+        "captions": [_make_caption(picture_errors, k) for k in range(len(names))],
+        "picture_errors": [*picture_errors.values()],
+        "pixels": pack_for_script([material.name, *names], pictures, differences),
+        "errors": make_errors_table(errors, loss, material.rgb.albedo.means),
         "warnings": warnings,
-        "meanings": {n: losses.named[n].meaning.replace("θ_", "θ") for n in standing[0].errors},
+        "meanings": {n: losses.named[n].meaning.replace("θ_", "θ") for n in errors[0].by_loss},
         "loss": loss,
-        "ranking": ranking and _ranked(ranking),
+        "ranking": ranking and _describe_ranking(ranking),
         "lobes": lobes,
         "noise_shown": noise_shown,
-        "slices": slice_charts(material, fits),
-        "albedo": albedo_chart(found.albedo, fits, material.anisotropic),
-        "albedo_guessed": bool(is_guessed(found.albedo).any()),
-        "fits": [parameters.describe(fit, found.findings()) for fit in fits],
-        "audit": found.rows(),
-        "findings": found.findings(),
+        "slices": draw_slices(material, fits),
+        "albedo": draw_albedo(audited.albedo, fits, material.anisotropic),
+        "albedo_extrapolated": bool(is_extrapolated(audited.albedo).any()),
+        "fits": [describe_fit(fit, audited.findings()) for fit in fits],
+        "audit": audited.rows(),
+        "findings": audited.findings(),
         "info": material.info,
         "version": __version__,
     }
     return Contents(
-        said,
-        material.name,
-        head,
-        names,
-        loss,
-        standing[0].errors[loss],
-        [*errors.values()],
-        found.findings(),
-        [*chain(*warnings)],
-        [encode_jpeg(halve(picture)) for picture in pictures[:2]],
-        rendering.spp,
-        rendering.requested,
+        page=page,
+        material=material.name,
+        verdict=verdict,
+        names=names,
+        loss=loss,
+        error=errors[0].by_loss[loss],
+        picture_errors=[*picture_errors.values()],
+        findings=audited.findings(),
+        warnings=[*chain(*warnings)],
+        thumbnails=[encode_jpeg(halve(picture)) for picture in pictures[:2]],
+        spp=rendering.spp,
+        requested=rendering.requested or rendering.spp,
     )
 
 
-def _ranked(ranking):
-    """A `Ranking` for the page: without the times, which are others each time, and the verdict
-    second, for narrow screens."""
+def _describe_ranking(ranking: Ranking) -> dict[str, Any]:
+    """Return what the template shows of a ranking.
+
+    The times are left out, as they differ each time, and the verdict comes second, for narrow
+    screens.
+    """
     *_, time, verdict = range(len(COLUMNS))
     shown = [0, verdict, *range(1, time)]
     rows = [[row[k] for k in shown] for row in ranking.table()]
     return {"columns": [COLUMNS[k] for k in shown], "rows": rows, "why": ranking.reason}
 
 
-def _caption(errors, place):
-    """A line on the picture of a fit, by its place."""
+def _make_caption(errors: Mapping[str, PictureError], number: int) -> str:
+    """Return the line below the picture of a fit."""
     psnr, difference = (
-        error.text(error.values[place]) for error in (errors["psnr"], errors["delta_e_2000"])
+        error.text(error.values[number]) for error in (errors["psnr"], errors["delta_e_2000"])
     )
     return f"PSNR {psnr} dB · ΔE {difference}"

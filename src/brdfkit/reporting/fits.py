@@ -1,54 +1,70 @@
-"""The fits of a report: of models, finished, or saved."""
+"""Collects the fits of a report: fits models, and accepts finished and saved fits."""
 
-from contextlib import nullcontext
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
+from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.progress_bar import Progress
 from brdfkit.fitting.fit import fit
 from brdfkit.materials.loading import load
+from brdfkit.materials.measured import Measured
 from brdfkit.regression import Fit
 
+ShowProgress = Callable[[str], AbstractContextManager[Progress | None]]
 
-def as_list(things):
-    """One model or fit or several as a list; at least one."""
-    found = [things] if isinstance(things, str | Path | type | Fit) else list(things)
-    if not found:
+
+def to_list(models: Any) -> list[Any]:
+    """Return one model or fit or several as a list of at least one."""
+    single = isinstance(models, str | Path | type | Fit)
+    several = [models] if single else list(models)
+    if not several:
         raise BrdfkitError("There is no model to report on; give at least one.")
-    return found
+    return several
 
 
-def fit_each(things, material, settings, show=lambda what: nullcontext()):
-    """The fits of those `things` that can be fitted, and the errors of the others.
+def fit_each(
+    models: Sequence[Any],
+    material: Measured,
+    settings: Mapping[str, Any],
+    show: ShowProgress = lambda what: nullcontext(),
+) -> tuple[list[Fit], list[BrdfkitError]]:
+    """Return the fits of the `models` that can be fitted, and the errors of the others.
 
-    `show`: gives, for what is done, a context with a function (done, total) that shows its
-    progress, or with None. Raises the first `BrdfkitError` where none can be fitted.
+    `show` returns a context for the text of a step; entering it gives a progress function, or
+    None. Raises the first `BrdfkitError` if no model can be fitted.
     """
-    fits, failed = [], []
-    for number, thing in enumerate(things, 1):
+    fits, errors = [], []
+    for number, model in enumerate(models, 1):
         try:
-            with show(f"fit {thing} ({number} of {len(things)})") as progress:
-                fits.append(to_fit(thing, material, settings, progress))
+            with show(f"fit {model} ({number} of {len(models)})") as progress:
+                fits.append(to_fit(model, material, settings, progress))
         except BrdfkitError as error:
-            failed.append(error)
+            errors.append(error)
     if not fits:
-        raise failed[0]
-    return fits, failed
+        raise errors[0]
+    return fits, errors
 
 
-def to_fit(thing, material, settings, progress=None):
-    """The fit of a model to a `Measured`, or a finished one, or the one saved in a .json file.
+def to_fit(
+    thing: Any, material: Measured, settings: Mapping[str, Any], progress: Progress | None = None
+) -> Fit:
+    """Return a finished fit, the one that is saved in a .json file, or the fit of a model.
 
     Raises `BrdfkitError` as `fit` does, and for a fit of other data.
     """
-    saved = isinstance(thing, str | Path) and str(thing).lower().endswith(".json")
-    found = load(thing) if saved else thing
-    if saved and not isinstance(found, Fit):
+    is_saved = isinstance(thing, str | Path) and str(thing).lower().endswith(".json")
+    finished = load(thing) if is_saved else thing
+    if is_saved and not isinstance(finished, Fit):
         raise BrdfkitError(f"{thing}: is no saved fit; name one, or a model.")
-    if not isinstance(found, Fit):
+    if not isinstance(finished, Fit):
         return fit(material, thing, **settings, progress=progress)
-    if found.checksum and found.checksum != material.checksum:
+    if finished.checksum and finished.checksum != material.checksum:
         raise BrdfkitError(
-            f"{found.name} was fitted to other data, {found.data}, than {material.name} has; give "
-            "fits of this material, or names of models."
+            f"{finished.name} was fitted to other data, {finished.data}, than {material.name} has; "
+            "give fits of this material, or names of models."
         )
-    return found
+    return finished

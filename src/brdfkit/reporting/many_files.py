@@ -1,12 +1,17 @@
-"""Reports of many materials, and the page that leads to them."""
+"""Writes reports of many measured materials, and a page with links to them."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import make_folder, require_writable
 from brdfkit.core.names import make_unique, to_file_stem, to_printable
 from brdfkit.core.pages import page
+from brdfkit.core.progress_bar import Progress
 from brdfkit.core.version import __version__
 from brdfkit.fitting.compare import format_error
 from brdfkit.materials.resolve import to_measured
@@ -19,7 +24,7 @@ PAGE = "index.html"
 
 @dataclass(frozen=True)
 class Entry:
-    """A report: the name of its file in the folder without suffix, and what it says."""
+    """A finished report: the `name` of its file without suffix, and its `contents`."""
 
     name: str
     contents: Contents
@@ -27,7 +32,12 @@ class Entry:
 
 @dataclass(frozen=True)
 class Reports:
-    """The reports in a `folder`; `problems`: sentences on what failed; `interrupted`: by Ctrl-C."""
+    """The reports in a `folder`.
+
+    entries : the finished reports.
+    problems : sentences on what failed.
+    interrupted : whether Ctrl-C ended the work.
+    """
 
     folder: Path
     entries: list[Entry]
@@ -35,18 +45,18 @@ class Reports:
     interrupted: bool
 
     @property
-    def finished(self):
-        """How many reports have pictures of all samples that were requested."""
+    def finished(self) -> int:
+        """The number of reports whose pictures have all requested samples."""
         return sum(entry.contents.spp >= entry.contents.requested for entry in self.entries)
 
     @property
-    def written(self):
-        """The files: the page first, if there is a report."""
+    def written(self) -> list[Path]:
+        """The files that were written, the page first."""
         files = [self.folder / f"{entry.name}.html" for entry in self.entries]
         return [self.folder / PAGE, *files] if files else []
 
-    def table(self):
-        """The names of columns, and rows of texts; a column of numbers begins with ">"."""
+    def table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+        """Return the names of columns, with ">" before those of numbers, and rows of texts."""
         if not self.entries:
             return (), []
         errors = self.entries[0].contents.picture_errors
@@ -58,60 +68,67 @@ class Reports:
         return columns, rows
 
 
-def report_many(files, things, folder, settings, progress=None, **pictures):
-    """Write a report of each file, with the models `things`, and the page; returns the `Reports`.
+def report_many(
+    files: Sequence[str],
+    models: Sequence[Any],
+    folder: str | Path,
+    settings: Mapping[str, Any],
+    progress: Progress | None = None,
+    **pictures: Any,
+) -> Reports:
+    """Write a report of each file, with fits of the `models`, and the page of links.
 
-    `settings`: of `fit`; `pictures`: spp, noise_floor, size, seed; `progress`: called with (done,
-    total) before each file. A file that cannot be read, and a model that cannot be fitted, do not
-    stop the others. Ctrl-C ends with the reports that are finished.
+    `settings` are arguments of `fit`, `pictures` those of `render_pictures`; `progress` is called
+    with (done, total) before each file. Files that cannot be read and models that cannot be fitted
+    do not stop the others. After Ctrl-C the page shows the finished reports.
     """
     folder = Path(folder)
     make_folder(folder)
     require_writable(folder / PAGE)
     entries: dict[str, Entry] = {}
-    problems, interrupted = [], False
+    problems: list[str] = []
+    interrupted = False
     try:
         for number, file in enumerate(files):
             if progress:
                 progress(number, len(files))
             try:
                 material = to_measured(file)
-                name = make_unique(
-                    to_file_stem(material.name), {*entries, PAGE.removesuffix(".html")}
-                )
+                taken = {*entries, PAGE.removesuffix(".html")}
+                name = make_unique(to_file_stem(material.name), taken)
                 path = folder / f"{name}.html"
                 require_writable(path)
-                fits, failed = fit_each(things, material, settings)
-                problems += [f"{material.name}: {error}" for error in failed]
-                said = write_report(material, fits, path, file, **pictures)
+                fits, errors = fit_each(models, material, settings)
+                problems += [f"{material.name}: {error}" for error in errors]
+                contents = write_report(material, fits, path, file, **pictures)
             except BrdfkitError as error:
                 problems.append(str(error) if str(file) in str(error) else f"{file}: {error}")
                 continue
-            entries[name] = Entry(name, said)
-            if said.spp < said.requested:  # Ctrl-C during its pictures, which keeps it
+            entries[name] = Entry(name, contents)
+            if contents.spp < contents.requested:  # Ctrl-C during the pictures keeps the report
                 interrupted = True
                 break
     except KeyboardInterrupt:
         interrupted = True
         if not entries:
             raise
-    found = Reports(folder, [*entries.values()], problems, interrupted)
-    if found.entries:
-        _write_page(found)
-    return found
+    reports = Reports(folder, [*entries.values()], problems, interrupted)
+    if reports.entries:
+        _write_page(reports)
+    return reports
 
 
-def _write_page(found):
-    """Write the page of a `Reports`."""
-    columns, rows = found.table()
+def _write_page(reports: Reports) -> None:
+    """Write the page with links to the reports."""
+    columns, rows = reports.table()
     page.write_page(
         "gallery.html",
-        found.folder / PAGE,
+        reports.folder / PAGE,
         entries=[
-            {"file": f"{entry.name}.html", "row": row, "said": entry.contents}
-            for entry, row in zip(found.entries, rows, strict=True)
+            {"file": f"{entry.name}.html", "row": row, "contents": entry.contents}
+            for entry, row in zip(reports.entries, rows, strict=True)
         ],
         columns=columns,
-        problems=[to_printable(problem) for problem in found.problems],
+        problems=[to_printable(problem) for problem in reports.problems],
         version=__version__,
     )

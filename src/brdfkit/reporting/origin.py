@@ -1,64 +1,90 @@
-"""Where a report comes from: file, checksums, versions, and the command that repeats it."""
+"""Describes the provenance of a report: file, checksums, versions, and a command to repeat it."""
+
+from __future__ import annotations
 
 import shlex
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from brdfkit.core.files import sha256
 from brdfkit.core.version import find_versions
 from brdfkit.fitting.fit import SETTINGS
 from brdfkit.materials.loading import locate
+from brdfkit.materials.measured import Measured
+from brdfkit.regression import Fit
 from brdfkit.regression.solvers import AlbedoAtMost
 from brdfkit.regression.solvers.settings import to_plain, to_solver
 from brdfkit.reporting.pictures.defaults import SCENE
 
 
-def facts(material, file, spp, size, seed, scene, environment):
-    """What was read and how, by heading; `file`: as the user named it, or None."""
-    found = {"file": str(file) if file else f"{material.name}, from memory"}
+def describe_provenance(
+    material: Measured,
+    file: str | Path | None,
+    spp: int,
+    size: int,
+    seed: int,
+    scene: str | Path,
+    environment: str | Path | None,
+) -> dict[str, str]:
+    """Return what was read and how the pictures were made, by heading.
+
+    `file` is the material's file as the user named it, or None.
+    """
+    provenance = {"file": str(file) if file else f"{material.name}, from memory"}
     if file:
-        found["SHA-256 of the file"] = sha256(locate(file)[0])
-    found["SHA-256 of its data"] = material.checksum
-    how = f"{size}×{size} pixels, {spp} samples per pixel, seed {seed}"
-    found["pictures"] = f"{scene_in_words(scene, environment)}; {how}"
-    found["made with"] = ", ".join(f"{name} {number}" for name, number in find_versions().items())
-    return found
+        provenance["SHA-256 of the file"] = sha256(locate(file)[0])
+    provenance["SHA-256 of its data"] = material.checksum
+    settings = f"{size}×{size} pixels, {spp} samples per pixel, seed {seed}"
+    provenance["pictures"] = f"{describe_scene(scene, environment)}; {settings}"
+    versions = (f"{name} {number}" for name, number in find_versions().items())
+    provenance["made with"] = ", ".join(versions)
+    return provenance
 
 
-def scene_in_words(scene, environment):
-    """What the pictures show, and by which light."""
+def describe_scene(scene: str | Path, environment: str | Path | None) -> str:
+    """Return in words what the pictures show, and under which light."""
     shown = f"the mesh {Path(scene).name}" if Path(scene).suffix else f"the scene {scene}"
-    return (
-        f"{shown}, lit by {Path(environment).name}" if environment else f"{shown}, in its own light"
-    )
+    light = f"lit by {Path(environment).name}" if environment else "in its own light"
+    return f"{shown}, {light}"
 
 
-def command(material, file, fits, output, spp, size, seed, scene, environment):
-    """The command that makes the report again, as one would type it, and the names of the settings
-    of the fits that it cannot tell."""
+def make_command(
+    material: Measured,
+    file: str | Path | None,
+    fits: Sequence[Fit],
+    output: str | Path,
+    spp: int,
+    size: int,
+    seed: int,
+    scene: str | Path,
+    environment: str | Path | None,
+) -> tuple[str, list[str]]:
+    """Return the command that makes the report again, and names of settings that it cannot hold."""
     words = ["brdfkit", "report", str(file or "FILE")]
     for fit in fits:
         words += ["-m", fit.model.label()]
     words += ["--loss", fits[0].loss_name]
-    usual = {**SETTINGS, "seed": seed, "anisotropic": material.anisotropic}
-    untold = set() if all(fit.loss_name == fits[0].loss_name for fit in fits) else {"loss"}
-    common = fits[0].settings
+    defaults = {**SETTINGS, "seed": seed, "anisotropic": material.anisotropic}
+    missing = set() if all(fit.loss_name == fits[0].loss_name for fit in fits) else {"loss"}
     for name in dict.fromkeys(name for fit in fits for name in fit.settings):
-        value = common.get(name)
-        option = _option(name, value)
+        value = fits[0].settings.get(name)
+        option = _to_option(name, value)
         if any(fit.settings.get(name) != value for fit in fits):
-            untold.add(name)
-        elif (value or None) != (usual.get(name) or None):
+            missing.add(name)
+        elif (value or None) != (defaults.get(name) or None):
             words += option
-            untold |= set() if option else {name}
-    words += ["--scene", str(scene)] * (scene != SCENE) + ["--envmap", str(environment)] * bool(
-        environment
-    )
+            missing |= set() if option else {name}
+    if scene != SCENE:
+        words += ["--scene", str(scene)]
+    if environment:
+        words += ["--envmap", str(environment)]
     words += ["--spp", str(spp), "--size", str(size), "--seed", str(seed)]
-    return shlex.join([*words, "-o", Path(output).name]), sorted(untold)
+    return shlex.join([*words, "-o", Path(output).name]), sorted(missing)
 
 
-def _option(name, value):
-    """The option of `brdfkit report` for a setting of a fit, in words; none where it has none."""
+def _to_option(name: str, value: Any) -> list[str]:
+    """Return the words of `brdfkit report` for a setting of a fit, or [] if it has no option."""
     if name == "robust":
         return ["--robust", str(value)]
     if name == "max_angle":
@@ -66,7 +92,7 @@ def _option(name, value):
     if name == "solver" and isinstance(value, dict) and value == to_plain(to_solver(value["name"])):
         return ["--solver", value["name"]]
     if name == "constraints" and len(value or ()) == 1 and isinstance(value[0], dict):
-        limit = value[0].get("limit")
+        limit: Any = value[0].get("limit")
         if value[0] == to_plain(AlbedoAtMost(limit)):
             return ["--albedo-at-most", f"{limit:g}"]
     return []

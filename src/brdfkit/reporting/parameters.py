@@ -1,24 +1,30 @@
-"""The parameters of the fits as rows and as JSON."""
+"""Describes the parameters of the fits for the report, as rows of a table and as JSON."""
+
+from __future__ import annotations
 
 import json
+from collections.abc import Collection
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray
 from brdfkit.core.colours import RGB
 from brdfkit.core.json_values import round_numbers, to_json
 from brdfkit.model.value_table import MOST
+from brdfkit.regression import Fit
 
-DIGITS = 9  # of numbers in JSON: enough to build the model, and the same on every machine
+DIGITS = 9  # of numbers in JSON: enough to make the model, and the same on every machine
 
 
-def describe(fit, told=()):
-    """What the page says of a fit, as plain data, but for the notes that it has `told` already."""
+def describe_fit(fit: Fit, known_notes: Collection[str] = ()) -> dict[str, Any]:
+    """Return what the template shows of a fit, without notes that the report has already."""
     return {
         "title": fit.model.label(),
-        "rows": [_row(fit, name) for name in fit.values],
-        "remarks": [*(note for note in fit.notes if note not in told), fit.message],
+        "rows": [_describe_parameter(fit, name) for name in fit.values],
+        "remarks": [*(note for note in fit.notes if note not in known_notes), fit.message],
         "warnings": fit.warnings,
-        "json": json.dumps(round_numbers(_record(fit), DIGITS), indent=2, ensure_ascii=False),
+        "json": json.dumps(round_numbers(_to_record(fit), DIGITS), indent=2, ensure_ascii=False),
         "samples": f"{fit.samples:,}",
         "evaluations": fit.evaluations,
         "loss": f"{fit.loss_label} {fit.loss:.5g}",
@@ -26,8 +32,8 @@ def describe(fit, told=()):
     }
 
 
-def _row(fit, name):
-    """A parameter: its numbers, their standard errors, and what one should know of it."""
+def _describe_parameter(fit: Fit, name: str) -> dict[str, Any]:
+    """Return what the template shows of a parameter: meaning, numbers, standard errors, bounds."""
     declared = fit.model.parameters[name]
     values, errors = np.atleast_1d(fit.values[name]), np.atleast_1d(fit.standard_errors[name])
     low, high = declared.bounds
@@ -35,30 +41,31 @@ def _row(fit, name):
     return {
         "name": name,
         "meaning": declared.meaning,
-        "numbers": _numbers(values, errors),
+        "numbers": _format_numbers(values, errors),
         "channels": RGB if len(values) == 3 and not fit.wavelengths else (),
         "bounds": "any sign" if low == -np.inf else bounds,
         "at_bound": name in fit.at_bounds,
     }
 
 
-def _numbers(values, errors):
-    """(value, standard error or nothing) as texts; of many numbers the least and the most."""
+def _format_numbers(values: AnyArray, errors: AnyArray) -> list[tuple[str, str]]:
+    """Return values with their standard errors, or "", as text; of many, the extreme ones."""
     if len(values) > MOST:
         chosen = [int(np.argmin(values)), int(np.argmax(values))]
         values, errors = values[chosen], errors[chosen]
     return [
-        (_short(value, 5), _short(error, 2) if np.isfinite(error) else "")
+        (_format(value, 5), _format(error, 2) if np.isfinite(error) else "")
         for value, error in zip(values, errors, strict=True)
     ]
 
 
-def _short(value, digits):
+def _format(value: float, digits: int) -> str:
+    """Return a number as text with so many digits, and a short exponent."""
     return f"{value:.{digits}g}".replace("e-0", "e-")
 
 
-def _record(fit):
-    """The fit for JSON; without its time, which is another one each time."""
+def _to_record(fit: Fit) -> Any:
+    """Return a fit for JSON, without its time, which differs each time."""
     return to_json(
         {
             "model": fit.model.label(),

@@ -1,4 +1,4 @@
-"""`report`: one HTML file that shows how well models describe a measured material."""
+"""The public function `report`, which writes an HTML file that compares models with a material."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from brdfkit.fitting.settings import require_material_first
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.regression import Fit
-from brdfkit.reporting.charts.svg import fit_class
-from brdfkit.reporting.contents import Contents, describe
-from brdfkit.reporting.fits import as_list, to_fit
+from brdfkit.reporting.charts.svg import choose_class
+from brdfkit.reporting.contents import Contents, collect_contents
+from brdfkit.reporting.fits import to_fit, to_list
 from brdfkit.reporting.pictures.defaults import MODELS, SCENE, SIZE
-from brdfkit.reporting.pictures.pictures import render_pictures, require_pictures
+from brdfkit.reporting.pictures.pictures import check_pictures, render_pictures
 
 Fitted: TypeAlias = ModelLike | Fit
 Fits: TypeAlias = Fitted | Iterable[Fitted]
@@ -91,10 +91,10 @@ def report(
     """
     require_material_first("report(material, models)", material)
     chosen = check_settings(to_dictionary("settings", settings))
-    require_pictures(size, scene, environment)
+    check_pictures(size, scene, environment)
     data, file = to_measured(material), material if isinstance(material, str | Path) else None
-    path = require_page(page_of(data) if path is None else path)
-    fits = [to_fit(thing, data, chosen, progress) for thing in as_list(models)]
+    path = check_page(choose_file_name(data) if path is None else path)
+    fits = [to_fit(thing, data, chosen, progress) for thing in to_list(models)]
     pictures: dict[str, Any] = {"spp": spp, "noise_floor": noise_floor, "size": size, "seed": seed}
     write_report(
         data, fits, path, file, **pictures, scene=scene, environment=environment, progress=progress
@@ -112,24 +112,24 @@ def write_report(
     environment: str | Path | None = None,
     **pictures: Any,
 ) -> Contents:
-    """Write the report of a material and finished fits.
+    """Write the report of a material and finished fits, and return what it shows.
 
-    `file`: from where the material came; `ranking`: that chose a model; `pictures`: what
-    `render_pictures` takes besides. Returns what it says. Raises `BrdfkitError` as `report` does.
+    `file` is the material's file, `ranking` the one that chose the model, and `pictures` holds
+    further arguments of `render_pictures`. Raises `BrdfkitError` as `report` does.
     """
     rendering = render_pictures(material, fits, scene=scene, environment=environment, **pictures)
-    contents = describe(material, fits, rendering, file, path, scene, environment, ranking)
-    page.write_page("report.html", path, fit_class=fit_class, **contents.said)
+    contents = collect_contents(material, fits, rendering, file, path, scene, environment, ranking)
+    page.write_page("report.html", path, choose_class=choose_class, **contents.page)
     return contents
 
 
-def page_of(material: Measured) -> str:
-    """The file of a material's report, where none is named."""
+def choose_file_name(material: Measured) -> str:
+    """Return the default name of a report's file."""
     return f"{to_file_stem(material.name)}-report.html"
 
 
-def require_page(path: str | Path) -> Path:
-    """The `Path` of a page to write; `BrdfkitError` where it is no .html or cannot be written."""
+def check_page(path: str | Path) -> Path:
+    """Return the path of a page to write; raise `BrdfkitError` if it cannot be an .html file."""
     path = Path(path)
     if path.suffix.lower() not in (".html", ".htm"):
         raise BrdfkitError(f"{path}: a report is written as .html; choose this suffix.")

@@ -9,7 +9,7 @@ from brdfkit.cli.errors import say
 from brdfkit.cli.options import MESHES, fit_options, render_options, scene_options, writing_options
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import exit_status
-from brdfkit.reporting.pictures.defaults import LARGEST, MODELS, SIZE, SMALLEST, SPP
+from brdfkit.reporting.pictures.defaults import LARGEST_SIZE, MODELS, SIZE, SMALLEST_SIZE, SPP
 
 
 @click.command()
@@ -22,7 +22,7 @@ from brdfkit.reporting.pictures.defaults import LARGEST, MODELS, SIZE, SMALLEST,
     help="The page, .html; of several FILEs a folder. Default: NAME-report.html, and reports.",
 )
 @partial(scene_options, files=f"or {MESHES}")
-@partial(render_options, spp=SPP, size=f"{SIZE}; from {SMALLEST} to {LARGEST}")
+@partial(render_options, spp=SPP, size=f"{SIZE}; from {SMALLEST_SIZE} to {LARGEST_SIZE}")
 @writing_options
 def report(files, names, how, output, scene, environment, spp, noise_floor, size, seed, console):
     """Show how well models fit, in one HTML file.
@@ -35,7 +35,7 @@ def report(files, names, how, output, scene, environment, spp, noise_floor, size
 
     Of several FILEs each has a report in a folder, with a page that leads to them: index.html.
     """
-    from brdfkit.reporting.pictures.pictures import require_pictures
+    from brdfkit.reporting.pictures.pictures import check_pictures
 
     for file in files:
         if file.lower().endswith(".json"):
@@ -45,7 +45,7 @@ def report(files, names, how, output, scene, environment, spp, noise_floor, size
     names = list(dict.fromkeys(names or MODELS))
     how |= {"seed": seed}
     size = SIZE if size is None else size
-    require_pictures(size, scene, environment)
+    check_pictures(size, scene, environment)
     pictures = {"spp": spp, "size": size, "seed": seed, "noise_floor": noise_floor}
     pictures |= {"scene": scene, "environment": environment}
     if len(files) > 1:
@@ -59,11 +59,11 @@ def _report_one(file, names, how, output, pictures, console):
     from brdfkit.cli.rank_output import print_ranking, recommend
     from brdfkit.materials.resolve import to_measured
     from brdfkit.reporting.fits import fit_each
-    from brdfkit.reporting.report import page_of, require_page, write_report
+    from brdfkit.reporting.report import check_page, choose_file_name, write_report
 
     with console.progress(f"read {file}"):
         material = to_measured(file)
-    path = require_page(output or page_of(material))
+    path = check_page(output or choose_file_name(material))
     names, ranking = recommend(names, material, how, console)
     if ranking:
         print_ranking(ranking, console)

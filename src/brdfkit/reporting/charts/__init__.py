@@ -1,1 +1,1 @@
-"""The charts of a report, as SVG."""
+"""Draws the charts of a report as SVG."""

@@ -1,40 +1,49 @@
-"""The albedo over the angle of incidence as a chart: measured as dots, fitted as lines."""
+"""Draws the albedo over the angle of incidence: the measurement as dots, the fits as lines."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.colours import luminance
-from brdfkit.materials.auditing.albedos import compute_albedo
-from brdfkit.reporting.charts.svg import Chart, linear
+from brdfkit.materials.auditing.albedos import Albedo, compute_albedo
+from brdfkit.regression import Fit
+from brdfkit.reporting.charts.svg import Chart, linear_axis
 
 
-def albedo_chart(measured, fits, anisotropic):
-    """The chart of luminances; `measured`: the `Albedo` of the measurement, which may be
-    `anisotropic`."""
+def draw_albedo(measured: Albedo, fits: Sequence[Fit], anisotropic: bool) -> str:
+    """Return the chart of the luminance of albedos.
+
+    `measured` is the albedo of the measurement, which may be `anisotropic`.
+    """
     dots = luminance(measured.values)
-    lines = [_albedo(fit.rgb, anisotropic) for fit in fits]
-    most = 1.1 * max(np.nanmax(values) for values in (dots, *lines))
-    x = linear("θi", 0, 90, range(0, 91, 15), "°")
-    y = linear("reflected / incident light", 0, most, np.arange(0, most, _step(most)).round(6))
-    chart = Chart("albedo", x, y)
-    if most > 1:
-        chart.across(1, "mirror")
-    chart.fits([(measured.theta_i, values) for values in lines])
-    chart.dots(measured.theta_i, dots, "measured")
-    guessed = is_guessed(measured)
-    chart.dots(measured.theta_i[guessed], dots[guessed], "hollow")
+    lines = [_compute_luminance(fit.rgb, anisotropic) for fit in fits]
+    top = 1.1 * max(np.nanmax(values) for values in (dots, *lines))
+    x = linear_axis("θi", 0, 90, range(0, 91, 15), "°")
+    ticks = np.arange(0, top, _choose_tick_step(top)).round(6)
+    chart = Chart("albedo", x, linear_axis("reflected / incident light", 0, top, ticks))
+    if top > 1:
+        chart.add_horizontal_line(1, "mirror")
+    chart.add_fits([(measured.theta_i, values) for values in lines])
+    chart.add_dots(measured.theta_i, dots, "measured")
+    beyond = is_extrapolated(measured)
+    chart.add_dots(measured.theta_i[beyond], dots[beyond], "hollow")
     return chart.svg
 
 
-def is_guessed(measured):
-    """Where (n,) an `Albedo` is beyond the measured angles."""
-    return measured.theta_i > measured.measured_to + 1
+def is_extrapolated(measured: Albedo) -> BoolArray:
+    """Return which values (n,) of an albedo are beyond the measured angles."""
+    beyond: BoolArray = measured.theta_i > measured.measured_to + 1
+    return beyond
 
 
-def _albedo(model, anisotropic):
-    """The albedo (n,) of a model's luminance, at the angles of that of the measurement."""
-    grey = SimpleNamespace(
+def _compute_luminance(model: Any, anisotropic: bool) -> FloatArray:
+    """Return the luminance (n,) of a model's albedo at the angles of the measurement's."""
+    grey: Any = SimpleNamespace(
         channels=("Y",),
         anisotropic=anisotropic,
         eval=lambda wi, wo: luminance(model.eval(wi, wo))[:, None],
@@ -42,7 +51,7 @@ def _albedo(model, anisotropic):
     return compute_albedo(grey, measured_to=90.0).values[:, 0]
 
 
-def _step(most):
-    """A step of ticks, 1, 2 or 5 times a power of ten, of which `most` has two to five."""
-    power = 10 ** np.floor(np.log10(most))
-    return power * (1 if most > 4 * power else 0.5 if most > 2 * power else 0.2)
+def _choose_tick_step(top: float) -> float:
+    """Return a step, 1, 2 or 5 times a power of ten, that divides `top` into two to five parts."""
+    power = 10 ** np.floor(np.log10(top))
+    return float(power * (1 if top > 4 * power else 0.5 if top > 2 * power else 0.2))

@@ -1,58 +1,66 @@
-"""The lobes as charts: the BRDF over the angle θo, measured as dots and fitted as lines."""
+"""Draws the lobes: the BRDF over the angle θo, the measurement as dots and the fits as lines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.images.thumbnails import Radius
 from brdfkit.materials.plotting.plane_of_incidence import choose_angles, compute_lobe, is_scattered
-from brdfkit.reporting.charts.svg import BOTTOM, HEIGHT, TOP, Axis, Chart, linear
+from brdfkit.reporting.charts.svg import BOTTOM, HEIGHT, TOP, Axis, Chart, linear_axis
 
-STEP, APART = 0.5, 3.0  # degrees between the points of a line, and between dots of a table
-DOT = 2.0  # radius of a dot, as the style has it: behind it a shorter bar is not seen
-PEAK = 4.0  # degrees beside the peak: there lines have all their points, and dots a closer step
+LINE_STEP, DOT_STEP = 0.5, 3.0  # degrees between points of a line, and between dots of a table
+SAMPLING = 0.1  # degrees between the values of a lobe
+DOT_RADIUS = 2.0  # as the page's style has it: it hides shorter bars
+PEAK_WIDTH = 4.0  # degrees on each side of the peak, where points are six times as dense
 
 
-def lobe_charts(material, fits, noise):
-    """A chart for each of a few incidences, and whether any has bars of the noise.
+def draw_lobes(material: Any, fits: Sequence[Any], noise: float) -> tuple[list[str], bool]:
+    """Return a chart for each of a few angles of incidence, and whether any has bars of the noise.
 
-    `noise`: the standard deviation of a measured value over the value, 0 where it is unknown.
+    `noise` is the relative standard deviation of a measured value, or 0 if it is unknown.
     """
     material = getattr(material, "rgb", material)
-    charts = [_chart(material, fits, noise, angle) for angle in choose_angles([material])]
-    return [svg for svg, _ in charts], any(barred for _, barred in charts)
+    charts = [_draw_lobe(material, fits, noise, angle) for angle in choose_angles([material])]
+    return [svg for svg, _ in charts], any(has_bars for _, has_bars in charts)
 
 
-def _chart(material, fits, noise, theta_i):
-    """The chart of an incidence, and whether it has bars."""
+def _draw_lobe(
+    material: Any, fits: Sequence[Any], noise: float, theta_i: float
+) -> tuple[str, bool]:
+    """Return the chart for the angle of incidence `theta_i` [degrees], and whether it has bars."""
     measured, *fitted = (
         compute_lobe(getattr(thing, "rgb", thing), theta_i) for thing in (material, *fits)
     )
     radius = Radius([values for _, values in (measured, *fitted)])
     ticks = [(value, f"{value:g}") for value in radius.ticks()]
-    x = linear("θo, towards the light < 0", -90, 90, range(-90, 91, 30), "°")
+    x = linear_axis("θo, towards the light < 0", -90, 90, range(-90, 91, 30), "°")
     chart = Chart(f"θi = {theta_i:g}°", x, Axis("BRDF [sr⁻¹]", ticks, radius))
-    chart.upright(theta_i, "mirror")
+    chart.add_vertical_line(theta_i, "mirror")
     lines = []
     for theta_o, values in fitted:
-        shown = _thinned(theta_o, values, STEP)
+        shown = _thin_out(theta_o, values, LINE_STEP)
         lines.append((theta_o[shown], values[shown]))
-    chart.fits(lines)
+    chart.add_fits(lines)
     theta_o, values = measured
     if not is_scattered(material):
-        shown = _thinned(theta_o, values, APART)
+        shown = _thin_out(theta_o, values, DOT_STEP)
         theta_o, values = theta_o[shown], values[shown]
-    barred = np.log10(1 + noise) / radius.decades * (HEIGHT - TOP - BOTTOM) > DOT
-    if barred:
-        chart.bars(theta_o, values * max(1 - noise, 0), values * (1 + noise), "measured")
-    chart.dots(theta_o, values, "measured")
-    return chart.svg, barred
+    has_bars = bool(np.log10(1 + noise) / radius.decades * (HEIGHT - TOP - BOTTOM) > DOT_RADIUS)
+    if has_bars:
+        chart.add_bars(theta_o, values * max(1 - noise, 0), values * (1 + noise), "measured")
+    chart.add_dots(theta_o, values, "measured")
+    return chart.svg, has_bars
 
 
-def _thinned(theta_o, values, step):
-    """Which points (n,) to draw: one in each `step` [degrees], and six times as many at the
-    peak."""
+def _thin_out(theta_o: FloatArray, values: FloatArray, step: float) -> BoolArray:
+    """Return which points (n,) to draw: one in each `step` [degrees], and more at the peak."""
     if not np.isfinite(values).any():
         return np.ones(len(values), bool)
-    at_peak = np.abs(theta_o - theta_o[np.nanargmax(values)]) < PEAK
-    fine, coarse = (max(1, round(width / 0.1)) for width in (step / 6, step))
+    at_peak = np.abs(theta_o - theta_o[np.nanargmax(values)]) < PEAK_WIDTH
+    fine, coarse = (max(1, round(width / SAMPLING)) for width in (step / 6, step))
     number = np.arange(len(theta_o))
     return (number % coarse == 0) | (at_peak & (number % fine == 0))

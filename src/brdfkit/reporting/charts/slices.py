@@ -1,21 +1,33 @@
-"""Slices of the BRDF over θh and θd at φd = 90°: measured, fitted, and fitted over measured."""
+"""Draws slices of the BRDF over θh and θd at φd = 90°: measured, fitted, and their ratio.
+
+θh is the angle of the half vector to the normal, θd that to the light, and φd the azimuth of the
+light around the half vector.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.colours import luminance
 from brdfkit.core.pages import images
 from brdfkit.materials.auditing.picture import is_measured, make_scale
-from brdfkit.reporting.charts.svg import Axis, Chart, linear
+from brdfkit.materials.measured import Measured
+from brdfkit.regression import Fit
+from brdfkit.reporting.charts.svg import Axis, Chart, linear_axis
 
-VALUES, RATIOS = "viridis", "RdBu_r"
-MOST = 4.0  # times too bright, or too dark: the ends of the scale of ratios
+VALUE_SCALE, RATIO_SCALE = "viridis", "RdBu_r"
+LARGEST_RATIO = 4.0  # too bright or too dark, at the ends of the scale of ratios
 FAINT = 0.3  # opacity of cells that were not measured
 TICKS = 0, 5, 20, 45, 90  # degrees of θh
-SIZE = {"width": 250, "height": 240}
+WIDTH, HEIGHT = 250, 240
 
 
-def slice_charts(material, fits):
-    """Charts: of the measurement, a pair (fit, ratio) of each fit; and the scale of the values."""
+def draw_slices(material: Measured, fits: Sequence[Fit]) -> dict[str, Any]:
+    """Return what the template shows: slices of the measurement and of each fit, and the scales."""
     data = material.rgb
     table = data.table
     across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
@@ -25,14 +37,17 @@ def slice_charts(material, fits):
     measured = luminance(table.filled_values[cells])
     scale = make_scale(measured[known] if known.any() else measured)
 
-    def draw(title, shares, palette):
-        colours = images.apply_colour_map(palette, shares)
+    def draw(title: str, shares: FloatArray, colour_map: str) -> str:
+        """Return the chart of numbers (θh, θd) from 0 to 1 in the colours of a map."""
+        colours = images.apply_colour_map(colour_map, shares)
         colours[..., 3] = np.where(known, 1, FAINT)
-        chart = Chart(title, _theta_h(), linear("θd", 0, 90, range(0, 91, 30), "°"), **SIZE)
-        chart.image(images.encode_png(np.swapaxes(colours, 0, 1)[::-1]))  # θd upwards
+        theta_d = linear_axis("θd", 0, 90, range(0, 91, 30), "°")
+        chart = Chart(title, _make_theta_h_axis(), theta_d, WIDTH, HEIGHT)
+        chart.add_image(images.encode_png(np.swapaxes(colours, 0, 1)[::-1]))  # θd upwards
         return chart.svg
 
-    def shares(values):
+    def to_shares(values: FloatArray) -> FloatArray:
+        """Return values as positions on the logarithmic scale."""
         floor = np.maximum(values, scale.vmin)
         return np.log(floor / scale.vmin) / np.log(scale.vmax / scale.vmin)
 
@@ -40,27 +55,28 @@ def slice_charts(material, fits):
     for fit in fits:
         values = luminance(fit.rgb.eval(wi.reshape(-1, 3), wo.reshape(-1, 3))).reshape(known.shape)
         floor = 1e-3 * scale.vmin
-        ratio = np.log(np.maximum(values, floor) / np.maximum(measured, floor)) / np.log(MOST)
-        pairs.append(
-            (draw("fit", shares(values), VALUES), draw("fit / data", ratio / 2 + 0.5, RATIOS))
-        )
+        ratio = np.maximum(values, floor) / np.maximum(measured, floor)
+        shares = np.log(ratio) / np.log(LARGEST_RATIO) / 2 + 0.5
+        fitted = draw("fit", to_shares(values), VALUE_SCALE)
+        pairs.append((fitted, draw("fit / data", shares, RATIO_SCALE)))
     return {
-        "measured": draw("data", shares(measured), VALUES),
+        "measured": draw("data", to_shares(measured), VALUE_SCALE),
         "fits": pairs,
-        "least": _short(scale.vmin),
-        "most": _short(scale.vmax),
-        "values_bar": images.draw_colour_bar(VALUES),
-        "ratios_bar": images.draw_colour_bar(RATIOS),
-        "times": f"{MOST:g}",
+        "lowest": _format(scale.vmin),
+        "highest": _format(scale.vmax),
+        "values_bar": images.draw_colour_bar(VALUE_SCALE),
+        "ratios_bar": images.draw_colour_bar(RATIO_SCALE),
+        "largest_ratio": f"{LARGEST_RATIO:g}",
         "all_known": bool(known.all()),
     }
 
 
-def _short(value):
+def _format(value: float) -> str:
+    """Return a value as short text."""
     return f"{value:,.0f}" if value >= 10 else f"{value:.2g}"
 
 
-def _theta_h():
-    """The axis of θh, spaced as in a table: by the square root."""
+def _make_theta_h_axis() -> Axis:
+    """Return the axis of θh, spaced by the square root as the cells of a table are."""
     ticks = [(tick, f"{tick}°") for tick in TICKS]
     return Axis("θh", ticks, lambda value: np.sqrt(np.asarray(value, float) / 90))

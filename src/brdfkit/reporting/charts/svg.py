@@ -1,165 +1,144 @@
-"""Charts as SVG within the page: lines and dots, whose colours its style gives to their classes."""
+"""Draws charts as SVG: axes, lines, dots, bars and images, whose colours the page's style sets."""
 
-from collections.abc import Callable
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 
-from brdfkit.fitting.compare import format_error
-from brdfkit.fitting.ranking.result import TAKE
-from brdfkit.materials.measured.albedos import ANGLES
-from brdfkit.regression.albedo_cells import format_albedo, is_wrong
-from brdfkit.regression.light import WRONG
-from brdfkit.reporting.verdict.verdict import in_words
-
-
-def errors_table(standings, loss, measured):
-    """A row for each `Standing`, under columns of losses, of which the one that ranks is first.
-
-    The first `Standing` is that of the fit to take. Each cell of an error is its text and whether
-    it is the best of its column; each of an albedo its text and whether it is wrong beside the
-    `measured` one at the same angle.
-    """
-    by_loss = sorted(standings[0].errors, key=lambda name: name != loss)
-    rows = []
-    for number, one in enumerate(standings):
-        cells = [
-            (format_error(one.errors[n]), one.errors[n] == min(s.errors[n] for s in standings))
-            for n in by_loss
-        ]
-        rows.append(
-            {
-                "cells": cells,
-                "albedos": [
-                    (format_albedo(own), is_wrong(own, known))
-                    for own, known in zip(one.albedos, measured, strict=True)
-                ],
-                "numbers": one.numbers,
-                "typical": in_words(one.typical),
-                "most": in_words(one.most),
-                "verdict": TAKE if not number else "tied" if one.tied else "",
-            }
-        )
-    return {
-        "losses": by_loss,
-        "angles": [f"{angle:g}°" for angle in ANGLES],
-        "factor": WRONG,
-        "measured": [(format_albedo(known), is_wrong(known)) for known in measured],
-        "rows": rows,
-    }
-
+from brdfkit.core.array_types import ArrayLike
 
 WIDTH, HEIGHT = 290, 236
-COLOURS = 6  # of fits; the style has as many
-STROKES = "", " dashed", " dotted"  # of fits that follow each other: equal lines are both seen
 LEFT, RIGHT, TOP, BOTTOM = 48, 10, 26, 36  # margins
+COLOURS = 6  # for fits; the page's style defines as many
+STROKES = "", " dashed", " dotted"  # of fits in turn, so that lines on each other are all seen
 
 
 @dataclass(frozen=True)
 class Axis:
-    """`label`; `ticks`: their places and texts; `share`: what part of the axis lies before a
-    value."""
+    """An axis of a chart.
+
+    label : its text.
+    ticks : the values and texts of its ticks.
+    share : the function from a value to its position, 0 to 1.
+    """
 
     label: str
-    ticks: list[tuple[float, str]]
-    share: Callable
+    ticks: Sequence[tuple[float, str]]
+    share: Callable[[Any], Any]
 
 
-def linear(label, low, high, ticks, unit=""):
-    """An `Axis` from `low` to `high`, with `ticks` at these values."""
+def linear_axis(
+    label: str, low: float, high: float, ticks: Iterable[float], unit: str = ""
+) -> Axis:
+    """Return a linear `Axis` from `low` to `high`, with ticks at the given values."""
     texts = [(tick, f"{tick:g}{unit}".replace("-", "−")) for tick in ticks]
     return Axis(label, texts, lambda value: (np.asarray(value, float) - low) / (high - low))
 
 
-def fit_class(number):
-    """The class of the colour and stroke of a fit by its place; the first is solid."""
-    return f"fit-{number % COLOURS}" + STROKES[_stroke(number)]
+def choose_class(number: int) -> str:
+    """Return the CSS class for the colour and stroke of a fit; the first fit is solid.
+
+    Each of 18 fits has another one.
+    """
+    return f"fit-{number % COLOURS}" + STROKES[_choose_stroke(number)]
 
 
-def _stroke(number):
-    """Which stroke a fit has: with its colour it is another one for each of 18 fits."""
+def _choose_stroke(number: int) -> int:
+    """Return the index of a fit's stroke."""
     return (number + number // COLOURS) % len(STROKES)
 
 
 class Chart:
-    """A chart that grows: `fits`, `line`, `dots`, `bars` and `image` add to it; `svg`: its text."""
+    """A chart to which lines, dots, bars and images are added; `svg` is its text."""
 
-    def __init__(self, title, x, y, width=WIDTH, height=HEIGHT):
+    def __init__(
+        self, title: str, x: Axis, y: Axis, width: float = WIDTH, height: float = HEIGHT
+    ) -> None:
         self.x, self.y, self.width, self.height = x, y, width, height
         box = {"viewBox": f"0 0 {width} {height}", "role": "img", "aria-label": title}
         self.root = ElementTree.Element("svg", {**box, "class": "chart"})
-        self._text(width / 2 + (LEFT - RIGHT) / 2, 14, title, "title")
-        self._text((LEFT + width - RIGHT) / 2, height - 4, x.label, "label")
-        for place, text in x.ticks:
-            at = self._x(place)
+        self._add_text(width / 2 + (LEFT - RIGHT) / 2, 14, title, "title")
+        self._add_text((LEFT + width - RIGHT) / 2, height - 4, x.label, "label")
+        for value, text in x.ticks:
+            at = self._to_x(value)
             self._add("path", d=f"M{at} {TOP}V{height - BOTTOM}", kind="grid")
-            self._text(at, height - BOTTOM + 14, text, "tick")
-        for place, text in y.ticks:
-            at = self._y(place)
+            self._add_text(at, height - BOTTOM + 14, text, "tick")
+        for value, text in y.ticks:
+            at = self._to_y(value)
             self._add("path", d=f"M{LEFT} {at}H{width - RIGHT}", kind="grid")
-            self._text(LEFT - 6, at + 3.5, text, "tick left")
+            self._add_text(LEFT - 6, at + 3.5, text, "tick left")
         if y.label:
             middle = (TOP + height - BOTTOM) / 2
-            self._text(11, middle, y.label, "label", transform=f"rotate(-90 11 {middle})")
+            self._add_text(11, middle, y.label, "label", transform=f"rotate(-90 11 {middle})")
 
-    def line(self, x, y, kind):
-        """A line through points (n,), broken where they are not finite."""
+    def add_line(self, x: ArrayLike, y: ArrayLike, kind: str) -> None:
+        """Add a line through points (n,), broken where they are not finite."""
         path, pen = [], "M"
-        for px, py in zip(self._x(x), self._y(y), strict=True):
+        for px, py in zip(self._to_x(x), self._to_y(y), strict=True):
             known = np.isfinite(py)
             if known:
                 path.append(f"{pen}{px} {py}")
             pen = "L" if known else "M"
         self._add("path", d="".join(path), kind=f"line {kind}")
 
-    def fits(self, lines):
-        """The lines (x, y) of the fits, in their order; the solid ones below, or they would hide
-        others, and the first fit's above other solid ones."""
-        for number in sorted(range(len(lines)), key=lambda k: (_stroke(k), -k)):
-            self.line(*lines[number], fit_class(number))
+    def add_fits(self, lines: Sequence[tuple[ArrayLike, ArrayLike]]) -> None:
+        """Add the lines (x, y) of the fits, in their order.
 
-    def dots(self, x, y, kind):
-        """Round dots at points (n,)."""
-        places = zip(self._x(x), self._y(y), strict=True)
+        Solid lines are drawn first, as they would hide others; the first fit's is above the other
+        solid ones.
+        """
+        for number in sorted(range(len(lines)), key=lambda k: (_choose_stroke(k), -k)):
+            self.add_line(*lines[number], choose_class(number))
+
+    def add_dots(self, x: ArrayLike, y: ArrayLike, kind: str) -> None:
+        """Add round dots at points (n,)."""
+        places = zip(self._to_x(x), self._to_y(y), strict=True)
         path = "".join(f"M{px} {py}h0" for px, py in places if np.isfinite(py))
         self._add("path", d=path, kind=f"dots {kind}")
 
-    def bars(self, x, low, high, kind):
-        """Upright bars from `low` to `high` (n,)."""
-        places = zip(self._x(x), self._y(low), self._y(high), strict=True)
+    def add_bars(self, x: ArrayLike, low: ArrayLike, high: ArrayLike, kind: str) -> None:
+        """Add vertical bars from `low` to `high` (n,)."""
+        places = zip(self._to_x(x), self._to_y(low), self._to_y(high), strict=True)
         path = "".join(f"M{px} {a}V{b}" for px, a, b in places if np.isfinite([a, b]).all())
         self._add("path", d=path, kind=f"bars {kind}")
 
-    def upright(self, x, kind):
-        """A line across the chart at `x`."""
-        self._add("path", d=f"M{self._x(x)} {TOP}V{self.height - BOTTOM}", kind=kind)
+    def add_vertical_line(self, x: float, kind: str) -> None:
+        """Add a line through the whole chart at `x`."""
+        self._add("path", d=f"M{self._to_x(x)} {TOP}V{self.height - BOTTOM}", kind=kind)
 
-    def across(self, y, kind):
-        """A line along the chart at `y`."""
-        self._add("path", d=f"M{LEFT} {self._y(y)}H{self.width - RIGHT}", kind=kind)
+    def add_horizontal_line(self, y: float, kind: str) -> None:
+        """Add a line through the whole chart at `y`."""
+        self._add("path", d=f"M{LEFT} {self._to_y(y)}H{self.width - RIGHT}", kind=kind)
 
-    def image(self, address):
-        """A picture that fills the chart, its pixels as they are."""
+    def add_image(self, address: str) -> None:
+        """Add a picture that fills the chart, given by its `data:` address."""
         size = {"width": self.width - LEFT - RIGHT, "height": self.height - TOP - BOTTOM}
         place = {"x": LEFT, "y": TOP, "preserveAspectRatio": "none", "href": address}
         self._add("image", kind="pixels", **size, **place)
 
     @property
-    def svg(self):
-        """The chart as text, escaped."""
+    def svg(self) -> str:
+        """The chart as SVG text, with special characters escaped."""
         return ElementTree.tostring(self.root, encoding="unicode")
 
-    def _x(self, value):
+    def _to_x(self, value: ArrayLike) -> Any:
+        """Return the horizontal positions of values."""
         return np.round(LEFT + self.x.share(value) * (self.width - LEFT - RIGHT), 1)
 
-    def _y(self, value):
+    def _to_y(self, value: ArrayLike) -> Any:
+        """Return the vertical positions of values."""
         bottom = self.height - BOTTOM
         return np.round(bottom - self.y.share(value) * (bottom - TOP), 1)
 
-    def _text(self, x, y, text, kind, **others):
+    def _add_text(self, x: float, y: float, text: str, kind: str, **others: object) -> None:
+        """Add a text at a position."""
         self._add("text", x=x, y=y, kind=kind, **others).text = text
 
-    def _add(self, tag, kind, **attributes):
+    def _add(self, tag: str, kind: str, **attributes: object) -> ElementTree.Element:
+        """Add an element of the CSS class `kind`."""
         texts = {name: str(value) for name, value in attributes.items()}
         return ElementTree.SubElement(self.root, tag, {"class": kind, **texts})

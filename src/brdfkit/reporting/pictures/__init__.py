@@ -1,1 +1,1 @@
-"""The pictures of a report, and their errors."""
+"""Renders the pictures of a report, and measures their errors."""

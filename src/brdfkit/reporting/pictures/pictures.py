@@ -1,61 +1,74 @@
-"""The pictures of a report: the measurement and the fits in one scene, equal to the last bit.
+"""Renders the measurement and the fits in one scene, such that equal input gives equal bits.
 
-Threads that add samples to one pixel do so in the order of their arrival, on which sums of floats
-depend. A box filter keeps a sample in its own pixel, and passes of 16, 8 or 4 keep the samples of a
-pixel in one block of one thread: on a CPU the same seed gives the same bits, and a report the same
-file.
+Sums of floats depend on their order, and threads that add samples to one pixel do so in any order.
+A box filter keeps each sample within its own pixel, and passes of 16, 8 or 4 samples keep those of
+a pixel in one block of one thread. So on a CPU the same seed gives the same report.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from dataclasses import replace
 from math import ceil
 from pathlib import Path
+from typing import Any
 
 from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.array_types import BoolArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.progress_bar import Progress
+from brdfkit.materials.measured import Measured
 from brdfkit.mitsuba_bridge.scene_file import SUFFIX
+from brdfkit.regression import Fit
 from brdfkit.rendering import render
+from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input.loading import find_scene, require_scene
 from brdfkit.rendering.scene_input.shown_material import load_material, mask
 from brdfkit.rendering.tracing import PASS
-from brdfkit.reporting.pictures.defaults import LARGEST, SCENE, SIZE, SMALLEST, SPP
+from brdfkit.reporting.pictures.defaults import LARGEST_SIZE, SCENE, SIZE, SMALLEST_SIZE, SPP
+
+BuildScene = Callable[[Any, Any], dict[str, Any]]
 
 
 def render_pictures(
-    material,
-    fits,
-    spp=None,
-    noise_floor=None,
-    size=SIZE,
-    seed=0,
-    scene=SCENE,
-    environment=None,
-    progress=None,
-):
-    """The `Rendering` of a `Measured`, first, and its fits, as `render` makes it.
+    material: Measured,
+    fits: list[Fit],
+    spp: int | None = None,
+    noise_floor: float | None = None,
+    size: int = SIZE,
+    seed: int = 0,
+    scene: str | Path = SCENE,
+    environment: str | Path | None = None,
+    progress: Progress | None = None,
+) -> Rendering:
+    """Return the `Rendering` of the measurement, first, and of its fits.
 
-    `spp` is rounded up to whole passes; None is the default, or with
-    `noise_floor` the one of `render`.
+    `spp` is rounded up to whole passes; if it is None, the default applies, or with a `noise_floor`
+    [dB] that of `render`.
     """
-    require_pictures(size, scene, environment)
+    check_pictures(size, scene, environment)
     if spp is not None or noise_floor is None:
         spp = SPP if spp is None else spp
         spp = ceil(to_whole_number("spp", spp, least=1) / PASS) * PASS
-    build = _sharp(scene)
-    how = {
-        "scene": build,
-        "progress": progress,
-        "noise_floor": noise_floor,
-        "environment": environment,
-    }
-    found = render([material, *fits], spp=spp, size=size, seed=seed, **how)
-    return replace(found, mask=_mask(build, size))
+    build = _build_with_box_filter(scene)
+    rendering = render(
+        [material, *fits],
+        spp=spp,
+        size=size,
+        scene=build,
+        environment=environment,
+        noise_floor=noise_floor,
+        seed=seed,
+        progress=progress,
+    )
+    return replace(rendering, mask=_find_material(build, size))
 
 
-def require_pictures(size, scene, environment):
-    """Raise `BrdfkitError` for pictures that a page cannot have, before anything is fitted."""
-    if to_whole_number("size", size, least=SMALLEST) > LARGEST:
-        raise BrdfkitError(f"size = {size}: pictures of a page have at most {LARGEST} pixels.")
+def check_pictures(size: object, scene: Any, environment: Any) -> None:
+    """Raise `BrdfkitError` for pictures that a report cannot have, before anything is fitted."""
+    if to_whole_number("size", size, least=SMALLEST_SIZE) > LARGEST_SIZE:
+        raise BrdfkitError(f"size = {size}: pictures of a page have at most {LARGEST_SIZE} pixels.")
     if callable(scene) or Path(str(scene).partition("#")[0]).suffix.lower() == SUFFIX:
         raise BrdfkitError(
             f"{scene}: a report shows materials in a scene of brdfkit's or on a mesh; choose one."
@@ -63,25 +76,28 @@ def require_pictures(size, scene, environment):
     require_scene(scene, environment)
 
 
-def _sharp(scene):
-    """The function that makes the scene of a name or a mesh, in which a sample counts for the pixel
-    that it is in and for no other."""
+def _build_with_box_filter(scene: str | Path) -> BuildScene:
+    """Return the function that makes a scene, by its name or of a mesh, with a box filter.
+
+    The function takes a BSDF and the size of the picture.
+    """
     build, is_mesh = find_scene(scene), bool(Path(scene).suffix)
 
-    def sharp(bsdf, size):
-        if is_mesh and isinstance(bsdf, dict):  # its back may be seen
+    def build_sharp(bsdf: Any, size: Any) -> dict[str, Any]:
+        if is_mesh and isinstance(bsdf, dict):  # the back of a mesh may be in view
             bsdf = load_material(bsdf, "material", both_sides=True)
-        made = build(bsdf, size)
-        made["sensor"]["film"]["rfilter"] = {"type": "box"}
-        return made
+        dictionary: dict[str, Any] = build(bsdf, size)
+        dictionary["sensor"]["film"]["rfilter"] = {"type": "box"}
+        return dictionary
 
-    return sharp
+    return build_sharp
 
 
 @in_turn
-def _mask(build, size):
-    """True (size, size) where a pixel sees the material."""
+def _find_material(build: BuildScene, size: int) -> BoolArray:
+    """Return which pixels (size, size) show the material."""
     import mitsuba as mi
 
     material = load_material({"type": "diffuse"}, "material")
-    return mask(mi.load_dict(build(material, (size, size))), material)
+    pixels: BoolArray = mask(mi.load_dict(build(material, (size, size))), material)
+    return pixels

@@ -1,65 +1,77 @@
-"""The pictures as numbers for the page's script: linear light, which an exposure can scale.
+"""Packs the pictures for the page's script, as linear light that an exposure can scale.
 
-A number is 16 bits: its binary logarithm in steps of 1/128, 0.5 %. Neighbours are alike, so that
-their differences are small and shrink well. Not PNGs: what a canvas reads of them a browser may
-convert for its screen, or change a little so that nobody knows it again by them.
+A number takes 16 bits: its binary logarithm in steps of 1/128, which is 0.5 %. Neighbouring pixels
+are alike, so that their differences are small and compress well. PNG files would not do: browsers
+may convert what a canvas reads from them for the screen, or change it a little to prevent tracking.
 """
+
+from __future__ import annotations
 
 import zlib
 from base64 import b64encode
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray
 from brdfkit.core.pages.images import apply_colour_map
 
-DARKEST = -12  # the binary logarithm of the least light above 0
-STEPS = 128  # per doubling
-LAST = 4095  # the highest code, of the light 2^20
-SCALE = "magma"  # of colour differences
-MOST = 10  # ΔE of its bright end
-HIGHEST = 100  # ΔE that a byte can say
+DARKEST = -12  # the binary logarithm of the smallest light above 0
+STEPS = 128  # per doubling of the light
+LAST_CODE = 4095  # for the light 2^20
+COLOUR_MAP = "magma"  # of colour differences
+BRIGHT_DIFFERENCE = 10  # ΔE at the bright end of the colour map
+LARGEST_DIFFERENCE = 100  # ΔE that a byte can hold
 
 
-def for_script(names, pictures, differences):
-    """What the script needs of pictures (height, width, 3), the measured first, by their names, and
-    of the colour differences ΔE (height, width) of the others to it."""
+def pack_for_script(
+    names: list[str], pictures: list[AnyArray], differences: list[AnyArray]
+) -> dict[str, Any]:
+    """Return the data for the script of the page.
+
+    `pictures` (height, width, 3) begin with the measurement; `differences` (height, width) are the
+    colour differences ΔE of the others from it.
+    """
     height, width = pictures[0].shape[:2]
-    palette = np.round(apply_colour_map(SCALE, np.linspace(0, 1, 256))[:, :3] * 255).astype(
-        np.uint8
-    )
+    palette = apply_colour_map(COLOUR_MAP, np.linspace(0, 1, 256))[:, :3]
     return {
         "width": width,
         "height": height,
         "darkest": DARKEST,
         "steps": STEPS,
-        "most": MOST,
-        "highest": HIGHEST,
-        "palette": b64encode(palette.tobytes()).decode(),
+        "most": BRIGHT_DIFFERENCE,
+        "highest": LARGEST_DIFFERENCE,
+        "palette": b64encode(np.round(palette * 255).astype(np.uint8).tobytes()).decode(),
         "names": names,
-        "pictures": [_pack(encode(picture)) for picture in pictures],
-        "differences": [_pack(encode_difference(d)) for d in differences],
+        "pictures": [_compress(encode_light(picture)) for picture in pictures],
+        "differences": [_compress(encode_difference(d)) for d in differences],
     }
 
 
-def encode(linear):
-    """The codes (3, height, width) of a picture (height, width, 3): 0 is black, and k else
-    2^(DARKEST + k / STEPS)."""
+def encode_light(linear: AnyArray) -> AnyArray:
+    """Return the codes (3, height, width) of a picture (height, width, 3) of linear light.
+
+    The code 0 is black; any other code k is the light 2^(DARKEST + k / STEPS).
+    """
     with np.errstate(divide="ignore"):
         doublings = np.log2(np.maximum(np.nan_to_num(linear), 0)) - DARKEST
-    codes = np.clip(np.round(doublings * STEPS), 0, LAST).astype(np.uint16)
+    codes = np.clip(np.round(doublings * STEPS), 0, LAST_CODE).astype(np.uint16)
     return np.moveaxis(codes, -1, 0)
 
 
-def encode_difference(difference):
-    """The codes (height, width) of differences ΔE: HIGHEST (k / 255)², finest where they are
-    small."""
-    share = np.clip(np.nan_to_num(difference) / HIGHEST, 0, 1)
-    return np.round(np.sqrt(share) * 255).astype(np.uint16)
+def encode_difference(difference: AnyArray) -> AnyArray:
+    """Return the codes (height, width) of colour differences ΔE, finest for small ones.
+
+    The code k is the difference LARGEST_DIFFERENCE · (k / 255)².
+    """
+    share = np.clip(np.nan_to_num(difference) / LARGEST_DIFFERENCE, 0, 1)
+    codes: AnyArray = np.round(np.sqrt(share) * 255).astype(np.uint16)
+    return codes
 
 
-def _pack(codes):
-    """Codes as text: each less the one before it, all low bytes, then all high ones, deflated."""
+def _compress(codes: AnyArray) -> str:
+    """Return codes as compressed text: their differences, all low bytes, then all high bytes."""
     steps = np.diff(codes.ravel(), prepend=np.uint16(0))
     split = np.stack([steps & 255, steps >> 8]).astype(np.uint8)
-    # Its level 9 takes twenty times as long, for one percent less
+    # Level 9 takes twenty times as long, for one percent less
     return b64encode(zlib.compress(split.tobytes())).decode()

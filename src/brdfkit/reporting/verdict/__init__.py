@@ -1,1 +1,1 @@
-"""The sentences at the head of a report: which fit to take, and why."""
+"""Compares the fits of a report, and puts into words which one to take and why."""

@@ -1,74 +1,93 @@
-"""How the fits stand: their errors by every loss, how far off their values are, their light, which
-cannot be told from the best, and which one to take."""
+"""Compares the fits: their errors by every loss, how far values are off, and which are tied."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import to_angles
-from brdfkit.fitting.compare import compare, told
+from brdfkit.fitting.compare import compare, format_error, told
 from brdfkit.fitting.ranking.held_out import number_blocks
+from brdfkit.fitting.ranking.result import TAKE
 from brdfkit.fitting.ranking.ties import beside, is_tied
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.albedos import ANGLES
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.regression import losses
+from brdfkit.regression import Fit, losses
+from brdfkit.regression.albedo_cells import format_albedo, is_wrong
+from brdfkit.regression.light import WRONG
 from brdfkit.regression.losses.loss import squares
 from brdfkit.regression.losses.named_losses import DEFAULT
 
-MOST_SAMPLES = 200_000  # of which quantiles and ties are told; of more, so many are drawn
-BAND, LEAST = 15.0, 20  # degrees of θi over which a deviation is told; samples that it needs
+SAMPLE_LIMIT = 200_000  # for quantiles and ties: of more samples, so many are drawn
+BAND_WIDTH = 15.0  # degrees of θi, the angle of incidence
+FEWEST_IN_BAND = 20  # samples
+LARGEST_FACTOR = 1000  # a larger one says no more than that the fit fails
 
 
 @dataclass(frozen=True)
-class Standing:
-    """How a fit stands.
+class FitErrors:
+    """How far a fit is from the measurement.
 
-    `errors`: E by loss; `albedos`: as `compare` finds them; `typical`, `most`: the factors within
-    which half, and 95 %, of the measured values are met, those above 0 of every channel, each
-    counted once; `worst`: the factor for half of them in the band of incidences (from, to)
-    [degrees] `worst_at` where it is largest; `numbers`: how many were sought; `tied`: no worse than
-    the best, within the noise between blocks of directions.
+    A value is met within a factor if measured / fitted and its inverse do not exceed it. Measured
+    values above 0 count, those of each channel by themselves.
+
+    by_loss : the error E by each loss.
+    albedos : the fit's albedos, as `compare` computes them.
+    typical_factor : half of the values are met within it.
+    large_factor : 95 % of the values are met within it.
+    worst_factor : half of the values in the worst band of incidences are met within it.
+    worst_band : that band, from and to [degrees].
+    numbers : how many numbers were searched.
+    is_tied : whether the fit is no worse than the best, up to the noise between directions.
     """
 
-    errors: dict[str, float]
+    by_loss: dict[str, float]
     albedos: tuple[float, ...]
-    typical: float
-    most: float
-    worst: float
-    worst_at: tuple[float, float]
+    typical_factor: float
+    large_factor: float
+    worst_factor: float
+    worst_band: tuple[float, float]
     numbers: int
-    tied: bool
+    is_tied: bool
 
 
-def ranked_by(fits):
-    """The loss by which fits are ranked: that of all of them, or the default where it is none of
-    samples or not the same."""
+def choose_ranking_loss(fits: Sequence[Fit]) -> str:
+    """Return the loss that ranks the fits: their own if it is the same for all, else the default.
+
+    The default also replaces losses of pictures.
+    """
     names = {fit.loss_name for fit in fits}
     return names.pop() if len(names) == 1 and names <= {*losses.named.by_sample} else DEFAULT
 
 
-def standings(material, fits, loss):
-    """The `Standing` of each of the `fits` to a `Measured`, in their order, by the name of a
-    loss."""
+def compute_fit_errors(material: Measured, fits: Sequence[Fit], loss: str) -> list[FitErrors]:
+    """Return the `FitErrors` of each fit, with ties by the loss of this name."""
     max_angle = fits[0].settings.get("max_angle", 80.0)
     compared = [compare(material, fit, max_angle=max_angle) for fit in fits]
-    samples = _some(select_samples(material, max_angle))
+    samples = _draw_samples(select_samples(material, max_angle))
     if not (samples.values > 0).any():
         raise BrdfkitError(
             f"{material.name}: no measured value is above 0, by which a fit could be off by a "
             "factor; a report needs some."
         )
     blocks = number_blocks(samples.wi, samples.wo, material.anisotropic)
-    weight = losses.named[loss].importance(samples)
+    by_sample = losses.named.by_sample[loss]
+    weight = by_sample.importance(samples)
     sums, factors = [], []
     for fit in fits:
         values = np.broadcast_to(fit.rgb.eval(samples.wi, samples.wo), samples.values.shape)
-        sums.append(np.bincount(blocks, weight * squares(losses.named[loss], values, samples)))
-        factors.append(_factors(values, samples))
+        sums.append(np.bincount(blocks, weight * squares(by_sample, values, samples)))
+        factors.append(_compute_factors(values, samples))
     best = min(sums, key=np.sum)
     shares = np.bincount(blocks, weight)
     return [
-        Standing(
+        FitErrors(
             {name: one.errors[one.best][name] for name in told(loss)},
             one.albedos[one.best],
             *own_factors,
@@ -79,49 +98,96 @@ def standings(material, fits, loss):
     ]
 
 
-def in_order(standings, loss):
-    """The places of the fits: that of the one to take, then the others by their error.
+def order_fits(errors: Sequence[FitErrors], loss: str) -> list[int]:
+    """Return the indices of the fits: first the one to take, then the others by their error.
 
-    To take is, of those that are tied with the best, the one with the fewest numbers.
+    Among the fits that are tied with the best, the one with the fewest numbers is to be taken.
     """
-    by_error = sorted(range(len(standings)), key=lambda place: standings[place].errors[loss])
-    tied = [place for place in by_error if standings[place].tied]
-    taken = min(tied, key=lambda place: standings[place].numbers)
-    return [taken, *(place for place in by_error if place != taken)]
+    by_error = sorted(range(len(errors)), key=lambda k: errors[k].by_loss[loss])
+    tied = [k for k in by_error if errors[k].is_tied]
+    taken = min(tied, key=lambda k: errors[k].numbers)
+    return [taken, *(k for k in by_error if k != taken)]
 
 
-def _some(samples):
-    """All samples, or `MOST_SAMPLES` of them."""
+def _draw_samples(samples: Any) -> Any:
+    """Return all samples, or `SAMPLE_LIMIT` of them drawn at random."""
     count = len(samples.wi)
-    if count <= MOST_SAMPLES:
+    if count <= SAMPLE_LIMIT:
         return samples
-    drawn = np.random.default_rng(0).choice(count, MOST_SAMPLES, replace=False)
+    drawn = np.random.default_rng(0).choice(count, SAMPLE_LIMIT, replace=False)
     return samples.at(np.sort(drawn))
 
 
-def _factors(values, samples):
-    """`typical`, `most`, `worst` and `worst_at` of a `Standing`; `values`: the fit's, of the
-    measured `samples` (n, channels)."""
+def _compute_factors(
+    values: AnyArray, samples: Any
+) -> tuple[float, float, float, tuple[float, float]]:
+    """Return the factors and the worst band of `FitErrors`, for fitted values (n, channels)."""
     known = samples.values > 0
-    with np.errstate(divide="ignore"):  # a fit of 0 is off by any factor
+    with np.errstate(divide="ignore"):  # a fitted 0 is off by any factor
         off = np.abs(np.log(np.maximum(values[known], 0) / samples.values[known]))
     theta_i = np.broadcast_to(np.degrees(to_angles(samples.wi)[0])[:, None], known.shape)[known]
-    bands = np.floor(theta_i / BAND)
-    some, counts = np.unique(bands, return_counts=True)
-    some = some[counts >= min(LEAST, counts.max())]  # of few samples, the fullest bands
-    found = {band: _quantile(off[bands == band], 0.5) for band in some}
-    worst = max(found, key=found.get)
-    factors = (float(np.exp(x)) for x in (_quantile(off, 0.5), _quantile(off, 0.95), found[worst]))
-    return *factors, (worst * BAND, (worst + 1) * BAND)
+    bands = np.floor(theta_i / BAND_WIDTH)
+    numbers, counts = np.unique(bands, return_counts=True)
+    numbers = numbers[counts >= min(FEWEST_IN_BAND, counts.max())]  # the fullest of sparse bands
+    medians = {float(band): _find_quantile(off[bands == band], 0.5) for band in numbers}
+    worst = max(medians, key=medians.__getitem__)
+    logarithms = _find_quantile(off, 0.5), _find_quantile(off, 0.95), medians[worst]
+    typical, large, worst_factor = (float(np.exp(x)) for x in logarithms)
+    return typical, large, worst_factor, (worst * BAND_WIDTH, (worst + 1) * BAND_WIDTH)
 
 
-def _quantile(values, share):
-    """The value of which a `share` of the others are no larger; itself one of them."""
-    return np.quantile(values, share, method="inverted_cdf")
+def _find_quantile(values: FloatArray, share: float) -> float:
+    """Return the value that a `share` of the values do not exceed; it is one of them."""
+    return float(np.quantile(values, share, method="inverted_cdf"))
 
 
-def _count_numbers(fit):
-    """How many numbers were sought for a fit."""
+def _count_numbers(fit: Fit) -> int:
+    """Return how many numbers were searched for a fit."""
     if fit.certainty:
         return fit.certainty.parameters
     return sum(len(v) if isinstance(v, tuple) else 1 for v in fit.model.free_values.values())
+
+
+def make_errors_table(
+    errors: Sequence[FitErrors], loss: str, measured: Sequence[float]
+) -> dict[str, Any]:
+    """Return the table of errors for the template, a row for each fit, the one to take first.
+
+    The columns are the losses, the ranking one first, and albedos. A cell of an error is its text
+    and whether it is the best of its column; a cell of an albedo is its text and whether it is
+    wrong compared with the `measured` one at the same angle.
+    """
+    by_loss = sorted(errors[0].by_loss, key=lambda name: name != loss)
+    best = {name: min(one.by_loss[name] for one in errors) for name in by_loss}
+    rows = [
+        {
+            "cells": [(format_error(one.by_loss[n]), one.by_loss[n] == best[n]) for n in by_loss],
+            "albedos": [
+                (format_albedo(own), is_wrong(own, known))
+                for own, known in zip(one.albedos, measured, strict=True)
+            ],
+            "numbers": one.numbers,
+            "typical": format_factor(one.typical_factor),
+            "large": format_factor(one.large_factor),
+            "verdict": TAKE if not number else "tied" if one.is_tied else "",
+        }
+        for number, one in enumerate(errors)
+    ]
+    return {
+        "losses": by_loss,
+        "angles": [f"{angle:g}°" for angle in ANGLES],
+        "factor": WRONG,
+        "measured": [(format_albedo(known), is_wrong(known)) for known in measured],
+        "rows": rows,
+    }
+
+
+def format_factor(factor: float) -> str:
+    """Return a factor as text.
+
+    >>> format_factor(1.057), format_factor(23.4)
+    ('1.06', '23')
+    """
+    if factor >= LARGEST_FACTOR:
+        return f"{LARGEST_FACTOR:,} or more"
+    return f"{factor:.2f}" if factor < 10 else f"{factor:.0f}"

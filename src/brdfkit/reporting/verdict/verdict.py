@@ -1,104 +1,106 @@
-"""The verdict of a report in words: which fit to take, why, and how far off it is."""
+"""Puts the verdict of a report into words: which fit to take, why, and how far off it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 
 from brdfkit.core.names import join_words
+from brdfkit.fitting.ranking import Ranking
+from brdfkit.reporting.pictures.picture_errors import PictureError
+from brdfkit.reporting.verdict.fit_errors import FitErrors, format_factor
 from brdfkit.reporting.verdict.picture_verdict import (
+    describe_nearest_picture,
+    describe_visibility,
     leads_in_picture,
-    nearer_in_picture,
-    visibility,
 )
 
-MARKED = 1.5  # times the typical logarithm: so much worse is worth a sentence
-AHEAD = 1.01  # times another fit's error: less is not worth a sentence
-MOST = 1000  # a larger factor says no more than that the fit fails
+MARKED_RATIO = 1.5  # of the worst band's logarithm to the typical one, worth a sentence
+AHEAD_RATIO = 1.01  # of errors: a smaller lead of another fit is not worth a sentence
 
 
-def verdict(names, standings, errors, loss, ranking=None):
-    """The sentences at the head, and a list of others below it.
+def write_verdict(
+    names: Sequence[str],
+    errors: Sequence[FitErrors],
+    picture_errors: Mapping[str, PictureError],
+    loss: str,
+    ranking: Ranking | None = None,
+) -> tuple[str, list[str]]:
+    """Return the sentences at the head of the report, and a list of further ones.
 
-    `names`: of the fits; `standings`: theirs; both in their order, the one to take first. `errors`:
-    their `PictureError`s by metric, in the same order. `loss`: by which they are ranked. `ranking`:
-    the `Ranking` that chose a model, or None.
+    `names`, `errors` and `picture_errors` are those of the fits, the one to take first. `loss` is
+    the name of the loss that ranks them, `ranking` the one that chose the model, if any.
     """
-    taken = standings[0]
-    firsts = {name: _first([one.errors[name] for one in standings]) for name in taken.errors}
+    taken = errors[0]
+    leaders = {name: _find_least([one.by_loss[name] for one in errors]) for name in taken.by_loss}
     alone = len(names) == 1
     if alone:
-        why = f"was {_chosen(ranking)}" if ranking else "is the only fit"
-    elif firsts[loss]:
-        why = _is_enough(names[firsts[loss]], standings[firsts[loss]], taken)
+        why = f"was {_explain_choice(ranking)}" if ranking else "is the only fit"
+    elif leaders[loss]:
+        why = _explain_tie(names[leaders[loss]], errors[leaders[loss]], taken)
     else:
-        why = _leads(loss, firsts, leads_in_picture(errors["psnr"]))
+        why = _explain_lead(loss, leaders, leads_in_picture(picture_errors["psnr"]))
     head = (
         f"{names[0]} {why}. Half of the measured values are met within a factor of "
-        f"{in_words(taken.typical)}, 95\xa0% within {in_words(taken.most)}, and "
-        f"{visibility(errors)}."
+        f"{format_factor(taken.typical_factor)}, 95\xa0% within "
+        f"{format_factor(taken.large_factor)}, and {describe_visibility(picture_errors)}."
     )
-    more = [] if alone else _others(names, standings, firsts, loss)
+    more = [] if alone else _describe_others(names, errors, leaders, loss)
     if ranking and not alone:
-        more.append(f"{ranking.best} was {_chosen(ranking)}.")
-    more += nearer_in_picture(names, errors["psnr"])
-    if taken.worst > taken.typical**MARKED:
-        low, high = taken.worst_at
+        more.append(f"{ranking.best} was {_explain_choice(ranking)}.")
+    more += describe_nearest_picture(names, picture_errors["psnr"])
+    if taken.worst_factor > taken.typical_factor**MARKED_RATIO:
+        low, high = taken.worst_band
         more.append(
             f"{names[0]} is farthest off at θi {low:g}° to {high:g}°: half of the values there are "
-            f"met within a factor of {in_words(taken.worst)}."
+            f"met within a factor of {format_factor(taken.worst_factor)}."
         )
     return head, more
 
 
-def in_words(factor):
-    """A factor as text.
-
-    >>> in_words(1.057), in_words(23.4)
-    ('1.06', '23')
-    """
-    if factor >= MOST:
-        return f"{MOST:,} or more"
-    return f"{factor:.2f}" if factor < 10 else f"{factor:.0f}"
-
-
-def _chosen(ranking):
-    """Why the `ranking` recommends its model, in words."""
+def _explain_choice(ranking: Ranking) -> str:
+    """Return in words why the ranking recommends its model."""
     count = sum(not row.message for row in ranking.rows)
     return f"chosen from {count} models, because {ranking.why}"
 
 
-def _is_enough(name, best, taken):
-    """That the fit to take is tied with the `best`, which has this name and more numbers."""
+def _explain_tie(name: str, best: FitErrors, taken: FitErrors) -> str:
+    """Return in words that the fit to take is tied with the best one, which has more numbers."""
     more = best.numbers - taken.numbers
     numbers = f"{more} more number{'s' * (more > 1)}"
     return f"is enough: {name}, with {numbers}, is no better by more than noise"
 
 
-def _leads(loss, firsts, in_picture):
-    """What the best fit leads in, in words; `firsts`: the place of the best by each loss."""
-    others = [name for name, place in firsts.items() if place == 0 and name != loss]
+def _explain_lead(loss: str, leaders: Mapping[str, int], in_picture: bool) -> str:
+    """Return in words by which losses the first fit leads; `leaders` has the best fit by each."""
+    others = [name for name, index in leaders.items() if index == 0 and name != loss]
     by = f"by the loss{'es' * bool(others)} {join_words([loss, *others])}"
-    if len(others) + 1 == len(firsts):
+    if len(others) + 1 == len(leaders):
         by = "by every loss"
     return f"is best {by}" + " and by its picture" * in_picture
 
 
-def _first(errors):
-    """The place of the least error."""
+def _find_least(errors: Sequence[float]) -> int:
+    """Return the index of the smallest error."""
     return errors.index(min(errors))
 
 
-def _others(names, standings, firsts, loss):
-    """Sentences on ties, and on other fits that lead by other losses."""
-    told = firsts[loss]  # by the head
-    rest = [k for k in range(1, len(names)) if k != told]
-    tied = [names[k] for k in rest if standings[k].tied]
+def _describe_others(
+    names: Sequence[str], errors: Sequence[FitErrors], leaders: Mapping[str, int], loss: str
+) -> list[str]:
+    """Return sentences on ties, and on other fits that lead by other losses."""
+    mentioned = leaders[loss]  # in the head
+    others = [k for k in range(1, len(names)) if k != mentioned]
+    tied = [names[k] for k in others if errors[k].is_tied]
     verb = "is" if len(tied) == 1 else "are"
-    said = (
-        [f"{join_words(tied)} {verb} not distinguishable from it by the loss {loss}."]
-        if tied
-        else []
-    )
+    sentences = []
+    if tied:
+        sentences.append(
+            f"{join_words(tied)} {verb} not distinguishable from it by the loss {loss}."
+        )
     ahead: dict[str, list[str]] = {}
-    for other, place in firsts.items():
-        own, least = standings[0].errors[other], standings[place].errors[other]
-        if other != loss and own > AHEAD * least:
-            ahead.setdefault(names[place], []).append(other)
-    said += [f"By {join_words(by)}, {name} is ahead." for name, by in ahead.items()]
-    return said if said or told else ["Its lead over the others is more than noise."]
+    for other, index in leaders.items():
+        own, least = errors[0].by_loss[other], errors[index].by_loss[other]
+        if other != loss and own > AHEAD_RATIO * least:
+            ahead.setdefault(names[index], []).append(other)
+    sentences += [f"By {join_words(by)}, {name} is ahead." for name, by in ahead.items()]
+    return sentences if sentences or mentioned else ["Its lead over the others is more than noise."]
