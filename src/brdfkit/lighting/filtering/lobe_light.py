@@ -9,14 +9,7 @@ lobes are those of a `LobeTable`, interpolated between its views. [Ergun 2015, s
 
 import numpy as np
 
-from brdfkit.core.array_types import (
-    JitColour,
-    JitFloat,
-    JitInt,
-    JitMask,
-    JitVector,
-    MitsubaObject,
-)
+from brdfkit.core.array_types import JitColour, JitFloat, JitInt, JitMask, JitVector, MitsubaObject
 from brdfkit.lighting.filtering.filtered_light import Light
 from brdfkit.lighting.filtering.scene_bsdfs import CacheByValues, distinct_bsdfs, is_isotropic
 from brdfkit.lighting.spherical_gaussians.lobe_table import LobeTable, lobe_table

@@ -80,9 +80,7 @@ class Hierarchy:
             return onward, dr.select(hit & leaf, mi.UInt32(1), mi.UInt32(0))
 
         leaf, _ = dr.while_loop(
-            (mi.UInt32(node), mi.UInt32(0)),
-            lambda node, found: (node != END) & (found == 0),
-            step,
+            (mi.UInt32(node), mi.UInt32(0)), lambda node, found: (node != END) & (found == 0), step
         )
         return leaf, self.order.at(leaf - self.leaves, leaf != END)
 

@@ -16,11 +16,7 @@ HALVINGS = 8  # of a part: a crossing is then linear, and a largest value is fou
 
 @record_loops
 def find_first_above(
-    f: Callable[[JitFloat], JitFloat],
-    near: JitFloat,
-    far: JitFloat,
-    steps: int,
-    active: JitMask,
+    f: Callable[[JitFloat], JitFloat], near: JitFloat, far: JitFloat, steps: int, active: JitMask
 ) -> tuple[JitInt, JitFloat, JitFloat]:
     """Find the first of `steps` + 1 even places from `near` to `far` where f is above 0.
 
@@ -44,11 +40,7 @@ def find_first_above(
 
 @record_loops
 def find_first_crossing(
-    f: Callable[[JitFloat], JitFloat],
-    near: JitFloat,
-    far: JitFloat,
-    steps: int,
-    active: JitMask,
+    f: Callable[[JitFloat], JitFloat], near: JitFloat, far: JitFloat, steps: int, active: JitMask
 ) -> tuple[JitFloat, JitMask]:
     """Find the distance where f first rises above 0, and whether it does.
 

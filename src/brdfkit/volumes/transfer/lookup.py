@@ -8,14 +8,7 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from brdfkit.core.array_types import (
-    AnyArray,
-    FloatArray,
-    JitColour,
-    JitFloat,
-    JitMask,
-    JitVector,
-)
+from brdfkit.core.array_types import AnyArray, FloatArray, JitColour, JitFloat, JitMask, JitVector
 from brdfkit.volumes.transfer.preintegration import Preintegration
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 

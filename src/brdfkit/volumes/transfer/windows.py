@@ -3,11 +3,7 @@
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray
-from brdfkit.volumes.transfer.transfer_function import (
-    RANGE_SHARES,
-    WINDOW_SHARES,
-    TransferFunction,
-)
+from brdfkit.volumes.transfer.transfer_function import RANGE_SHARES, WINDOW_SHARES, TransferFunction
 
 SAMPLED_VOXELS = 2_000_000  # at most, evenly spread
 PARTS = 256  # of the histogram in which the background is found
