@@ -210,7 +210,7 @@ def _require_memory_to_make(name: str, size: tuple[int, int, int]) -> None:
 
 
 def _memory_needed(stored: StoredVolume, downsample: int) -> float:
-    """Return the largest memory [bytes] that loading needs."""
+    """Return an upper bound of the memory [bytes] that loading needs."""
     voxels = math.prod(downsampling.reduce_shape(stored.shape, downsample))
     _, ny, nx = stored.shape
     slab = ny * nx * (downsample * stored.dtype.itemsize + np.dtype(float).itemsize)

@@ -49,7 +49,7 @@ def read_slice(file: VolumeFile, pydicom: Any, path: Path) -> Slice | None:
         raise
     except AttributeError as error:  # a field that the file lacks
         raise file.error(f"{path.name} has no {error.name}; convert it, as by dcm2niix") from error
-    except Exception as error:  # each value raises another one
+    except Exception as error:  # damaged values raise errors of many classes
         raise file.error(f"the header of {path.name} is damaged; fetch it again") from error
 
 
@@ -59,7 +59,7 @@ def read_pixels(file: VolumeFile, pydicom: Any, image: Slice) -> AnyArray:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             pixels: AnyArray = pydicom.dcmread(image.path).pixel_array
-    except Exception as error:  # each decoder raises another one
+    except Exception as error:  # decoders raise errors of many classes
         reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")[:120]
         raise file.error(f"the pixels of {image.path.name} cannot be read ({reason})") from error
     if pixels.shape != image.shape:

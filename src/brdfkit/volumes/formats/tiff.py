@@ -105,7 +105,7 @@ def _open_tiff(file: VolumeFile, tifffile: Any, path: Path) -> Iterator[Any]:
             yield tiff
         if logged.texts:
             raise ValueError(logged.texts[0])
-    except Exception as error:  # each decoder raises another one
+    except Exception as error:  # decoders raise errors of many classes
         problem = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
         raise file.error(f"{path.name} cannot be read as TIFF ({problem})") from error
     finally:

@@ -19,9 +19,10 @@ def evaluate_hit(
     density: JitFloat,
     active: JitMask = True,
 ) -> JitColour:
-    """Return the weighted light that rays receive from `si`, their end on a surface or nothing.
+    """Return the weighted light that rays receive from the emitter at their end `si`.
 
-    `density` [sr⁻¹] is that of the rays; it is 0 where no sample of an emitter finds their light.
+    `density` [sr⁻¹] is the density with which the rays were drawn; it is 0 where samples of the
+    emitters cannot find their light.
     """
     import mitsuba as mi
 
@@ -74,5 +75,5 @@ def is_emitter_hit(scene: MitsubaObject, si: MitsubaObject) -> JitMask:
 
 
 def power_heuristic(density: JitFloat, other: JitFloat) -> JitFloat:
-    """Return the weight of a sample of `density` > 0 that another method has with the `other`."""
+    """Weight a sample drawn with `density` > 0 that another method draws with density `other`."""
     return 1 / (1 + dr.square(other / density))

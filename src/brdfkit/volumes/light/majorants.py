@@ -129,7 +129,7 @@ def _format_point(p: FloatArray) -> str:
 
 
 def compute_majorants(volume: MitsubaObject, scale: JitFloat, local: bool) -> Majorants:
-    """Return the `Majorants` of a volume times a `scale`, of coarse cells if `local`, else one.
+    """Return the `Majorants` of a volume times a `scale`: one, or one per coarse cell if `local`.
 
     Those of a gridvolume and of a `transfer_function` follow from their values; any other volume's
     `max()` is trusted.

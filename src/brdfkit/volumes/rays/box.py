@@ -73,7 +73,7 @@ def face_normal(p: JitVector, volume: MitsubaObject) -> JitVector:
 
 
 def bend_to_viewer(n: JitVector, d: JitVector) -> JitVector:
-    """Return the normal `n`, bent where a ray of direction `d` sees its back, until it does not.
+    """Bend the normal `n` towards the viewer where a ray of direction `d` would see its back.
 
     Normals by differences lean past the silhouette, where one-sided materials would be black.
     """

@@ -103,7 +103,7 @@ def accumulate(flat: JitFloat, way: int = 1) -> JitFloat:
 def has_peaks(table: AnyArray, reach: float) -> bool:
     """Return whether a `table` (n, 4) of RGBA has peaks or jumps within a `reach` [steps].
 
-    It has where it deviates from its own mean over the reach by more than THIN.
+    A table has peaks if it deviates from its own moving mean over the reach by more than THIN.
 
     >>> peak = np.ones((100, 4)) * (np.arange(100) == 50)[:, None]
     >>> has_peaks(peak, 4.0), has_peaks(np.linspace(0, 1, 400).reshape(100, 4), 4.0)
