@@ -372,7 +372,7 @@ def test_weights_that_may_be_negative_have_no_bound():
         ({"bounds": {"alpha_v": (0.1, 0.2)}}, ["alpha_v", "not searched"]),
         ({"bounds": {"alpha_u": (0.1, 0.2)}, "fixed": {"alpha_u": 0.1}}, ["alpha_u", "choose one"]),
         ({"starts": 0}, ["starts = 0"]),
-        ({"max_angle": 0.0}, ["max_angle", "at most 90°"]),
+        ({"max_angle": 0.0}, ["max_angle", "at most 90"]),
         ({"max_angle": -3.0}, ["max_angle = -3.0"]),
         ({"max_angle": 300.0}, ["max_angle = 300.0"]),
         ({"max_angle": "80"}, ["max_angle = '80'"]),

@@ -76,7 +76,7 @@ def server():
 def cache(tmp_path, monkeypatch):
     """An empty cache folder, not yet made."""
     monkeypatch.setattr(public, "cache_folder", lambda: tmp_path / "cache")
-    return tmp_path / "cache_folder"
+    return tmp_path / "cache"
 
 
 @pytest.fixture

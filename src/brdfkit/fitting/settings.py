@@ -3,11 +3,10 @@
 import os
 from pathlib import Path
 
-from brdfkit.core.arguments import to_dictionary, to_pair, to_whole_number
+from brdfkit.core.arguments import to_dictionary, to_number, to_pair, to_whole_number
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.fitting.light_of_data import light_of_data
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.materials.measured.validation import require_max_angle
 from brdfkit.materials.resolve import to_measured
 from brdfkit.model import Model, labels
 from brdfkit.regression import Fit, as_loss
@@ -79,7 +78,7 @@ def to_settings(settings, where):
     bounds = to_dictionary("bounds", settings["bounds"])
     settings["bounds"] = {n: to_pair(f"{where}the bounds of {n}", v) for n, v in bounds.items()}
     settings["fixed"] = to_dictionary("fixed", settings["fixed"])
-    require_max_angle(settings["max_angle"])
+    to_number("max_angle", settings["max_angle"], above=0, most=90)
     return settings
 
 

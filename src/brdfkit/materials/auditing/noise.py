@@ -79,7 +79,7 @@ def _apply_to_channels(
 
 
 def _compute_sigma(differences: FloatArray) -> float:
-    """Return the standard deviation of `differences`, which outliers do not change."""
+    """Return a standard deviation of `differences` that ignores outliers."""
     return TO_SIGMA * _compute_median(np.abs(differences))
 
 

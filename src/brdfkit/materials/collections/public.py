@@ -64,8 +64,7 @@ class Collection:
     def files_on_disk(self) -> dict[str, Path]:
         """Return the paths of the files in `folder` by the names of their materials.
 
-        Files count that the user put there and the index does not list, but no files with an
-        unknown suffix.
+        Files that the user put there count, too, but no files with an unknown suffix.
         """
         files = sorted(self.folder.iterdir()) if self.folder.is_dir() else []
         return {

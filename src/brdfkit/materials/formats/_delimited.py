@@ -108,7 +108,7 @@ def _choose_delimiter(header: str) -> str:
 
 
 def _take_units(names: list[str], rows: Lines, delimiter: str) -> tuple[list[str], Lines]:
-    """Return the names with their units, if the first of the `rows` states these, and the rest."""
+    """Return the names with the units that the first row states, if it does, and the other rows."""
     units = split_fields(rows[0][1], delimiter) if rows else []
     if len(units) != len(names) or not any(units) or not UNITS.issuperset(map(str.lower, units)):
         return names, rows

@@ -107,13 +107,15 @@ class Source:
         """
         if count is not None:
             self.require_count(line, fields, count)
-        try:
-            return [_parse_number(text) for text in fields]
-        except ValueError:
-            wrong = next(text for text in fields if not _is_number(text))
-            raise self.error(
-                f"line {line} has {wrong[:40]!r} where a number belongs; {REMEDY}"
-            ) from None
+        numbers = []
+        for text in fields:
+            try:
+                numbers.append(_parse_number(text))
+            except ValueError:
+                raise self.error(
+                    f"line {line} has {text[:40]!r} where a number belongs; {REMEDY}"
+                ) from None
+        return numbers
 
     def require_count(self, line: int, fields: Sequence[str], count: int) -> None:
         """Raise `BrdfkitError` unless line number `line` has `count` `fields`."""
@@ -210,11 +212,3 @@ def _parse_number(text: str) -> float:
     if "_" in text:  # Python reads 1_0 as ten, but in a file it is damage
         raise ValueError
     return float(text)
-
-
-def _is_number(text: str) -> bool:
-    try:
-        _parse_number(text)
-    except ValueError:
-        return False
-    return True

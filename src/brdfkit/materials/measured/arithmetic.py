@@ -3,17 +3,17 @@
 The result has the same samples or cells.
 """
 
-import functools
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from brdfkit.core.arguments import to_number
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.measured.measured_data import Data, Lookup
-from brdfkit.materials.measured.validation import require_max_angle
 from brdfkit.model.samples import Table
 from brdfkit.model.samples.samples import require_valid
 
@@ -34,20 +34,16 @@ def mix_channels(
     if data._samples is not None:
         changed["_samples"] = replace(data._samples, values=data.values @ weights)
     if data._lookup is not None:
-        mixed = getattr(data._lookup, "mix_channels", functools.partial(MixedLookup, data._lookup))
-        changed["_lookup"] = mixed(weights)
+        mix = getattr(data._lookup, "mix_channels", partial(partial, _look_up_mixed, data._lookup))
+        changed["_lookup"] = mix(weights)
     return replace(data, **changed)
 
 
-@dataclass(frozen=True, eq=False)
-class MixedLookup:
-    """A lookup whose channels are mixed by `weights` (old, new)."""
-
-    lookup: Lookup
-    weights: FloatArray
-
-    def __call__(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        return self.lookup(wi, wo) @ self.weights
+def _look_up_mixed(
+    lookup: Lookup, weights: FloatArray, wi: FloatArray, wo: FloatArray
+) -> FloatArray:
+    """Return the values of a lookup, with its channels mixed by `weights` (old, new)."""
+    return lookup(wi, wo) @ weights
 
 
 def subtract(data: Data, brdf: Any, max_angle: float) -> Data:
@@ -56,7 +52,7 @@ def subtract(data: Data, brdf: Any, max_angle: float) -> Data:
     `brdf` is a material with `name` and `eval`. Samples with an angle at or beyond `max_angle`
     [degrees] are unknown in the result, and it has no lookup between the samples.
     """
-    require_max_angle(max_angle)
+    to_number("max_angle", max_angle, above=0, most=90)
     samples, name = data.samples, f"{data.name} - {brdf.name}"
     inside = samples.within(max_angle)
     subtrahend = brdf.eval(samples.wi[inside], samples.wo[inside])

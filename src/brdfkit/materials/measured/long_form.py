@@ -28,7 +28,7 @@ class Wide:
 
 
 def channel_number(text: object) -> float:
-    """Return the place in R, G, B of a channel's name; NaN for any other text.
+    """Return 0, 1 or 2 for a name of the channel R, G or B; NaN for any other text.
 
     >>> channel_number("Green")
     1.0

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit.core.arguments import to_number
 from brdfkit.core.array_types import ArrayLike, BoolArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.measured.measured import Measured
 from brdfkit.materials.measured.spectrum_to_rgb import has_wavelengths
-from brdfkit.materials.measured.validation import require_max_angle
 from brdfkit.model.samples import Samples
 from brdfkit.model.samples.measures import estimate_extents
 
@@ -29,7 +29,7 @@ def select_samples(
     material. Raises `BrdfkitError` for an angle that is not above 0° and at most 90°, for
     impossible weights, for `spectral` without wavelengths, and where no sample is left.
     """
-    require_max_angle(max_angle)
+    to_number("max_angle", max_angle, above=0, most=90)
     if not spectral:
         data = data.rgb
     elif not has_wavelengths(data):

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from numbers import Real
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,14 +115,6 @@ def check_shape(shape: Sequence[int], name: str) -> None:
         raise BrdfkitError(
             f"{name}: a table of shape {shape} was asked for; give three numbers of cells "
             "(n_theta_h, n_theta_d, n_phi_d), or four, with n_phi_h before them."
-        )
-
-
-def require_max_angle(max_angle: float) -> None:
-    """Raise `BrdfkitError` unless `max_angle` is above 0° and at most 90°."""
-    if not isinstance(max_angle, Real) or not 0 < max_angle <= 90:
-        raise BrdfkitError(
-            f"max_angle = {max_angle!r} should be an angle above 0° and at most 90°."
         )
 
 

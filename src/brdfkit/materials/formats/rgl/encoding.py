@@ -35,7 +35,7 @@ LARGEST_DEPTH = 0.2
 
 @dataclass(frozen=True)
 class Resolution:
-    """The numbers of nodes.
+    """The numbers of nodes of an adaptive table.
 
     `phi_i` in a quarter of the circle and `theta_i` are those of the incidences; `phi_m` in the
     full circle and `theta_m` those of the normals; `grid` is the number along an edge of the grid

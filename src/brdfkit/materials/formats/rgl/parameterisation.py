@@ -97,7 +97,7 @@ class Parameterisation:
         return [x.reshape(a, b, n, n, *x.shape[1:]) for x in arrays]
 
     def reflect(self, u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Return the light wi and the reflected view wo (n, 3) at points `u` (a b, k, 2).
+        """Reflect the light about the normals at points `u` (a b, k, 2): wi and wo (n, 3).
 
         `u` has k points for each incidence; n is a b k. The other results are the normals m on the
         square (n, 2) and the `facet_factor` (n,). wo may lie below the surface.

@@ -76,7 +76,7 @@ def format_shape(shape: Sequence[int]) -> str:
 def _view_array(
     source: Source, name: str, number: int, offset: int, shape: Sequence[int]
 ) -> AnyArray:
-    """Return an array whose bytes begin at `offset`; `number` stands for its type in the file."""
+    """Return the array at byte `offset`; `number` stands for its type in the file."""
     if not 1 <= number <= len(TYPES):
         raise source.error(f"field {name!r} has the unknown type {number}; {REMEDY}")
     dtype, size = TYPES[number - 1], math.prod(shape)
