@@ -8,7 +8,8 @@ from pathlib import Path
 
 from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.documents.parts import BAD, SOFT
-from brdfkit.fitting.sweeping import page, tables
+from brdfkit.fitting.sweeping import tables
+from brdfkit.fitting.sweeping.page import write_sweep_page
 from brdfkit.regression import Fit
 
 
@@ -180,7 +181,7 @@ class Sweep(Shown):
         --------
         >>> sweep(["a.binary", "b.binary"], "ggx").to_html("index.html")    # doctest: +SKIP
         """
-        page.write(self, path)
+        write_sweep_page(self, path)
 
     def document(self) -> Document:
         """The errors, materials by models, and how they were judged; what failed, and how many fits
