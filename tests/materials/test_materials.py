@@ -38,7 +38,7 @@ OF_MODELS = TAKERS.keys() - {"audit", "compare to", "fit"}
         ("ward+wrad", r"no file, model or material 'ward\+wrad'"),
         ("car_paint.astm", r"car_paint\.astm: there is no such file"),
         ("", "The path is empty"),
-        (WARD, r"Ward is a model without values; call it: Ward\(\)"),
+        (WARD, r"Ward is a model without values; call it: Ward\(\)|Ward.* is a model, where the"),
         (UP, r"^array\(\[\[0\., 0\., 1\.\]\]\) \(ndarray\) is no material"),
         (None, r"^None \(NoneType\) is no material"),
     ],

@@ -72,7 +72,7 @@ def compute_power_by_reciprocity(samples: Samples, anisotropic: bool) -> tuple[f
 
 
 def compute_power_at_horizon(samples: Samples) -> float:
-    """Return the power of cos theta_o by which valid `Samples` fall towards the horizon.
+    """Return the power p for which valid `Samples` fall towards the horizon as cos^p theta_o.
 
     It is the median over the angles of incidence; NaN where none has samples in both ranges of
     theta_o, far from the light and from the mirror direction.

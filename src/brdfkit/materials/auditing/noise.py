@@ -12,7 +12,7 @@ from brdfkit.materials.measured import Measured
 
 TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, for normal noise
 FEWEST_DIFFERENCES = 20  # for an estimate
-EQUAL = 1e-6  # two values that differ by less are one measurement, written twice
+LEAST_NOISE = 1e-6  # two values that differ by less are one measurement, written twice
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def estimate_noise(data: Measured) -> Noise:
     )
     if np.isnan(sigmas).all():
         return Noise(unknown, "not testable: no direction pair was measured twice or mirrored")
-    if np.nanmax(sigmas) < EQUAL:
+    if np.nanmax(sigmas) < LEAST_NOISE:
         return Noise(unknown, "not testable: left and right are equal, probably copies")
     return Noise(sigmas, f"{len(rows):,} pairs of directions, measured twice or left and right")
 

@@ -1,4 +1,4 @@
-"""Three ratios of brightness by which an audit finds faults: at the horizon and near the light.
+"""Ratios of brightness at the horizon and near the light, which reveal faults of a measurement.
 
 Each is a ratio of medians of `Samples`; NaN where one of the two was not measured.
 """

@@ -10,7 +10,7 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import to_points
 from brdfkit.model.samples import Samples
 
-SAME = np.radians(0.5)  # direction pairs that differ by less count as one
+SAME_ANGLE = np.radians(0.5)  # direction pairs that differ by less count as one
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ def find_swapped(samples: Samples, anisotropic: bool) -> IntArray:
     """
     images = to_points(samples.wo, samples.wi, anisotropic)
     if not anisotropic:
-        images[np.abs(images[:, 0] - images[:, 1]) < 2 * SAME] = np.inf
+        images[np.abs(images[:, 0] - images[:, 1]) < 2 * SAME_ANGLE] = np.inf
     return _match(to_points(samples.wi, samples.wo, anisotropic), images)
 
 
@@ -104,7 +104,7 @@ def _match(points: FloatArray, images: FloatArray) -> IntArray:
     from scipy.spatial import cKDTree
 
     finite = np.flatnonzero(np.isfinite(images).all(axis=1))
-    distance, nearest = cKDTree(points).query(images[finite], distance_upper_bound=SAME)
+    distance, nearest = cKDTree(points).query(images[finite], distance_upper_bound=SAME_ANGLE)
     near = np.isfinite(distance)
     rows = np.sort(np.stack([finite[near], nearest[near]], axis=1), axis=1)
     return np.unique(rows[rows[:, 0] != rows[:, 1]], axis=0)

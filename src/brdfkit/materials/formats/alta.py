@@ -192,7 +192,7 @@ def _halve_intervals(columns: FloatArray, intervals: Sequence[int]) -> FloatArra
 def _find_factor(
     source: Source, header: dict[str, str], wo: FloatArray
 ) -> tuple[FloatArray | float, BoolArray | bool, dict[str, str]]:
-    """Return the factor (n, 1) by which the values exceed the BRDF, a mask (n,), and notes.
+    """Return the factor (n, 1) between the values and the BRDF, a mask (n,), and notes.
 
     The mask is True for the rows where the factor can be divided out.
     """

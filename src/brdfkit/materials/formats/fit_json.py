@@ -14,28 +14,28 @@ from brdfkit.regression.result import Fit
 
 NAME = "brdfkit fit"
 SUFFIXES = (".json",)
-KEY = "brdfkit"
+VERSION_KEY = "brdfkit"
 TYPES = get_type_hints(Fit)
 FIELDS = [f.name for f in fields(Fit) if f.name not in ("model", "certainty", "albedo")]
 # Fields that fits of earlier versions lack
-LATER = ("checksum", "versions", "effective_samples", "unrepresented")
+LATER_FIELDS = ("checksum", "versions", "effective_samples", "unrepresented")
 # Errors for an entry of another kind, for a missing one, and for a number too large for a float
 DAMAGED = ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError
 
 
 def sniff(head: bytes) -> bool:
     """Return whether `head` begins as JSON with brdfkit's version."""
-    return head.lstrip().startswith(b"{") and f'"{KEY}"'.encode() in head[:200]
+    return head.lstrip().startswith(b"{") and f'"{VERSION_KEY}"'.encode() in head[:200]
 
 
 def read(source: Source) -> Fit:
     """Read the `Fit` that `write` wrote."""
     try:
         record = json.loads(source.data)
-        version = _to_type(str, record[KEY])
+        version = _to_type(str, record[VERSION_KEY])
         label, values = _to_type(str, record["model"]), dict(record["parameters"])
         entries = record["fit"]
-        stored = [name for name in FIELDS if name in entries or name not in LATER]
+        stored = [name for name in FIELDS if name in entries or name not in LATER_FIELDS]
         details = {name: _to_type(TYPES[name], entries[name]) for name in stored}
         details["settings"] = _to_settings(details["settings"])
         details["certainty"] = _to_certainty(entries.get("certainty"))
@@ -68,7 +68,7 @@ def write(fit: object, stream: IO[bytes]) -> None:
         )
     values = {name: getattr(fit, name) for name in FIELDS}
     record = {
-        KEY: __version__,
+        VERSION_KEY: __version__,
         "model": fit.model.label(),
         "parameters": fit.model.arguments,
         "fit": values

@@ -111,7 +111,7 @@ def measure(
     name : str, default "specimen"
         Name of the material.
     info : dict of str to str, optional
-        Notes to add to those of the measurement.
+        Notes to add to the notes of the measurement.
     seed : int, default 0
         Seed of the samples; equal seeds give equal values on one machine.
     progress : callable, optional

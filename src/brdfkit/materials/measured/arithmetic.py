@@ -23,8 +23,8 @@ def mix_channels(
 ) -> Data:
     """Return a `Measured` with other `channels`, mixed from the old ones, and with notes `info`.
 
-    `weights` (old, new) are the shares of the old channels in the new ones. Standard errors are
-    mixed as those of independent channels.
+    `weights` (old, new) are the shares of the old channels in the new ones. The standard
+    errors of the channels count as independent.
     """
     changed: dict[str, Any] = {"channels": tuple(channels), "info": info}
     if data.standard_error is not None:
@@ -47,7 +47,7 @@ def _look_up_mixed(
 
 
 def subtract(data: Data, brdf: Any, max_angle: float) -> Data:
-    """Return a `Measured` with values less those of `brdf`, as `Measured.subtract` describes it.
+    """Subtract `brdf` from the values of a `Measured`, as `Measured.subtract` describes it.
 
     `brdf` is a material with `name` and `eval`. Samples with an angle at or beyond `max_angle`
     [degrees] are unknown in the result, and it has no lookup between the samples.

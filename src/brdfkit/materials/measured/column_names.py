@@ -97,7 +97,7 @@ def parse_layout(names: Sequence[str], origin: Origin) -> Layout:
 
 
 def find_row_key(name: str) -> str | None:
-    """Return "wavelength" or "channel" where a column states that of each row, else None."""
+    """Return "wavelength" or "channel" if a column states it for each row, else None."""
     return KEYS_OF_ROWS.get(_simplify(_split_unit(name)[0]))
 
 
@@ -118,8 +118,7 @@ def _describe_unknown(name: str, unit: str | None, coordinates: Iterable[str]) -
 
 
 def _require_both_directions(coordinates: Mapping[str, int], origin: Origin) -> None:
-    """Raise `BrdfkitError` unless the names of `coordinates` are those of one line of
-    `COORDINATES`."""
+    """Raise `BrdfkitError` unless `coordinates` has the names in one line of `COORDINATES`."""
     if set(coordinates) in map(set, COORDINATES):
         return
     like = max(COORDINATES, key=lambda line: len(set(line) & set(coordinates)))

@@ -42,7 +42,7 @@ def can_mend(data: MeasuredData, option: str) -> bool:
 
 
 def find_cosines(wo: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """Return cos theta_o (n, 1) of the directions `wo` (n, 3), by which values are divided.
+    """Return cos theta_o (n, 1) of the directions `wo` (n, 3), to divide values by it.
 
     The second result is a mask (n,) of the rows where the cosine is too small; 1 stands there.
     """

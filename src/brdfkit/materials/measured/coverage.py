@@ -9,7 +9,7 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured.measured import Measured
 from brdfkit.model.samples import Samples, Table
 
-NEAR = np.radians(5)  # a pair this near to a sample counts as measured
+NEAR_ANGLE = np.radians(5)  # a pair this near to a sample counts as measured
 PAIRS = 20_000  # random pairs for scattered samples: the shares are accurate to 0.4 %
 
 
@@ -61,7 +61,7 @@ def is_in_plane(samples: Samples) -> bool:
     """Return whether all valid `Samples` are in the plane of incidence, within 5°."""
     wi, wo = samples.wi[samples.valid], samples.wo[samples.valid]
     across = np.abs(wi[:, 0] * wo[:, 1] - wi[:, 1] * wo[:, 0])  # sin θi sin θo |sin Δφ|
-    return bool((across <= np.sin(NEAR) * np.sqrt(1 - wi[:, 2] ** 2)).all())
+    return bool((across <= np.sin(NEAR_ANGLE) * np.sqrt(1 - wi[:, 2] ** 2)).all())
 
 
 def is_near(data: Measured, wi: FloatArray, wo: FloatArray) -> BoolArray:
@@ -71,7 +71,7 @@ def is_near(data: Measured, wi: FloatArray, wo: FloatArray) -> BoolArray:
     valid = data.samples.at(data.samples.valid)
     both_ways = [_fold(data, valid.wi, valid.wo), _fold(data, valid.wo, valid.wi)]
     tree = cKDTree(np.concatenate(both_ways))
-    return np.isfinite(tree.query(_fold(data, wi, wo), distance_upper_bound=NEAR)[0])
+    return np.isfinite(tree.query(_fold(data, wi, wo), distance_upper_bound=NEAR_ANGLE)[0])
 
 
 def to_points(wi: FloatArray, wo: FloatArray, anisotropic: bool = False) -> FloatArray:

@@ -12,7 +12,7 @@ reciprocity and mirror symmetry are one point there. For an anisotropic material
 between half vectors and difference vectors, and each sample is entered twice, the second time with
 its directions exchanged. A value that is not positive counts as a thousandth of the median.
 
-Inverse-distance weights are those of [Shepard 1968]; they end at the farthest neighbour as in
+[Shepard 1968] introduced inverse-distance weights; here they end at the farthest neighbour, as in
 [Franke & Nielson 1980].
 """
 

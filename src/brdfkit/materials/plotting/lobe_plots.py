@@ -19,7 +19,7 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.plotting.plane_of_incidence import choose_angles, compute_lobe, is_scattered
 from brdfkit.materials.resolve import MaterialLike, to_materials
 
-SMALL = {"size": 8, "color": "0.35"}
+SMALL_TEXT = {"size": 8, "color": "0.35"}
 BLACK, GREY = "black", "0.45"
 # Okabe and Ito's colours, which the colour-blind tell apart
 COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
@@ -82,7 +82,7 @@ def _count_panels(angles: FloatArray) -> tuple[int, int]:
 def draw_panels(figure: Any, things: list[Any], angles: FloatArray) -> None:
     """Draw the panels and their legend into a matplotlib `Figure` or `SubFigure`.
 
-    `things` are achromatic or RGB materials, `angles` those of incidence [degrees].
+    `things` are achromatic or RGB materials, `angles` the angles of incidence [degrees].
     """
     rows, columns = _count_panels(angles)
     styles = _choose_styles(things)
@@ -140,11 +140,13 @@ def _draw_half_disc(axes: Any, radius: Radius) -> None:
         axes.plot(*_to_xy(theta, np.array([0, 1])), **grid)
         text = f"{theta}°".replace("-", "−")
         va = "bottom" if abs(theta) == 90 else "center"  # above the numbers along the radius
-        axes.text(*_to_xy(theta, 1.1), text, ha="center", va=va, **SMALL)
+        axes.text(*_to_xy(theta, 1.1), text, ha="center", va=va, **SMALL_TEXT)
     for tick in radius.ticks():
         axes.plot(*_to_xy(half, radius(tick)), **grid)
-        axes.text(radius(tick), -0.03, f"{tick:g}", ha="center", va="top", **SMALL)
-    axes.text(0, -0.17, "luminance of the BRDF [sr⁻¹], logarithmic", ha="center", va="top", **SMALL)
+        axes.text(radius(tick), -0.03, f"{tick:g}", ha="center", va="top", **SMALL_TEXT)
+    axes.text(
+        0, -0.17, "luminance of the BRDF [sr⁻¹], logarithmic", ha="center", va="top", **SMALL_TEXT
+    )
 
 
 def _to_xy(theta: Any, radius: Any) -> tuple[Any, Any]:

@@ -11,7 +11,7 @@ from brdfkit.core.geometry.directions import from_angles, to_angles
 from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Samples, Table
 
-STEP = 0.1  # degrees between the points of a line
+ANGLE_STEP = 0.1  # degrees between the points of a line
 NEAR_THETA, NEAR_PHI = 3, 5  # degrees: samples this close to the plane are drawn in it
 DEFAULT_ANGLES = np.array([15.0, 45.0, 75.0])
 
@@ -25,7 +25,7 @@ def compute_lobe(thing: Any, theta_i: float) -> tuple[FloatArray, FloatArray]:
     """
     if is_scattered(thing):
         return _select_near(thing.samples, theta_i)
-    theta_o = np.linspace(-90, 90, round(180 / STEP) + 1)[1:-1]
+    theta_o = np.linspace(-90, 90, round(180 / ANGLE_STEP) + 1)[1:-1]
     wi = np.broadcast_to(from_angles(np.radians(theta_i), np.pi), (len(theta_o), 3))
     wo = from_angles(np.radians(theta_o), 0.0)
     values = luminance(thing.eval(wi, wo))

@@ -37,9 +37,8 @@ LARGEST_DEPTH = 0.2
 class Resolution:
     """The numbers of nodes of an adaptive table.
 
-    `phi_i` in a quarter of the circle and `theta_i` are those of the incidences; `phi_m` in the
-    full circle and `theta_m` those of the normals; `grid` is the number along an edge of the grid
-    over u.
+    The incidences have `phi_i` azimuths in a quarter of the circle and `theta_i` polar angles, the
+    normals `phi_m` in the full circle and `theta_m`; the grid over u has `grid` along an edge.
     """
 
     phi_i: int

@@ -68,8 +68,8 @@ def _check_field(
 ) -> FloatArray:
     """Return the array of a field as float64.
 
-    `letters` are the field's dimensions; `sizes` has their numbers by letter, and gets those of new
-    letters. Raises `BrdfkitError` unless the array is finite and has the type and the dimensions of
+    `letters` are the field's dimensions; `sizes` has their numbers by letter, and gets new letters.
+    Raises `BrdfkitError` unless the array is finite and has the type and the dimensions of
     the field.
     """
     if name not in arrays:

@@ -66,7 +66,7 @@ class Parameterisation:
         return Warp(self.vndf.reshape(-1, *self.vndf.shape[2:]))
 
     def facet_factor(self, theta_i: FloatArray, phi_i: FloatArray, m: FloatArray) -> FloatArray:
-        """Return D(m) / 4σ(wi) (n,), by which M is multiplied to get f cosθ_o.
+        """Return D(m) / 4σ(wi) (n,); M times this factor is f cosθ_o.
 
         wi has the angles `theta_i`, `phi_i` [rad]; `m` (n, 2) are normals on the square.
         """
@@ -167,7 +167,7 @@ class AdaptiveTable:
         f_cos = interpolate(self.values.reshape(-1, n, n, self.values.shape[-1]), u, slices)
         if self.divided:
             f_cos *= factor[:, None]
-        # Over the density: those of both warps, and the solid angle dω_o of an area on the square
+        # The densities of both warps, and the solid angle dω_o of an area on the square
         pdf = warp.pdf(u, slices) * self.parameterisation.normals.pdf(m, slices)
         area = solid_angle(m) * 2 * np.linalg.norm(wi + wo, axis=1)
         lit = (wo[:, 2] > 0) & (pdf > 0)
@@ -192,7 +192,7 @@ class AdaptiveTable:
         `model/samples/measures.py` explains extents; here they are of the directions with both
         angles below `max_angle` [degrees]. `usable` is a mask (n,) of the points that count.
 
-        A cell of the grid over u is split among those of its four corners that are usable. At its
+        A cell of the grid over u is split among its usable corners. At its
         middle m, dω_h = dm and dω_d = dω_i, so that dθ_h dθ_d dφ_d = dθ_m dφ_m · sinθ_i dθ_i /
         sinθ_d.
         """
