@@ -1,9 +1,10 @@
-"""What a BRDF model is made of: all that the author of a model reads.
+"""The building blocks of a BRDF model: all that the author of a model reads.
 
-`model.py`: the class `Model`; `parameters.py`: what it declares; `lobes.py`: its terms and how
-they are drawn; `microfacet.py`: distributions of normals; `fresnel.py`: the models of facets with
-Schlick's F; `numerics.py`: accurate functions. The rest serves all models: `labels.py` finds a
-model by its label, `weights.py` reads weights of any channels, `evaluation.py` computes values.
+`model.py` has the class `Model`, `parameters.py` what it declares, `lobes.py` its terms and how
+their directions are drawn, `microfacet.py` distributions of normals, `fresnel.py` the models of
+facets with Schlick's F, and `numerics.py` accurate functions. The other files serve all models:
+`labels.py` finds a model by its label, `weights.py` reads weights of any channels, and
+`evaluation.py` computes values.
 """
 
 from brdfkit.model.model import Model as Model

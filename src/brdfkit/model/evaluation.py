@@ -1,16 +1,22 @@
 """Evaluates a model in double precision: the values of its lobes times its weights."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, ArrayLike, JitFloat
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.threads import in_turn
 
 
-def evaluate_model(model, wi, wo):
-    """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3): Σ weight · eval + weight² · quadratic.
+def evaluate_model(model: Any, wi: ArrayLike, wo: ArrayLike) -> AnyArray:
+    """Compute the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3).
 
-    It is 0 where a direction is not above the surface, and clamped at 0 where weights are signed.
+    It is the sum of weight · `eval` + weight² · `quadratic` over the lobes, clamped at 0 where
+    weights are signed, and 0 where a direction is not above the surface.
     """
     wi, wo = np.asarray(wi, float), np.asarray(wo, float)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
@@ -19,17 +25,20 @@ def evaluate_model(model, wi, wo):
     return np.where(above[:, None], mix_lobes(model, to_weight_matrix(model), wi, wo), 0.0)
 
 
-def mix_lobes(model, weights, wi, wo):
-    """As `evaluate_model`, with other `weights` (lobes, channels), above the surface."""
+def mix_lobes(model: Any, weights: AnyArray, wi: AnyArray, wo: AnyArray) -> AnyArray:
+    """Compute the BRDF as `evaluate_model` does, with other weights (lobes, channels).
+
+    The direction pairs (n, 3) have to be above the surface.
+    """
     plain, squared = compute_lobe_values(model, wi, wo)
     values = plain @ weights + squared @ weights**2
     return np.maximum(values, 0) if model.has_signed_weights() else values
 
 
-def compute_clamped_share(model, n=20_000):
-    """The share of direction pairs at which a channel of a signed model is clamped at 0.
+def compute_clamped_share(model: Any, n: int = 20_000) -> float:
+    """Return the share of direction pairs at which a channel of a signed model is clamped at 0.
 
-    The `n` pairs are drawn uniformly in solid angle, by a fixed seed.
+    The `n` pairs are drawn uniformly in solid angle with a fixed seed.
     """
     z, phi = np.random.default_rng(0).random((2, 2, n))
     sine, phi = np.sqrt(1 - z * z), 2 * np.pi * phi
@@ -39,20 +48,22 @@ def compute_clamped_share(model, n=20_000):
     return float((plain @ weights + squared @ weights**2 < 0).any(axis=1).mean())
 
 
-def to_weight_matrix(model):
-    """The weights (lobes, channels) of a model with values."""
+def to_weight_matrix(model: Any) -> Any:
+    """Return the weights (lobes, channels) of a model with values."""
     weights = [np.atleast_1d(getattr(model, name)) for name in model.weights()]
     channels = max(len(model.wavelengths), *(len(w) for w in weights))
     return np.array([np.broadcast_to(w, channels) for w in weights])
 
 
-def make_model(model, shapes, weights, wavelengths=()):
-    """A model of the class `model` with `shapes` by name and `weights` (channels, lobes)."""
+def make_model(
+    model: Any, shapes: dict[str, Any], weights: AnyArray, wavelengths: ArrayLike = ()
+) -> Any:
+    """Make a model of a class from shape parameters by name and weights (channels, lobes)."""
     named = dict(zip(model.weights(), map(tuple, weights.T), strict=True))
     return model(wavelengths=wavelengths, **shapes, **named)
 
 
-def to_shape_scalars(model):
+def to_shape_scalars(model: Any) -> dict[str, JitFloat]:
     """Return the free shape parameters of a model with values, by name, as opaque scalars."""
     linear = model.weights()
     values = model.free_values.items()
@@ -60,18 +71,18 @@ def to_shape_scalars(model):
 
 
 @in_turn
-def compute_lobe_values(model, wi, wo):
-    """Two arrays (n, lobes) in sr⁻¹ of direction pairs (n, 3) above the surface.
+def compute_lobe_values(model: Any, wi: AnyArray, wo: AnyArray) -> list[AnyArray]:
+    """Compute two arrays (n, lobes) in sr⁻¹ at direction pairs (n, 3) above the surface.
 
-    The first holds the values of each `Lobe.eval`, the second those of each `Lobe.quadratic`, 0 for
-    a lobe without.
+    The first holds the values of every `Lobe.eval`, the second those of every `Lobe.quadratic`, or
+    0 for a lobe without one.
     """
     terms = model.bind(to_shape_scalars(model)).terms()
-    wi, wo = double_precision.to_vector(wi), double_precision.to_vector(wo)
-    plain = [lobe.eval(wi, wo) for _, lobe in terms]
-    squared = [lobe.quadratic(wi, wo) if lobe.quadratic else 0.0 for _, lobe in terms]
-    dr.eval(plain, squared)  # in one kernel: one for each lobe takes six times as long
-    shape = len(wi.x), len(terms)
+    pair = double_precision.to_vector(wi), double_precision.to_vector(wo)
+    plain = [lobe.eval(*pair) for _, lobe in terms]
+    squared = [lobe.quadratic(*pair) if lobe.quadratic else 0.0 for _, lobe in terms]
+    dr.eval(plain, squared)  # in one kernel, since one for each lobe takes six times as long
+    shape = len(wi), len(terms)
     return [
         np.stack([np.broadcast_to(np.asarray(c), shape[0]) for c in columns], axis=1)
         for columns in (plain, squared)

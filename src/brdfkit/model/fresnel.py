@@ -1,14 +1,20 @@
 """Models of facets with Schlick's Fresnel reflectance, grey or coloured at both ends.
 
 F = F₀ + (F₉₀ - F₀) (1 - V·H)⁵ [Schlick 1994] is linear in the reflectances F₀ at normal and F₉₀ at
-grazing incidence. So both can be weights, per channel, and take the place of k_s and of F₀, which
-otherwise is a shape parameter, beside F₉₀ = 1.
+grazing incidence. So both can be weights, one for each channel, in place of the strength k_s and of
+F₀. Otherwise F₀ is a shape parameter and F₉₀ is 1.
 """
 
-from brdfkit.model.lobes import make_factored_lobe
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from brdfkit.core.array_types import JitFloat, JitVector
+from brdfkit.model.lobes import Lobe, Sampling, make_factored_lobe
 from brdfkit.model.microfacet import fifth_power, schlick
 from brdfkit.model.model import Model
-from brdfkit.model.parameters import option, weight
+from brdfkit.model.parameters import Parameter, option, weight
 
 
 class FresnelModel(Model):
@@ -22,10 +28,10 @@ class FresnelModel(Model):
     )
 
     @classmethod
-    def more_parameters(cls):
+    def more_parameters(cls) -> dict[str, Parameter | None]:
         if cls.fresnel == "schlick":
             return {}
-        k_s, f0 = (cls._declared[name].default for name in ("specular_reflectance", "f0"))
+        k_s, f0 = (cls._declared[name].default or 0 for name in ("specular_reflectance", "f0"))
         return {
             "specular_reflectance": None,
             "f0": None,
@@ -33,14 +39,21 @@ class FresnelModel(Model):
             "f90_reflectance": weight(k_s, "k₉₀ = k_s F₉₀: strength at grazing incidence"),
         }
 
-    def make_fresnel_lobes(self, D, geometry, sampling, albedo=1.0):
-        """The lobe, or the two, of the term `D(h)` `geometry(wi, wo)` [sr⁻¹], which lacks k_s F.
+    def make_fresnel_lobes(
+        self,
+        D: Callable[[Any], Any],
+        geometry: Callable[[Any, Any], Any],
+        sampling: Sampling,
+        albedo: float = 1.0,
+    ) -> tuple[Lobe, ...]:
+        """Return the lobe, or the two lobes, of the term `D(h)` `geometry(wi, wo)` [sr⁻¹] times k_s
+        F.
 
-        `albedo`: about that of the term.
+        `albedo` is the approximate albedo of the term without k_s F.
         """
 
-        def lobe(F):
-            def facets(h, cos_d):
+        def lobe(F: Callable[[JitFloat], JitFloat]) -> Lobe:
+            def facets(h: JitVector, cos_d: JitFloat) -> JitFloat:
                 return D(h) * F(cos_d)
 
             return make_factored_lobe(facets, geometry, sampling, lambda wi: albedo * F(wi.z))

@@ -1,10 +1,13 @@
-"""Models by their labels: a name, with options and sums.
+"""Finds models by their labels: a name, with options and sums.
 
     ward    koenderink:order=8    ggx+ggx    oren_nayar:form=full+ward
 
 In a label that a person types, a Python file may stand for the model that it defines: `load_files`
-loads the file. A label from a saved file never goes through `load_files`, for it must not run code.
+loads the file. A label from a saved file never goes through `load_files`, since it must not run
+code.
 """
+
+from __future__ import annotations
 
 import os
 from pathlib import Path
@@ -20,24 +23,24 @@ from brdfkit.model.model import Model
 
 
 class Models(Shown, dict[str, type[Model]]):
-    """Classes of models by name; prints as a table."""
+    """The classes of models by name; prints as a table."""
 
     def __missing__(self, name: str) -> type[Model]:
         raise no_such("model", name, self)
 
     def document(self) -> Document:
-        """The models by name, with one sentence on each."""
+        """Return a table of the models by name, with one sentence on each."""
         rows = tuple((Cell(name, kind=STRONG), read_page(m).sentence) for name, m in self.items())
         return Document(f"{len(self)} BRDF models", (Table(rows),))
 
 
 def models() -> Models:
-    """The BRDF models there are: brdfkit's, and those of yours that were loaded.
+    """Return the BRDF models of brdfkit, and your own that were loaded.
 
     Returns
     -------
     dict of str to type
-        Classes by name, printed as a table; called with parameters, a class gives a model with
+        Classes by name, printed as a table. A class called with parameters gives a model with
         values.
 
     Examples
@@ -45,14 +48,13 @@ def models() -> Models:
     >>> models()["ward"](alpha_u=0.1)
     ward(diffuse_reflectance=0.4, specular_reflectance=0.2, alpha_u=0.1, alpha_v=0.1)
     """
-    found = {
-        name: find_model_in(source) for name, source in plugin_files.find_plugins(MODELS).items()
-    }
-    return Models((name, model) for name, model in found.items() if model is not None)
+    plugins = plugin_files.find_plugins(MODELS).items()
+    classes = ((name, find_model_in(source)) for name, source in plugins)
+    return Models((name, model) for name, model in classes if model is not None)
 
 
 def model(label: str | type[Model]) -> type[Model]:
-    """The class of a label: a model's name, with options "lafortune:lobe_count=2", or a sum.
+    """Return the class of a label: a model's name, with options "lafortune:lobe_count=2", or a sum.
 
     A sum, "ggx+ward", has the diffuse term of the first model and the other terms of all. A class
     stands for itself. Raises `BrdfkitError` for an unknown name, and proposes the nearest.
@@ -70,25 +72,27 @@ def model(label: str | type[Model]) -> type[Model]:
     if "+" in parts or parts != label:
         return model("mixture").configured(models=parts)
     name, _, settings = label.partition(":")
-    found = _find_named_model(name)
+    named = _find_named_model(name)
     options = {}
     for setting in filter(None, settings.split(",")):
         key, equals, value = setting.partition("=")
         if not equals:
             raise BrdfkitError(f"{label}: {setting!r} should read OPTION=VALUE.")
         options[key] = value
-    return found.configured(**options)
+    return named.configured(**options)
 
 
 def is_label(word: str) -> bool:
-    """Whether a word is the label of a known model: "ggx", "ggx+ward", "koenderink:order=4"."""
+    """Return whether a word is the label of a known model: "ggx", "ggx+ward",
+    "koenderink:order=4".
+    """
     return all(part.partition(":")[0] in models() for part in word.split("+"))
 
 
 def load_files(label: Any) -> Any:
-    """Load the Python files that stand for models in a label; the label with the models' names.
+    """Load the Python files that stand for models in a label, and put the models' names into it.
 
-    What is neither a text nor a `Path` comes back as it is.
+    A label that is neither a text nor a `Path` is returned as it is.
 
     >>> load_files("my_models/felt.py+ggx")    # doctest: +SKIP
     'felt+ggx'
@@ -106,10 +110,10 @@ def load_files(label: Any) -> Any:
 
 
 def load_model_file(path: str | Path) -> None:
-    """Make the model that a Python file defines known, by the file's name.
+    """Load a Python file that defines a model, and make the model known by the file's name.
 
-    Raises `BrdfkitError` for a file that cannot be imported or defines no model or several, and for
-    a name that another plugin has.
+    Raises `BrdfkitError` for a file that cannot be imported, or defines no model or several, and
+    for a name that another plugin has.
     """
     (file,) = plugin_files.find_python_files(path)
     plugin_files.require_free_name(file.stem, file)
@@ -119,9 +123,9 @@ def load_model_file(path: str | Path) -> None:
 
 
 def find_model_in(source: Path | type) -> type[Model] | None:
-    """The `Model` class that a plugin file defines, None if it defines none; a class for itself.
+    """Return the `Model` class that a plugin file defines, None if it defines none.
 
-    Raises `BrdfkitError` for a file that defines several.
+    A class stands for itself. Raises `BrdfkitError` for a file that defines several models.
     """
     if isinstance(source, type):
         return source
@@ -139,9 +143,11 @@ def find_model_in(source: Path | type) -> type[Model] | None:
 
 
 def _find_named_model(name: str) -> type[Model]:
-    """The model of that name; raises `BrdfkitError`, which proposes the nearest."""
+    """Return the model of a name; raise `BrdfkitError`, which proposes the nearest, if it is
+    unknown.
+    """
     source = plugin_files.find_plugins(MODELS).get(name)
-    found = source and find_model_in(source)
-    if not found:
+    named = source and find_model_in(source)
+    if not named:
         raise no_such("model", name, models())
-    return found
+    return named

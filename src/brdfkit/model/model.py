@@ -1,17 +1,17 @@
-"""`Model`: a BRDF model is weights × lobes.
+"""`Model`: the base class of BRDF models, which are sums of weights times lobes.
 
     f(wi, wo) = Σ weight_k · lobe_k(wi, wo; shape)
 
-The weights are linear and per colour channel, the shape parameters nonlinear and shared by the
-channels. A model is a class in a file of its own: its parameters are class attributes, made by
-`weight` and `shape`, and `lobes` gives one `Lobe` per weight, in their order.
+The weights are linear and per colour channel; the shape parameters are nonlinear and shared by the
+channels. A model is a class in a file of its own. Its parameters are class attributes, made by
+`weight` and `shape`, and `lobes` returns one `Lobe` per weight, in their order.
 
-The same lines run in the renderer, where a parameter is a value per ray, and in a fit, where
-it is a double with derivatives. So a model uses `dr.*` and no Python `if` on values.
+The same lines run in the renderer, where a parameter is a value per ray, and in a fit, where it is
+a double with derivatives. So a model uses `dr.*` and no Python `if` on values.
 
 A choice that is not a number to fit, such as a form or an order, is an `option`: a plain Python
-value. Each of its values makes a class of its own (`Model.configured`). `more_parameters` adds the
-parameters that depend on options, and leaves declared ones out.
+value. Each value of an option makes a class of its own (`Model.configured`). `more_parameters` adds
+the parameters that depend on options, and leaves declared ones out.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class Model(Shown, Declaration):
 
     wavelengths: tuple[float, ...] = ()
 
-    if TYPE_CHECKING:  # the parameters, of which a type checker cannot know
+    if TYPE_CHECKING:  # a type checker cannot know the parameters
 
         def __getattr__(self, name: str) -> Any: ...
 
@@ -94,12 +94,13 @@ class Model(Shown, Declaration):
             self.__dict__[name] = value
 
     def changed(self, **values: ArrayLike | None) -> Self:
-        """The model with other values.
+        """Return the model with other values.
 
         Parameters
         ----------
         **values : float or sequence of float
-            Values by the parameters' names; what follows another parameter goes on to follow it.
+            Values by the parameters' names. A parameter that follows another one goes on to follow
+            it.
 
         Returns
         -------
@@ -119,20 +120,24 @@ class Model(Shown, Declaration):
         given: dict[str, Any] = {**self.free_values, **values}
         return type(self)(wavelengths=self.wavelengths, **given)
 
-    def __setattr__(self, name, value):
+    def __setattr__(self, name: str, value: Any) -> None:
         raise BrdfkitError(
             f"{self.type_name()}: a model's values do not change; make another one, as by "
             f".changed({name}={value!r})."
         )
 
     @classmethod
-    def determine_parameters(cls, samples):
-        """Shape parameters by name that are computed from the measured directions, not searched."""
+    def determine_parameters(cls, samples: Any) -> dict[str, float]:
+        """Return the shape parameters, by name, that are computed from measured directions, not
+        searched.
+        """
         return {}
 
     @classmethod
-    def bind(cls, values):
-        """The model with `values` by name, of any type, such as arrays; nothing is checked."""
+    def bind(cls, values: dict[str, Any]) -> Any:
+        """Return the model with values by name of any type, such as arrays, without checking
+        them.
+        """
         bound = object.__new__(cls)
         bound.__dict__.update(values)
         for name, parameter in cls.parameters.items():
@@ -141,11 +146,11 @@ class Model(Shown, Declaration):
         return bound
 
     def lobes(self) -> tuple[Lobe, ...]:
-        """One lobe per weight, in the order of the weights."""
+        """Return one lobe per weight, in the order of the weights."""
         raise NotImplementedError(f"{type(self).__name__} should give its lobes")
 
-    def terms(self):
-        """(name of the weight, lobe) of every term."""
+    def terms(self) -> list[tuple[str, Lobe]]:
+        """Return (name of the weight, lobe) of every term."""
         weights, lobes = self.weights(), self.lobes()
         if len(weights) != len(lobes):
             raise BrdfkitError(
@@ -156,58 +161,69 @@ class Model(Shown, Declaration):
 
     @property
     def values(self) -> dict[str, float | tuple[float, ...]]:
-        """The parameters' values by name."""
+        """The values of the parameters by name."""
         return {name: getattr(self, name) for name in self.parameters}
 
     @property
     def free_values(self) -> dict[str, float | tuple[float, ...]]:
-        """`values` without the parameters that follow another one and equal it."""
+        """The `values` without the parameters that follow another one and equal it."""
         values = self.values
         followed = {name: p.follows for name, p in self.parameters.items() if p.follows}
         return {n: v for n, v in values.items() if n not in followed or v != values[followed[n]]}
 
     @property
     def arguments(self) -> dict[str, Any]:
-        """What makes an equal model of the class: the `values`, and the wavelengths if any."""
+        """The arguments that make an equal model: the `values`, and the wavelengths if there are
+        any.
+        """
         known = {"wavelengths": self.wavelengths} if self.wavelengths else {}
         return {**known, **self.values}
 
     @property
     def rgb(self) -> Self:
-        """The model with weights in linear sRGB, as RGB pictures show it, or itself where they are.
+        """The model with weights in linear sRGB, as RGB pictures show it; itself if they are RGB
+        already.
 
-        A colour outside sRGB is clipped to the weight's bounds. Lobes with squares of weights
+        A colour outside sRGB is clipped to the bounds of the weight. Lobes with squares of weights
         (``oren_nayar``, ``eon``) have the square of the colour, not the colour of the square.
         """
         return type(self)(**to_rgb_values(self)) if self.wavelengths else self
 
     @property
     def name(self) -> str:
-        """What pictures and tables call it."""
+        """The name of the model in pictures and tables, which is its label."""
         return self.label()
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
-        """BRDF (n, channels) in sr⁻¹ of NumPy direction pairs (n, 3); 0 below the surface."""
+        """Compute the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3); it is 0 below the
+        surface.
+        """
         return evaluate_model(self, wi, wo)
 
     def scene_dict(self) -> dict[str, Any]:
-        """The dictionary for `mitsuba.load_dict`; of a spectral model for the current variant."""
+        """Return the dictionary for `mitsuba.load_dict`, for a spectral model in the current
+        variant.
+        """
         self.make_known()
         entries = {"type": self.type_name(), **self.changed_options()}
         shown = self if self.wavelengths and _is_spectral() else self.rgb
         return entries | to_mitsuba_entries(shown)
 
     def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and self.arguments == other.arguments
+        return (
+            isinstance(other, Model)
+            and type(self) is type(other)
+            and self.arguments == other.arguments
+        )
 
     def __hash__(self) -> int:
         return hash((type(self), *self.arguments.values()))
 
-    def __reduce__(self):
+    def __reduce__(self) -> Any:
         return reduce_model(self)
 
     def document(self) -> Document:
-        """What the model tells of itself: its look, its values and its page."""
+        """Return a summary of the model: small pictures, its values and its page."""
         shown = read_page(type(self))
         return Document(
             f"{self.label()}: {shown.sentence}",
@@ -228,8 +244,8 @@ class Model(Shown, Declaration):
         return f"{self.label()}({values})"
 
 
-def _is_spectral():
-    """Whether Mitsuba's current variant is spectral."""
+def _is_spectral() -> bool:
+    """Return whether Mitsuba's current variant is spectral."""
     import mitsuba as mi
 
-    return mi.is_spectral
+    return bool(mi.is_spectral)

@@ -1,10 +1,14 @@
 """Functions that stay accurate in single precision, where lobes are narrow."""
 
+from __future__ import annotations
+
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat
 
-def cosine_power(complement, exponent):
-    """cosine^exponent, of `complement` = 1 - cosine: accurate for large exponents.
+
+def cosine_power(complement: JitFloat, exponent: JitFloat) -> JitFloat:
+    """Return cosine^exponent for `complement` = 1 - cosine, accurate for large exponents.
 
     It is 0 where the cosine is not positive.
     """
@@ -12,14 +16,14 @@ def cosine_power(complement, exponent):
     return dr.select(complement < 1, power, 0)
 
 
-def log1p(x):
-    """log(1 + x), accurate for small x: W. Kahan's method."""
+def log1p(x: JitFloat) -> JitFloat:
+    """Return log(1 + x), accurate for small x, by W. Kahan's method."""
     y = 1 + x
     return dr.select(y == 1, x, dr.log(y) * x / dr.select(y == 1, 1, y - 1))
 
 
-def expm1(x):
-    """exp(x) - 1, accurate for small x: W. Kahan's method."""
+def expm1(x: JitFloat) -> JitFloat:
+    """Return exp(x) - 1, accurate for small x, by W. Kahan's method."""
     y = dr.exp(dr.maximum(x, -50))
     log_y = dr.log(y)
     return dr.select(y == 1, x, (y - 1) * dr.maximum(x, -50) / dr.select(y == 1, 1, log_y))

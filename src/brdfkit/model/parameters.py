@@ -1,4 +1,6 @@
-"""What a model declares: parameters, linear or not, and options."""
+"""The declarations of a model: parameters, which are linear or not, and options."""
+
+from __future__ import annotations
 
 import math
 from dataclasses import dataclass
@@ -6,19 +8,20 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import ArrayLike
 from brdfkit.core.errors import BrdfkitError
 
 NOT_NEGATIVE, SIGNED = (0.0, math.inf), (-math.inf, math.inf)
-# Weights beyond this have squares that are no numbers
-LARGEST = 1e100
+LARGEST_WEIGHT = 1e100  # the square of a larger weight may be infinite
 
 
 @dataclass(frozen=True)
 class Parameter:
     """A parameter of a model, with its default, its bounds (low, high) and its meaning.
 
-    `linear`: whether it is a weight; `log`: whether it is searched on a logarithmic scale;
-    `follows`: the parameter that it equals unless given; `width`: p in: lobe width ∝ parameter^p.
+    `linear` says whether it is a weight, `log` whether it is searched on a logarithmic scale.
+    `follows` names the parameter that it equals unless it is given. `width` is p in: lobe width ∝
+    parameter^p.
     """
 
     default: float | None
@@ -29,7 +32,7 @@ class Parameter:
     follows: str | None = None
     width: float = 0.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         low, high = self.bounds
         if self.linear and (low, high) not in (NOT_NEGATIVE, SIGNED):
             raise BrdfkitError(
@@ -46,52 +49,60 @@ class Parameter:
         if self.default is not None and (problem := self.find_problem(self.default)):
             raise BrdfkitError(f"{self.meaning!r}: the default {problem}.")
 
-    def find_problem(self, value):
-        """What is wrong with `value`, one number or several; None where all are within bounds."""
+    def find_problem(self, value: ArrayLike) -> str | None:
+        """Say what is wrong with one number or several; return None if all are within the
+        bounds.
+        """
         low, high = self.bounds
         given = np.asarray(value)
         if np.all(np.isfinite(given) & (given >= low) & (given <= high)):
-            large = np.abs(given).max(initial=0) > LARGEST
-            return f"{value} is out of bounds: it should be at most {LARGEST:g}" if large else None
+            large = np.abs(given).max(initial=0) > LARGEST_WEIGHT
+            return (
+                f"{value} is out of bounds: it should be at most {LARGEST_WEIGHT:g}"
+                if large
+                else None
+            )
         limits = f"at least {low:g}" if math.isinf(high) else f"between {low:g} and {high:g}"
         return f"{value} is out of bounds: it should be {limits}"
 
 
-def weight(default, meaning, bounds=NOT_NEGATIVE):
-    """A linear parameter: the strength of one lobe, per colour channel.
+def weight(default: float, meaning: str, bounds: tuple[float, float] = NOT_NEGATIVE) -> Any:
+    """Declare a linear parameter: the strength of one lobe in each colour channel.
 
-    `bounds`: ``(0, math.inf)``, or ``(-math.inf, math.inf)`` where it may be negative.
+    `bounds` are ``(0, math.inf)``, or ``(-math.inf, math.inf)`` if the weight may be negative.
     """
     return Parameter(default, bounds, meaning, linear=True)
 
 
-def shape(default, bounds, meaning, log=False, width=0.0):
-    """A nonlinear parameter within `bounds` (low, high), both finite.
+def shape(
+    default: float, bounds: tuple[float, float], meaning: str, log: bool = False, width: float = 0.0
+) -> Any:
+    """Declare a nonlinear parameter within finite `bounds` (low, high).
 
-    `log`: True for a parameter whose order of magnitude matters, such as a width;
-    `width`: p in: lobe width ∝ parameter^p. It is 1 for a width, -0.5 for an exponent n, whose lobe
-    is about 1/√n wide, and 0 for all others. By it, a sum of models begins with unequal widths.
+    `log` is True for a parameter whose order of magnitude matters, such as a width. `width` is p
+    in: lobe width ∝ parameter^p. It is 1 for a width, -0.5 for an exponent n, whose lobe is about
+    1/√n wide, and 0 for all others. A sum of models uses it to begin with unequal widths.
     """
     return Parameter(default, bounds, meaning, log=log, width=width)
 
 
-def follows(other, parameter, meaning):
-    """A shape parameter that equals the one named `other` unless given: anisotropy."""
+def follows(other: str, parameter: Parameter, meaning: str) -> Any:
+    """Declare a shape parameter that equals the one named `other` unless given, for anisotropy."""
     return Parameter(None, parameter.bounds, meaning, log=parameter.log, follows=other)
 
 
 @dataclass(frozen=True)
 class Option:
-    """A choice that is no number to fit: a form of the model, an order, a count of lobes."""
+    """A choice that is not a number to fit: a form of the model, an order, a count of lobes."""
 
     default: Any
-    choices: tuple | None
+    choices: tuple[Any, ...] | None
     meaning: str
 
-    def read(self, given, what):
-        """The option's value for `given`, a word or a number.
+    def read(self, given: Any, what: str) -> Any:
+        """Convert a word or a number to a value of the option.
 
-        Raises `BrdfkitError`, which calls the option `what`.
+        Raises `BrdfkitError`, which calls the option `what`, for a value that is not allowed.
         """
         value = type(self.default)(given) if _is_convertible(type(self.default), given) else given
         if type(value) is not type(self.default) or (self.choices and value not in self.choices):
@@ -100,13 +111,15 @@ class Option:
         return value
 
 
-def option(default, choices, meaning):
-    """An `Option` with its `choices`, None where any value of the default's type is allowed."""
+def option(default: Any, choices: tuple[Any, ...] | None, meaning: str) -> Any:
+    """Declare an option with its `choices`, or None if any value of the default's type is
+    allowed.
+    """
     return Option(default, choices, meaning)
 
 
-def _is_convertible(kind, given):
-    """Whether `given` is a value of the type `kind`, or a word for one."""
+def _is_convertible(kind: Any, given: Any) -> bool:
+    """Return whether `given` is a value of the type `kind`, or a word for one."""
     try:
         return kind(given) == given or str(kind(given)) == given
     except (TypeError, ValueError):

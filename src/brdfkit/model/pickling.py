@@ -1,14 +1,17 @@
 """Pickles a model with values: its class, its options and its values.
 
 Another process cannot import a class that a user's file defines. So the pickle holds the path and
-the checksum of the file, which is loaded with the pickle. Pickles refer to `restored` and
+the checksum of the file, which is loaded together with the pickle. Pickles refer to `restored` and
 `UsersClass` by these names, which therefore stay.
 """
+
+from __future__ import annotations
 
 import sys
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.errors import BrdfkitError
@@ -17,16 +20,19 @@ from brdfkit.core.files import sha256
 
 @dataclass(frozen=True)
 class UsersClass:
-    """A class in a user's file: its `name` in the module, the file's `path` and `checksum`."""
+    """A class in a user's file: its `name` in the module, and the `path` and `checksum` of the
+    file.
+    """
 
     name: str
     path: str
     checksum: str
 
-    def load(self):
-        """The class from the loaded file with the name of `path`, else from the file at `path`.
+    def load(self) -> Any:
+        """Return the class from the loaded file with the name of `path`, or else from the file at
+        `path`.
 
-        Warns where the file has changed since, raises `BrdfkitError` where it is missing.
+        Warns if the file has changed since, and raises `BrdfkitError` if it is missing.
         """
         path = Path(self.path)
         file = plugin_files.find_plugins(plugin_files.MODELS).get(path.stem, path)
@@ -45,22 +51,24 @@ class UsersClass:
         return getattr(plugin_files.import_plugin(file), self.name)
 
 
-def reduce_model(model):
-    """What `pickle` stores of a model, as `object.__reduce__` returns it."""
+def reduce_model(model: Any) -> tuple[Any, ...]:
+    """Return what `pickle` stores of a model, as `object.__reduce__` does."""
     classes = tuple(map(_make_portable, model.made_of()))
     return restored, (classes, model.changed_options(), model.arguments)
 
 
-def restored(classes, options, values):
-    """The model that was pickled; `classes`: its own, then those of its terms; `values`: its
-    `Model.arguments`."""
+def restored(classes: tuple[Any, ...], options: dict[str, Any], values: dict[str, Any]) -> Any:
+    """Restore a pickled model from its class, which is the first of `classes`.
+
+    The other classes are those of its terms; `values` are its `Model.arguments`.
+    """
     own, *_ = (c.load() if isinstance(c, UsersClass) else c for c in classes)
     return own.configured(**options)(**values)
 
 
-def _make_portable(cls):
-    """What stands for a class in a pickle: `UsersClass` for one of a user's file, else itself."""
+def _make_portable(cls: type) -> Any:
+    """Replace a class that a user's file defines by a `UsersClass`, for the pickle."""
     if cls.__module__.rpartition(".")[0] != plugin_files.USERS:
         return cls
-    file = Path(sys.modules[cls.__module__].__file__)
+    file = Path(str(sys.modules[cls.__module__].__file__))
     return UsersClass(cls.__name__, str(file), sha256(file))

@@ -1,20 +1,30 @@
-"""The table of a model's values: a row for each parameter, with its errors where they are known."""
+"""Makes the table of a model's values: a row for each parameter, with its error if that is
+known.
+"""
+
+from __future__ import annotations
 
 import math
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, ArrayLike
 from brdfkit.core.documents import Cell, Table
-from brdfkit.core.documents.parts import BAD
+from brdfkit.core.documents.parts import BAD, Row
+from brdfkit.model.parameters import Parameter
 
-MOST = 3  # numbers of a weight that are shown; of more the least and the most
+LARGEST_COUNT = 3  # numbers of a weight that are shown; of more numbers, the range is shown
 
 
-def make_value_table(model, errors=None, at_bounds=()):
-    """The `Table` of a `Model` with values.
+def make_value_table(
+    model: Any, errors: Mapping[str, Any] | None = None, at_bounds: Collection[str] = ()
+) -> Table:
+    """Make the table of a model with values.
 
-    `errors`: standard errors in the form of ``model.values``, NaN where there is none; `at_bounds`:
-    the parameters that a fit left on a bound.
+    `errors` are standard errors in the form of ``model.values``, NaN where there is none.
+    `at_bounds` names the parameters that a fit left on a bound.
     """
     return Table(
         tuple(
@@ -24,7 +34,8 @@ def make_value_table(model, errors=None, at_bounds=()):
     )
 
 
-def _make_row(model, name, value, error, is_on_bound):
+def _make_row(model: Any, name: str, value: Any, error: ArrayLike, is_on_bound: bool) -> Row:
+    """Make the row of a parameter: its name, its value and a note."""
     parameter = model.parameters[name]
     low, high = parameter.bounds
     within = f" ({low:g} to {high:g})" if math.isfinite(high) else ""
@@ -35,32 +46,33 @@ def _make_row(model, name, value, error, is_on_bound):
     return Cell(name, hint=parameter.meaning + within), shown, note
 
 
-def _format_numbers(value, error, wavelengths):
-    """The numbers of a parameter in words, with their standard errors."""
+def _format_numbers(value: Any, error: ArrayLike, wavelengths: Sequence[float]) -> str:
+    """Format the numbers of a parameter with their standard errors."""
     values = np.atleast_1d(value)
     errors = np.broadcast_to(error, values.shape)
-    if len(values) > MOST:
+    if len(values) > LARGEST_COUNT:
         return _summarise(values, errors, wavelengths)
     return "  ".join(map(_format_with_error, values, errors))
 
 
-def _format_with_error(value, error):
-    """A value with its standard error, if it has one."""
+def _format_with_error(value: float, error: float) -> str:
+    """Format a value with its standard error, if it has one."""
     return f"{value:.6g}" if np.isnan(error) else f"{value:.6g} ± {error:.2g}"
 
 
-def _summarise(values, errors, wavelengths):
-    """Many numbers as the least and the most of them."""
+def _summarise(values: AnyArray, errors: AnyArray, wavelengths: Sequence[float]) -> str:
+    """Format many numbers as the smallest and the largest of them, with their wavelengths."""
     least, most = (
-        f"{values[k]:.4g} at {wavelengths[k]:g} nm" for k in (np.argmin(values), np.argmax(values))
+        f"{values[k]:.4g} at {wavelengths[k]:g} nm"
+        for k in map(int, (np.argmin(values), np.argmax(values)))
     )
     known = errors[np.isfinite(errors)]
     error = f", ± {np.median(known):.2g} in the median" if len(known) else ""
     return f"{least} to {most}{error}"
 
 
-def _find_place(value, parameter):
-    """Where the value of a shape parameter lies between its bounds, 0 to 1; None of a weight."""
+def _find_place(value: float, parameter: Parameter) -> float | None:
+    """Return where a shape parameter lies between its bounds, 0 to 1, or None for a weight."""
     if parameter.linear:
         return None
     low, high, at = (math.log(x) if parameter.log else x for x in (*parameter.bounds, value))

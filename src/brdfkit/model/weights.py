@@ -1,33 +1,41 @@
-"""The values of a model's weights: one number, linear R, G, B, or one number per wavelength."""
+"""Reads and converts the values of weights: one number, linear R, G, B, or one per wavelength."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from brdfkit.core.colours import compute_rgb_weights
 from brdfkit.core.errors import BrdfkitError
 
-CHANNELS = 1, 3  # how many a weight may have without wavelengths: achromatic, linear sRGB
-VISIBLE = 360.0, 830.0  # nm, where Mitsuba's spectral variants look
-MOST_PRINTED = 3  # numbers
+CHANNELS = 1, 3  # numbers of a weight without wavelengths: achromatic, linear sRGB
+VISIBLE = 360.0, 830.0  # nm, the range of Mitsuba's spectral variants
+LARGEST_COUNT = 3  # numbers of a weight that are printed
 
 
-def check_wavelengths(wavelengths, what):
-    """`wavelengths` [nm] as a tuple of floats; `BrdfkitError` unless they differ and are above 0.
+def check_wavelengths(wavelengths: Any, what: str) -> tuple[float, ...]:
+    """Return wavelengths [nm] as a tuple; raise `BrdfkitError` unless they differ and are above 0.
 
-    `what`: names the model in the error.
+    `what` names the model in the error.
     """
     try:
-        found = tuple(map(float, wavelengths))
+        numbers = tuple(map(float, wavelengths))
     except (TypeError, ValueError):
-        found = (np.nan,)
-    if len(set(found)) != len(found) or not all(0 < w < np.inf for w in found):
+        numbers = (np.nan,)
+    if len(set(numbers)) != len(numbers) or not all(0 < w < np.inf for w in numbers):
         raise BrdfkitError(
             f"{what}: wavelengths = {wavelengths!r} should be different numbers above 0 [nm]."
         )
-    return found
+
+    return numbers
 
 
-def read_value(value, per_channel, wavelengths, what):
-    """`value` as a float, or as a tuple of floats if `per_channel` and given so."""
+def read_value(
+    value: Any, per_channel: bool, wavelengths: Sequence[float], what: str
+) -> float | tuple[float, ...]:
+    """Return a value as a float, or as a tuple of floats if it is given `per_channel`."""
     lengths = (1, len(wavelengths)) if wavelengths else CHANNELS
     try:
         if np.ndim(value) == 0:
@@ -45,8 +53,8 @@ def read_value(value, per_channel, wavelengths, what):
     raise BrdfkitError(f"{what} = {given} should be {expected}.")
 
 
-def to_rgb_values(model):
-    """The values by name of a model with wavelengths, its weights in linear sRGB.
+def to_rgb_values(model: Any) -> dict[str, Any]:
+    """Return the values by name of a model with wavelengths, with its weights in linear sRGB.
 
     A colour outside sRGB is clipped to the bounds of its weight.
     """
@@ -58,8 +66,10 @@ def to_rgb_values(model):
     return values
 
 
-def to_mitsuba_entries(model):
-    """The values of a model by name, as Mitsuba takes them: a colour, a spectrum or a number."""
+def to_mitsuba_entries(model: Any) -> dict[str, Any]:
+    """Return the values of a model by name, as Mitsuba takes them: a colour, a spectrum or a
+    number.
+    """
     entries = {}
     for name, value in model.free_values.items():
         if isinstance(value, tuple) and model.wavelengths:
@@ -70,8 +80,8 @@ def to_mitsuba_entries(model):
     return entries
 
 
-def _make_spectrum(value, wavelengths, what):
-    """The spectrum of one number per wavelength: linear between these, constant beyond."""
+def _make_spectrum(value: tuple[float, ...], wavelengths: Sequence[float], what: str) -> Any:
+    """Make the spectrum of one number per wavelength, linear between these and constant beyond."""
     if min(value) < 0:
         raise BrdfkitError(
             f"{what} is a spectrum with a value below 0, which Mitsuba does not hold; use an rgb "
@@ -88,10 +98,10 @@ def _make_spectrum(value, wavelengths, what):
     }
 
 
-def format_value(value):
-    """A value as a short text."""
+def format_value(value: Any) -> str:
+    """Format a value as a short text."""
     if not isinstance(value, tuple):
         return f"{value:.4g}"
-    if len(value) > MOST_PRINTED:
+    if len(value) > LARGEST_COUNT:
         return f"[{len(value)} from {min(value):.4g} to {max(value):.4g}]"
     return "[" + ", ".join(f"{v:.4g}" for v in value) + "]"

@@ -11,7 +11,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.colours import RGB
 from brdfkit.core.json_values import round_numbers, to_json
-from brdfkit.model.value_table import MOST
+from brdfkit.model.value_table import LARGEST_COUNT
 from brdfkit.regression import Fit
 
 DIGITS = 9  # of numbers in JSON: enough to make the model, and the same on every machine
@@ -50,7 +50,7 @@ def _describe_parameter(fit: Fit, name: str) -> dict[str, Any]:
 
 def _format_numbers(values: AnyArray, errors: AnyArray) -> list[tuple[str, str]]:
     """Return values with their standard errors, or "", as text; of many, the extreme ones."""
-    if len(values) > MOST:
+    if len(values) > LARGEST_COUNT:
         chosen = [int(np.argmin(values)), int(np.argmax(values))]
         values, errors = values[chosen], errors[chosen]
     return [

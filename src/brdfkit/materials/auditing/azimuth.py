@@ -33,11 +33,11 @@ def compute_turned_error_ratio(samples: Samples) -> float:
     if len(samples.wi) > MOST_SAMPLES:
         rows = np.random.default_rng(0).choice(len(samples.wi), MOST_SAMPLES, replace=False)
         samples = samples.at(rows)
-    rows = samples.within(MAX_ANGLE)
-    if rows.sum() < FEWEST_SAMPLES or _correlate_forwards(samples.at(rows)) > CLEAR_CORRELATION:
+    inside = samples.within(MAX_ANGLE)
+    if inside.sum() < FEWEST_SAMPLES or _correlate_forwards(samples.at(inside)) > CLEAR_CORRELATION:
         return np.nan
     turned = replace(samples, wo=samples.wo * TURN)
-    error, turned_error = (_compute_error(s.at(rows)) for s in (samples, turned))
+    error, turned_error = (_compute_error(s.at(inside)) for s in (samples, turned))
     return turned_error / error if error > 0 else np.nan
 
 

@@ -118,7 +118,8 @@ def _make_nearness_test(data: MeasuredData) -> Callable[[FloatArray, FloatArray]
     from scipy.spatial import cKDTree
 
     if data._table is not None:
-        table, known = data._table, np.isfinite(data._table.values).all(axis=-1)
+        table = data._table
+        known = np.asarray(np.isfinite(table.values).all(axis=-1))
         return lambda wi, wo: known[table.find_cells(wi, wo)]
     samples = data.samples.at(data.samples.valid)
     tree = cKDTree(compute_sample_coordinates(samples.wi, samples.wo, data.anisotropic))

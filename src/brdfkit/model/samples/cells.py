@@ -1,30 +1,38 @@
-"""The directions of a table's cells: equal for all tables of one size, and so computed once."""
+"""Computes the directions of a table's cells, once for all tables of one size."""
+
+from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray, IntArray
 from brdfkit.core.geometry.directions import from_half_difference
 from brdfkit.core.jit.padding import make_padded_rows
 
 
-def minimum_cosine(max_angle):
-    """The cosine that a direction's z exceeds where its angle to the normal is below `max_angle`
-    [degrees]."""
+def minimum_cosine(max_angle: float) -> float:
+    """Return the cosine that a direction's z exceeds if its angle is below `max_angle`
+    [degrees].
+    """
     return math.cos(math.radians(max_angle)) * (1 + 1e-12)
 
 
 @lru_cache(maxsize=1)
-def find_directions_within(axes, max_angle):
-    """(cells, wi, wo): the numbers (n,), in C order, of the cells with both angles below
-    `max_angle` [degrees], and their directions (n, 3), each coordinate contiguous.
+def find_directions_within(
+    axes: tuple[tuple[float, ...], ...], max_angle: float
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Find the cells with both angles to the normal below `max_angle` [degrees].
 
-    `axes`: the centres along ([phi_h,] theta_h, theta_d, phi_d) [rad], tuples.
+    `axes` are the centres of cells along ([phi_h,] theta_h, theta_d, phi_d) [rad]. Returns the
+    indices of the cells (n,), in C order, and their directions wi and wo (n, 3), each coordinate
+    contiguous.
     """
     first, *others = axes
     parts, size = [], math.prod(map(len, others))
-    for number, centre in enumerate(first):  # a slab at a time: little memory
+    for number, centre in enumerate(first):  # one slab at a time takes little memory
         *phi_h, theta_h, theta_d, phi_d = np.meshgrid([centre], *others, indexing="ij")
         pair = from_half_difference(theta_h, theta_d, phi_d, *phi_h)
         wi, wo = (w.reshape(-1, 3) for w in pair)
@@ -35,8 +43,10 @@ def find_directions_within(axes, max_angle):
     return cells, copy_columns(wi), copy_columns(wo)
 
 
-def copy_columns(array, rows=None):
-    """An array (n, k), or its `rows`, whose columns are contiguous, and as Dr.Jit reads them."""
+def copy_columns(array: AnyArray, rows: Any = None) -> AnyArray:
+    """Copy an array (n, k), or some of its rows, so that its columns are contiguous, as for
+    Dr.Jit.
+    """
     taken = [values if rows is None else values[rows] for values in array.T]
     columns = make_padded_rows(len(taken), len(taken[0]))
     for column, values in zip(columns, taken, strict=True):

@@ -1,19 +1,21 @@
-"""Measures of pairs of directions: how much of each a sample stands for.
+"""Measures of direction pairs: how much of each measure a sample stands for.
 
-A loss is an integral over all pairs of directions; a file's samples only estimate it. The integral
-needs a measure, and two are natural for a BRDF. With the half and difference angles of
+A loss is an integral over all pairs of directions, which the samples of a file estimate. The
+integral needs a measure, and two are natural for a BRDF. With the half and difference angles of
 [Rusinkiewicz 1998] they are
 
     angles        dθ_h dθ_d dφ_d,             in which a highlight is large, and
     solid angle   dω_i dω_o = s dθ_h dθ_d dφ_d · 4 dφ_h,   s = sinθ_h sinθ_d cosθ_d,
 
-in which it is small. A sample's *extents* are the shares of both that it stands for. Between the
-two lies their geometric mean, ``"balanced"``, which has the density √s in the angles.
+in which it is small. The *extents* of a sample are the shares of both measures that it stands for.
+``"balanced"`` is the geometric mean of the two measures, with the density √s in the angles.
 
 The extents of scattered samples are estimated: points are spread over all pairs of directions, and
-each point belongs to the sample that is nearest, if one is near. Formats and tables whose grid is
-known state theirs.
+each point belongs to the nearest sample, if one is near. Formats and tables with a known grid state
+their extents.
 """
+
+from __future__ import annotations
 
 from functools import cache
 
@@ -24,28 +26,31 @@ from brdfkit.core.geometry.directions import from_half_difference, to_half_diffe
 from brdfkit.model.samples.cells import minimum_cosine
 from brdfkit.model.samples.coordinates import compute_coordinates, compute_sample_coordinates
 
-# The power of s that is the density of a measure in the angles; without one, each sample counts 1
+# The density of a measure in the angles is this power of s; None gives each sample the weight 1
 MEASURES: dict[str, float | None] = {
     "samples": None,
     "angles": 0.0,
     "balanced": 0.5,
     "solid_angle": 1.0,
 }
-# A point belongs to no sample that is farther than this in the coordinates of `coordinates.py`:
-# 3.6° in theta_h, or 0.5 in sin theta_d
+# The farthest sample that a point belongs to, in the coordinates of `coordinates.py`: 3.6° in
+# theta_h, or 0.5 in sin theta_d
 REACH = 0.5
-# Points for each sample, and how many there are at least and at most
-POINTS, FEWEST, LARGEST_NUMBER = 16, 2**13, 2**18
+# Points for each sample, and their least and largest number in all
+POINTS, FEWEST_POINTS, LARGEST_NUMBER = 16, 2**13, 2**18
 # The least extent in the angles, as a share of the mean one
-LITTLE = 0.01
-# Bins of theta_h, even in its square root, by which half of the points go where the samples are
+LEAST_EXTENT = 0.01
+# Bins of theta_h, even in its square root; half of the points go to the bins of the samples
 BINS = 90
-# Cells along theta_h, theta_d and phi_d by which the measures of all pairs are known to 1e-3
+# Cells along theta_h, theta_d and phi_d, which integrate the measures to 1e-3
 GRID = 180, 90, 90
 
 
 def compute_measure(extents: FloatArray | None, measure: str) -> FloatArray | float:
-    """How much each sample counts by a measure's name; `extents` (n, 2), or None if unknown."""
+    """Return the measure of each sample by the name of the measure and the extents (n, 2).
+
+    It is 1 if the extents are None, which means unknown.
+    """
     power = MEASURES[measure]
     if power is None or extents is None:
         return 1.0
@@ -56,13 +61,13 @@ def compute_measure(extents: FloatArray | None, measure: str) -> FloatArray | fl
 
 
 def density(theta_h: FloatArray, theta_d: FloatArray) -> FloatArray:
-    """s = sinθ_h sinθ_d cosθ_d, the density of solid angle in the angles [rad]."""
+    """Return s = sinθ_h sinθ_d cosθ_d, the density of solid angle in the angles [rad]."""
     return np.sin(theta_h) * np.sin(theta_d) * np.cos(theta_d)
 
 
 @cache
 def integrate_measure(max_angle: float, measure: str) -> float:
-    """A measure of all pairs with both angles below `max_angle` [degrees], φ_d over 2π."""
+    """Return the measure of all direction pairs with both angles below `max_angle` [degrees]."""
     steps = [(np.arange(n) + 0.5) / n for n in GRID]
     theta_h, theta_d, phi_d = np.meshgrid(*steps, indexing="ij")
     theta_h, theta_d, phi_d = theta_h * np.pi / 2, theta_d * np.pi / 2, phi_d * 2 * np.pi
@@ -70,14 +75,17 @@ def integrate_measure(max_angle: float, measure: str) -> float:
     least = minimum_cosine(max_angle)
     inside = (wi[..., 2] > least) & (wo[..., 2] > least)
     cell = (np.pi / 2) ** 2 * 2 * np.pi / inside.size
-    return float(cell * np.sum(density(theta_h, theta_d)[inside] ** MEASURES[measure]))
+    return float(cell * np.sum(density(theta_h, theta_d)[inside] ** (MEASURES[measure] or 0.0)))
 
 
 def estimate_extents(
     wi: FloatArray, wo: FloatArray, anisotropic: bool, max_angle: float
 ) -> FloatArray:
-    """The extents (n, 2) of scattered samples at direction pairs (n, 3), all with both angles below
-    `max_angle` [degrees]: how much of both measures is nearest to each."""
+    """Estimate the extents (n, 2) of scattered samples at direction pairs (n, 3).
+
+    They are the shares of both measures that are nearest to each sample. All angles to the normal
+    have to be below `max_angle` [degrees].
+    """
     from scipy.spatial import cKDTree
 
     points_i, points_o, volumes = _spread_points(wi, wo, anisotropic, max_angle)
@@ -89,24 +97,29 @@ def estimate_extents(
     sums = np.stack(
         [np.bincount(nearest[near], volume[near], len(places)) for volume in volumes.T], axis=1
     )
-    # Samples at one place share what it stands for
+    # Samples at one place share its extents
     shares = (sums / np.bincount(same)[:, None])[same]
     # A pair in both orders is one sample
     extents = shares.reshape(-1, len(wi), 2).sum(axis=0)
-    # One so near to others that no point reached it stands for little, but for something
+    # A sample that no point reached, since others are very near, gets a small extent
     missed = extents[:, 0] == 0
     theta_h, theta_d, _ = to_half_difference(wi[missed], wo[missed])
-    extents[missed, 0] = LITTLE * extents[:, 0].mean()
+    extents[missed, 0] = LEAST_EXTENT * extents[:, 0].mean()
     extents[missed, 1] = extents[missed, 0] * density(theta_h, theta_d)
     return extents
 
 
-def _spread_points(wi, wo, anisotropic, max_angle):
-    """Pairs of directions (m, 3) below `max_angle`, even over the angles but denser in θ_h where
-    the samples are, and the volumes (m, 2) by both measures that they stand for."""
+def _spread_points(
+    wi: FloatArray, wo: FloatArray, anisotropic: bool, max_angle: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Spread pairs of directions (m, 3) below `max_angle`, and return their volumes (m, 2), too.
+
+    The pairs are even over the angles, but denser in θ_h where the samples are. The volumes are
+    those by both measures.
+    """
     from scipy.stats import qmc
 
-    count = int(np.clip(POINTS * len(wi), FEWEST, LARGEST_NUMBER))
+    count = int(np.clip(POINTS * len(wi), FEWEST_POINTS, LARGEST_NUMBER))
     u = qmc.Sobol(4 if anisotropic else 3, rng=0).random_base2(int(np.ceil(np.log2(count))))
     edges = np.linspace(0, 1, BINS + 1) ** 2
     h = wi + wo

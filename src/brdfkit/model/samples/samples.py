@@ -1,82 +1,103 @@
 """Samples of a BRDF: direction pairs with the values measured there."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, ArrayLike, BoolArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model.samples.cells import copy_columns, find_directions_within, minimum_cosine
+from brdfkit.model.samples.table import Table
 
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Direction pairs with the BRDF's values.
+    """Direction pairs with the values of a BRDF.
 
-    `wi`, `wo`: unit vectors (n, 3); `values`: (n, channels) in sr⁻¹, as measured, negative ones
-    included; `valid`: (n,), False where the reader or the format says that nothing was measured;
-    `weight`: (n,), a factor of each sample in every loss, such as a user's weight; `extents`:
-    (n, 2), how much of both measures of `measures.py` each sample stands for, or None where that is
-    not known.
-    `cells`: of a table's cells, the numbers (n,) of the half vector and of its pair with theta_d,
-    each in order; else None. `errors`: the standard errors of the values (n, channels), where they
-    are known and count.
+    `wi` and `wo` are unit vectors (n, 3); `values` (n, channels) in sr⁻¹ are as measured, negative
+    ones included. `valid` (n,) is False where the reader or the format says that nothing was
+    measured. `weight` (n,) is a factor of each sample in every loss, such as a user's weight.
+    `extents` (n, 2) say how much of both measures of `measures.py` each sample stands for, or None
+    if that is unknown.
+
+    For the cells of a table, `cells` holds the indices (n,) of the half vector and of its pair with
+    theta_d, each in increasing order; else None. `errors` (n, channels) are the standard errors of
+    the values where they are known and count.
     """
 
-    wi: np.ndarray
-    wo: np.ndarray
-    values: np.ndarray
-    valid: np.ndarray
-    weight: np.ndarray
-    extents: np.ndarray | None = None
-    cells: tuple[np.ndarray, np.ndarray] | None = None
-    errors: np.ndarray | None = None
+    wi: AnyArray
+    wo: AnyArray
+    values: AnyArray
+    valid: AnyArray
+    weight: AnyArray
+    extents: AnyArray | None = None
+    cells: tuple[AnyArray, ...] | None = None
+    errors: AnyArray | None = None
 
     @classmethod
-    def from_arrays(cls, wi, wo, values, valid, channels, name):
-        """`Samples` of arrays as a user gives them.
+    def from_arrays(
+        cls,
+        wi: ArrayLike,
+        wo: ArrayLike,
+        values: ArrayLike,
+        valid: ArrayLike | None,
+        channels: Sequence[str],
+        name: str,
+    ) -> Samples:
+        """Make samples from arrays as a user gives them.
 
-        `wi`, `wo`: vectors (n, 3), normalised here; `values`: (n, channels), or (n,) of one
-        channel; `valid`: (n,) or None. Samples that are not finite or have a direction below the
-        surface become invalid. Raises `BrdfkitError` for shapes that do not fit, and where no
+        `wi` and `wo` are vectors (n, 3), which are normalised here; `values` (n, channels), or (n,)
+        for one channel; `valid` (n,) or None. Samples that are not finite or have a direction below
+        the surface become invalid. Raises `BrdfkitError` for shapes that do not fit, and where no
         sample is valid.
         """
         given = [np.array(a, float) for a in (wi, wo, values)]
-        wi, wo, values = (np.atleast_2d(a) for a in given)
+        w_i, w_o, f = (np.atleast_2d(a) for a in given)
         if given[2].ndim == 1 and len(channels) == 1:
-            values = given[2][:, None]
-        if wi.shape != wo.shape or wi.shape[1:] != (3,) or values.shape != (len(wi), len(channels)):
+            f = given[2][:, None]
+        if w_i.shape != w_o.shape or w_i.shape[1:] != (3,) or f.shape != (len(w_i), len(channels)):
             shapes = [a.shape for a in given]
             raise BrdfkitError(
                 f"{name}: wi {shapes[0]} and wo {shapes[1]} should be (n, 3), values {shapes[2]} "
                 f"should be (n, {len(channels)}) for the channels {', '.join(channels)}."
             )
         with np.errstate(invalid="ignore", divide="ignore"):
-            wi, wo = (w / np.linalg.norm(w, axis=1, keepdims=True) for w in (wi, wo))
-        usable = _find_usable(wi, wo, values)
+            w_i, w_o = (w / np.linalg.norm(w, axis=1, keepdims=True) for w in (w_i, w_o))
+        usable = _find_usable(w_i, w_o, f)
         if valid is not None:
-            usable &= _check_mask(valid, len(wi), name)
-        require_valid(usable, name, values, channels)
-        return cls(wi, wo, values, usable, np.ones(len(usable)))
+            usable &= _check_mask(valid, len(w_i), name)
+        require_valid(usable, name, f, channels)
+        return cls(w_i, w_o, f, usable, np.ones(len(usable)))
 
     @classmethod
-    def from_table(cls, table):
-        """One sample per cell of a `Table`, at the cell's centre."""
+    def from_table(cls, table: Table) -> Samples:
+        """Make one sample for each cell of a table, at the cell's centre."""
         wi, wo = (w.reshape(-1, 3) for w in table.directions())
         values = table.values.reshape(len(wi), -1)
         return cls(wi, wo, values, _find_usable(wi, wo, values), np.ones(len(wi)))
 
     @classmethod
-    def from_cells(cls, table, max_angle, factors=None, errors=None):
-        """As `from_table`, of the known cells with both angles below `max_angle` [degrees].
+    def from_cells(
+        cls,
+        table: Table,
+        max_angle: float,
+        factors: AnyArray | None = None,
+        errors: AnyArray | None = None,
+    ) -> Samples:
+        """Make samples of the known cells of a table with both angles below `max_angle` [degrees].
 
-        `factors`: of the weights, (cells,), and `errors` (cells, channels): of all cells, in C
-        order.
+        `factors` (cells,) are factors of the weights, and `errors` (cells, channels) standard
+        errors, for all cells in C order.
         """
         axes = tuple(tuple(axis.tolist()) for axis in table.centres)
         cells, wi, wo = find_directions_within(axes, float(max_angle))
         values = table.values.reshape(-1, table.values.shape[-1])
         values = copy_columns(values, cells)
-        known = np.isfinite(values).all(axis=1)
+        known = np.asarray(np.isfinite(values).all(axis=1))
         n_h, n_d, n_p = table.shape[-3:]
         pairs = cells // n_p
         half_vectors = pairs // n_d
@@ -87,29 +108,31 @@ class Samples:
         return samples if known.all() else samples.at(known)
 
     @property
-    def largest_angle(self):
+    def largest_angle(self) -> float:
         """The largest angle to the normal of all directions [degrees]."""
         return float(np.degrees(np.arccos(min(self.wi[:, 2].min(), self.wo[:, 2].min(), 1.0))))
 
-    def within(self, max_angle):
-        """A mask (n,) of the valid samples with θ_i and θ_o below `max_angle` [degrees]."""
+    def within(self, max_angle: float) -> BoolArray:
+        """Return a mask (n,) of the valid samples with θ_i and θ_o below `max_angle` [degrees]."""
         cos_min = minimum_cosine(max_angle)
         return self.valid & (self.wi[:, 2] > cos_min) & (self.wo[:, 2] > cos_min)
 
-    def at(self, rows):
-        """The `Samples` of these `rows` (a mask or indices)."""
-        vectors = (copy_columns(a, rows) for a in (self.wi, self.wo, self.values))
+    def at(self, rows: Any) -> Samples:
+        """Return the samples of some `rows`, a mask or indices."""
+        wi, wo, values = (copy_columns(a, rows) for a in (self.wi, self.wo, self.values))
         cells = self.cells and tuple(numbers[rows] for numbers in self.cells)
-        extents, errors = (None if of is None else of[rows] for of in (self.extents, self.errors))
-        return Samples(*vectors, self.valid[rows], self.weight[rows], extents, cells, errors)
+        extents, errors = (a if a is None else a[rows] for a in (self.extents, self.errors))
+        return Samples(wi, wo, values, self.valid[rows], self.weight[rows], extents, cells, errors)
 
 
-def require_valid(valid, name, values, channels):
-    """Raise `BrdfkitError` where no sample is valid, by the mask `valid` (...); it names the
-    `channels` that have no finite one among the `values` (..., channels)."""
+def require_valid(valid: AnyArray, name: str, values: AnyArray, channels: Sequence[str]) -> None:
+    """Raise `BrdfkitError` where no sample is valid, by a mask `valid` (...).
+
+    The error names the `channels` that have no finite value among `values` (..., channels).
+    """
     if not valid.any():
-        known = np.isfinite(values).reshape(-1, len(channels)).any(axis=0)
-        blank = [channel for channel, has in zip(channels, known, strict=True) if not has]
+        known = np.isfinite(values).reshape(-1, len(channels))
+        blank = [channel for channel, has in zip(channels, known.T, strict=True) if not has.any()]
         if 0 < len(blank) < len(channels):
             raise BrdfkitError(
                 f"{name}: no value of the channel {', '.join(blank)} is finite; give the other "
@@ -120,7 +143,8 @@ def require_valid(valid, name, values, channels):
         )
 
 
-def _check_mask(valid, n, name):
+def _check_mask(valid: ArrayLike, n: int, name: str) -> BoolArray:
+    """Return a user's mask as an array (n,); raise `BrdfkitError` for another shape."""
     valid = np.asarray(valid, bool)
     if valid.shape != (n,):
         raise BrdfkitError(
@@ -129,6 +153,8 @@ def _check_mask(valid, n, name):
     return valid
 
 
-def _find_usable(wi, wo, values):
-    """A mask (n,) of the samples with finite values and both directions above the surface."""
+def _find_usable(wi: AnyArray, wo: AnyArray, values: AnyArray) -> BoolArray:
+    """Return a mask (n,) of the samples with finite values and both directions above the
+    surface.
+    """
     return np.isfinite(values).all(axis=1) & (wi[:, 2] > 0) & (wo[:, 2] > 0)

@@ -1,4 +1,4 @@
-"""A table over half/difference coordinates: the cells of MERL, and their multilinear lookup.
+"""A table over half/difference coordinates, with the cells of MERL and multilinear interpolation.
 
 The cells are those of [Matusik et al. 2003]. The axis theta_h is square-root spaced, so that cells
 are small where highlights are; theta_d and phi_d are evenly spaced. An anisotropic table has the
@@ -6,11 +6,15 @@ azimuth phi_h of the half vector as its first axis, evenly spaced over the full 
 value belongs to the cell's centre.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_half_difference, half_azimuth, to_half_difference
 from brdfkit.core.geometry.multilinear import (
@@ -20,12 +24,12 @@ from brdfkit.core.geometry.multilinear import (
     to_flat_index,
 )
 
-LARGEST = 1e30  # 1/sr that is rendered: sums and products of a few end in single precision at 3e38
+LARGEST = 1e30  # [sr⁻¹] that is rendered; single precision ends at 3e38
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """BRDF values ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN = unknown.
+    """BRDF values ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN where unknown.
 
     `phi_d_period` is π for a reciprocal table, which needs half of the azimuths phi_d, else 2π.
 
@@ -33,22 +37,22 @@ class Table:
     array([[0.31830989]])
     """
 
-    values: np.ndarray
+    values: AnyArray
     phi_d_period: float = np.pi
 
     @property
-    def anisotropic(self):
+    def anisotropic(self) -> bool:
         """Whether the BRDF depends on the azimuth phi_h of the half vector."""
         return self.values.ndim == 5
 
     @property
-    def shape(self):
-        """Number of cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)."""
+    def shape(self) -> tuple[int, ...]:
+        """The numbers of cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)."""
         return self.values.shape[:-1]
 
     @cached_property
-    def centres(self):
-        """Centres of the cells along each axis, ([phi_h,] theta_h, theta_d, phi_d) [rad]."""
+    def centres(self) -> tuple[FloatArray, ...]:
+        """The centres of the cells along each axis, ([phi_h,] theta_h, theta_d, phi_d) [rad]."""
         n_h, n_d, n_p = self.shape[-3:]
         centres = (
             ((np.arange(n_h) + 0.5) / n_h) ** 2 * np.pi / 2,
@@ -61,9 +65,12 @@ class Table:
         return (np.arange(n_a) + 0.5) / n_a * 2 * np.pi, *centres
 
     @property
-    def extents(self):
-        """How much of both measures of `measures.py` a cell (n_theta_h, n_theta_d) stands for, for
-        any of its azimuths: (n_theta_h, n_theta_d, 2)."""
+    def extents(self) -> FloatArray:
+        """The shares of both measures of `measures.py` that a cell stands for, (n_theta_h,
+        n_theta_d, 2).
+
+        They do not depend on the azimuths.
+        """
         n_h, n_d, n_p = self.shape[-3:]
         azimuths = n_p * (self.shape[0] if self.anisotropic else 1)
         theta_h, theta_d = (
@@ -75,13 +82,15 @@ class Table:
         solid = np.outer(-np.diff(np.cos(theta_h)), np.diff(np.sin(theta_d) ** 2) / 2)
         return np.stack([angles, solid], axis=-1) * 2 * np.pi / azimuths
 
-    def directions(self):
-        """(wi, wo) at the centre of every cell, each (*shape, 3); z < 0 below the surface."""
+    def directions(self) -> tuple[FloatArray, FloatArray]:
+        """Return (wi, wo) at the centre of every cell, each (*shape, 3); z < 0 below the
+        surface.
+        """
         *phi_h, theta_h, theta_d, phi_d = np.meshgrid(*self.centres, indexing="ij")
         return from_half_difference(theta_h, theta_d, phi_d, *phi_h)
 
-    def find_cells(self, wi, wo):
-        """The indices, an array (n,) for each axis, of the cells of direction pairs (n, 3)."""
+    def find_cells(self, wi: ArrayLike, wo: ArrayLike) -> tuple[IntArray, ...]:
+        """Return the cells of direction pairs (n, 3), as an array of indices (n,) for each axis."""
         theta_h, theta_d, phi_d = to_half_difference(wi, wo)
         places = [
             np.sqrt(theta_h / (np.pi / 2)),
@@ -94,7 +103,7 @@ class Table:
         return tuple(np.minimum((place * n).astype(int), n - 1) for place, n in pairs)
 
     @cached_property
-    def filled_values(self):
+    def filled_values(self) -> AnyArray:
         """The values with each unknown cell filled from the nearest known one, counted in cells.
 
         Both azimuths are periodic, phi_d with its own period.
@@ -115,12 +124,15 @@ class Table:
         cells = [(i[own] - a) % n for i, a, n in zip(nearest, added, self.shape, strict=True)]
         return self.values[tuple(cells)]
 
-    def mix_channels(self, weights):
-        """A table in new channels: the old ones times the matrix `weights` (old, new)."""
+    def mix_channels(self, weights: AnyArray) -> Table:
+        """Return a table in new channels: the old channels times the matrix `weights` (old,
+        new).
+        """
         return replace(self, values=self.values @ weights)
 
-    def scene_dict(self):
-        """The dictionary for `mitsuba.load_dict`; a caller that has wavelengths adds them.
+    def scene_dict(self) -> dict[str, Any]:
+        """Return the dictionary for `mitsuba.load_dict`, without wavelengths, which the caller
+        adds.
 
         Raises `BrdfkitError` for values that are too large for single precision.
         """
@@ -139,10 +151,12 @@ class Table:
             "phi_d_period": float(self.phi_d_period),
         }
 
-    def eval(self, wi, wo):
-        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3): multilinear between cell centres.
+    def eval(self, wi: ArrayLike, wo: ArrayLike) -> AnyArray:
+        """Compute the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3), multilinear between
+        cells.
 
-        Clamped at the ends of theta_h and theta_d, periodic in the azimuths; 0 below the surface.
+        It is clamped at the ends of theta_h and theta_d, periodic in the azimuths, and 0 below the
+        surface.
         """
         wi, wo = np.asarray(wi, float), np.asarray(wo, float)
         theta_h, theta_d, phi_d = to_half_difference(wi, wo)
@@ -157,7 +171,7 @@ class Table:
             phi_h = half_azimuth(wi, wo)
             axes.insert(0, find_periodic_bracket(phi_h / (2 * np.pi) * n_a - 0.5, n_a))
 
-        # np.take of flat cells is several times as fast as an index on each axis
+        # np.take with flat indices is several times as fast as an index on each axis
         values = self.filled_values.reshape(-1, self.values.shape[-1])
         result = np.zeros((*theta_h.shape, values.shape[-1]))
         for nodes, share in list_corners(axes):
@@ -165,4 +179,4 @@ class Table:
         above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
         return np.where(above[..., None], result, 0.0)
 
-    __call__ = eval  # so that a table can be the lookup function of a `Measured`
+    __call__ = eval  # a table can be the lookup function of a `Measured`
