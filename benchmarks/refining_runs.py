@@ -18,7 +18,7 @@ import numpy as np
 
 import brdfkit as bk
 from brdfkit.core.jit.llvm import use_variant
-from brdfkit.rendering.scenes._meshes import mesh_of_grid
+from brdfkit.rendering.scenes._meshes import make_grid_mesh
 from brdfkit.rendering.scenes.knot import tube
 
 FILE = Path(__file__).with_suffix(".json")
@@ -100,7 +100,7 @@ def scene(shape, light, model, values, size=SIZE):
         "sun": sun,
         "sun and sky": sun,
     }
-    seen = shapes[shape] if shape in shapes else {"ball": mesh_of_grid(*tube(), bsdf)}
+    seen = shapes[shape] if shape in shapes else {"ball": make_grid_mesh(*tube(), bsdf)}
     sky = {"sky": {"type": "constant", "radiance": 0.3}} if light == "sun and sky" else {}
     film = {"type": "hdrfilm", "width": size, "height": size, "pixel_format": "rgb"}
     return {

@@ -22,7 +22,7 @@ import refining_page as page
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.images.errors.flip import flip
 from brdfkit.images.errors.psnr import psnr
-from brdfkit.rendering.scenes._studio import camera
+from brdfkit.rendering.scenes._studio import make_camera
 from brdfkit.rendering.scenes.ball import ball
 from brdfkit.rendering.scenes.cornell_box import cornell_box
 
@@ -45,7 +45,7 @@ def load(scene, bsdf, size=SIZE):
     entries = {"type": "scene", "material": {**bsdf, "id": "material"}}
     entries |= function({"type": "ref", "id": "material"}, (size, size))
     entries["integrator"] = {"type": "path", "max_depth": depth}
-    entries["held_out"] = camera(*held_out, (size, size))
+    entries["held_out"] = make_camera(*held_out, (size, size))
     return entries
 
 

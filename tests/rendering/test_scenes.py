@@ -13,7 +13,15 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.rendering.galleries import draw_grid
 from brdfkit.rendering.scene_input import environment, mesh_file
-from brdfkit.rendering.scenes import _meshes, _studio, knot, material_ball, scene, scene_names, vase
+from brdfkit.rendering.scenes import (
+    _meshes,
+    _studio,
+    find_scene,
+    knot,
+    material_ball,
+    scene_names,
+    vase,
+)
 
 pytestmark = pytest.mark.usefixtures("module_in_llvm")
 
@@ -22,7 +30,7 @@ BLACK = {"name": "black", "type": "diffuse", "reflectance": 0.02}
 SCENES = scene_names()
 SURFACES = {
     "vase": lambda: _meshes.revolve(*vase.PROFILE.T, between=8),
-    "knot": knot.tube,
+    "knot": knot.make_tube,
     "ball": lambda: _meshes.revolve(*material_ball._ball_profile()),
     "ring": lambda: _meshes.revolve(*material_ball._ring_profile()),
 }
@@ -94,7 +102,7 @@ def test_a_white_furnace_shows_nothing(name):
     """A closed surface of reflectance 1 under light of radiance 1 from everywhere is as bright."""
 
     def furnace(bsdf, size):
-        found = scene(name)(bsdf, size)
+        found = find_scene(name)(bsdf, size)
         shapes = {k: s for k, s in found.items() if k in ("ball", "ring", "vase", "knot", "sensor")}
         light = {"type": "constant", "radiance": 1.0}
         return {"type": "scene", "integrator": {"type": "path"}, "light": light} | shapes
@@ -112,7 +120,7 @@ def test_tangents_are_those_of_the_surface(name):
     import mitsuba as mi
 
     points, normals = SURFACES[name]()
-    made = _meshes.mesh_of_grid(points, normals, {"type": "diffuse"})
+    made = _meshes.make_grid_mesh(points, normals, {"type": "diffuse"})
     samples = np.random.default_rng(0).random((3, 5000))
     on = made.sample_position(0.0, mi.Point2f(samples[:2]))
     n = np.array(on.n).T
@@ -271,7 +279,7 @@ def test_an_environment_map_lights_the_ground_as_the_sky_does(files, file):
     """Nothing stands on it: L = reflectance/π · E."""
 
     def empty(bsdf, size):
-        found = _studio.studio(size)
+        found = _studio.make_studio(size)
         found = environment.light_by(environment.environment(file), found) if file else found
         return found | {"integrator": {"type": "direct"}}
 

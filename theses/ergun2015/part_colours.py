@@ -7,8 +7,8 @@ from brdfkit.theses.ergun2015.convex_study import SIZE, SPP
 from scipy.spatial import ConvexHull
 
 from brdfkit.core.colours import to_srgb
-from brdfkit.rendering.scenes._meshes import mesh
-from brdfkit.rendering.scenes._studio import studio
+from brdfkit.rendering.scenes._meshes import make_mesh
+from brdfkit.rendering.scenes._studio import make_studio
 
 GOLDEN = 0.618034  # of the way around the colours, from a part to the next
 
@@ -18,7 +18,7 @@ def coloured(study):
     import mitsuba as mi
 
     parts = {f"part_{k}": part(hull, k) for k, hull in enumerate(study.convex.hulls)}
-    scene = mi.load_dict(studio((SIZE, SIZE)) | parts, parallel=False)
+    scene = mi.load_dict(make_studio((SIZE, SIZE)) | parts, parallel=False)
     return to_srgb(np.array(mi.render(scene, spp=SPP, seed=0), float)[..., :3])
 
 
@@ -32,7 +32,7 @@ def part(hull, number):
     colour = colorsys.hsv_to_rgb(number * GOLDEN % 1, 0.6, 0.8)
     bsdf = {"type": "diffuse", "reflectance": {"type": "rgb", "value": list(colour)}}
     faces = np.arange(corners.size // 3).reshape(-1, 3)
-    return mesh(
+    return make_mesh(
         corners.reshape(-1, 3),
         np.repeat(normals, 3, axis=0),
         np.zeros((faces.size, 2)),

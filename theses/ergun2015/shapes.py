@@ -9,8 +9,8 @@ import numpy as np
 
 from brdfkit.core.files import read_bytes
 from brdfkit.rendering.scene_input import mesh_file
-from brdfkit.rendering.scenes._meshes import mesh, mesh_of_grid, revolve
-from brdfkit.rendering.scenes._studio import studio
+from brdfkit.rendering.scenes._meshes import make_grid_mesh, make_mesh, revolve
+from brdfkit.rendering.scenes._studio import make_studio
 
 MESHES = (
     "alligator",
@@ -60,7 +60,9 @@ def unpacked(file):
         plain.write_bytes(read_bytes(file))
         buffers = mesh_file.read(plain)
     points, _, _, faces = buffers
-    return Shape(lambda bsdf, size: studio(size) | {"mesh": mesh(*buffers, bsdf)}, points, faces)
+    return Shape(
+        lambda bsdf, size: make_studio(size) | {"mesh": make_mesh(*buffers, bsdf)}, points, faces
+    )
 
 
 def ring():
@@ -80,4 +82,4 @@ def torus(bsdf, size):
     points = points.round(9)  # it closes around the axis, too
     lean = np.array([[1, 0, 0], [0, 0.64, 0.768375], [0, -0.768375, 0.64]])
     points = points @ lean + [0, 0, 1]
-    return studio(size) | {"mesh": mesh_of_grid(points, normals @ lean, bsdf)}
+    return make_studio(size) | {"mesh": make_grid_mesh(points, normals @ lean, bsdf)}

@@ -10,7 +10,8 @@ from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.scene_input import mesh_file
 from brdfkit.rendering.scene_input.environment import environment, light_by
 from brdfkit.rendering.scene_input.shown_material import load_material, mask
-from brdfkit.rendering.scenes import scene, scene_names
+from brdfkit.rendering.scenes import find_scene as find_scene_by_name
+from brdfkit.rendering.scenes import scene_names
 
 SIZE = 512, 512  # of a picture [pixels]
 
@@ -67,7 +68,7 @@ def find_scene(given):
     file = split_part(given)[0] if isinstance(given, str | Path) and str(given) else given
     place = find_file_or_name(file, "scene", scene_names())
     if isinstance(place, str):
-        return scene(place)
+        return find_scene_by_name(place)
     suffix = suffix_of(given)
     if suffix == scene_file.SUFFIX:
         return scene_file.make_scene_builder(given)

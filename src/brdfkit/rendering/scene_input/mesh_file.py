@@ -9,8 +9,8 @@ from brdfkit.core.files import require_file
 from brdfkit.mitsuba_bridge.obj_indices import use_absolute_indices
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.scene_input.upright import guess_up
-from brdfkit.rendering.scenes._meshes import mesh
-from brdfkit.rendering.scenes._studio import studio
+from brdfkit.rendering.scenes._meshes import make_mesh
+from brdfkit.rendering.scenes._studio import make_studio
 
 SUFFIXES = ".obj", ".ply"
 SIZE = 2.0  # of the longest side of its bounding box, as of the ball's
@@ -40,7 +40,7 @@ def mesh_scene(given):
 
     def build(bsdf, size=(512, 512)):
         made[:] = made or [read(path, up)]
-        return studio(size) | {"mesh": mesh(*made[0], bsdf)}
+        return make_studio(size) | {"mesh": make_mesh(*made[0], bsdf)}
 
     return build
 

@@ -1,11 +1,11 @@
-"""The scenes of pictures: every file of this folder is one scene and is found by itself.
+"""The scenes that pictures show: each file of this folder is one scene and is found by its name.
 
 A file NAME.py holds the function `NAME(bsdf, size=(512, 512))`, the dictionary of the scene for
 `mitsuba.load_dict`:
 
 - `bsdf`: the material, a BSDF as a dictionary or an object, for whatever is to show it;
 - `size`: (width, height) of the picture [pixels];
-- the first line of the file's docstring says what one sees;
+- the first line of the file's docstring says what the picture shows;
 - the light has the keys "sky" and "softbox" where an environment map may take its place.
 
 It works in every variant of Mitsuba, and is exposed so that a white wall paint nearly fills the
@@ -14,13 +14,15 @@ file whose name begins with an underscore is no scene: it holds what several sce
 """
 
 import importlib
+from collections.abc import Callable
+from typing import Any
 
 from brdfkit.core.discovery.plugin_files import find_module_names
 from brdfkit.core.errors import no_such
 
 
-def scene_names():
-    """The names of the scenes, in alphabetical order.
+def scene_names() -> list[str]:
+    """Return the names of the scenes, in alphabetical order.
 
     >>> "ball" in scene_names()
     True
@@ -28,10 +30,10 @@ def scene_names():
     return list(find_module_names(__path__))
 
 
-def scene(name):
-    """The function that makes the scene of a name; `BrdfkitError` where there is none.
+def find_scene(name: str) -> Callable[..., dict[str, Any]]:
+    """Return the function that makes the scene `name`; raise `BrdfkitError` for an unknown name.
 
-    >>> scene("ball")({"type": "diffuse"})["type"]
+    >>> find_scene("ball")({"type": "diffuse"})["type"]
     'scene'
     """
     if name not in scene_names():

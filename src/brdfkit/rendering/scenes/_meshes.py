@@ -1,36 +1,51 @@
-"""Meshes of smooth surfaces p(u, v), with exact normals, and tangents along u for brushing.
+"""Makes meshes of smooth surfaces p(u, v), with exact normals and with tangents along u.
 
-Mitsuba takes a triangle's tangent from its vertices' (u, v), and turns it into the plane of the
-normal between them: a fine grid gives the tangents of the surface itself.
+An anisotropic material is brushed along the tangent. Mitsuba takes a triangle's tangent from the
+(u, v) of its vertices and turns it into the plane of the interpolated normal, so a fine grid has
+the tangents of the surface itself.
 """
+
+from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, IntArray, MitsubaObject
 from brdfkit.core.jit.padding import pad
 
 AROUND = 192  # columns of a surface of revolution
 
 
-def mesh_of_grid(points, normals, bsdf):
-    """A `mitsuba.Mesh` of `points` (rows, columns, 3) of a surface, with unit `normals` there.
+def make_grid_mesh(
+    points: FloatArray, normals: FloatArray, bsdf: dict[str, Any] | MitsubaObject
+) -> MitsubaObject:
+    """Make a `mitsuba.Mesh` from a grid of points on a surface and their unit normals.
 
-    u runs along the columns, v along the rows, both from 0 to 1. A surface that closes has its
-    first points again as its last. `bsdf`: the material, as a dictionary or an object.
+    `points` and `normals` are (rows, columns, 3). u runs along the columns, v along the rows, both
+    from 0 to 1. A closed surface has its first points once more as its last. `bsdf` is the
+    material, a dictionary or an object.
     """
     rows, columns = points.shape[:2]
     v, u = np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij")
 
-    # two triangles a cell, from its corners a b (this row) and c d (the next)
+    # Each cell has two triangles; its corners are a and b in this row, c and d in the next
     number = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, :-1], number[1:, 1:]
     faces = np.moveaxis(np.array([[a, b, d], [a, d, c]]), 1, -1).reshape(-1, 3)
-    return mesh(points.reshape(-1, 3), normals.reshape(-1, 3), np.dstack([u, v]), faces, bsdf)
+    return make_mesh(points.reshape(-1, 3), normals.reshape(-1, 3), np.dstack([u, v]), faces, bsdf)
 
 
-def mesh(points, normals, uv, faces, bsdf):
-    """A `mitsuba.Mesh` of vertices and of `faces` (n, 3), their numbers; none without an area.
+def make_mesh(
+    points: FloatArray,
+    normals: FloatArray,
+    uv: FloatArray,
+    faces: IntArray,
+    bsdf: dict[str, Any] | MitsubaObject,
+) -> MitsubaObject:
+    """Make a `mitsuba.Mesh` from vertices and `faces` (n, 3), the indices of their corners.
 
-    Faces are turned so that they face where their normals do.
+    Faces without an area are left out. The others are oriented like their normals.
     """
     import mitsuba as mi
 
@@ -51,12 +66,13 @@ def mesh(points, normals, uv, faces, bsdf):
     return made
 
 
-def revolve(r, z, between=1):
-    """(points, normals) of the surface that a profile sweeps about the z axis; a grid for a mesh.
+def revolve(r: FloatArray, z: FloatArray, between: int = 1) -> tuple[FloatArray, FloatArray]:
+    """Return a grid of points, and the normals there, on a surface of revolution about the z axis.
 
-    `r`, `z`: points of the profile, which a cubic spline joins; where it closes, its first point is
-    its last. The inside lies to the left of the profile's way. `between`: rows from a point to the
-    next: set the points close where it bends much. u runs around the axis, v along the profile.
+    `r` and `z` are the radii and heights of points (n,) of the profile, which a cubic spline joins;
+    a closed profile has its first point once more as its last. The inside lies to the left of the
+    profile as it runs. `between` is the number of rows from one point to the next. u runs around
+    the axis, v along the profile.
     """
     from scipy.interpolate import CubicSpline
 
@@ -68,10 +84,10 @@ def revolve(r, z, between=1):
     (r, z), (dr, dz) = spline(place).T, spline(place, 1).T
     phi = np.linspace(0, 2 * np.pi, AROUND + 1)
     length = np.hypot(dr, dz)
-    return around_z(r, z, phi), around_z(dz / length, -dr / length, phi)
+    return rotate_profile(r, z, phi), rotate_profile(dz / length, -dr / length, phi)
 
 
-def around_z(r, z, phi):
-    """Points (rows, columns, 3) at the radii `r` and heights `z` (rows), and angles `phi`."""
+def rotate_profile(r: FloatArray, z: FloatArray, phi: FloatArray) -> FloatArray:
+    """Return points (rows, columns, 3) at radii `r` and heights `z` (rows,) and angles `phi`."""
     x, y = np.multiply.outer(r, np.cos(phi)), np.multiply.outer(r, np.sin(phi))
     return np.stack([x, y, np.broadcast_to(np.asarray(z)[:, None], x.shape)], axis=-1)

@@ -1,14 +1,18 @@
-"""What most scenes share: the camera, a clear sky with one softbox, and grey ground.
+"""The studio that most scenes share: a camera, a clear sky with one softbox, and grey ground.
 
-World: z up, metres. What is to be seen stands on the plane z = 0 at the origin, fills about the
-ball of radius 1 there, and is seen from the south (-y).
+The world has z up, in metres. The subject stands on the plane z = 0 at the origin and is about as
+large as a ball of radius 1. The camera looks at it from the south (-y).
 """
+
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import MitsubaObject
+
 CAMERA = (0.0, -8.0, 3.2)
 TARGET = (0.0, 0.0, 0.96)
-FOV = 19.8  # [degrees] along the shorter side of the picture: the ball fills 70 % of it
+FOV = 19.8  # [degrees] along the shorter side of the picture, of which the ball fills 70 %
 SOFTBOX = (-4.4, -3.2, 5.4)
 BALL = (0.0, 0.0, 1.0)
 SUN = (0.75, 0.5, 0.45)
@@ -16,14 +20,14 @@ GREY_SKY = 0.18
 GROUND = 0.32  # reflectance
 
 
-def studio(size=(512, 512), spp=64):
-    """The dictionary of a scene with all but the thing to see: a camera, light and ground.
+def make_studio(size: tuple[int, int] = (512, 512), spp: int = 64) -> dict[str, Any]:
+    """Return a scene's dictionary without a subject: a camera, light and ground.
 
-    `size`: (width, height) [pixels]; `spp`: samples per pixel. The exposure is fixed: a white wall
-    paint (diffuse, reflectance 0.8) comes out near sRGB 200 where it is brightest. Works in every
-    variant of Mitsuba.
+    `size` is (width, height) [pixels], `spp` the number of samples per pixel. The exposure is
+    fixed: a white wall paint (diffuse, reflectance 0.8) has about 200 in sRGB where it is
+    brightest. The scene works in every variant of Mitsuba.
 
-    >>> sorted(studio())
+    >>> sorted(make_studio())
     ['ground', 'integrator', 'sensor', 'sky', 'softbox', 'type']
     """
     import mitsuba as mi
@@ -32,7 +36,7 @@ def studio(size=(512, 512), spp=64):
     return {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": 6},
-        "sensor": camera(CAMERA, TARGET, FOV, size, spp),
+        "sensor": make_camera(CAMERA, TARGET, FOV, size, spp),
         "sky": _grey_sky(at) if mi.is_monochromatic else _sky(),
         "softbox": _softbox(at),
         "ground": {
@@ -43,8 +47,14 @@ def studio(size=(512, 512), spp=64):
     }
 
 
-def camera(origin, target, fov, size=(512, 512), spp=64):
-    """A sensor's dictionary; `fov`: along the shorter side of the picture [degrees]."""
+def make_camera(
+    origin: tuple[float, float, float],
+    target: tuple[float, float, float],
+    fov: float,
+    size: tuple[int, int] = (512, 512),
+    spp: int = 64,
+) -> dict[str, Any]:
+    """Return a sensor's dictionary; `fov` [degrees] is along the shorter side of the picture."""
     import mitsuba as mi
 
     return {
@@ -63,11 +73,11 @@ def camera(origin, target, fov, size=(512, 512), spp=64):
     }
 
 
-def _sky():
-    """Hosek-Wilkie sky, brightest behind the ball to the right: it lights the ball's grazing rim.
+def _sky() -> dict[str, Any]:
+    """Return a Hosek-Wilkie sky, brightest behind the ball to the right, where it lights the rim.
 
-    The sun's disc is left out: half a degree wide, it makes a firefly of every path that a material
-    samples imperfectly, and the softbox is the better key light.
+    The sun's disc is left out. It is half a degree wide, so every path that a material samples
+    imperfectly would become a firefly; the softbox is the better key light.
     """
     return {
         "type": "sunsky",
@@ -79,22 +89,22 @@ def _sky():
     }
 
 
-def _grey_sky(at):
-    """A sky of the same brightness for mono variants, in which Mitsuba's own does not work.
+def _grey_sky(at: MitsubaObject) -> dict[str, Any]:
+    """Return a grey sky for mono variants, in which Mitsuba's own sky does not work.
 
-    CIE standard sky 13, clear over polluted air (ISO 15469:2004), scaled so that the ground
-    receives the same illuminance as from `_sky`.
+    It is the CIE standard sky 13, clear over polluted air (ISO 15469:2004), scaled so that the
+    ground receives the same illuminance as from `_sky`. `at` is an identity transform.
     """
     import mitsuba as mi
 
-    # direction of each pixel: rows over the polar angle, columns over the azimuth
+    # The direction of each pixel: rows run over the polar angle, columns over the azimuth
     height, width = 129, 256
     theta = np.linspace(0, np.pi / 2, height // 2 + 1)[:, None]  # the first and last row are poles
     phi = (np.arange(width) + 0.5) / width * 2 * np.pi
     up, side = np.cos(theta), np.sin(theta)
     towards = np.stack(np.broadcast_arrays(side * np.sin(phi), side * np.cos(phi), up), axis=-1)
 
-    # the standard's gradation towards the horizon and its indicatrix about the sun
+    # The standard's gradation towards the horizon and its indicatrix about the sun
     from_sun = np.arccos(np.clip(towards @ SUN / np.linalg.norm(SUN), -1, 1))
     gradation = 1 - np.exp(-0.32 / np.maximum(up, 1e-6))
     glow = 16 * (np.exp(-3 * from_sun) - np.exp(-3 * np.pi / 2)) + 0.3 * np.cos(from_sun) ** 2
@@ -108,8 +118,8 @@ def _grey_sky(at):
     }
 
 
-def _softbox(at):
-    """A square light at the upper left in front: it makes the highlight and the terminator."""
+def _softbox(at: MitsubaObject) -> dict[str, Any]:
+    """Return a square light at the upper left in front, for the highlight and the terminator."""
     return {
         "type": "rectangle",
         "to_world": at.look_at(list(SOFTBOX), list(BALL), [0, 0, 1]) @ at.scale(2.6),

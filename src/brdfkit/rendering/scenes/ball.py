@@ -1,16 +1,21 @@
 """A ball on grey ground, under a clear sky and one softbox."""
 
-from brdfkit.rendering.scenes._studio import BALL, studio
+from typing import Any
+
+from brdfkit.core.array_types import MitsubaObject
+from brdfkit.rendering.scenes._studio import BALL, make_studio
 
 
-def ball(bsdf, size=(512, 512), spp=64):
-    """The scene's dictionary; see `brdfkit.rendering.scenes`. `spp`: samples per pixel.
+def ball(
+    bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512), spp: int = 64
+) -> dict[str, Any]:
+    """Return the scene's dictionary, as `brdfkit.rendering.scenes` describes it.
 
-    The ball's parametrisation has z as its axis, so that an anisotropic material is brushed along
-    the ball's parallels.
+    `spp` is the number of samples per pixel. The axis of the ball's parametrisation is z, so an
+    anisotropic material is brushed along the ball's parallels.
 
     >>> ball({"type": "diffuse"})["type"]
     'scene'
     """
     shape = {"type": "sphere", "center": list(BALL), "radius": 1.0, "bsdf": bsdf}
-    return studio(size, spp) | {"ball": shape}
+    return make_studio(size, spp) | {"ball": shape}

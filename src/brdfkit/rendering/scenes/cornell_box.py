@@ -1,17 +1,22 @@
 """A ball and a tall block in a room with a red and a green wall, under a lamp."""
 
-from brdfkit.rendering.scenes._studio import camera
+from typing import Any
+
+from brdfkit.core.array_types import MitsubaObject
+from brdfkit.rendering.scenes._studio import make_camera
 
 RED, GREEN, WHITE = (0.57, 0.05, 0.04), (0.1, 0.36, 0.07), (0.72, 0.71, 0.67)
-HALF = 2.0  # of the room's width and height; its floor is z = 0, its back wall y = HALF
-FRONT = -9.6  # y of the front wall, behind the camera: no material mirrors a black opening
+HALF = 2.0  # half of the room's width and height [m]; the floor is z = 0, the back wall y = HALF
+FRONT = -9.6  # y of the front wall [m], behind the camera: a mirror shows no black opening
 
 
-def cornell_box(bsdf, size=(512, 512)):
-    """The scene's dictionary; see `brdfkit.rendering.scenes`.
+def cornell_box(
+    bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512)
+) -> dict[str, Any]:
+    """Return the scene's dictionary, as `brdfkit.rendering.scenes` describes it.
 
-    Both the ball and the block show the material: so it is seen flat and curved, and lit by lamp
-    and walls.
+    The ball and the block have the material, so the picture shows it curved and flat, lit by the
+    lamp and by the walls.
 
     >>> cornell_box({"type": "diffuse"})["lamp"]["type"]
     'rectangle'
@@ -23,7 +28,7 @@ def cornell_box(bsdf, size=(512, 512)):
     return {
         "type": "scene",
         "integrator": {"type": "path", "max_depth": 8},
-        "sensor": camera((0, -9.4, HALF), (0, 0, HALF), 29.9, size),
+        "sensor": make_camera((0, -9.4, HALF), (0, 0, HALF), 29.9, size),
         "lamp": {
             "type": "rectangle",
             "to_world": at.translate([0, -0.5, 2 * HALF - 0.01]).rotate([1, 0, 0], 180).scale(0.9),
@@ -35,8 +40,8 @@ def cornell_box(bsdf, size=(512, 512)):
     }
 
 
-def _walls():
-    """The dictionaries of the six walls by name."""
+def _walls() -> dict[str, Any]:
+    """Return the dictionaries of the six walls by name."""
     middle, half_depth = (HALF + FRONT) / 2, (HALF - FRONT) / 2
     return {
         "floor": _wall((0, middle, 0), (0, 0, 1), (HALF, half_depth), WHITE),
@@ -48,12 +53,17 @@ def _walls():
     }
 
 
-def _wall(middle, facing, halves, colour):
-    """The dictionary of a wall about a `middle`; `halves`: of its width and its height."""
+def _wall(
+    middle: tuple[float, float, float],
+    normal: tuple[int, int, int],
+    halves: tuple[float, float],
+    colour: tuple[float, float, float],
+) -> dict[str, Any]:
+    """Return a wall's dictionary; `halves` are half of its width and half of its height [m]."""
     import mitsuba as mi
 
-    target = [m + f for m, f in zip(middle, facing, strict=True)]
-    up = [0, 1, 0] if facing[2] else [0, 0, 1]
+    target = [m + f for m, f in zip(middle, normal, strict=True)]
+    up = [0, 1, 0] if normal[2] else [0, 0, 1]
     at = mi.ScalarTransform4f()
     reflectance = {"type": "rgb", "value": list(colour)}
     return {

@@ -1,40 +1,47 @@
-"""A knotted tube, with shadows on itself and light between its turns."""
+"""A knotted tube, which casts shadows on itself and reflects light between its turns."""
+
+from typing import Any
 
 import numpy as np
 
-from brdfkit.rendering.scenes._meshes import mesh_of_grid
-from brdfkit.rendering.scenes._studio import studio
+from brdfkit.core.array_types import FloatArray, MitsubaObject
+from brdfkit.rendering.scenes._meshes import make_grid_mesh
+from brdfkit.rendering.scenes._studio import make_studio
 
-TUBE = 0.235  # radius
-LEAN = 0.3  # of the knot, away from the camera [radians]
-ROWS, AROUND = 512, 64  # along the tube, around it
+TUBE = 0.235  # radius [m]
+LEAN = 0.3  # angle by which the knot leans away from the camera [radians]
+ROWS, AROUND = 512, 64  # points along the tube and around it
 
 
-def knot(bsdf, size=(512, 512)):
-    """The scene's dictionary; see `brdfkit.rendering.scenes`.
+def knot(
+    bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512)
+) -> dict[str, Any]:
+    """Return the scene's dictionary, as `brdfkit.rendering.scenes` describes it.
 
-    The tube is brushed around its axis, as a turned rod.
+    An anisotropic material is brushed around the tube, as a turned rod is.
 
     >>> knot({"type": "diffuse"})["knot"].class_name()    # doctest: +SKIP
     'Mesh'
     """
-    return studio(size) | {"knot": mesh_of_grid(*tube(), bsdf)}
+    return make_studio(size) | {"knot": make_grid_mesh(*make_tube(), bsdf)}
 
 
-def tube():
-    """(points, normals) of the tube, which stands on the ground; a grid for a mesh.
+def make_tube() -> tuple[FloatArray, FloatArray]:
+    """Return a grid of points (rows, columns, 3) and normals of a tube that stands on the ground.
 
-    Its axis is the trefoil, the torus knot of two turns about the axis y and three through the
-    hole. u runs around the tube, v along it.
+    The tube's axis is the trefoil, the torus knot with two turns about the axis y and three through
+    the hole. u runs around the tube, v along it.
     """
     t = np.linspace(0, 2 * np.pi, ROWS + 1)[:, None]
     wide = 2 + np.cos(3 * t)
-    axis = 0.3 * np.hstack([wide * np.sin(2 * t), 1.2 * np.sin(3 * t), wide * np.cos(2 * t)])
+    axis: FloatArray = 0.3 * np.hstack(
+        [wide * np.sin(2 * t), 1.2 * np.sin(3 * t), wide * np.cos(2 * t)]
+    )
     axis = _lean(axis)
 
-    # two directions across the axis: away from the middle, as far as it is across, and the third
+    # Two directions across the axis: one away from the middle, and one at right angles to it
     along = np.gradient(axis, axis=0)
-    along[[0, -1]] = axis[1] - axis[-2]  # it closes
+    along[[0, -1]] = axis[1] - axis[-2]  # the curve is closed
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     side = axis - np.sum(axis * along, axis=1, keepdims=True) * along
     side /= np.linalg.norm(side, axis=1, keepdims=True)
@@ -46,7 +53,7 @@ def tube():
     return points - (0, 0, points[..., 2].min()), normals
 
 
-def _lean(points):
-    """The points turned about the axis x, backwards at the top."""
+def _lean(points: FloatArray) -> FloatArray:
+    """Rotate points (n, 3) about the axis x, so that the top leans backwards."""
     cos, sin = np.cos(LEAN), np.sin(LEAN)
     return points @ np.array([[1, 0, 0], [0, cos, -sin], [0, sin, cos]])

@@ -1,28 +1,33 @@
-"""A ball with a band and an opening on an inner ball, on a ring, on a chequered floor."""
+"""A ball with a band and an opening that shows an inner ball, on a ring, on a chequered floor."""
+
+from typing import Any
 
 import numpy as np
 
-from brdfkit.rendering.scenes._meshes import mesh_of_grid, revolve
-from brdfkit.rendering.scenes._studio import studio
+from brdfkit.core.array_types import FloatArray, MitsubaObject
+from brdfkit.rendering.scenes._meshes import make_grid_mesh, revolve
+from brdfkit.rendering.scenes._studio import make_studio
 
-INNER = 0.84  # radius of the inner ball; the outer one's is 1
+INNER = 0.84  # radius of the inner ball; the outer ball has radius 1
 OPENING, BAND = 0.62, (1.32, 1.5)  # angles from the axis of the ball [radians]
 EDGE = 0.03  # half-width of a rounded edge [radians]
-AXIS = (-0.42, -0.66, 0.62)  # of the ball: to the camera, up and to the left
-RING, WIRE = 0.62, 0.1  # radii of the ring's circle and of its section
+AXIS = (-0.42, -0.66, 0.62)  # the ball's axis: towards the camera, up and to the left
+RING, WIRE = 0.62, 0.1  # radii of the ring and of its wire
 
 
-def material_ball(bsdf, size=(512, 512)):
-    """The scene's dictionary; see `brdfkit.rendering.scenes`.
+def material_ball(
+    bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512)
+) -> dict[str, Any]:
+    """Return the scene's dictionary, as `brdfkit.rendering.scenes` describes it.
 
-    The ball is brushed around its axis, the ring around its own.
+    An anisotropic material is brushed around the axes of the ball and of the ring.
 
     >>> sorted(set(material_ball({"type": "diffuse"})) & {"ball", "ring"})    # doctest: +SKIP
     ['ball', 'ring']
     """
     import mitsuba as mi
 
-    height = WIRE + np.sqrt((1 + WIRE) ** 2 - RING**2)  # of the ball's middle, on the ring
+    height = WIRE + np.sqrt((1 + WIRE) ** 2 - RING**2)  # of the centre of the ball on the ring
     points, normals = (_turn(x) for x in revolve(*_ball_profile()))
     floor = {
         "type": "checkerboard",
@@ -30,9 +35,9 @@ def material_ball(bsdf, size=(512, 512)):
         "color1": 0.4,
         "to_uv": mi.ScalarTransform4f().scale(140),
     }
-    return studio(size) | {
-        "ball": mesh_of_grid(points + np.array([0, 0, height]), normals, bsdf),
-        "ring": mesh_of_grid(*revolve(*_ring_profile()), bsdf),
+    return make_studio(size) | {
+        "ball": make_grid_mesh(points + np.array([0, 0, height]), normals, bsdf),
+        "ring": make_grid_mesh(*revolve(*_ring_profile()), bsdf),
         "ground": {
             "type": "rectangle",
             "to_world": mi.ScalarTransform4f().scale(100),
@@ -41,10 +46,10 @@ def material_ball(bsdf, size=(512, 512)):
     }
 
 
-def _ball_profile():
-    """(r, z) of the ball from its lower pole up, with its band and its opening."""
+def _ball_profile() -> tuple[FloatArray, FloatArray]:
+    """Return radii and heights of the ball's profile, from its lower pole upwards."""
 
-    def step(theta, edge):
+    def step(theta: FloatArray, edge: float) -> FloatArray:
         return (1 + np.tanh((theta - edge) / EDGE * 2)) / 2
 
     edges = np.add.outer((OPENING, *BAND), 3 * EDGE * np.linspace(-1, 1, 49))
@@ -56,15 +61,15 @@ def _ball_profile():
     return r, radius * np.cos(theta)
 
 
-def _ring_profile():
-    """(r, z) of the ring."""
+def _ring_profile() -> tuple[FloatArray, FloatArray]:
+    """Return radii and heights of the ring's closed profile."""
     t = np.linspace(0, 2 * np.pi, 73)
     t[-1] = 0
     return RING + WIRE * np.cos(t), WIRE + WIRE * np.sin(t)
 
 
-def _turn(vectors):
-    """Vectors with z turned into the ball's axis."""
+def _turn(vectors: FloatArray) -> FloatArray:
+    """Rotate vectors (..., 3) so that z becomes the ball's axis."""
     up = np.array(AXIS) / np.linalg.norm(AXIS)
     side = np.cross((0, 0, 1), up)
     side /= np.linalg.norm(side)

@@ -1,11 +1,14 @@
-"""A vase with a foot, a belly and a flared lip, into which one sees a little."""
+"""A vase with a foot, a belly and a flared lip, whose inside shows a little."""
+
+from typing import Any
 
 import numpy as np
 
-from brdfkit.rendering.scenes._meshes import mesh_of_grid, revolve
-from brdfkit.rendering.scenes._studio import studio
+from brdfkit.core.array_types import MitsubaObject
+from brdfkit.rendering.scenes._meshes import make_grid_mesh, revolve
+from brdfkit.rendering.scenes._studio import make_studio
 
-# Profile (r, z) of the vase, from the middle of its foot up the outside, and down the inside
+# Radii and heights of the profile, from the middle of the foot up the outside and down the inside
 PROFILE = np.array(
     [
         (0.0, 0.02),
@@ -38,12 +41,16 @@ PROFILE = np.array(
 )
 
 
-def vase(bsdf, size=(512, 512)):
-    """The scene's dictionary; see `brdfkit.rendering.scenes`.
+def vase(
+    bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512)
+) -> dict[str, Any]:
+    """Return the scene's dictionary, as `brdfkit.rendering.scenes` describes it.
 
-    It is brushed around its axis, as on a potter's wheel.
+    An anisotropic material is brushed around the vase's axis, as on a potter's wheel.
 
     >>> vase({"type": "diffuse"})["vase"].class_name()    # doctest: +SKIP
     'Mesh'
     """
-    return studio(size) | {"vase": mesh_of_grid(*revolve(*PROFILE.T, between=8), bsdf)}
+    return make_studio(size) | {
+        "vase": make_grid_mesh(*revolve(PROFILE[:, 0], PROFILE[:, 1], between=8), bsdf)
+    }

@@ -4,7 +4,7 @@ import numpy as np
 
 from brdfkit.core.errors import no_such
 from brdfkit.materials.resolve import to_material
-from brdfkit.rendering.scenes._studio import camera
+from brdfkit.rendering.scenes._studio import make_camera
 from brdfkit.rendering.volumes import looks
 from brdfkit.rendering.volumes.framing import FOV, direction, origin_and_target
 from brdfkit.rendering.volumes.light import background_light, environment_light
@@ -47,7 +47,7 @@ def scene(volume, transfer, renderer, size, view, light, settings, all_around=Fa
     return {
         "type": "scene",
         "integrator": entries,
-        "sensor": camera(origin, target, FOV, size) | _clips(origin, target),
+        "sensor": make_camera(origin, target, FOV, size) | _clips(origin, target),
         "sky": emitter,
     }
 
