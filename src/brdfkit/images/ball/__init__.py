@@ -1,7 +1,7 @@
-"""Pictures of a ball under direct light: each pixel a sum of the BRDF at pairs of directions.
+"""Pictures of a ball under direct light; each pixel is a sum of the BRDF at pairs of directions.
 
-`lights.py` says what light comes from where, `half_vectors.py` where a material reflects it to. By
-both, `normals.py` draws points of the ball, and `pixels.py` directions at each of them.
+`lights.py` defines the lights, and `half_vectors.py` the directions to which a material reflects.
+With both, `normals.py` draws points of the ball, and `pixels.py` draws directions at each point.
 """
 
 from brdfkit.images.ball.lights import LIGHTS as LIGHTS

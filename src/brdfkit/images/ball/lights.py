@@ -1,29 +1,35 @@
-"""The lights of pictures: the grey radiance that comes from each direction, by formulas.
+"""The lights of pictures: formulas for the grey radiance from each direction.
 
-World: z up; the ball is seen from the south (-y). Pictures are exposed each for itself, so that
-only ratios within a light matter.
+In the world z points up, and the camera looks at the ball from the south (-y). Each picture has its
+own exposure, so that only ratios within a light matter.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray
 from brdfkit.core.geometry.directions import from_angles
 
-# Cells of a tabulated light over the polar angle, and over the azimuth; points along a cell's side
+# Cells of a tabulated light over polar angle and azimuth, and points along the side of a cell
 CELLS, POINTS = (96, 192), 4
 # The least density of a direction, as a share of the mean one
 FLOOR = 0.02
 
 
-def court(w):
-    """A court: bright sky above, walls that are darker the higher they are, and the ground."""
+def court(w: AnyArray) -> AnyArray:
+    """Return the radiance of a court: bright sky, walls that are darker the higher they are, and
+    ground.
+    """
     walls = np.where(w[:, 2] < 0, 0.3, 0.5 - 0.25 * w[:, 2])
     return walls + 6 * (w[:, 2] > 0.75)
 
 
-def hall(w):
-    """A dim hall with seven small lamps."""
+def hall(w: AnyArray) -> AnyArray:
+    """Return the radiance of a dim hall with seven small lamps."""
     lamps = (  # azimuth and elevation [degrees], and radiance
         ((180, 40), 500),
         ((140, 30), 200),
@@ -38,8 +44,10 @@ def hall(w):
     )
 
 
-def sky(w):
-    """A clear sky, brightest about a low sun that stands behind the ball to the right."""
+def sky(w: AnyArray) -> AnyArray:
+    """Return the radiance of a clear sky, brightest about a low sun behind the ball to the
+    right.
+    """
     sun = 56, 27
     glow = 3 * np.exp(6 * (w @ _direction_to(*sun) - 1))
     above = (
@@ -51,8 +59,10 @@ def sky(w):
     return np.where(w[:, 2] < 0, 0.25, above)
 
 
-def studio(w):
-    """A dim room with a softbox at the upper left in front, and a smaller one at the right."""
+def studio(w: AnyArray) -> AnyArray:
+    """Return the radiance of a dim room with a softbox in front at the upper left, and one at the
+    right.
+    """
     grey = np.where(w[:, 2] < 0, 0.15, 0.05 + 0.25 * w[:, 2])
     softbox, other = (234, 38), (117, 13)
     return grey + 3.3 * _is_in_disc(w, *softbox, radius=22) + 2 * _is_in_disc(w, *other, radius=12)
@@ -61,22 +71,26 @@ def studio(w):
 LIGHTS = {light.__name__: light for light in (court, hall, sky, studio)}
 
 
-def _direction_to(azimuth, elevation):
-    """The unit vector (3,) to an `azimuth`, from north (+y) to east (+x), and `elevation`."""
+def _direction_to(azimuth: float, elevation: float) -> AnyArray:
+    """Return the unit vector (3,) to an azimuth, from north (+y) to east (+x), and an elevation
+    [degrees].
+    """
     return from_angles(np.radians(90 - elevation), np.radians(90 - azimuth))
 
 
-def _is_in_disc(w, azimuth, elevation, radius):
-    """1 where a direction is nearer than `radius` to the disc's centre, else 0; [degrees]."""
+def _is_in_disc(w: AnyArray, azimuth: float, elevation: float, radius: float) -> AnyArray:
+    """Return 1 where a direction is closer than `radius` to the centre of a disc, else 0
+    [degrees].
+    """
     return 1.0 * (w @ _direction_to(azimuth, elevation) > np.cos(np.radians(radius)))
 
 
 class LightSampling:
     """Draws directions by the radiance of a light, tabulated over polar angle and azimuth."""
 
-    def __init__(self, light):
+    def __init__(self, light: Callable[[AnyArray], AnyArray]) -> None:
         heights, widths = CELLS
-        # Cells are even in polar angle, and uniform in the directions within
+        # Cells are even in polar angle, and directions are uniform within a cell
         self.z = np.cos(np.arange(heights + 1) / heights * np.pi)
         inside = (np.arange(POINTS) + 0.5) / POINTS
         z = (self.z[:-1, None] + np.diff(self.z)[:, None] * inside).ravel()
@@ -88,16 +102,16 @@ class LightSampling:
         self.sums = np.cumsum(masses / masses.sum())
         self.densities = masses / masses.sum() / areas
 
-    def sample(self, u):
-        """Directions (n, 3) for points `u` (n, 3) of the unit cube."""
+    def sample(self, u: AnyArray) -> AnyArray:
+        """Draw directions (n, 3) for points `u` (n, 3) of the unit cube."""
         heights, widths = CELLS
         cell = np.minimum(np.searchsorted(self.sums, u[:, 0]), heights * widths - 1)
         row, column = np.divmod(cell, widths)
         z = self.z[row] + np.diff(self.z)[row] * u[:, 1]
         return from_angles(np.arccos(z), (column + u[:, 2]) / widths * 2 * np.pi)
 
-    def pdf(self, w):
-        """Densities (n,) per solid angle of directions `w` (n, 3)."""
+    def pdf(self, w: AnyArray) -> AnyArray:
+        """Return the densities (n,) per solid angle of directions `w` (n, 3)."""
         heights, widths = CELLS
         row = np.arccos(np.clip(w[:, 2], -1, 1)) / np.pi * heights
         column = np.arctan2(w[:, 1], w[:, 0]) / (2 * np.pi) % 1 * widths
@@ -106,6 +120,6 @@ class LightSampling:
 
 
 @cache
-def get_sampling(name):
-    """The `LightSampling` of the light called `name`, made once."""
+def get_sampling(name: str) -> LightSampling:
+    """Return the `LightSampling` of the light called `name`, which is made once."""
     return LightSampling(LIGHTS[name])

@@ -1,4 +1,4 @@
-"""How far a picture is from a reference, by several metrics, each beside its noise floor.
+"""Compares pictures with a reference by several metrics, each beside its noise floor.
 
 Pictures are arrays (height, width, 3) of linear sRGB; a mask (height, width) says which pixels
 count.

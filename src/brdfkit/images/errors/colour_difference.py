@@ -1,12 +1,19 @@
-"""Differences in colour, pixel by pixel: ΔE2000 and, for what is brighter than white, ΔE ITP."""
+"""Differences in colour, pixel by pixel: ΔE2000 and, for colours brighter than white, ΔE ITP."""
+
+from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray
+
 TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
-WHITE_XYZ = np.array([0.3127 / 0.3290, 1, 0.3583 / 0.3290])  # D65's, by its x and y
+WHITE_XYZ = np.array([0.3127 / 0.3290, 1, 0.3583 / 0.3290])  # D65, by its x and y
 # Luminance of the value 1 [cd/m²]: the white of paper in HDR pictures, by Report ITU-R BT.2408
 WHITE = 203.0
-# XYZ to the primaries of BT.2020, those to LMS, and LMS after PQ's curve to ITP [ITU-R 2019]
+# Matrices from XYZ to BT.2020, from BT.2020 to LMS, and from LMS after PQ's curve to ITP
+# [ITU-R 2019]
 TO_2020 = np.array(
     [
         [1.7166512, -0.3556708, -0.2533663],
@@ -18,41 +25,42 @@ TO_LMS = np.array([[1688, 2146, 262], [683, 2951, 462], [99, 309, 3688]]) / 4096
 TO_ITP = np.array([[2048, 2048, 0], [3305, -6806.5, 3501.5], [17933, -17390, -543]]) / 4096
 
 
-def ciede2000(reference, picture):
-    """ΔE2000 (...) of linear sRGB (..., 3) [Luo et al. 2001]: 1 is just seen, black to white 100.
+def ciede2000(reference: AnyArray, picture: AnyArray) -> AnyArray:
+    """Return ΔE2000 (...) of linear sRGB (..., 3) [Luo et al. 2001].
 
-    Values above white are not clipped, so that differences within highlights count. It is nan where
-    a value is not finite.
+    A difference of 1 is just visible; black and white differ by 100. Values above white are not
+    clipped, so that differences within highlights count. It is nan where a value is not finite.
     """
     with np.errstate(invalid="ignore"):
         return _compare_lab(_to_lab(reference), _to_lab(picture))
 
 
-def delta_e_itp(reference, picture):
-    """ΔE ITP (...) of linear sRGB (..., 3) [ITU-R 2019]: 1 is seen at best.
+def delta_e_itp(reference: AnyArray, picture: AnyArray) -> AnyArray:
+    """Return ΔE ITP (...) of linear sRGB (..., 3) [ITU-R 2019].
 
-    It is made for high dynamic range, and so for absolute luminances: 1 is shown at 203 cd/m².
+    A difference of 1 is just visible in the best case. The metric is made for high dynamic range,
+    and so for absolute luminances: the value 1 is shown at 203 cd/m².
     """
     with np.errstate(invalid="ignore"):
         return 720 * np.linalg.norm(_to_itp(reference) - _to_itp(picture), axis=-1)
 
 
-def _to_lab(rgb):
-    """CIE L*, a* and b*, each (...), of linear sRGB (..., 3)."""
+def _to_lab(rgb: AnyArray) -> tuple[Any, Any, Any]:
+    """Convert linear sRGB (..., 3) to CIE L*, a* and b*, each (...)."""
     t = rgb @ TO_XYZ.T / WHITE_XYZ
     f = np.where(t > (6 / 29) ** 3, np.cbrt(t), t * (29 / 6) ** 2 / 3 + 4 / 29)
     x, y, z = np.moveaxis(f, -1, 0)
     return 116 * y - 16, 500 * (x - y), 200 * (y - z)
 
 
-def _compare_lab(first, other):
-    """ΔE2000 of colours (L*, a*, b*), in the symbols of [Luo et al. 2001]."""
+def _compare_lab(first: tuple[Any, Any, Any], other: tuple[Any, Any, Any]) -> AnyArray:
+    """Return ΔE2000 of colours (L*, a*, b*), in the symbols of [Luo et al. 2001]."""
     (L1, a1, b1), (L2, a2, b2) = first, other
     G = 0.5 * (1 - _chroma_share((np.hypot(a1, b1) + np.hypot(a2, b2)) / 2))
     a1, a2 = (1 + G) * a1, (1 + G) * a2
     C1, C2 = np.hypot(a1, b1), np.hypot(a2, b2)
     h1, h2 = (np.degrees(np.arctan2(b, a)) % 360 for a, b in ((a1, b1), (a2, b2)))
-    # Hues differ along the shorter arc; a grey has none, and counts as the other's
+    # Hues differ along the shorter arc; a grey has no hue, and gets that of the other colour
     grey = C1 * C2 == 0
     Δh = np.where(grey, 0, (h2 - h1 + 180) % 360 - 180)
     ΔL, ΔC, ΔH = L2 - L1, C2 - C1, 2 * np.sqrt(C1 * C2) * np.sin(np.radians(Δh / 2))
@@ -72,13 +80,13 @@ def _compare_lab(first, other):
     return np.sqrt(l**2 + c**2 + H**2 + R_T * c * H)
 
 
-def _chroma_share(C):
-    """√(C⁷ / (C⁷ + 25⁷)): how near a chroma is to those that are seen less finely."""
+def _chroma_share(C: AnyArray) -> AnyArray:
+    """Return √(C⁷ / (C⁷ + 25⁷)), which is near 1 for chromas whose differences are less visible."""
     return np.sqrt(C**7 / (C**7 + 25.0**7))
 
 
-def _to_itp(rgb):
-    """I, T and P (..., 3), by PQ's curve [ITU-R 2019], of linear sRGB (..., 3)."""
+def _to_itp(rgb: AnyArray) -> AnyArray:
+    """Convert linear sRGB (..., 3) to I, T and P (..., 3), by PQ's curve [ITU-R 2019]."""
     y = (WHITE * np.maximum(rgb, 0) @ (TO_LMS @ TO_2020 @ TO_XYZ).T / 10_000) ** (2610 / 16384)
     pq = ((3424 / 4096 + 2413 / 128 * y) / (1 + 2392 / 128 * y)) ** (2523 / 32)
     return pq @ TO_ITP.T

@@ -1,27 +1,33 @@
-"""HDR-FLIP: what an observer sees who flips between two pictures [Andersson et al. 2021].
+"""HDR-FLIP: the difference that an observer sees who flips between pictures [Andersson et al.
+2021].
 
-The package flip-evaluator computes it. Left alone, it takes the exposures from all pixels, of which
-a black background makes too many and too long ones; here they come from the masked ones.
+The package flip-evaluator computes it. By default it takes the exposures from all pixels, and a
+black background makes these too many and too long. Here they come from the masked pixels.
 """
+
+from __future__ import annotations
 
 from math import ceil
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, BoolArray
 from brdfkit.core.colours import luminance
 from brdfkit.images.errors.masks import crop_to_mask
 from brdfkit.images.errors.psnr import PEAK
 
-# The exposures lift the brightest pixel, and the median one, to this value, where the tone curve of
-# ACES comes to 0.85 of its range
-BRIGHT = 2.1188
-STOPS = 8  # between the shortest and the longest exposure, at most: half of the pixels may be black
+# The shortest exposure lifts the brightest pixel to this value, the longest one the median pixel.
+# There the tone curve of ACES reaches 0.85 of its range
+EXPOSED_VALUE = 2.1188
+# The largest range of exposures [stops], since half of the pixels may be black
+LARGEST_RANGE = 8
 
 
-def flip(reference, picture, mask):
-    """The mean of HDR-FLIP over the mask, 0 (equal) to 1, at 67 pixels per degree of the eye.
+def flip(reference: AnyArray, picture: AnyArray, mask: BoolArray) -> float:
+    """Return the mean of HDR-FLIP over the mask, from 0 for equal pictures to 1.
 
-    Raises `ImportError` without the package flip-evaluator. nan for a black reference.
+    It is for 67 pixels per degree of the eye. nan for a black reference. Raises `ImportError`
+    without the package flip-evaluator.
     """
     from flip_evaluator import evaluate
 
@@ -40,10 +46,10 @@ def flip(reference, picture, mask):
     return float(errors[inside].mean(dtype=float))
 
 
-def find_exposures(reference, mask):
-    """The shortest and the longest exposure [stops] for a reference; inf for a black one."""
-    seen = luminance(np.maximum(reference[mask], 0))
-    brightest, median = np.percentile(seen, [PEAK, 50])
+def find_exposures(reference: AnyArray, mask: BoolArray) -> tuple[float, float]:
+    """Return the shortest and the longest exposure [stops] for a reference; inf for a black one."""
+    values = luminance(np.maximum(reference[mask], 0))
+    brightest, median = np.percentile(values, [PEAK, 50])
     with np.errstate(divide="ignore"):
-        start, stop = np.log2(BRIGHT) - np.log2([brightest, median])
-    return float(start), float(min(stop, start + STOPS))
+        start, stop = np.log2(EXPOSED_VALUE) - np.log2([brightest, median])
+    return float(start), float(min(stop, start + LARGEST_RANGE))

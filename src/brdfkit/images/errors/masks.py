@@ -1,10 +1,16 @@
-"""Which pixels count; crops pictures to them for metrics that look around a pixel."""
+"""Masks that say which pixels count, and pictures cropped to them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, BoolArray
 
-def to_mask(picture, mask):
-    """The mask (height, width) of the pixels that count: all where `mask` is None.
+
+def to_mask(picture: AnyArray, mask: BoolArray | None) -> BoolArray:
+    """Return the mask (height, width) of the pixels that count, all of them if `mask` is None.
 
     >>> to_mask(np.zeros((1, 2, 3)), None)
     array([[ True,  True]])
@@ -12,10 +18,13 @@ def to_mask(picture, mask):
     return np.full(picture.shape[:2], True) if mask is None else mask
 
 
-def crop_to_mask(pictures, mask, margin=0):
-    """The `pictures` and the mask, cut to the mask's bounding box and a black `margin` [pixels].
+def crop_to_mask(
+    pictures: Sequence[AnyArray], mask: BoolArray, margin: int = 0
+) -> tuple[list[AnyArray], BoolArray]:
+    """Crop pictures and their mask to the bounding box of the mask and a black `margin` [pixels].
 
-    All that is outside the mask becomes black in every picture, so that nothing of it counts.
+    All pixels outside the mask become black in every picture, so that they do not count in metrics
+    that look around a pixel.
 
     >>> pictures, mask = crop_to_mask([np.ones((9, 9, 3))], np.eye(9) > 0)
     """

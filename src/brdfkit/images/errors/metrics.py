@@ -1,23 +1,26 @@
-"""The metrics of pictures: what they are called, and which way is better."""
+"""The metrics of pictures: their titles, functions and directions."""
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, BoolArray
 from brdfkit.core.colours import to_srgb
 from brdfkit.images.errors.colour_difference import ciede2000, delta_e_itp
 from brdfkit.images.errors.flip import flip
 from brdfkit.images.errors.masks import crop_to_mask
 from brdfkit.images.errors.psnr import psnr
 
-RADIUS = 5  # of the window [pixels]: 11 × 11, a Gaussian of σ = 1.5, as in the paper
+RADIUS = 5  # pixels: the window is 11 × 11, a Gaussian of σ = 1.5, as in the paper
 
 
-def ssim(reference, picture, mask):
-    """The mean structural similarity over the mask and R, G, B of sRGB in 0..1 [Wang et al. 2004].
+def ssim(reference: AnyArray, picture: AnyArray, mask: BoolArray) -> float:
+    """Return the mean structural similarity over the mask and R, G, B of sRGB [Wang et al. 2004].
 
-    Equal pictures have 1.     Raises `ImportError` without the package scikit-image.
+    Equal pictures have 1. Raises `ImportError` without the package scikit-image.
     """
     from skimage.metrics import structural_similarity
 
@@ -37,28 +40,36 @@ def ssim(reference, picture, mask):
 
 @dataclass(frozen=True)
 class Metric:
-    """A metric: its column's `title`, the `function` (reference, picture, mask), the `digits` that
-    are shown, whether `more` is better, and the `package` that it needs, if any."""
+    """A metric of pictures.
+
+    `title` is that of its column, `function` takes (reference, picture, mask), `digits` is the
+    number of decimals that are shown. `more` says whether a larger value is better; `package` names
+    the package that it needs, if any.
+    """
 
     title: str
-    function: Callable[[np.ndarray, np.ndarray, np.ndarray], float]
+    function: Callable[[AnyArray, AnyArray, BoolArray], float]
     digits: int
     more: bool = False
     package: str = ""
 
-    def text(self, value):
-        """A value of the metric as text; a dash for nan."""
+    def text(self, value: float) -> str:
+        """Format a value of the metric; nan becomes a dash."""
         return "-" if np.isnan(value) else f"{value:.{self.digits}f}"
 
-    def exceeds(self, value, floor):
-        """Whether an error is more than the noise floor's; also where either is unknown."""
+    def exceeds(self, value: float, floor: float) -> bool:
+        """Return whether an error is worse than the noise floor; also True where either is
+        unknown.
+        """
         return not (value >= floor if self.more else value <= floor)
 
 
-def _percentile_of(differences, share):
-    """The metric that takes a percentile of per-pixel `differences`."""
+def _percentile_of(
+    differences: Callable[[AnyArray, AnyArray], AnyArray], share: float
+) -> Callable[[AnyArray, AnyArray, BoolArray], float]:
+    """Return the metric that takes a percentile of per-pixel `differences`."""
 
-    def of(reference, picture, mask):
+    def of(reference: AnyArray, picture: AnyArray, mask: BoolArray) -> float:
         return float(np.percentile(differences(reference[mask], picture[mask]), share))
 
     return of
