@@ -10,6 +10,7 @@ from brdfkit.core.array_types import JitFloat, JitMask, JitVector, MitsubaObject
 from brdfkit.core.errors import no_such
 from brdfkit.shadows.maps.depth_pass import render_depths
 from brdfkit.shadows.maps.map_point import AUTOMATIC, Bias, find_map_point
+from brdfkit.shadows.maps.partition import Partition, Setup
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import AnyProjection, LightDepth, Projection
 from brdfkit.shadows.maps.techniques import find_renderer, make_techniques
@@ -79,14 +80,14 @@ class LightShadow:
         names = {"projection": projection, "filter": filter, "partition": partition}
         technique = make_techniques(names, settings)
         project = _use_depth(depth, technique["projection"], placement)
-        partitioned = technique["partition"](scene, placement, project, resolution)
-        self.part_of = partitioned.part_of
+        divided: Partition = technique["partition"](Setup(scene, placement, project, resolution))
+        self.part_of = divided.part_of
         lookup, render = technique["filter"], find_renderer(filter)
         self.maps = [
             ShadowMap(
                 scene, part.projection, placement.reach, lookup, part.resolution, bias, render
             )
-            for part in partitioned.parts
+            for part in divided.parts
         ]
 
     def lit_share(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:

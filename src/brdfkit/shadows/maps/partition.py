@@ -7,10 +7,26 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from brdfkit.core.array_types import JitInt, JitVector
+from brdfkit.core.array_types import JitInt, JitVector, MitsubaObject
 from brdfkit.core.projective.body import Empty
 from brdfkit.shadows.maps.placement import Placement
-from brdfkit.shadows.maps.projection import AnyProjection
+from brdfkit.shadows.maps.projection import AnyProjection, Projection
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What a partition is made from.
+
+    scene : a `mi.Scene`.
+    placement : the camera and the light in it.
+    project : the function from a placement to the projection of a map.
+    resolution : texels along a side of a map.
+    """
+
+    scene: MitsubaObject
+    placement: Placement
+    project: Callable[[Placement], Projection]
+    resolution: int
 
 
 @dataclass(frozen=True)
@@ -34,12 +50,9 @@ class Partition:
 
 
 def make_parts(
-    placements: Iterable[Placement],
-    project: Callable[[Placement], AnyProjection],
-    resolution: int,
-    placement_of: Callable[[Any], Any],
+    setup: Setup, placements: Iterable[Placement], placement_of: Callable[[Any], Any]
 ) -> Partition:
-    """Make the partition with a part for each placement that is not empty.
+    """Make the partition with a part for each of the placements that is not empty.
 
     placement_of : function from points to the indices of their placements.
 
@@ -50,13 +63,13 @@ def make_parts(
     indices: list[int] = []
     for placement in placements:
         try:
-            projection = project(placement)
+            projection = setup.project(placement)
         except Empty as error:
             empty = error
             indices.append(len(placements))
             continue
         indices.append(len(parts))
-        parts.append(Part(projection, resolution))
+        parts.append(Part(projection, setup.resolution))
     if not parts:
         raise empty
     return Partition(parts, _renumber(placement_of, indices))

@@ -14,17 +14,14 @@ slow for games, as [Ergun 2008, 2.2.3.1] says.
 """
 
 import heapq
-from collections.abc import Callable
 from typing import Any, TypeAlias
 
 import numpy as np
 
-from brdfkit.core.array_types import BoolArray, FloatArray, IntArray, MitsubaObject
+from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
 from brdfkit.mitsuba_bridge.properties.declarations import count
 from brdfkit.shadows.maps.cells import Cell, make_cell_finder
-from brdfkit.shadows.maps.partition import Part, Partition
-from brdfkit.shadows.maps.placement import Placement
-from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.partition import Part, Partition, Setup
 from brdfkit.shadows.maps.resolution import footprints, places_on_map
 from brdfkit.shadows.maps.visible_surfaces import VisibleSurfaces, find_visible_surfaces, is_lit
 
@@ -33,18 +30,13 @@ MAX_LEVEL = 7  # how often a square may be divided
 Leaf: TypeAlias = tuple[int, int, int]  # level, row and column of a square
 
 
-def make_partition(
-    scene: MitsubaObject,
-    placement: Placement,
-    project: Callable[[Placement], Projection],
-    resolution: int,
-    budget: int,
-) -> Partition:
+def make_partition(setup: Setup, budget: int) -> Partition:
     """Make a partition of at most `budget` squares of the map of the whole scene."""
-    whole = project(placement)
-    surfaces = find_visible_surfaces(scene, placement.camera)
+    scene, light, resolution = setup.scene, setup.placement.light, setup.resolution
+    whole = setup.project(setup.placement)
+    surfaces = find_visible_surfaces(scene, setup.placement.camera)
     places = places_on_map(whole, surfaces)
-    border = is_at_border(surfaces, is_lit(scene, placement.light, surfaces))
+    border = is_at_border(surfaces, is_lit(scene, light, surfaces))
     leaves = grow_tree(places[border], footprints(places, surfaces)[border], budget)
     parts = [
         Part(Cell.from_grid(whole, column, row, 2**level, resolution), resolution)

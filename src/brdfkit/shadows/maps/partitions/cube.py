@@ -11,30 +11,23 @@ from dataclasses import replace
 import drjit as dr
 import numpy as np
 
-from brdfkit.core.array_types import FloatArray, JitInt, JitVector, MitsubaObject
+from brdfkit.core.array_types import FloatArray, JitInt, JitVector
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.light import Light
-from brdfkit.shadows.maps.partition import Partition, make_parts
-from brdfkit.shadows.maps.placement import Placement
-from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.partition import Partition, Setup, make_parts
 
 FACES = np.vstack([np.eye(3), -np.eye(3)])  # along x, y, z, and back
 
 
-def make_partition(
-    scene: MitsubaObject,
-    placement: Placement,
-    project: Callable[[Placement], Projection],
-    resolution: int,
-) -> Partition:
+def make_partition(setup: Setup) -> Partition:
     """Make a partition of the six faces; raise `BrdfkitError` for a directional light."""
-    point = placement.light.point
-    if placement.light.is_directional:
+    light = setup.placement.light
+    if light.is_directional:
         raise BrdfkitError(
             "a cube of maps is around a light at a place; of one far away use parallel_split."
         )
-    faces = [replace(placement, light=Light(point, axis, np.pi / 4)) for axis in FACES]
-    return make_parts(faces, project, resolution, make_face_finder(point[:3]))
+    faces = [replace(setup.placement, light=Light(light.point, axis, np.pi / 4)) for axis in FACES]
+    return make_parts(setup, faces, make_face_finder(light.point[:3]))
 
 
 def make_face_finder(centre: FloatArray) -> Callable[[JitVector], JitInt]:

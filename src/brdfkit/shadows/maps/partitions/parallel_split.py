@@ -13,16 +13,12 @@ Good for wide scenes. Slices change as the camera turns, and with them their tex
 shadows crawl (those of `stable_cascades` do not).
 """
 
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 
-from brdfkit.core.array_types import MitsubaObject
 from brdfkit.mitsuba_bridge.properties.declarations import word
 from brdfkit.shadows.maps import split_planes
-from brdfkit.shadows.maps.partition import Partition, make_parts
-from brdfkit.shadows.maps.placement import Placement
-from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.partition import Partition, Setup, make_parts
 from brdfkit.shadows.maps.visible_surfaces import find_visible_surfaces
 
 SETTINGS = {
@@ -32,21 +28,14 @@ SETTINGS = {
 MARGIN = 0.05  # around the surfaces that rays found, for nearer ones between the rays
 
 
-def make_partition(
-    scene: MitsubaObject,
-    placement: Placement,
-    project: Callable[[Placement], Projection],
-    resolution: int,
-    parts: int,
-    spacing: str,
-    ends: str,
-) -> Partition:
+def make_partition(setup: Setup, parts: int, spacing: str, ends: str) -> Partition:
     """Make a partition of at most `parts` slices of the camera's view."""
-    camera = placement.camera
+    camera = setup.placement.camera
     if ends == "surfaces":
-        depths = camera.depths(find_visible_surfaces(scene, camera).points)
+        depths = camera.depths(find_visible_surfaces(setup.scene, camera).points)
         near, far = (1 - MARGIN) * depths.min(), (1 + MARGIN) * depths.max()
         camera = camera.with_planes(max(near, camera.near), min(far, camera.far))
     planes = split_planes.compute_split_planes(camera.near, camera.far, parts, spacing)
-    slices = [replace(placement, camera=camera.with_planes(*pair)) for pair in pairwise(planes)]
-    return make_parts(slices, project, resolution, split_planes.make_slice_finder(camera, planes))
+    cameras = [camera.with_planes(*pair) for pair in pairwise(planes)]
+    slices = [replace(setup.placement, camera=each) for each in cameras]
+    return make_parts(setup, slices, split_planes.make_slice_finder(camera, planes))

@@ -32,7 +32,7 @@ from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import make_axes, make_rigid, to_unit_cube, transform
 from brdfkit.shadows.maps import split_planes
 from brdfkit.shadows.maps.cells import GUTTER
-from brdfkit.shadows.maps.partition import Part, Partition
+from brdfkit.shadows.maps.partition import Part, Partition, Setup
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.visible_surfaces import find_visible_surfaces
@@ -42,21 +42,15 @@ MARGIN = 0.05  # around the surfaces that rays found, for nearer ones between th
 ROUNDING_ERROR = 1e-5  # of places on a map
 
 
-def make_partition(
-    scene: MitsubaObject,
-    placement: Placement,
-    project: Callable[[Placement], Projection],
-    resolution: int,
-    parts: int,
-    spacing: str,
-) -> Partition:
+def make_partition(setup: Setup, parts: int, spacing: str) -> Partition:
     """Make a partition of `parts` stable slices; `BrdfkitError` if the light is not directional."""
+    placement, resolution = setup.placement, setup.resolution
     if not placement.light.is_directional:
         raise BrdfkitError(
             "stable cascades are of directional lights; of a point or spot light the projection "
             "'uniform' is stable."
         )
-    near, far = find_stable_depths(scene, placement)
+    near, far = find_stable_depths(setup.scene, placement)
     planes = split_planes.compute_split_planes(near, far, parts, spacing)
     maps = [snap_projection(placement, *pair, resolution) for pair in pairwise(planes)]
     return Partition([Part(each, resolution) for each in maps], make_map_finder(maps, resolution))

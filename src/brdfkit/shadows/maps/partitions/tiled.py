@@ -10,16 +10,12 @@ The footprints of texels in the picture are those of 128² camera rays. Good whe
 the eye; costs a pass for each tile, with the same number of texels in all.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 
-from brdfkit.core.array_types import FloatArray, IntArray, MitsubaObject
+from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.mitsuba_bridge.properties.declarations import count
 from brdfkit.shadows.maps.cells import GUTTER, Cell, make_cell_finder
-from brdfkit.shadows.maps.partition import Part, Partition
-from brdfkit.shadows.maps.placement import Placement
-from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.partition import Part, Partition, Setup
 from brdfkit.shadows.maps.resolution import footprints, places_on_map
 from brdfkit.shadows.maps.visible_surfaces import find_visible_surfaces
 
@@ -27,20 +23,14 @@ SETTINGS = {"tiles": count(4, (1, 16), "tiles along a side of the map")}
 LEAST_TEXELS = 4 * GUTTER  # along a side of a tile in which no ray saw anything
 
 
-def make_partition(
-    scene: MitsubaObject,
-    placement: Placement,
-    project: Callable[[Placement], Projection],
-    resolution: int,
-    tiles: int,
-) -> Partition:
+def make_partition(setup: Setup, tiles: int) -> Partition:
     """Make a partition of `tiles` × `tiles` squares of the map of the whole scene."""
-    whole = project(placement)
-    surfaces = find_visible_surfaces(scene, placement.camera)
+    whole = setup.project(setup.placement)
+    surfaces = find_visible_surfaces(setup.scene, setup.placement.camera)
     places = places_on_map(whole, surfaces)
     widths = footprints(places, surfaces)
     weights = np.histogram2d(places[:, 1], places[:, 0], tiles, [[-1, 1]] * 2, weights=widths)[0]
-    sizes = share_texels(weights, resolution)
+    sizes = share_texels(weights, setup.resolution)
     parts = [
         Part(Cell.from_grid(whole, column, row, tiles, size), size)
         for row, its_sizes in enumerate(sizes.tolist())

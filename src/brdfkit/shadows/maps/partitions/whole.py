@@ -1,20 +1,11 @@
 """One map for the whole scene."""
 
-from collections.abc import Callable
-
-from brdfkit.core.array_types import MitsubaObject
-from brdfkit.shadows.maps.partition import Part, Partition
-from brdfkit.shadows.maps.placement import Placement
-from brdfkit.shadows.maps.projection import Projection
+from brdfkit.shadows.maps.partition import Part, Partition, Setup
 
 
-def make_partition(
-    scene: MitsubaObject,
-    placement: Placement,
-    project: Callable[[Placement], Projection],
-    resolution: int,
-) -> Partition:
+def make_partition(setup: Setup) -> Partition:
     """Make the partition with a single part."""
     import mitsuba as mi
 
-    return Partition([Part(project(placement), resolution)], lambda p: mi.UInt32(0))
+    part = Part(setup.project(setup.placement), setup.resolution)
+    return Partition([part], lambda p: mi.UInt32(0))
