@@ -12,8 +12,8 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.boxes import Box, format_point, join_boxes
 from brdfkit.distance_fields.functions import evaluate
 
-ROUNDING_ERROR = 1e-9  # of the difference of two values
-BALL_SHARE = 0.999  # how much of the surface-free ball a walk uses
+ROUNDING_ERROR = 1e-9  # of the difference between two values of f
+BALL_SHARE = 0.999  # the share of the surface-free ball's radius that a step may use
 
 
 def check(
@@ -34,9 +34,9 @@ def check(
     distance : callable
         f(p) of points; or a node.
     low, high : three numbers
-        The corners of the box in which it is checked.
+        The corners of the box that is checked.
     lipschitz : float, optional
-        The bound L on the slope of f; by default that of the node, else 1.
+        The bound L on the slope of f; by default the node's own, else 1.
     samples : integer, default 100_000
         The number of pairs.
     seed : integer, default 0

@@ -48,8 +48,8 @@ def _make_function(glsl: str, drjit: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def _sqrt(a: JitFloat) -> JitFloat:
-    """Return √a with the derivative 0 at a = 0; that of `dr.safe_sqrt` is wrong near 0, too."""
-    zero = a <= 0  # false for NaN, which the result keeps
+    """Return √a with the derivative 0 at a = 0; `dr.safe_sqrt` has a wrong one there and near 0."""
+    zero = a <= 0  # this is false for NaN, which stays NaN
     return dr.select(zero, 0.0, dr.sqrt(dr.select(zero, 1.0, a)))
 
 

@@ -28,7 +28,7 @@ def _check_name(what: str, value: Any, rules: Mapping[str, Any]) -> str:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class made_of(Motion):
-    """A solid with the name of its material, by which a renderer finds its BSDF.
+    """A solid with the name of its material, which a renderer uses to find the BSDF.
 
     Parameters
     ----------

@@ -53,7 +53,7 @@ class Operators:
         return find_kind("shell")(self, thickness)
 
     def made_of(self, material: str) -> Any:
-        """Name the material, by which a renderer finds its BSDF."""
+        """Name the material, which a renderer uses to find the BSDF."""
         return find_kind("made_of")(self, material)
 
     def repeat(self, spacing: Any, copies: int | None = None) -> Any:

@@ -21,7 +21,7 @@ class Program:
         return self.assign("float", f"{function}({', '.join(to_glsl(a) for a in args)})")
 
     def select(self, condition: "Symbol", a: Any, b: Any) -> "Symbol":
-        """Add the choice of `a` where the condition holds, else `b`, and return its symbol."""
+        """Add a line that chooses `a` where the condition holds, else `b`; return its symbol."""
         return self.assign("float", f"{condition.name} ? {to_glsl(a)} : {to_glsl(b)}")
 
     def grid_value(self, grid: Any, i: Any, j: Any, k: Any) -> "Symbol":

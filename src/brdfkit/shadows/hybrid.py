@@ -61,7 +61,7 @@ def volumes_of_map(
 def map_to_mesh(depths: FloatArray, projection: Projection, jump: float) -> Mesh:
     """Return the surface in a map of `depths` (n, n), as a mesh between the middles of its texels.
 
-    projection : that of the map.
+    projection : the map's projection.
     jump : the change of distance to the light between texels, over their width, beyond which the
         surface is torn.
     """

@@ -49,7 +49,7 @@ class Conversions:
     def to_grid(self, resolution: int = 64, bounds: Any = None) -> Any:
         """Return the field sampled on cubic cells, `resolution` of them along the longest edge.
 
-        The box is that of the surface and a margin, or `bounds`, (low, high). The grid differs
+        The box is `bounds`, (low, high), or the surface's own box with a margin. The grid differs
         from the field by at most ``field.lipschitz * grid.half_diagonal``.
         """
         from brdfkit.distance_fields.export.sampling import to_grid

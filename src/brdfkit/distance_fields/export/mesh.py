@@ -53,7 +53,7 @@ def to_mesh(node: Any, resolution: int = 64, bounds: Any = None) -> Mesh:
     resolution : integer, default 64
         The number of cells along the longest edge of the box.
     bounds : (low, high), optional
-        The corners of the box; by default that of the surface and a margin.
+        The corners of the box; by default the surface's own box with a margin.
 
     Returns
     -------

@@ -10,14 +10,14 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.boxes import Box, format_point
 from brdfkit.distance_fields.parameters import find_kind
 
-MARGIN = 0.05  # [unit of length] around the surface of a field
+MARGIN = 0.05  # around the surface's own box [unit of length]
 
 
 def to_grid(node: Any, resolution: int = 64, bounds: Any = None) -> Any:
     """Return the field as a `grid` of cubic cells, `resolution` of them along the longest edge.
 
     The grid differs from the field by at most ``node.lipschitz * grid.half_diagonal``. The box is
-    `bounds`, (low, high), or that of the node and a margin.
+    `bounds`, (low, high), or the node's own box with a margin.
     """
     low, high = box_to_sample(node, bounds)
     axes = grid_axes(low, high, resolution)
@@ -36,7 +36,7 @@ def to_grid(node: Any, resolution: int = 64, bounds: Any = None) -> Any:
 
 
 def box_to_sample(node: Any, bounds: Any = None) -> Box:
-    """Return the box (low, high) to sample: `bounds`, or that of the surface and a margin."""
+    """Return the box (low, high) to sample: `bounds`, or the surface's own box with a margin."""
     corners = node.bounds() if bounds is None else bounds
     try:
         low, high = np.asarray(corners, float).reshape(2, 3)

@@ -34,7 +34,7 @@ SHADOWS = [*METHODS, "none"]
 
 @dataclass(frozen=True)
 class DirectLight:
-    """The settings of the integrator `distance_field` by which direct light is computed."""
+    """The settings of the integrator `distance_field` for direct light, and its computation."""
 
     shadow: str
     direction: str

@@ -52,7 +52,7 @@ class Parts:
         return {name: grow_material(field, name, self.growth) for name in self.named}
 
     def bsdf(self, field: Node, larger: Mapping[str, Node], p: JitVector) -> MitsubaObject:
-        """Return the `mi.BSDFPtr` at surface points `p`: that of the part with the largest share.
+        """Return the `mi.BSDFPtr` of the part with the largest share of each surface point `p`.
 
         larger : the result of `grow` for this field.
         """
@@ -72,8 +72,8 @@ class Parts:
 def match_bsdfs(field: Node, bsdfs: Mapping[str, MitsubaObject], growth: float) -> Parts:
     """Match the BSDFs of a scene, name → BSDF, with the parts of a field.
 
-    A BSDF whose name is that of no part is for all parts without a name; without it they are
-    Mitsuba's `diffuse`. A name without a BSDF and a superfluous BSDF raise `BrdfkitError`; a BSDF
+    A BSDF whose name belongs to no part is for all unnamed parts; without it they are Mitsuba's
+    `diffuse`. A name without a BSDF and a superfluous BSDF raise `BrdfkitError`; a BSDF
     that transmits light causes a warning.
     """
     import mitsuba as mi

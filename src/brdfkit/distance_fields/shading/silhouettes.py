@@ -27,18 +27,18 @@ from brdfkit.distance_fields.shading.visible_point import NORMAL_STEP, VisiblePo
 from brdfkit.distance_fields.tracing.hits import normal
 from brdfkit.mitsuba_bridge.surface_points import make_interaction
 
-BAND_WIDTH = 4.0  # ε over ρ
-MAX_STEPS = 512  # of a march, as in `cone_trace`
-GRAZING_COSINE = 0.01  # between ray and surface at a silhouette; at 0 nothing is reflected
+BAND_WIDTH = 4.0  # ε, over the cone's radius ρ
+MAX_STEPS = 512  # as many as `cone_trace` takes
+GRAZING_COSINE = 0.01  # between ray and normal at a silhouette; a BSDF reflects nothing at 0
 
 
 @dataclass(frozen=True)
 class NearMiss:
-    """Where a camera ray passes a silhouette closely.
+    """A place where a camera ray passes a silhouette closely.
 
     seen : the `VisiblePoint` that the ray would meet if the surface reached it.
-    gap : Float, g₀, with its derivatives.
-    band : Float, ε.
+    gap : Float, g₀, the least gap between cone and surface, with its derivatives.
+    band : Float, ε, the gap below which rays count as close.
     """
 
     seen: Any
@@ -80,9 +80,9 @@ def find_near_miss(
 def find_nearest_pass(
     gap: Any, rho: Any, tangent: JitFloat, far: JitFloat, active: JitMask
 ) -> JitFloat:
-    """Return the t of the smallest minimum of the gap within the band; 0 if there is none.
+    """Return the distance t of the smallest minimum of the gap, or 0 if none is within the band.
 
-    gap, rho : functions g(t) and ρ(t).
+    gap, rho : functions of t, the gap between cone and surface and the radius of the cone.
     """
 
     def step(

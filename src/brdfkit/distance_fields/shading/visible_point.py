@@ -1,4 +1,4 @@
-"""Where camera rays meet a field, found by cones as wide as a sample's share of a pixel.
+"""The points where camera rays meet a field, found by cones as wide as a sample of a pixel.
 
 A cone ends where it touches the surface, so that no object is missed, however thin. Shadows begin
 at the empty ball about its end. At a sharp edge the normal of such a large ball would be that of a
@@ -23,9 +23,9 @@ from brdfkit.distance_fields.tracing.cone_tracing import cone_trace
 from brdfkit.distance_fields.tracing.hits import normal, reattach
 from brdfkit.mitsuba_bridge.surface_points import make_interaction
 
-NORMAL_STEP = 10.0  # half the differences of normals, over `precision`; less than all details
-SMALL_BALL = 1 / 8  # the radius of the small ball over that of the first
-LEAST_COSINE = 0.1  # between surface and ray, for the way from the ball to the surface
+NORMAL_STEP = 10.0  # of normals by finite differences, over `precision`; less than all details
+SMALL_BALL = 1 / 8  # the radius of the small ball over the radius of the first one
+LEAST_COSINE = 0.1  # between ray and normal, so that the way from ball to surface stays short
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def find_visible_point(
     t = dr.select(hit.found, hit.t, 0)
     if dr.grad_enabled(f(ray(t))):
         t = reattach(f, ray.o, ray.d, t)
-    ball = dr.maximum(hit.distance, precision / 2)  # not 0 for rays that meet nothing
+    ball = dr.maximum(hit.distance, precision / 2)  # above 0 also for rays that meet nothing
     with dr.suspend_grad():
         end = dr.minimum(far, t + ball / LEAST_COSINE)
         close = dr.maximum(SMALL_BALL * ball, precision / 4)
@@ -76,7 +76,7 @@ def find_visible_point(
 
 
 def ray_cone(ray: MitsubaObject) -> tuple[JitFloat, JitFloat]:
-    """Return R₀ and tan α of the cone about a ray with differentials; 0 and 0 without them."""
+    """Return the first radius and the slope of the cone of a ray with differentials, else zeros."""
     if not ray.has_differentials:
         return 0.0, 0.0
     across = dr.maximum(dr.norm(ray.o_x - ray.o), dr.norm(ray.o_y - ray.o))

@@ -20,9 +20,9 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitVector
 
-LARGEST_SINE = 0.999  # of α; balls that lie within each other have no cone
-POINT_RADIUS = 1e-6  # a section with less than this, over the cone's length, is a point
-TIP_RADIUS = 1e-3  # over the widest radius: the search of a pointed cone ends there
+LARGEST_SINE = 0.999  # of α, for balls that lie within each other and have no cone
+POINT_RADIUS = 1e-6  # the least radius of a section, over the cone's length
+TIP_RADIUS = 1e-3  # where the march in a pointed cone ends, over the widest radius
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class LightCone:
     basis: tuple[Any, Any] = field(init=False)
 
     def __post_init__(self) -> None:
-        # Computed now, as a value that is first computed within a Dr.Jit loop is invalid after it
+        # A value that is first computed within a Dr.Jit loop is invalid after the loop
         z = dr.abs(self.axis.z) > 0.5
         side = type(self.axis)(dr.select(z, 1, 0), 0, dr.select(z, 0, 1))
         a = dr.normalize(side - self.axis * dr.dot(side, self.axis))
@@ -53,7 +53,7 @@ class LightCone:
         object.__setattr__(self, "basis", (a, dr.cross(self.axis, a)))
 
     def radius(self, t: JitFloat) -> JitFloat:
-        """Return ρ(t), the radius of the section at t; never 0, so that ratios are finite."""
+        """Return ρ(t), the radius of the cone's section at t, never 0, so that ratios are finite."""
         return dr.maximum(self.R_0 + t * self.tan, POINT_RADIUS * self.d)
 
     def point(self, t: JitFloat) -> JitVector:
@@ -92,7 +92,7 @@ class LightCone:
         """
         wide = dr.maximum(self.R_0, self.R_1)
         narrow = dr.maximum(dr.minimum(self.R_0, self.R_1), TIP_RADIUS * wide)
-        tan = dr.maximum(dr.abs(self.tan), 1e-4 * wide / self.d)  # the limit of a cylinder
+        tan = dr.maximum(dr.abs(self.tan), 1e-4 * wide / self.d)  # a cylinder is the limit
         growth = epsilon * pi / 2 * tan / (lipschitz + tan)
         decades = dr.maximum(dr.log(wide / narrow), tan * self.d / wide)
         return 2 + decades / dr.log(1 + growth)

@@ -1,4 +1,4 @@
-"""The straight edge that a march found, by which single samples of a light are visible or not.
+"""The straight edge that a march finds, which decides whether samples of a light are visible.
 
 The occluder of a `Shadow` ends at a straight line on the cone's disc, perpendicular to the gradient
 of the distance. So samples of a light, of a sphere or of any shape within it, are visible or not by
@@ -50,7 +50,7 @@ def find_edge(field: Any, cone: LightCone, shadow: Shadow) -> Edge:
     on_axis = distance_of(field)(cone.point(shadow.t))
     x, y = gradient_across(field, cone, shadow.t, on_axis)
     length = dr.sqrt(x * x + y * y)
-    flat = length == 0  # the distance grows along the axis only
+    flat = length == 0  # where the distance changes only along the axis
     length = dr.select(flat, 1, length)
     lean = dr.safe_sqrt(1 - dr.square(shadow.r * cone.tan))
     offset = dr.select(shadow.r < 1, shadow.r / dr.maximum(lean, 1e-3), 1)

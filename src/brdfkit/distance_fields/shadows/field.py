@@ -1,4 +1,4 @@
-"""What shadows need to know of a field: its distance, its bound L, and its convex pieces.
+"""The properties of a field that shadows need: its distance, its bound L, its convex pieces.
 
 A field is a function of points, or a node with a method `distance(p)`, and perhaps `lipschitz` and
 `is_convex`. A node whose `kind` is "union" and that `is_sharp` has its pieces as `children`.
@@ -14,7 +14,7 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.distance_fields.boxes import join_boxes
 from brdfkit.distance_fields.shapes.motions import Motion
 
-UNIT_BOX = -np.ones(3), np.ones(3)  # of a field that has no bounded part
+UNIT_BOX = -np.ones(3), np.ones(3)  # stands for the box of a field without bounded parts
 
 
 def distance_of(field: Any) -> Callable[[Any], Any]:

@@ -18,15 +18,17 @@ from brdfkit.core.array_types import JitFloat, JitMask
 from brdfkit.distance_fields.shadows.cone import LightCone
 from brdfkit.distance_fields.shadows.field import distance_of, lipschitz_of
 
-# (t, f, R_C, memory) → the length of a step, and the memory for the next one
+# A function from (t, f, R_C, memory) to a step's length and the memory for the next step
 Step: TypeAlias = Callable[[JitFloat, JitFloat, JitFloat, Any], tuple[JitFloat, Any]]
-# (field, cone) → the step, and its first memory
+# A function from (field, cone) to the step function and its first memory
 Pace: TypeAlias = Callable[[Any, LightCone], tuple[Step, Any]]
 
 
 @dataclass(frozen=True)
 class Rule:
-    """How R_T and R_C follow the ratios, which is what distinguishes the methods.
+    """The rule by which the smallest ratio R_T and its lower limit R_C follow a march.
+
+    It distinguishes the methods.
 
     first : R_T and R_C at the start.
     lower : (ratio, R_T) → the new R_T and R_C, where a ratio is below R_T.
@@ -40,7 +42,7 @@ class Rule:
 
 @dataclass(frozen=True)
 class Walk:
-    """The result of a march: the last R_T, its place t, and the number of evaluations of f."""
+    """The result of a march: the smallest ratio R_T, its place t, and evaluations of f."""
 
     R_T: Any
     t: Any
@@ -90,4 +92,4 @@ def march(
             ),
             one_step,
         )
-    return Walk(dr.select(dr.isnan(t), dr.nan, R_T), t_min, i)  # NaN where the field was
+    return Walk(dr.select(dr.isnan(t), dr.nan, R_T), t_min, i)  # R_T is NaN where the field is

@@ -26,14 +26,17 @@ from brdfkit.distance_fields.shadows.shadow import Shadow, single_ray
 
 
 def linear(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A") -> Shadow:
-    """Compute a shadow by the linear march, with 0 ≤ visible - τ(r_min) ≤ ε."""
+    """Compute a shadow by the linear march, the default.
+
+    The visible share is at most ε above τ(r_min), the exact share for the smallest ratio.
+    """
     return single_ray(field, cone, linear_rule(epsilon), epsilon, direction)
 
 
 def linear_rule(epsilon: float) -> Rule:
-    """Return the rule of `linear`: R_C is e = ε π / 2 below R_T.
+    """Return the rule of `linear`: no ratio more than e = ε π / 2 below the smallest is missed.
 
-    A change of ε in τ is a change of e in r at least, because τ' ≤ 2 / π.
+    A change of ε in the share τ(r) is a change of e in r at least, because τ' ≤ 2 / π.
     """
     e = epsilon * pi / 2
     return Rule((1.0, 1 - e), lambda ratio, R_T: (ratio, ratio - e), e - 1)
@@ -45,7 +48,7 @@ def hard(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = 
 
 
 def convex(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A") -> Shadow:
-    """Compute a shadow by longer steps towards convex pieces, with 0 ≤ visible - τ(r_min) ≤ ε.
+    """Compute a shadow by longer steps towards convex pieces, with the error of `linear`.
 
     Pieces of a union that do not say `is_convex` are approached by the steps of `linear`.
     """

@@ -17,7 +17,7 @@ from brdfkit.distance_fields.shadows.cone import LightCone
 from brdfkit.distance_fields.shadows.field import distance_of, lipschitz_of
 from brdfkit.distance_fields.shadows.shadow import Shadow
 
-MAX_STEPS = 512  # of a ray
+MAX_STEPS = 512  # along a ray
 
 
 def monte_carlo(field: Any, cone: LightCone, rays: int = 64, hit: float = 1e-3) -> Shadow:
@@ -72,5 +72,5 @@ def halton_disc(n: int) -> tuple[FloatArray, FloatArray]:
     """Return x (n,) and y (n,) of the first Halton points, uniform over the unit disc."""
     from scipy.stats.qmc import Halton
 
-    u, phi = Halton(2, scramble=False).random(n + 1)[1:].T  # the first is the corner (0, 0)
+    u, phi = Halton(2, scramble=False).random(n + 1)[1:].T  # without the first, the corner (0, 0)
     return np.sqrt(u) * np.cos(2 * np.pi * phi), np.sqrt(u) * np.sin(2 * np.pi * phi)

@@ -1,8 +1,8 @@
 """`Shadow`, the result of every method, and how a march becomes one, with derivatives.
 
-The march itself is not differentiated. By the envelope theorem the derivative of a minimum is that
-of the function at the place of the minimum. So f / ρ is evaluated there once more, with derivatives
-by the light, its radius, the surface point, and the parameters of the field. As the march ends
+The march itself is not differentiated. By the envelope theorem a minimum has the derivative of the
+function at the minimum's place. So f / ρ is evaluated there once more, with derivatives by the
+light, its radius, the surface point, and the parameters of the field. As the march ends
 within ε of the minimum, the place is first refined. Where nothing carries derivatives, none of this
 is part of the kernel.
 """
@@ -20,10 +20,10 @@ from brdfkit.distance_fields.shadows.tau import tau
 
 DIRECTIONS = "A", "B"  # from the surface to the light, or from the light to the surface
 GOLDEN_RATIO = (5**0.5 - 1) / 2
-# The search for the minimum about the smallest ratio of a march: its width over ε ρ, two steps or
-# so, and its number of steps
+# The search for the exact minimum near a march's smallest ratio: its width over ε ρ, about two
+# steps of the march, and its number of iterations
 SEARCH_WIDTH, SEARCH_STEPS = 4.0, 20
-SIDE_STEP = 1e-3  # from the minimum to the points on both sides of it, over ρ
+SIDE_STEP = 1e-3  # the distance of the points on both sides of a minimum, over ρ
 
 
 @dataclass(frozen=True)
@@ -43,14 +43,14 @@ class Shadow:
 
 
 def ratio(field: Any, cone: LightCone, t: JitFloat) -> JitFloat:
-    """Return f / ρ at t."""
+    """Return f / ρ, the distance over the cone's radius, at the place t of the axis."""
     return distance_of(field)(cone.point(t)) / cone.radius(t)
 
 
 def find_minimum_near(
     field: Any, cone: LightCone, t: JitFloat, width: JitFloat, steps: int
 ) -> JitFloat:
-    """Return where f / ρ is smallest within `width` of t, by golden-section search.
+    """Return where `ratio` is smallest within `width` of t, by golden-section search.
 
     The result has no derivatives.
     """
@@ -96,14 +96,14 @@ def single_ray(
 def attach_minimum(
     r: JitFloat, field: Any, cone: LightCone, t: JitFloat, epsilon: float
 ) -> JitFloat:
-    """Return the minimum of f / ρ near t, with derivatives; `r` if nothing carries derivatives.
+    """Return the minimum of `ratio` near t, with derivatives; `r` if nothing carries derivatives.
 
-    At a crease of the field they jump. The derivative of the minimum is then the mean of those on
-    both sides, with the weights by which the slopes along the axis cancel.
+    Derivatives jump at a crease of the field. The derivative of the minimum is then a mean of the
+    derivatives on both sides, with weights that let the slopes along the axis cancel.
     """
 
     def moving_ratio(t: JitFloat) -> JitFloat:
-        return ratio(field, cone, t / dr.detach(cone.d) * cone.d)  # a fixed share of the axis
+        return ratio(field, cone, t / dr.detach(cone.d) * cone.d)  # t moves with the axis
 
     if not dr.grad_enabled(moving_ratio(t)):
         return r

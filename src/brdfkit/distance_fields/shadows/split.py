@@ -2,9 +2,8 @@
 
 One straight edge is wrong for small and pointed occluders, and for several of them. So the disc is
 cut into a centre and rings of 6, 12 ... cells of equal area, and a cone leads through each cell.
-Where f does not change sideways in the section at the smallest ratio, the cone has met a thin wall
-and not its edge. The edge is then at the ratio over |∇f| across the axis, which the cell hardly
-reaches.
+Where f does not change sideways in the section at the smallest ratio, the cone has met the inside
+of a thin wall. Dividing the ratio by |∇f| across the axis moves the edge far away then.
 
 Only rays that the march of the whole cone finds partly lit are split.
 """
@@ -21,7 +20,7 @@ from brdfkit.distance_fields.shadows.marches import convex_pace, linear_rule
 from brdfkit.distance_fields.shadows.shadow import Shadow, single_ray
 from brdfkit.distance_fields.shadows.tau import tau
 
-FURTHEST_EDGE = 1e3  # how far outside its disc an edge may lie, in radii
+FURTHEST_EDGE = 1e3  # the largest distance of an edge from its disc, in radii
 
 
 def split(
@@ -29,7 +28,7 @@ def split(
 ) -> Shadow:
     """Compute a shadow as the mean of 1 + 3 rings (rings + 1) narrower cones, 7 with one ring.
 
-    `r` and `t` are those of the whole cone.
+    `r` and `t` belong to the whole cone.
     """
     rule = linear_rule(epsilon)
     whole = single_ray(field, cone, rule, epsilon, direction, convex_pace)

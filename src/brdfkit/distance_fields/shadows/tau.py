@@ -14,7 +14,7 @@ from brdfkit.core.array_types import JitFloat
 
 
 def tau(r: JitFloat) -> JitFloat:
-    """Return τ(r), 0 below -1 and 1 above 1; its derivative is finite everywhere.
+    """Return τ(r), the lit share of a disc with an edge at r; its derivative is finite everywhere.
 
     >>> tau(0.25)
     0.6574811791308206
@@ -26,7 +26,7 @@ def tau(r: JitFloat) -> JitFloat:
 
 
 def tau_slope(r: JitFloat) -> JitFloat:
-    """Return τ'(r), at most 2/π.
+    """Return τ'(r), the slope of the lit share, at most 2/π.
 
     >>> tau_slope(1.0)
     0.0

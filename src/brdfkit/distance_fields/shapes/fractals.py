@@ -1,4 +1,4 @@
-"""The Mandelbulb fractal, by a distance estimate like that of [Quílez 2009]."""
+"""The Mandelbulb fractal, by a distance estimate similar to [Quílez 2009]."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -23,9 +23,9 @@ from brdfkit.distance_fields.functions import (
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import count, number
 
-ESCAPE_RADIUS = 16.0  # a larger one changes the estimate by less than 1e-8
-LARGEST_ESTIMATE = 0.5  # the formula estimates the distance close to the surface only
-MEASURED_SLOPE = 3.0  # the bound on the estimate over the distance
+ESCAPE_RADIUS = 16.0  # a larger radius changes the estimate by less than 1e-8
+LARGEST_ESTIMATE = 0.5  # far from the surface the formula is no estimate of the distance
+MEASURED_SLOPE = 3.0  # the estimate was never larger than this multiple of the distance
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -73,7 +73,7 @@ class rotate(Motion):
             raise BrdfkitError("rotate.axis = (0, 0, 0) has no direction; give another.")
 
     def distance(self, p: JitVector) -> JitFloat:
-        # Rodrigues's formula, for the opposite angle
+        # Rodrigues's rotation formula, for the opposite angle
         u, p = normalize(self.axis), Point(p.x, p.y, p.z)
         c, s = cos(self.angle), sin(self.angle)
         along = (1 - c) * dot(u, p)

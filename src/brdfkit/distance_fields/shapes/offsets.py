@@ -26,7 +26,7 @@ class dilate(Node):
     child : distance field
         The solid.
     radius : number, default 0
-        The distance by which the surface moves out, or in where it is negative.
+        How far the surface moves out, or in where it is negative.
     """
 
     child: Node

@@ -64,15 +64,15 @@ class repeat(Node):
 
     @property
     def lipschitz(self) -> float:
-        """The bound L of the child, or that of the distances to faces and boxes, 1."""
+        """The bound L: the child's, but at least 1, as for the distances to faces and boxes."""
         return max(self.child.lipschitz, 1.0)
 
     def distance(self, p: JitVector) -> JitFloat:
         if not self.repeated:
             return self.child.distance(p)
-        # Python's numbers, for NumPy's would make all values double precision
+        # NumPy's numbers would make all values double precision, Python's do not
         low, high = (corner.tolist() for corner in self._box_with_half_gaps())
-        reach, gaps = self._lattice_reach().tolist(), self._gaps().tolist()
+        reach, gaps = self._lattice_reach().tolist(), self._cell_gaps().tolist()
         local, boxes, faces, lattice = [p.x, p.y, p.z], [], [], []
         for i, x in enumerate(local):
             if not np.isfinite(high[i] - low[i]):
@@ -94,7 +94,7 @@ class repeat(Node):
 
     def bounds(self, level: float = 0.0) -> Box:
         low, high = self.child.bounds(level)
-        if level > 0 and self.repeated:  # f may be small between the copies, too
+        if level > 0 and self.repeated:  # f may also be small between the copies
             low, high = self._box_with_half_gaps()
             low, high = low - level, high + level
         return low - self._lattice_reach(), high + self._lattice_reach()
@@ -104,7 +104,7 @@ class repeat(Node):
         copies = np.inf if self.copies is None else self.copies
         return np.array([copies * s if s > 0 else 0.0 for s in to_numbers(self.spacing)])
 
-    def _gaps(self) -> FloatArray:
+    def _cell_gaps(self) -> FloatArray:
         """Return the gaps (3,) between the child and its cell's faces.
 
         The gap along an axis without repetition is the largest of the others.
@@ -116,7 +116,7 @@ class repeat(Node):
     def _box_with_half_gaps(self) -> Box:
         """Return the box of the child, grown by half of the gap on each side."""
         low, high = self.child.bounds()
-        return low - self._gaps() / 2, high + self._gaps() / 2
+        return low - self._cell_gaps() / 2, high + self._cell_gaps() / 2
 
     def _face_distance(self, cell: JitFloat, side: int, distance: JitFloat) -> JitFloat:
         """Return the `distance` to a face of a cell, or 1e30 where no copy lies beyond the face."""

@@ -39,7 +39,7 @@ class Rod(Node):
             raise BrdfkitError(f"{self.kind}: a and b are one point; its ends should be two.")
 
     def _project(self, p: JitVector, clipped: bool = False) -> tuple[JitFloat, JitFloat, JitFloat]:
-        """Return the position t of `p` along the segment, its distance from t, and ‖b - a‖².
+        """Return the position t of `p` along the segment, the distance from there, and ‖b - a‖².
 
         t is 0 at `a` and 1 at `b`; it goes on beyond the segment's ends unless `clipped`.
         """
@@ -116,7 +116,7 @@ class capped_cone(Rod):
     a, b : three numbers, default (0, 0, -0.5) and (0, 0, 0.5)
         The centres of the ends.
     radius_a, radius_b : number ≥ 0, default 0.5 and 0
-        The radii of the ends, of which one at most is 0.
+        The radii of the ends; at most one of them is 0.
     """
 
     radius_a: Any = number(0.5, least=0)
@@ -130,10 +130,10 @@ class capped_cone(Rod):
     def distance(self, p: JitVector) -> JitFloat:
         t, x, squared = self._project(p)
         height, widening = squared**0.5, self.radius_b - self.radius_a
-        # To the nearer end: across and along
+        # The distances to the nearer end, across and along the axis
         end_x = maximum(select(t < 0.5, x - self.radius_a, x - self.radius_b), 0.0)
         end_y = (absolute(t - 0.5) - 0.5) * height
-        # To the nearest point of the side, which is a share of the way from a to b
+        # The distances to the nearest point of the side, at a share of the way from a to b
         share = (widening * (x - self.radius_a) + t * squared) / (widening * widening + squared)
         share = clip(share, 0.0, 1.0)
         side_x = x - self.radius_a - share * widening

@@ -30,7 +30,7 @@ EXPECTED = (
 class function(Node):
     """The field of a user's function of Dr.Jit arrays, which has no parameters.
 
-    f : the function, or the name that another field of the same function stored it by.
+    f : the function, or the name under which another field stored the same function.
     lipschitz : the bound L on its slope.
     box : the corners (low, high) of a box around the surface, or None.
     """

@@ -54,7 +54,7 @@ def cone_trace(
     radius : number or array ≥ 0, default 0
         R₀, the radius of the cones at t = 0.
     tangent : number or array, default 0
-        tan α, by which cones widen; negative where they narrow.
+        tan α, the growth of the radius per length; negative for narrowing cones.
     slack : number ≥ 0, default 0
         The share of ρ at which a cone may stop early; with more it takes fewer steps.
     lipschitz : number, default 1

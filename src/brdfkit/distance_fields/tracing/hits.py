@@ -9,7 +9,7 @@ from brdfkit.core.array_types import JitFloat, JitInt, JitVector
 
 
 class Hit(NamedTuple):
-    """Where rays meet a surface: arrays over all rays, or numbers.
+    """The places where rays meet a surface: arrays over all rays, or numbers.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ def reattach(distance: Callable[[Any], Any], o: JitVector, d: JitVector, t: JitF
     return t - dr.select(grazing, 0.0, change)
 
 
-CORNERS = ((1, -1, -1), (-1, -1, 1), (-1, 1, -1), (1, 1, 1))  # of a tetrahedron
+TETRAHEDRON = ((1, -1, -1), (-1, -1, 1), (-1, 1, -1), (1, 1, 1))
 
 
 def normal(distance: Callable[[Any], Any], p: JitVector, step: float = 1e-3) -> JitVector:
@@ -97,7 +97,7 @@ def normal(distance: Callable[[Any], Any], p: JitVector, step: float = 1e-3) -> 
     """
     x: Any = 0.0
     y, z = x, x
-    for i, j, k in CORNERS:
+    for i, j, k in TETRAHEDRON:
         f = distance(p + type(p)(i * step, j * step, k * step))
         x, y, z = x + i * f, y + j * f, z + k * f
     size = dr.sqrt(dr.maximum(x * x + y * y + z * z, 1e-30))

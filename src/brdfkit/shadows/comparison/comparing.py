@@ -120,7 +120,7 @@ def compare(
                 )
             for label, technique in techniques.items():
                 report((len(results) - 1) * len(techniques) + len(scores), requested)
-                with raise_first_cause():  # Ctrl-C, for instance
+                with raise_first_cause():  # so that Ctrl-C arrives as KeyboardInterrupt
                     scores_here, lit = score(view, placement, tracked, technique)
                 pictures.add(label, lit)
                 scores[label] = scores_here
@@ -140,7 +140,7 @@ def compare(
 def score_unlit_view(
     pictures: Pictures, scores: dict[str, Scores], techniques: Mapping[str, Technique]
 ) -> None:
-    """Fill in a view in which nothing is in the light: no technique can be right or wrong."""
+    """Fill in unknown scores for a view without lit surfaces, where no technique can be wrong."""
     for label in techniques:
         pictures.add(label, np.ones(pictures.exact.size))
         scores[label] = Scores()
@@ -169,14 +169,14 @@ def choose_techniques(
 
 
 def make_map_shadow(view: LitView, placement: Placement, **settings: Any) -> LightShadow:
-    """Make the shadow by maps of what a camera sees."""
+    """Make the shadow of a view by shadow maps."""
     return LightShadow(view.scene, placement, **settings)
 
 
 def combine_names(names: Mapping[str, tuple[str, ...]]) -> dict[str, dict[str, Any]]:
     """Return label → keyword arguments of `LightShadow`, for all combinations of names by kind.
 
-    A label leaves out what all have in common. Raises `BrdfkitError` for an unknown name.
+    A label leaves out the kinds with a single name. Raises `BrdfkitError` for an unknown name.
     """
     for kind, its in names.items():
         for name in its:

@@ -1,4 +1,4 @@
-"""Two pictures of the maps of a projection: where their texels are, and what the light sees."""
+"""Pictures of the maps of a projection: their texels on the scene, and the light's view."""
 
 import zlib
 from dataclasses import dataclass
@@ -13,8 +13,8 @@ from brdfkit.shadows.maps.light_shadow import LightShadow, ShadowMap
 from brdfkit.shadows.maps.placement import Placement
 
 CHECKS = 32  # squares of the checker along a side of a map
-SIDE = 256  # pixels of the light's view
-OUTSIDE = 255  # the part of a pixel that no map covers
+SIDE = 256  # pixels along a side of the picture of the light's view
+OUTSIDE = 255  # stands for a map's index at pixels that no map covers
 DARK_SQUARE = 0.45  # the brightness of every other square
 
 
@@ -45,7 +45,7 @@ class CompressedArray:
 
 @dataclass(frozen=True)
 class MapPictures:
-    """The maps of a projection in a partition.
+    """Pictures of the maps of a projection in a partition.
 
     checker, parts, view : the compressed arrays of `shade`, `part` and `depths`.
     """
@@ -64,7 +64,7 @@ class MapPictures:
 
     @property
     def shade(self) -> FloatArray:
-        """Brightness (height, width), in [0, 1], of the scene under a checker of texels."""
+        """The brightness (height, width), 0 to 1, of the scene with a checker of texels."""
         return self.checker.array / np.float32(255)
 
     @property
@@ -74,7 +74,7 @@ class MapPictures:
 
     @property
     def depths(self) -> FloatArray:
-        """The depths (SIDE, SIDE) that the light sees, 0 near to 1 far; NaN where it sees nothing.
+        """The depths (SIDE, SIDE) in the light's view, 0 near to 1 far; NaN without a surface.
 
         Several maps stand in rows, the first at the upper left.
         """

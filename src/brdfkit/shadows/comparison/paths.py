@@ -1,6 +1,6 @@
 """A camera, or a light, that moves a little from picture to picture, as in a game.
 
-Such moves make the borders of shadows flicker.
+Such moves make the borders of shadows flicker, which the comparison measures.
 """
 
 from dataclasses import replace
@@ -14,8 +14,8 @@ from brdfkit.shadows.maps.placement import Placement
 
 STEPS = 4
 CAMERA_TURN = 0.003  # the camera's turn to the right in a step [rad]
-CAMERA_WAY = 0.01  # the camera's way in a step, over the nearest distance
-LIGHT_TURN = 0.01  # the turn in a step as the place farthest from the light sees it [rad]
+CAMERA_STEP = 0.01  # the length of the camera's step, over the distance of the nearest surface
+LIGHT_TURN = 0.01  # the light's turn in a step, seen from the farthest place of the scene [rad]
 
 
 def camera_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
@@ -29,7 +29,7 @@ def camera_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
     for step in range(steps):
         c, s = np.cos(CAMERA_TURN * step), np.sin(CAMERA_TURN * step)
         turn = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
-        moved = make_rigid(turn, np.array([CAMERA_WAY * step * nearest, 0, 0])) @ camera.view
+        moved = make_rigid(turn, np.array([CAMERA_STEP * step * nearest, 0, 0])) @ camera.view
         path.append(replace(placement, camera=replace(camera, view=moved)))
     return path
 
@@ -76,7 +76,7 @@ def is_facing_all(
 
 
 def is_lit(scene: MitsubaObject, light: Light, p: MitsubaObject, n: MitsubaObject) -> BoolArray:
-    """Return whether (points,) shadow rays from surfaces at `p` with normals `n` reach a light."""
+    """Return (points,) whether shadow rays from points `p` with normals `n` reach a light."""
     import drjit as dr
     import mitsuba as mi
 

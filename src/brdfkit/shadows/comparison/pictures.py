@@ -11,7 +11,7 @@ from brdfkit.shadows.comparison.map_pictures import CompressedArray, MapPictures
 
 @dataclass
 class Pictures:
-    """One view in one light: without a shadow, with the exact one, and with those of techniques.
+    """One view in one light: without shadows, with exact ones, and with each technique's.
 
     title : the view and the light.
     light : radiance (height, width, 3) of the surfaces by this light alone, unshadowed.
@@ -73,7 +73,7 @@ class Pictures:
 
 
 def to_half(radiance: FloatArray) -> FloatArray:
-    """Return radiance in half precision, whose largest number is 65504."""
+    """Return radiance in half precision, limited to its largest number, 65504."""
     return np.minimum(radiance, np.finfo(np.float16).max).astype(np.float16)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray
 
-BINS = 64  # along each side of a map: fine enough to tell where, with enough points in each
+BINS = 64  # along each side of a map: fine, but with enough points in each bin
 WHITE = 255.0
 
 
@@ -45,7 +45,7 @@ def aliasing_error(e: Any) -> float:
 def flicker(lit: Any, true: Any) -> float:
     """Return the mean change of the error from picture to picture, 0 at best.
 
-    lit, true : shares of the light (pictures, points), by the technique and in truth.
+    lit, true : shares of the light (pictures, points), by the technique and exact.
 
     >>> flicker([[1, 0], [0, 0]], [[1, 1], [1, 1]])
     0.5

@@ -62,16 +62,16 @@ NAMES = tuple(field.name for field in fields(Scores))
 
 
 def average(scores: Sequence[Scores]) -> Scores:
-    """Return the means of several scores; those of dB, as in the thesis, not of squared errors.
+    """Return the means of several scores; dB are averaged themselves, as in the thesis.
 
-    A picture without an error has infinite dB, which count as 99. NaN does not count, nor do dB
+    A picture without an error has infinite dB, which count as 99. NaN is left out, as are dB
     against a black picture.
     """
     return _average_columns(_to_table(scores))
 
 
 def difference_of_lights(scores: Sequence[Scores]) -> Scores:
-    """Return the mean differences of neighbours, which are lights 1 and 2 of each view."""
+    """Return the mean differences between lights 1 and 2 of all views, which alternate."""
     table = _to_table(scores)
     first, second = table[::2], table[1::2]
     return _average_columns(np.abs(first[: len(second)] - second))
@@ -96,7 +96,7 @@ def _to_table(scores: Sequence[Scores]) -> FloatArray:
 
 
 def _average_columns(table: FloatArray) -> Scores:
-    """Return the means of the columns of a table (scores, names), without NaN."""
+    """Return scores with the means of the columns of a table (scores, names), leaving out NaN."""
     known = ~np.isnan(table)
     count = known.sum(axis=0)
     sums = np.where(known, table, 0).sum(axis=0)

@@ -84,7 +84,7 @@ def score_texels(shadow: Any, view: LitView, placement: Placement) -> tuple[floa
         return nan, nan
     camera = Projection.from_matrix(placement.camera.matrix, placement.light).opaque()
     film = view.sensor.film()
-    # the camera's whole picture, of which a film may show a window, in pixels of this size
+    # A film may show a window of the camera's picture: count the pixels of the whole picture
     pixels = np.array(view.size[::-1]) * np.array(film.size()) / np.array(film.crop_size())
     p, n = view.si.p, view.si.n
     part, facing = shadow.part_of(p), mi.Bool(view.facing)

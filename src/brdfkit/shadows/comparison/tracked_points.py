@@ -13,7 +13,7 @@ from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.comparison.quality import flicker
 from brdfkit.shadows.maps.placement import Placement
 
-PIXEL_STRIDE = 7  # one in so many pixels is tracked
+PIXEL_STRIDE = 7  # every seventh pixel is tracked
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.volumes.light_volumes import LightVolumes
 from brdfkit.shadows.volumes.projected_faces import to_pinhole
 
-JUMP = 8.0  # change of depth at a silhouette [width of a texel], the integrator's default
+JUMP = 8.0  # the integrator's default: change of depth at a silhouette [width of a texel]
 
 
 def shadow_volume(view: LitView, placement: Placement, resolution: int) -> LightVolumes:

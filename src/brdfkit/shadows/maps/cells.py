@@ -11,12 +11,12 @@ from brdfkit.core.array_types import IntArray, JitFloat, JitInt, JitMask, JitVec
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.projection import Projection
 
-GUTTER = 4  # texels beyond the edge of a cell that its map has, too, for filters
+GUTTER = 4  # texels that a cell's map has beyond the cell's edge, for filters
 
 
 @dataclass(frozen=True)
 class Cell:
-    """The projection by which a square of another projection's map fills a map of its own.
+    """The projection that lets a square of another projection's map fill a whole map.
 
     whole : the other projection.
     x, y : the middle of the square on its map.
@@ -42,7 +42,7 @@ class Cell:
         return self.whole.light
 
     def opaque(self) -> "Cell":
-        """Return the same for Dr.Jit; one kernel serves every cell."""
+        """Return the cell with opaque Dr.Jit numbers, so that one kernel serves all cells."""
         import mitsuba as mi
 
         numbers = {name: dr.opaque(mi.Float, getattr(self, name)) for name in ("x", "y", "half")}

@@ -12,9 +12,9 @@ def render_depths(
 ) -> MitsubaObject:
     """Return the `mi.TensorXf` (resolution, resolution) of depths, rows from y = -1 upwards.
 
-    The depth is that of the first surface along each texel's ray of light, wherever it is: one
-    before the map's cube has a depth below -1. Texels without a surface have infinity. Derivatives
-    by the scene's geometry are kept.
+    A texel holds the depth of the first surface along its ray of light; a surface before the map's
+    cube has a depth below -1. Texels without a surface hold infinity. Derivatives by the scene's
+    geometry are kept.
     """
     opaque = projection.opaque()
     si = scene.ray_intersect(texel_rays(scene, opaque, resolution))

@@ -69,7 +69,7 @@ def narrowest_cone_axis(rays: FloatArray) -> FloatArray:
     lengths = np.linalg.norm(rays, axis=1, keepdims=True)
     if lengths.min() < 1e-9 * lengths.max():
         return np.zeros(3)
-    # The axis points to the place of the directions' convex hull that is nearest to 0
+    # The axis points to the point of the directions' convex hull that is nearest to 0
     units = rays / lengths
     weights, _ = nnls(np.vstack([units.T, np.ones(len(units))]), np.array([0, 0, 0, 1.0]))
     axis: FloatArray = weights @ units

@@ -19,11 +19,11 @@ DEPTHS = ("projected", "linear")
 
 
 class ShadowMap:
-    """The view of a light of a scene, in which points are looked up.
+    """One shadow map: the light's view of a scene, in which points are looked up.
 
     scene : a `mi.Scene`.
     projection : a projection through the light.
-    reach : of the light through the scene [unit of length].
+    reach : the longest way of light through the scene [unit of length].
     lookup : the class `Lookup` of a file in `filters/`.
     resolution : texels along a side.
     bias : how receivers are moved towards the light.
@@ -96,7 +96,7 @@ class LightShadow:
 
         part = self.part_of(p)
         inside = mi.Bool(active) & (part < len(self.maps))
-        # all look-ups have the same code, and so a kernel has it once, however many parts there are
+        # The look-ups of all parts have the same code, so that a kernel contains it only once
         lit = dr.switch(part, [each.lit_share for each in self.maps], p, n, inside)
         return dr.select(inside, lit, 1)
 
@@ -104,7 +104,7 @@ class LightShadow:
 def _use_depth(
     depth: str, project: Callable[[Placement], Projection], whole: Placement
 ) -> Callable[[Placement], Projection]:
-    """Return `project`, whose maps hold this kind of depth; linear depths are those of `whole`."""
+    """Return `project`, changed to hold this kind of depth, which `whole` scales if linear."""
     if depth not in DEPTHS:
         raise no_such("depth", depth, DEPTHS)
     if depth == "projected":

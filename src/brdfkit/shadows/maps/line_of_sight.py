@@ -1,6 +1,6 @@
 """The line of sight on the map of a light, along which texels are shifted from far to near.
 
-Three projections have the same form: that of the light, then a perspective across the map,
+Three projections have the same form: the light's own projection, then a perspective across the map,
 
     x' = x / w,  y' = (y - y_0) / w,  w = 1 + (y - y_0) / n
 
@@ -78,8 +78,8 @@ class LineOfSight:
 def find_line_of_sight(placement: Placement) -> LineOfSight | None:
     """Return the line of sight of a placement.
 
-    It is None if the eye looks along the light, or is not before it: what is near the eye has then
-    no side of the map of its own.
+    It is None if the eye looks along the light, or is not before it, as then no side of the map
+    belongs to what is near the eye.
     """
     light, corners = placement.light, placement.body.corners
     eye, middle = placement.camera.position, placement.visible.middle

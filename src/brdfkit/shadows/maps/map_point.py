@@ -1,4 +1,4 @@
-"""A surface point on a shadow map, and the bias by which a surface does not shadow itself.
+"""A surface point on a shadow map, and the bias that keeps a surface from shadowing itself.
 
 The light sees a surface at the centres of texels, the camera between them: without a bias half of a
 slanted surface lies behind the surface that the light saw (acne). Too large a bias loses shadows
@@ -92,7 +92,7 @@ def find_map_point(
     The plane of the surface is d(u, v) = depth + slope_u Δu + slope_v Δv, from the derivatives of
     the projection along two tangents [Isidoro 2006, receiver plane depth bias].
 
-    reach : of the light through the scene, the unit of the bias's constant.
+    reach : the longest way of light through the scene, the unit of the bias's constant.
     """
     import mitsuba as mi
 
@@ -129,7 +129,7 @@ def plane_slopes(
     u_s, v_s, d_s = projection.derivative_along(p, s)
     u_t, v_t, d_t = projection.derivative_along(p, t)
     area = (u_s * v_t - u_t * v_s) * half
-    inverse = dr.select(area != 0, dr.rcp(area), 0)  # a plane seen edge on has no other depths
+    inverse = dr.select(area != 0, dr.rcp(area), 0)  # a plane seen edge-on is a line on the map
     slope_u = (d_s * v_t - d_t * v_s) * inverse
     slope_v = (d_t * u_s - d_s * u_t) * inverse
     return slope_u, slope_v, dr.safe_sqrt(dr.abs(inverse) / half)

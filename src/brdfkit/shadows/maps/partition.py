@@ -15,7 +15,7 @@ from brdfkit.shadows.maps.projection import AnyProjection, Projection
 
 @dataclass(frozen=True)
 class Setup:
-    """What a partition is made from.
+    """The scene, its placement and the maps' settings, from which a partition is made.
 
     scene : a `mi.Scene`.
     placement : the camera and the light in it.

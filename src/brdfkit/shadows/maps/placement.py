@@ -63,12 +63,12 @@ class Placement:
 
     @cached_property
     def visible(self) -> Body:
-        """V ∩ S, the part of the scene in the camera's frustum V."""
+        """V ∩ S, the part of the scene's box in the camera's frustum V."""
         return Body.around(self.camera.corners()) & self.scene
 
     @cached_property
     def depths(self) -> tuple[float, float]:
-        """z_n and z_f, the distances along the view between which the camera sees something."""
+        """The distances z_n and z_f along the view between which there are visible surfaces."""
         depths = self.camera.depths(self.visible.corners)
         return min(max(depths.min(), self.nearest), depths.max()), depths.max()
 

@@ -37,7 +37,7 @@ class LightDepth:
         return cls(light.path_length(*(placement.low + placement.high) / 2) - reach / 2, reach)
 
     def opaque(self) -> LightDepth:
-        """Return the same for Dr.Jit."""
+        """Return the depth with opaque Dr.Jit numbers, so that one kernel serves all."""
         import drjit as dr
         import mitsuba as mi
 
@@ -56,11 +56,11 @@ class LightDepth:
 class Projection:
     """A projection by a matrix, through the light: points on one ray of light share x and y.
 
-    Components are floats, NumPy arrays or, of an `opaque` one, Dr.Jit arrays.
+    Components are floats, NumPy arrays or, of an `opaque` projection, Dr.Jit arrays.
 
     matrix : (4, 4), from the world to the cube [-1, 1]³ of the map. Depth, the third coordinate,
         grows away from the light.
-    inverse : (4, 4), the way back.
+    inverse : (4, 4), the inverse matrix.
     light : the `Light`; of an opaque one, its point is a `mi.Vector4f`.
     depth : replaces the third coordinate of the matrix; None keeps that.
     """
@@ -76,7 +76,7 @@ class Projection:
         return cls(matrix, np.linalg.inv(matrix), light)
 
     def opaque(self) -> Projection:
-        """Return the same for Dr.Jit; one kernel serves every matrix."""
+        """Return the projection with opaque Dr.Jit numbers, so that one kernel serves all."""
         import drjit as dr
         import mitsuba as mi
 
@@ -123,7 +123,7 @@ class Projection:
         """
         if self.light.is_directional:
             return project(self.inverse, x, y, 0.0), self.light.direction(0.0, 0.0, 0.0)
-        # the direction is the homogeneous point at infinity on the ray
+        # The ray's direction is its homogeneous point at infinity
         *point, w = transform(self.inverse, x, y, 0.0)
         light = [self.light.point[i] for i in range(3)]
         return light, normalise(*(p - w * q for p, q in zip(point, light, strict=True)))

@@ -47,10 +47,10 @@ def places_on_map(projection: AnyProjection, surfaces: VisibleSurfaces) -> Float
 
 
 def footprints(places: FloatArray, surfaces: VisibleSurfaces) -> FloatArray:
-    """Return the widths (n,) in the picture, in rays, of a step of 1 on the map at `places` (n, 2).
+    """Return how wide (n,) a step of 1 on the map is in the picture, at `places` (n, 2) of the map.
 
-    They come from differences between neighbouring rays. At borders of surfaces the differences are
-    too large and the widths too small; a width is 0 where a neighbour hits nothing.
+    The unit of width is the distance between neighbouring rays, whose differences give the widths.
+    At borders of surfaces widths are too small; a width is 0 where a neighbour hits nothing.
     """
     grid = np.full((SIDE, SIDE, 2), np.nan)
     grid[surfaces.hit] = places
@@ -58,5 +58,5 @@ def footprints(places: FloatArray, surfaces: VisibleSurfaces) -> FloatArray:
         np.moveaxis(np.diff(grid, axis=axis, append=np.nan), -1, 0) for axis in (0, 1)
     )
     area = np.abs(u_row * v_column - u_column * v_row)[surfaces.hit]
-    known = area > 0  # false for NaN
+    known = area > 0  # this is false for NaN
     return np.where(known, 1 / np.sqrt(np.where(known, area, 1)), 0)

@@ -1,4 +1,4 @@
-"""Planes across the view that divide what a camera sees, and between which of them a point is.
+"""Planes across the view that divide what a camera sees into slices.
 
 For depths from n to f, plane i of m is at
 

@@ -20,8 +20,8 @@ from brdfkit.shadows.volumes.volume import Faces, Volume, make_shadow_volume
 
 METHODS = ("depth_fail", "depth_pass")
 FAR_PLANES = ("infinite", "finite")
-TILE_SIDE = 4  # pixels, about
-LEAST_COSINE = 1e-3  # between a surface and the camera ray along which points leave it
+TILE_SIDE = 4  # the approximate side of a tile [pixels]
+LEAST_COSINE = 1e-3  # between a camera ray and the normal, so that points do not move too far
 CAP_DEPTH = 1.0  # 1/z of the near plane in the picture of the light
 
 
@@ -32,7 +32,7 @@ class LightVolumes:
     light : the light.
     camera : the camera that sees the points, by its eye and the middle of its picture.
     method : `depth_pass` counts walls before a point, `depth_fail` walls and caps behind it.
-    far_plane : `finite`: what is beyond that of the camera is clipped, and does not count.
+    far_plane : `finite` clips faces beyond the camera's far plane, which then do not count.
     pixels : along the longer side of the picture; they determine the size of tiles.
     near_cap : whether `depth_pass` begins with the volumes that contain a place of the near plane.
     volume : named arguments of `make_shadow_volume`.
@@ -107,7 +107,8 @@ def project_near_cap(volumes: Iterable[Volume], light: Light, camera: Camera) ->
     to_picture, n = picture_matrix(camera), camera.near
     *across, l_z, l_w = to_picture @ light.point
     height = l_z - n * l_w
-    fronts = [volume.front for volume in volumes if height]  # a light in the plane darkens none
+    # A light in the near plane casts no shadow onto the plane
+    fronts = [volume.front for volume in volumes if height]
     beta = np.array([0, 0, 1, -n]) / (height or 1)
     alpha = np.array([0, 0, 0, 1]) - l_w * beta
     sideways = (np.eye(4)[:2] - np.outer(across, beta)) / n

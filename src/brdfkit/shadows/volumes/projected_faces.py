@@ -37,7 +37,7 @@ def to_pinhole(sensor: MitsubaObject) -> Camera:
 class ProjectedFaces:
     """k faces in a picture.
 
-    edges : (k, 4, 3), the coefficients of x, y and 1 in each E_i, of which the largest is 1.
+    edges : (k, 4, 3), the coefficients of x, y and 1 in each E_i, scaled to a largest one of 1.
     ties : (k, 4), the least E_i within; of two faces at an edge, one includes the edge itself.
     inverse_depth : (k, 3), the coefficients of 1/z.
     times : (k,), how often a ray counts that meets the face; negative where it leaves the volume.
@@ -59,7 +59,7 @@ def picture_matrix(camera: Camera) -> FloatArray:
 
 
 def project_faces(faces: Faces, matrix: FloatArray) -> ProjectedFaces:
-    """Project faces into a picture; those that are seen edge-on are left out.
+    """Project faces into a picture, leaving out faces that are edge-on.
 
     matrix : (4, 4), from the world to homogeneous points (v, w), such as a camera's
         `picture_matrix`.

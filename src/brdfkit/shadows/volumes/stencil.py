@@ -10,9 +10,9 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitFloat, JitInt, JitMask, JitVector
 from brdfkit.shadows.volumes.projected_faces import ProjectedFaces
 
-RECORD = 5  # vectors of four per face: four edges with their ties, the depth with `times`
-SLACK = 1e-5  # of the picture's size: beyond the rounding of the edges
-MAX_PAIRS = 2**24  # of a face and a tile, beyond which tiles are not halved further
+RECORD = 5  # vectors of four numbers per face: four edges with their ties, depth with `times`
+SLACK = 1e-5  # by which tiles are widened, more than edges are rounded
+MAX_PAIRS = 2**24  # with more pairs of a face and a tile, tiles are not halved further
 
 
 class Stencil:
@@ -85,7 +85,7 @@ class Stencil:
 
 
 def list_faces_by_tile(edges: FloatArray, halvings: int) -> tuple[JitInt, JitInt, int]:
-    """Return the indices of faces tile by tile, where each tile's begin, and the tiles per side.
+    """Return the indices of faces sorted by tile, the start of each tile, and the tiles per side.
 
     The first two are `mi.UInt32`; the picture [-1, 1]² has its tiles row by row.
 

@@ -11,7 +11,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 
-AROUND, UPWARDS = 128, 64  # steps about the axis, and from pole to pole
+AROUND, UPWARDS = 128, 64  # the numbers of steps about the axis, and from pole to pole
 
 
 def tessellate(shape: MitsubaObject) -> tuple[FloatArray, IntArray]:

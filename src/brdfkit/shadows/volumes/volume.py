@@ -59,7 +59,7 @@ def make_shadow_volume(
     """Make the shadow volume of a mesh in a light.
 
     casters : which triangles cast, a name in `CASTERS`.
-    silhouettes : how their silhouette is found, a name in `SILHOUETTES`.
+    silhouettes : the way to find their silhouette, a name in `SILHOUETTES`.
     length : of the walls [unit of length]; 0: without an end.
     back_cap : "triangles", the casting ones extruded, or "fan", over the extruded silhouette.
 
@@ -73,7 +73,7 @@ def make_shadow_volume(
     cap = mesh.triangles[casts != 0]
     front = Faces(to_faces(near[cap]), casts[casts != 0])
     if light.is_directional and not length:
-        back = Faces.join([])  # all its corners are one point
+        back = Faces.join([])  # the cap is a single point at infinity
     elif back_cap == "fan":
         require_on_one_side(mesh, light, cap)
         back = Faces(make_fan(far[first], far[last]), times)

@@ -1,4 +1,4 @@
-"""Filters, the ways to look up a shadow map; a file is a filter, and is found by its name.
+"""Filters, the ways to look up a shadow map; each file here is a filter.
 
 Each file has a class `Lookup(depths, ...)` of the depths (resolution, resolution) that the light
 sees, with a method `lit_share(point)`: the share of the light, in [0, 1], at a `MapPoint`.

@@ -14,7 +14,7 @@ from brdfkit.shadows.maps.texels import Texels
 
 
 class Lookup:
-    """The map itself, texel by texel."""
+    """The look-up of the single texel under a point."""
 
     def __init__(self, depths: MitsubaObject) -> None:
         self.texels = Texels(depths)

@@ -27,11 +27,11 @@ SETTINGS = {
     "negative_exponent": plain_number(5.0, (0.0, 40.0), "c⁻; 0 leaves this bound out"),
 }
 render_map = moving_depths.render_map
-LEAST_DEVIATION = 1e-3  # of depths, over half the map's range, against rounding
+LEAST_DEVIATION = 1e-3  # of depths, over half the map's range, so that rounding does no harm
 
 
 class Lookup:
-    """Two moments of each of the two warped depths, blurred."""
+    """The look-up of blurred moments: two for each of the two warped depths."""
 
     def __init__(
         self,
@@ -41,7 +41,7 @@ class Lookup:
         exponent: float,
         negative_exponent: float,
     ) -> None:
-        # each warp: its function, and its slope over its value
+        # Each warp is a function, and the ratio of its slope to its value
         self.warps = [(lambda z: dr.exp(exponent * z), exponent)]
         if negative_exponent:
             self.warps.append((lambda z: -dr.exp(-negative_exponent * z), negative_exponent))

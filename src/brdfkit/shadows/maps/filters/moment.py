@@ -30,7 +30,7 @@ render_map = moving_depths.render_map
 
 
 class Lookup:
-    """Four moments of depth, blurred."""
+    """The look-up of four blurred moments of depth."""
 
     def __init__(
         self, depths: moving_depths.MovingDepths, blur: int, bleeding: float, rounding: float

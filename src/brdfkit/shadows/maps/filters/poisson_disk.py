@@ -18,7 +18,8 @@ from brdfkit.mitsuba_bridge.properties.declarations import plain_number
 from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.texels import Texels
 
-TAPS, LEAST_DISTANCE = 12, 0.5  # the number of taps, and their distance in radii of the disk
+TAPS = 12
+LEAST_DISTANCE = 0.5  # between two taps, in radii of the disk
 
 SETTINGS = {
     "radius": plain_number(2.0, (0.0, 256.0), "of the disk [texels]"),

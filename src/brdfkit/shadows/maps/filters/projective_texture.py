@@ -19,7 +19,7 @@ from brdfkit.shadows.maps.depth_pass import depth_of, texel_rays, to_square
 from brdfkit.shadows.maps.filters.depth import Lookup as Lookup
 from brdfkit.shadows.maps.projection import AnyProjection
 
-MAX_SURFACES = 64  # of one caster that a ray goes through
+MAX_SURFACES = 64  # the most surfaces of one caster that a ray passes through
 
 
 def render_map(scene: MitsubaObject, projection: AnyProjection, resolution: int) -> MitsubaObject:

@@ -30,7 +30,7 @@ render_map = moving_depths.render_map
 
 
 class Lookup:
-    """Two moments of depth, blurred."""
+    """The look-up of two blurred moments of depth."""
 
     def __init__(
         self,

@@ -19,15 +19,15 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat
 
-# Moments of depths in [-1, 1] well within what is possible [Münstermann et al. 2018]
+# Moments of depths in [-1, 1] that are far from impossible ones [Münstermann et al. 2018]
 MIDDLE_MOMENTS = 0.0, 0.375, 0.0, 0.375
-LEAST_ROOT = 1e-7  # 1 over a root that counts as infinite: t is one of two depths, then
+LEAST_ROOT = 1e-7  # 1 over a root that counts as infinite, where t is one of only two depths
 
 
 def bound_by_two_moments(
     mean: JitFloat, mean_square: JitFloat, t: JitFloat, least_variance: JitFloat = 0.0
 ) -> JitFloat:
-    """Return the greatest P(X ≥ t); exact where X has two values, of which one is t.
+    """Return the greatest P(X ≥ t), which is exact if X has two values and one of them is t.
 
     least_variance : the least σ², against rounding, and for the slant of a surface in a texel.
     """
@@ -39,7 +39,7 @@ def bound_by_two_moments(
 def bound_by_four_moments(b: Sequence[JitFloat], t: JitFloat, rounding: float = 0.0) -> JitFloat:
     """Return the greatest P(X ≥ t) of a distribution with the moments `b`, four numbers.
 
-    Exact where X has two values, or three of which one is t.
+    It is exact if X has two values, or three with t among them.
 
     rounding : by how much, 0 to 1, the moments are drawn to `MIDDLE_MOMENTS`, as rounded ones may
         belong to no distribution.

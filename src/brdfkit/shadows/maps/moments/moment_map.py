@@ -36,7 +36,7 @@ class MomentMap:
             side = 2 * blur + 1
             values = dr.convolve(values, [1 / side] * side, axis=(0, 1), boundary="nearest")
         self.resolution = values.shape[0]
-        texture: Any = mi.Texture2f  # its annotation says object
+        texture: Any = mi.Texture2f  # Mitsuba annotates it as a mere object
         self.texture = texture(values, False, False, wrap_mode=dr.WrapMode.Clamp)
 
     def means_at(self, point: MapPoint) -> list[JitFloat]:

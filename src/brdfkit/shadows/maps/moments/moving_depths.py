@@ -23,12 +23,12 @@ from brdfkit.shadows.maps.depth_pass import depth_of, texel_rays, to_square
 from brdfkit.shadows.maps.map_point import plane_slopes
 from brdfkit.shadows.maps.projection import AnyProjection
 
-CONTINUOUS_STEP = 1e-3  # of depths between texels: less is no silhouette
+CONTINUOUS_STEP = 1e-3  # a smaller step of depth between texels is no silhouette
 
 
 @dataclass(frozen=True)
 class TexelMotion:
-    """How the surfaces in all texels move along one axis of the map, and lean there.
+    """The motion and the slope, along one axis of the map, of the surfaces in all texels.
 
     place : their places [texels], with the derivatives of points that move with their shapes.
     slope : the change of depth in their planes, per texel.
@@ -40,7 +40,7 @@ class TexelMotion:
 
 @dataclass(frozen=True)
 class MovingDepths:
-    """The depths of a map, and how their surfaces move.
+    """The depths of a map, and the motions of their surfaces.
 
     values : (resolution, resolution).
     motions : along columns and rows of texels; None where nothing moves.
@@ -60,7 +60,7 @@ class MovingDepths:
         with dr.suspend_grad():
             z, z_next = pair_neighbours(self.values, axis)
             slope, slope_next = pair_neighbours(motion.slope, axis)
-            # where two faces meet the depth goes on in the plane of one of them
+            # Where two faces meet, the depth continues in the plane of one of them
             deepest = dr.maximum(dr.maximum(slope, slope_next), 0) + CONTINUOUS_STEP
             highest = dr.minimum(dr.minimum(slope, slope_next), 0) - CONTINUOUS_STEP
             here_nearer, next_nearer = z_next - z > deepest, z_next - z < highest

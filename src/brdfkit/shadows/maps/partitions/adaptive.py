@@ -55,9 +55,9 @@ def is_at_border(surfaces: VisibleSurfaces, lit: BoolArray) -> BoolArray:
 
 
 def grow_tree(places: FloatArray, weights: FloatArray, budget: int) -> list[Leaf]:
-    """Return the leaves of the tree over [-1, 1]², of which the greatest is divided first.
+    """Return the leaves of a tree of squares over [-1, 1]², whose heaviest leaf is divided first.
 
-    The greatness of a leaf is the sum of the `weights` (n,) of its `places` (n, 2), times its side.
+    A leaf is as heavy as the sum of the `weights` (n,) of its `places` (n, 2), times its side.
     """
     index = np.clip((places + 1) / 2 * 2**MAX_LEVEL, 0, 2**MAX_LEVEL - 1).astype(int)
     columns, rows = index.T
@@ -65,8 +65,8 @@ def grow_tree(places: FloatArray, weights: FloatArray, budget: int) -> list[Leaf
     def heap_entry(level: int, row: int, column: int) -> tuple[float, Leaf]:
         shift = MAX_LEVEL - level
         within = (rows >> shift == row) & (columns >> shift == column)
-        greatness = weights[within].sum() / 2**level if level < MAX_LEVEL else 0
-        return -greatness, (level, row, column)
+        weight = weights[within].sum() / 2**level if level < MAX_LEVEL else 0
+        return -weight, (level, row, column)
 
     heap: list[Any] = [heap_entry(0, 0, 0)]
     while len(heap) + 3 <= budget and heap[0][0] < 0:

@@ -25,7 +25,7 @@ SETTINGS = {
     **split_planes.SETTINGS,
     "ends": word(("surfaces", "camera"), "what the first and last plane are set to"),
 }
-MARGIN = 0.05  # around the surfaces that rays found, for nearer ones between the rays
+MARGIN = 0.05  # of the depths, for nearer or farther surfaces between the rays
 
 
 def make_partition(setup: Setup, parts: int, spacing: str, ends: str) -> Partition:

@@ -7,8 +7,8 @@ crawl [Valient 2008]. The ball is wider than the slice, and nothing is fitted to
 things make up for most of that:
 
 - A point uses the finest map that contains it, not that of its slice.
-- Slices begin and end where the `surfaces` do that the camera sees, at 1, 2, 4, 8 ... times a
-  fraction of the scene's diagonal: radii stay the same until an end jumps to the next step.
+- Slices begin and end where the visible surfaces do, but only at 1, 2, 4, 8 ... times a fraction of
+  the scene's diagonal: radii stay the same until an end jumps to the next step.
 - A map that would be wider than the scene is as wide as the scene, and one near its end stays
   inside.
 
@@ -38,8 +38,8 @@ from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.visible_surfaces import find_visible_surfaces
 
 SETTINGS = split_planes.SETTINGS
-MARGIN = 0.05  # around the surfaces that rays found, for nearer ones between the rays
-ROUNDING_ERROR = 1e-5  # of places on a map
+MARGIN = 0.05  # of the depths, for nearer or farther surfaces between the rays
+ROUNDING_ERROR = 1e-5  # of places on a map of the width 2
 
 
 def make_partition(setup: Setup, parts: int, spacing: str) -> Partition:
@@ -91,7 +91,7 @@ def snap_window(
     """
     radius = min(radius, float(np.ptp(side)) / 2)
     place = np.clip(place, side.min() + radius, side.max() - radius)
-    # with half a texel for snapping, and the gutter for filters
+    # The map has half a texel more for snapping, and the gutter for filters
     texel = 2 * radius / max(resolution - 2 * GUTTER - 1, 1)
     middle = np.round(place / texel) * texel
     return middle - texel * resolution / 2, middle + texel * resolution / 2

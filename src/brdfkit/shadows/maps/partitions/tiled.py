@@ -20,7 +20,7 @@ from brdfkit.shadows.maps.resolution import footprints, places_on_map
 from brdfkit.shadows.maps.visible_surfaces import find_visible_surfaces
 
 SETTINGS = {"tiles": count(4, (1, 16), "tiles along a side of the map")}
-LEAST_TEXELS = 4 * GUTTER  # along a side of a tile in which no ray saw anything
+LEAST_TEXELS = 4 * GUTTER  # along a side of a tile in which no ray hit a surface
 
 
 def make_partition(setup: Setup, tiles: int) -> Partition:

@@ -1,4 +1,4 @@
-"""The uniform projection, fitted to what the camera sees and what may shadow it.
+"""The uniform projection, fitted to the visible part of the scene and all that may shadow it.
 
 [Ergun 2008, 2.2.2.1], with the body of Ogre's focused set-up: ((V ∩ S) + light) ∩ S, for the
 camera's frustum V and the scene's box S.

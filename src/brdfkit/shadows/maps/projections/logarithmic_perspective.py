@@ -34,7 +34,7 @@ def make_projection(placement: Placement, apex: float) -> Projection:
     near, far = sight.ends
     n = apex * placement.depths[0] / sight.sine * sight.scale
     warped = sight.warp(n)
-    # the logarithm of a ratio of 1 is no map, but this one is nearly linear
+    # A ratio of 1 has no logarithmic map, but the map of this ratio is nearly linear
     ratio = max(1 + (far - near) / n, 1 + 1e-4)
     return Logarithmic(warped.matrix, warped.inverse, warped.light, ratio=ratio)
 
@@ -49,7 +49,7 @@ class Logarithmic(Projection):
     ratio: Any = np.e
 
     def opaque(self) -> "Logarithmic":
-        """Return the same for Dr.Jit."""
+        """Return the projection with opaque Dr.Jit numbers, so that one kernel serves all."""
         import mitsuba as mi
 
         opaque: Any = super().opaque()

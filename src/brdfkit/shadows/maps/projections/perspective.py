@@ -15,7 +15,7 @@ from brdfkit.shadows.maps.light_camera import fit_to_corners, view_matrix
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 
-NEAREST = 1 / 200  # of the distances before the camera, over the farthest: depths are as 1 / z
+NEAREST = 1 / 200  # the near plane over the far one, as depths grow like 1 / z
 
 
 def make_projection(placement: Placement) -> Projection:

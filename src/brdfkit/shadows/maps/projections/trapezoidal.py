@@ -1,7 +1,7 @@
-"""A trapezoid about what is visible becomes the map; most of it shows what is near the eye (TSM).
+"""The trapezoid around the visible body becomes the map, mostly for what is near the eye (TSM).
 
 Two sides of the trapezoid are at right angles to the line of sight, at the near and the far end of
-what is visible, λ apart. The two others touch what is visible, and meet η before the near side:
+the visible body, λ apart. The two others touch the body, and meet η before the near side:
 
     η = λ δ (1 + ξ) / (λ - 2 δ - λ ξ),  ξ = -0.6
 
@@ -20,7 +20,7 @@ from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import focused
 
-XI = -0.6  # the end of the focus on the map, which has 1 at the near side and -1 at the far
+XI = -0.6  # where the focus ends on the map, from 1 at its near side to -1 at its far side
 SETTINGS = {
     "focus": plain_number(
         0.3, (0.01, 0.79), "of trapezoidal: the share of what is seen that has 80 % of a map"

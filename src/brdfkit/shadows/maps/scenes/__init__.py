@@ -1,4 +1,4 @@
-"""Scenes on which shadow techniques are compared, made anew from seeds; a file is a scene.
+"""Scenes on which shadow techniques are compared, made anew from seeds; each file is a scene.
 
 A file NAME.py has the function `NAME(view="V1", light=1, size=(512, 512))`, which returns the
 scene's dictionary for `mitsuba.load_dict`. There are four views, V1 to V4, and two suns that are

@@ -14,11 +14,11 @@ from brdfkit.core.errors import no_such
 
 VIEWS = {
     "V1": 90,  # at right angles to the light
-    "V2": 180,  # into the light: duelling frusta
+    "V2": 180,  # into the light, known as duelling frusta
     "V3": 155,  # between the two
-    "V4": 0,  # with the light: the miner's lamp
+    "V4": 0,  # along the light, like a miner's lamp
 }
-LIGHTS = {1: 14, 2: 17}  # their azimuths [degrees]: the second one shows what changes at a step
+LIGHTS = {1: 14, 2: 17}  # azimuths [degrees]; the second sun is a small step from the first
 ELEVATION = 48  # of the suns [degrees]
 
 Place: TypeAlias = Iterable[float]  # three coordinates, or sizes
