@@ -53,7 +53,7 @@ class LightCone:
         object.__setattr__(self, "basis", (a, dr.cross(self.axis, a)))
 
     def radius(self, t: JitFloat) -> JitFloat:
-        """Return ρ(t), the radius of the cone's section at t, never 0, so that ratios are finite."""
+        """Return ρ(t), the radius of the section at t; never 0, so that ratios are finite."""
         return dr.maximum(self.R_0 + t * self.tan, POINT_RADIUS * self.d)
 
     def point(self, t: JitFloat) -> JitVector:
