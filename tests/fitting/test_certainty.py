@@ -205,9 +205,9 @@ def test_a_part_is_as_certain_as_the_whole(loss, monkeypatch):
     fit = bk.fit(data, "ggx", loss=loss, starts=1)
     u = problem.space.coordinates(fit.values)[None]
     weights = np.array([fit.values[n] for n in model.weights()]).T[None]
-    whole = certainty.certify(problem, u, weights)
-    monkeypatch.setattr(certainty, "MANY", 6000)
-    part = certainty.certify(problem, u, weights, rng=np.random.default_rng(0))
+    whole = certainty.compute_certainty(problem, u, weights)
+    monkeypatch.setattr(certainty, "MANY_SAMPLES", 6000)
+    part = certainty.compute_certainty(problem, u, weights, rng=np.random.default_rng(0))
     assert part.names == whole.names
     ratio = [part.standard_errors()[n] / e for n, e in whole.standard_errors().items()]
     np.testing.assert_allclose(ratio, 1, atol=0.1)

@@ -14,7 +14,7 @@ from brdfkit.images.ball.normals import VIEW, draw_normals
 from brdfkit.images.ball.pixels import BRIGHTER
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.regression.problem.parameter_space import Space
-from brdfkit.regression.problem.picture_problem import PictureProblem
+from brdfkit.regression.problem.pixel_problem import PictureProblem
 
 GLOSSY = {"diffuse_reflectance": (0.3, 0.1, 0.05), "specular_reflectance": 0.8, "f0": 0.3}
 

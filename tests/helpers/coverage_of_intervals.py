@@ -22,11 +22,11 @@ from brdfkit.checks.material_subject import random_pairs
 from brdfkit.model import labels
 from brdfkit.model.samples import Samples
 from brdfkit.model.samples.measures import estimate_extents
-from brdfkit.regression.certainty import certify
+from brdfkit.regression.certainty import compute_certainty
 from brdfkit.regression.losses.named_losses import OFFSET
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
-from brdfkit.regression.robust.search import settle
+from brdfkit.regression.robust.search import search_robust
 from brdfkit.regression.search.levenberg_marquardt import levenberg_marquardt
 
 
@@ -95,8 +95,10 @@ def held(name, loss, noise, replicates, n=600, robust=None, seed=0):
         ends = levenberg_marquardt(problem.expand, u, weights, problem.least, 50, 1e-10, 1e-4).ends
         point, passes = (ends.u, ends.weights), None
         if robust:
-            *point, _, _, passes = settle(problem, *point, robust, rng, lambda done, total: None)
-        certainty = certify(problem, *point, passes)
+            *point, _, _, passes = search_robust(
+                problem, *point, robust, rng, lambda done, total: None
+            )
+        certainty = compute_certainty(problem, *point, passes)
         values_ = dict(zip(space.names, space.table(point[0])[0], strict=True))
         for c, own in enumerate(point[1][0]):
             values_ |= {f"{w}[{c}]": v for w, v in zip(model.weights(), own, strict=True)}

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from random_models import random_model
+from robust_least_squares import sample_weights
 from sample_sums import sample_sum
 
 import brdfkit as bk
@@ -12,11 +13,11 @@ from brdfkit.model import labels
 from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.model.samples import Samples
 from brdfkit.regression import losses
-from brdfkit.regression.problem.folding import fold
+from brdfkit.regression.problem.folding import fold_problem
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import draw_part
-from brdfkit.regression.robust.reweighting import WEIGHTS, leverages, sample_weights
+from brdfkit.regression.robust.reweighting import WEIGHTS, leverages
 
 MODELS_WITHOUT_SUMS = [name for name in bk.models() if name != "mixture"]
 
@@ -78,7 +79,7 @@ def test_squared_error_and_gradient(name, loss):
 def test_a_folded_objective_is_the_full_one(name):
     """To 1e-12: E², gradient and Hessian; which models fold follows from their lobes."""
     problem = problem_of(name, table())
-    folded = fold(problem)
+    folded = fold_problem(problem)
     lobes = random_model(problem.model, 1).lobes()
     free = any(lobe.factors is None for lobe in lobes if not lobe.diffuse)
     assert folded is None or not free
@@ -97,13 +98,13 @@ def test_a_folded_objective_is_the_full_one(name):
 def test_what_folds():
     """Facets whose shadowing holds the width do not."""
     samples = table()
-    assert fold(problem_of("ward", samples))
-    assert fold(problem_of("koenderink", samples))
-    assert not fold(problem_of("ggx", samples))
-    assert not fold(problem_of("ward", samples, "log"))
+    assert fold_problem(problem_of("ward", samples))
+    assert fold_problem(problem_of("koenderink", samples))
+    assert not fold_problem(problem_of("ggx", samples))
+    assert not fold_problem(problem_of("ward", samples, "log"))
     wi, wo = random_pairs(500, seed=2, max_degrees=79)
     scattered = Samples.from_arrays(wi, wo, np.ones((500, 1)), None, "Y", "scattered")
-    assert not fold(problem_of("ward", scattered))
+    assert not fold_problem(problem_of("ward", scattered))
 
 
 @pytest.mark.quick

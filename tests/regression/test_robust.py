@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from robust_least_squares import robust_least_squares
 from sample_sums import sample_sum
 
 import brdfkit as bk
@@ -9,7 +10,7 @@ from brdfkit.checks.material_subject import random_pairs
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.regression import losses
-from brdfkit.regression.robust.reweighting import WEIGHTS, robust_least_squares
+from brdfkit.regression.robust.reweighting import WEIGHTS
 
 # y = 10 - 2x + e with the last one set to 0; MATLAB's robustfit (Kurt 2007, digest 6.5)
 NOISE = [0.5377, 1.8339, -2.2588, 0.8622, 0.3188, -1.3077, -0.4336, 0.3426, 3.5784, 2.7694]

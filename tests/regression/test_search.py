@@ -4,7 +4,7 @@ import numpy as np
 from brdfkit.theses.kurt2007.neural import decode_network
 
 import brdfkit as bk
-from brdfkit.regression.search.levenberg_marquardt import _correct
+from brdfkit.regression.search.levenberg_marquardt import _add_correction
 
 
 def test_an_end_is_found_to_which_one_start_in_seventeen_leads(measured_data):
@@ -25,10 +25,10 @@ def test_a_black_lobe_is_lit_where_it_helps():
     assert found.loss <= other.loss * (1 + 1e-7)
 
 
-def test_a_parameter_that_does_nothing_has_no_correction():
+def test_a_parameter_that_does_nothing_has_no_add_correctionion():
     """Its scale is infinite; the Hessian stays as it is."""
     hessian = np.array([[[2.0, 0.0], [0.0, 0.0]], [[2.0, 0.0], [0.0, 1.0]]])
     correction = np.array([[[1e-3, 1e180], [1e180, 1e200]], [[1.0, 0.0], [0.0, 1.0]]])
     np.testing.assert_array_equal(
-        _correct(hessian, correction), hessian + np.stack([np.zeros((2, 2)), np.eye(2)])
+        _add_correction(hessian, correction), hessian + np.stack([np.zeros((2, 2)), np.eye(2)])
     )

@@ -18,9 +18,9 @@ from brdfkit.materials.measured.albedos import ANGLES
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.resolve import MaterialLike, to_materials, to_measured
 from brdfkit.regression import Fit, losses
-from brdfkit.regression.albedo_cells import albedo_cell
-from brdfkit.regression.light import FOUR, ONE, albedo_pixels
-from brdfkit.regression.losses.loss import squares
+from brdfkit.regression.albedo_cells import make_albedo_cell
+from brdfkit.regression.light import ANISOTROPIC_AZIMUTHS, ISOTROPIC_AZIMUTHS, make_albedo_pixels
+from brdfkit.regression.losses.loss import squared_differences
 from brdfkit.regression.losses.named_losses import DEFAULT
 
 # The losses by which errors are told, beside those that were minimised
@@ -65,12 +65,12 @@ class Comparison(Shown):
         is_least = table == np.nanmin(np.vstack([table, np.full(len(self.shown), np.inf)]), axis=0)
         kinds = np.where(is_least, STRONG, "").tolist()
         hints = [losses.named[loss].meaning for loss in self.shown]
-        measured = "measured", *"-" * len(hints), *map(albedo_cell, self.measured_albedo)
+        measured = "measured", *"-" * len(hints), *map(make_albedo_cell, self.measured_albedo)
         rows = tuple(
             (
                 Cell(name),
                 *map(Cell, map(format_error, errors), kind, hints),
-                *map(albedo_cell, self.albedos[name], self.measured_albedo),
+                *map(make_albedo_cell, self.albedos[name], self.measured_albedo),
             )
             for name, errors, kind in zip(self.errors, table, kinds, strict=True)
         )
@@ -135,7 +135,9 @@ def compare(
     data, materials = to_measured(material), to_materials(fits)
     samples = select_samples(data, max_angle, spectral=spectral)
     light = (data if spectral else data.rgb).albedo
-    pixels = albedo_pixels(ANGLES, FOUR if data.anisotropic else ONE)
+    pixels = make_albedo_pixels(
+        ANGLES, ANISOTROPIC_AZIMUTHS if data.anisotropic else ISOTROPIC_AZIMUTHS
+    )
     errors: dict[str, dict[str, float]] = {}
     albedos: dict[str, tuple[float, ...]] = {}
     for thing in materials:
@@ -176,4 +178,6 @@ def _evaluate(brdf, data, samples):
 def _error(loss, values, samples):
     """E of a `Loss` for `values` (n, channels) at `Samples`; nan where it weighs none of them."""
     importance = loss.importance(samples)
-    return math.sqrt(importance @ squares(loss, values, samples)) if importance.any() else math.nan
+    if not importance.any():
+        return math.nan
+    return math.sqrt(importance @ squared_differences(loss, values, samples))

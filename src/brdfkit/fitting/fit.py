@@ -28,7 +28,7 @@ from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model import Model, labels
 from brdfkit.model.evaluation import make_model
 from brdfkit.model.samples.measures import compute_measure, integrate_measure
-from brdfkit.regression import Fit, Loss, Picture, as_loss, regress
+from brdfkit.regression import Fit, Loss, Picture, regress, to_loss
 from brdfkit.regression.measurement_noise import regress_noisy
 from brdfkit.regression.solvers import AlbedoAtMost, Solver, WeightsAtMost
 from brdfkit.regression.solvers.settings import to_plain
@@ -148,7 +148,7 @@ def fit(
     given = {"robust": robust, "max_angle": max_angle, "use_standard_error": use_standard_error}
     checked = check_settings({**given, **how}, f"{model_class.type_name()}: ")
     how = {name: checked[name] for name in how}
-    loss = as_loss(loss)
+    loss = to_loss(loss)
     samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
 
     light = light_of_data(data if spectral else data.rgb, weights, max_angle)

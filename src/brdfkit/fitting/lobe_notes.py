@@ -12,7 +12,7 @@ from brdfkit.materials.measured import Measured
 from brdfkit.model import Model
 from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.model.samples import Samples
-from brdfkit.regression.light import albedo_pixels
+from brdfkit.regression.light import make_albedo_pixels
 
 # Where the albedo of a lobe is looked at [degrees], and what is a gain
 INCIDENCES, GAIN = (5, 45, 75), 1.05
@@ -76,7 +76,7 @@ def list_lobe_notes(
 
 def lobe_albedos(model: Model) -> NDArray[np.float64]:
     """The directional albedo (incidences, lobes, channels) of each lobe with its weight."""
-    both = albedo_pixels(INCIDENCES).look(
+    both = make_albedo_pixels(INCIDENCES).look(
         lambda wi, wo: np.hstack(compute_lobe_values(model, wi, wo))
     )
     plain, squared = np.split(both[..., None], 2, axis=1)

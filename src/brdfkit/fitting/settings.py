@@ -9,7 +9,7 @@ from brdfkit.fitting.light_of_data import light_of_data
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.resolve import to_measured
 from brdfkit.model import Model, labels
-from brdfkit.regression import Fit, as_loss
+from brdfkit.regression import Fit, to_loss
 from brdfkit.regression.refitting import Refit
 from brdfkit.regression.robust.reweighting import WEIGHTS
 from brdfkit.regression.solvers.settings import require_suitable, to_constraints, to_solver
@@ -66,7 +66,7 @@ def to_settings(settings, where):
             f"loss = {loss!r} is no name; where other processes fit, it should be one of "
             "brdfkit.losses.named."
         )
-    as_loss(loss)
+    to_loss(loss)
     if robust not in (None, *WEIGHTS):
         raise no_such("robust weight", robust, WEIGHTS)
     settings["solver"] = to_solver(settings["solver"])

@@ -1,24 +1,23 @@
-"""The numeric core of a fit: a model regressed on samples, without files and without Mitsuba.
+"""The numbers behind a fit: a model regressed on samples, without files and without Mitsuba.
 
-From the ground up: `losses/loss.py` is the error E that a fit minimises, `losses/named_losses.py`
-the usual ones, `losses/picture.py` that of pictures. `problem/columns.py` evaluates the lobes of a
-model and their derivatives, on `problem/blocks.py` of samples; `problem/sums.py` adds them up,
-`problem/expansion.py` makes of the sums E² to second order, and `problem/problem.py` all this of a
-model on samples (`problem/folding.py`: quicker, on a table with a linear loss;
-`problem/pixel_problem.py`: on `problem/pixel_blocks.py`, too, as `problem/picture_problem.py` has
-them). `search/levenberg_marquardt.py` searches in the bounds of `problem/parameter_space.py`, by
-steps that `problem/box_quadratic.py` finds; `search/multistart.py` has it go from many
-`search/starting_points.py` and a `problem/subset.py` of many samples to one end and all. This and
-other ways to search are the `solvers/`, where constraints are, too. `robust/reweighting.py` weighs
-down outliers, `robust/search.py` until weights and solution give each other back, which
-`robust/convexity.py` speeds up. `light.py` has the albedos of a fit and its data, and
-`search/light_search.py` searches again where they differ. `certainty.py` says how certain the
-parameters are. `regression.py` runs these one after the other; `result.py` is `Fit`. `refitting.py`
-fits again from the end of one, and `profiling.py` follows its loss over a parameter.
+`regression.py` runs the steps of a fit one after the other, and `result.py` is `Fit`, its result.
+The folders, from the ground up:
+
+- `losses/`: the error E that a fit minimises.
+- `problem/`: E² of a model on samples or pixels, with derivatives. `columns.py` evaluates the lobes
+  of a model on `blocks.py` of samples, `sums.py` adds them up, `expansion.py` makes E² to second
+  order from the sums, `problem.py` combines these, and `folding.py` is a faster way for tables.
+- `search/`: Levenberg-Marquardt steps from many starts, and a second search that corrects the
+  albedo of a fit (with `light.py`).
+- `solvers/`: this and other algorithms as objects for users, and constraints.
+- `robust/`: repeated fits that reduce the weight of outliers.
+
+`certainty.py` estimates standard errors, `measurement_noise.py` uses those of a measurement,
+`refitting.py` repeats a fit from its end, and `profiling.py` profiles its loss over a parameter.
 """
 
 from brdfkit.regression.losses.loss import Loss as Loss
-from brdfkit.regression.losses.named_losses import as_loss as as_loss
+from brdfkit.regression.losses.named_losses import to_loss as to_loss
 from brdfkit.regression.losses.picture import Picture as Picture
 from brdfkit.regression.regression import regress as regress
 from brdfkit.regression.result import Fit as Fit

@@ -1,37 +1,48 @@
-"""How certain a fit's parameters are: their covariance, from the derivatives at its end.
+"""Estimates how certain the parameters of a fit are, by their covariance.
 
-The sandwich of Eicker, Huber and White, H⁻¹ (Σ g gᵀ) H⁻¹: H is the Hessian of Gauss and Newton, g
-what a sample adds to the gradient of E², all its channels together, over the square root of 1 - its
-leverage. [MacKinnon & White 1985]. It supposes that samples are independent, not that their noise
-is equally large or that their channels are independent.
+The covariance is the sandwich estimator of Eicker, Huber and White, H⁻¹ (Σ g gᵀ) H⁻¹. H is the
+Gauss-Newton Hessian of E², the squared error. g is the contribution of a sample to the gradient of
+E², with all its channels, over the square root of 1 - its leverage [MacKinnon & White 1985]. The
+estimator assumes that samples are independent, but neither that their noise is equally large nor
+that their channels are independent.
 """
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.names import join_words
-from brdfkit.regression.problem.parameter_space import join, of_channel
+from brdfkit.regression.problem.parameter_space import channel_rows, join
+from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import draw_part
 
-# More samples are judged by a part of half as many
-MANY = 40_000
-# Eigenvalues of a Hessian of unit diagonal that are rounding; parts of its eigenvectors that are
+# Of more samples, half this number are drawn
+MANY_SAMPLES = 40_000
+# Smaller eigenvalues of a Hessian with unit diagonal are rounding, and so are smaller entries of
+# its eigenvectors
 SINGULAR, ABSENT = 1e-11, 1e-3
-# A correlation, and an eigenvalue of correlations, that one should know of
-CLOSE, NARROW = 0.99, 1e-5
-# A parameter so near to its bound, as a share of the range, is on it
+# Notes mention larger correlations, and smaller eigenvalues of the matrix of correlations
+HIGH_CORRELATION, SMALL_EIGENVALUE = 0.99, 1e-5
+# A parameter is on its bound within this share of its range
 ON_BOUND = 1e-6
 
 
 @dataclass(frozen=True)
 class Certainty:
-    """What the data say of the parameters, weights as "diffuse_reflectance[0]" by channel.
+    """The covariance of the parameters that the data determine, and notes on the others.
 
-    `names`: parameters that they determine; `covariance`: of these, in rows; `freedom`: the degrees
-    of freedom of their variances; `undetermined`: what they leave open, in sentences; what is on a
-    bound or fixed is in neither. `trades`: what they hardly tell apart, in sentences. `numbers`:
-    how many were measured, of samples that count; `parameters`: how many were searched.
+    `names`: these parameters, weights with their channel as "diffuse_reflectance[0]"; `covariance`:
+    its rows; `freedom`: the degrees of freedom of the variances; `undetermined`: sentences on
+    parameters that the data do not determine; `trades`: sentences on parameters that the data
+    hardly distinguish; `numbers`: how many numbers were measured, in samples with weight;
+    `parameters`: how many parameters were searched. Fixed parameters, and parameters on a bound,
+    are in neither `names` nor `undetermined`.
     """
 
     names: tuple[str, ...]
@@ -42,59 +53,70 @@ class Certainty:
     numbers: int
     parameters: int
 
-    def standard_errors(self):
-        """The standard error of each of `names`."""
+    def standard_errors(self) -> dict[str, float]:
+        """Return the standard errors by the names of the parameters."""
         variances = np.diagonal(self.matrix())
         return dict(zip(self.names, np.sqrt(variances).tolist(), strict=True))
 
-    def half_widths(self):
-        """Half of the 95 % interval of each of `names`, by Student's t."""
+    def half_widths(self) -> dict[str, float]:
+        """Return half the widths of the 95 % confidence intervals, by Student's t, by name."""
         from scipy.special import stdtrit
 
         quantiles = stdtrit(np.array(self.freedom), 0.975).tolist()
         errors = self.standard_errors().items()
         return {name: t * error for t, (name, error) in zip(quantiles, errors, strict=True)}
 
-    def criterion(self, loss, price):
-        """N ln(E²) + `price` k, of an error E, the `loss`, N numbers and k parameters."""
+    def criterion(self, loss: float, price: float) -> float:
+        """Return N ln(E²) + `price` · k, with E = `loss`, N measured numbers and k parameters."""
         with np.errstate(divide="ignore"):
             return float(self.numbers * 2 * np.log(loss) + price * self.parameters)
 
-    def bic(self, loss):
-        """The Bayesian criterion of an error E, the `loss`."""
+    def bic(self, loss: float) -> float:
+        """Return the Bayesian information criterion of the error `loss`."""
         return self.criterion(loss, np.log(self.numbers))
 
-    def matrix(self):
-        """The covariance (n, n)."""
+    def matrix(self) -> NDArray[np.float64]:
+        """Return the covariance as an array (n, n)."""
         return np.array(self.covariance).reshape(len(self.names), len(self.names))
 
-    def without_errors(self, numbers):
-        """The same without standard errors, for what has no independent noise, as pixels that show
-        the same samples; `numbers`: how many were measured."""
+    def without_errors(self, numbers: int) -> Certainty:
+        """Return the certainty without standard errors, with another number of measured `numbers`.
+
+        Standard errors have no meaning without independent noise: pixels show the same samples.
+        """
         return replace(self, names=(), covariance=(), freedom=(), numbers=numbers)
 
-    def correlation(self):
-        """The correlation (n, n)."""
+    def correlation(self) -> NDArray[np.float64]:
+        """Return the correlations (n, n)."""
         root = np.sqrt(np.maximum(np.diagonal(self.matrix()), 1e-300))
         return self.matrix() / np.outer(root, root)
 
 
-def intervals(values, half):
-    """The intervals (low, high) of `values` by name, numbers or tuples, of these `half` widths."""
-    found = {}
+def intervals(values: Mapping[str, Any], half: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the intervals (low, high) by name: the `values`, numbers or tuples, ± `half`."""
+    limits = {}
     for name, value in values.items():
         if isinstance(value, tuple):
             pairs = zip(value, half[name], strict=True)
-            found[name] = tuple((v - h, v + h) for v, h in pairs)
+            limits[name] = tuple((v - h, v + h) for v, h in pairs)
         else:
-            found[name] = (value - half[name], value + half[name])
-    return found
+            limits[name] = (value - half[name], value + half[name])
+    return limits
 
 
-def certify(problem, u, weights, passes=None, rng=None):
-    """The `Certainty` of a solution of a `Problem`: `u` (1, shapes), `weights` (1, channels,
-    lobes). `passes`: of a robust fit, by channel the factors ω of the samples and the derivatives
-    of ω r by r; `rng`: a generator, by which a part of many samples is drawn."""
+def compute_certainty(
+    problem: Problem,
+    u: FloatArray,
+    weights: FloatArray,
+    passes: tuple[list[FloatArray], list[FloatArray]] | None = None,
+    rng: np.random.Generator | None = None,
+) -> Certainty:
+    """Return the `Certainty` of a solution of a `Problem`.
+
+    `u` (1, shapes), `weights` (1, channels, lobes): the solution; `passes`: for a robust fit, the
+    weights ω of the samples and the derivatives of ω r by the residual r, each by channel; `rng`: a
+    generator that draws a part if there are many samples.
+    """
     names, free = _list_parameters(problem, u, weights)
     at = join(problem.space.table(u), weights)[0]
     counted = problem.importance > 0
@@ -103,23 +125,36 @@ def certify(problem, u, weights, passes=None, rng=None):
     if numbers <= len(names) or not free.any():
         return nothing
     shares = np.ones(len(counted))
-    if len(counted) > MANY and rng is not None:
-        part, rows = draw_part(problem.samples, problem.black, MANY // 2, rng)
+    if len(counted) > MANY_SAMPLES and rng is not None:
+        part, rows = draw_part(problem.samples, problem.black, MANY_SAMPLES // 2, rng)
         whole, problem = problem.importance[rows], problem.on(part)
         shares = whole / np.where(problem.importance > 0, problem.importance, 1)
-        passes = passes and [[array[rows] for array in by_channel] for by_channel in passes]
+        if passes:
+            passes = [w[rows] for w in passes[0]], [slope[rows] for slope in passes[1]]
     residuals, jacobians = problem.jacobians(u, weights)
     free |= _find_open_bounds(jacobians, free, u.shape[1])
-    scores, hessian, scale = _sum(residuals, jacobians, free, u.shape[1], shares, passes)
+    scores, hessian, scale = _sum_scores(residuals, jacobians, free, u.shape[1], shares, passes)
     most = (numbers - len(names)) / problem.channels
-    return conclude(names, free, at, scores, hessian, scale, numbers, most)
+    return conclude_certainty(names, free, at, scores, hessian, scale, numbers, most)
 
 
-def conclude(names, free, at, scores, hessian, scale, numbers, most):
-    """The `Certainty` of `names`, of which those that are `free` (n,) may move from where they are,
-    `at` (n,). By the free ones, in units of `scale`: `scores` (free, samples), what each sample
-    adds to the gradient of E², and the `hessian`. `numbers`: how many were measured; `most`: the
-    degrees of freedom that a variance can have."""
+def conclude_certainty(
+    names: Sequence[str],
+    free: BoolArray,
+    at: FloatArray,
+    scores: FloatArray,
+    hessian: FloatArray,
+    scale: FloatArray,
+    numbers: int,
+    most: float,
+) -> Certainty:
+    """Return the `Certainty` of parameters from derivatives of E² at the end of a search.
+
+    `names`: all parameters; `free` (n,): whether a parameter is not on a bound; `at` (n,): their
+    values. For the free parameters, in units of `scale` (free,): `scores` (free, samples), the
+    contribution of each sample to the gradient of E², and the `hessian`. `numbers`: how many
+    numbers were measured; `most`: the largest degrees of freedom of a variance.
+    """
     # Directions in which E² does not rise
     values, vectors = np.linalg.eigh(hessian)
     open_ = np.abs(values) <= SINGULAR * max(values.max(), 1)
@@ -133,24 +168,31 @@ def conclude(names, free, at, scores, hessian, scale, numbers, most):
         tuple(name for name, is_loose in zip(own, loose, strict=True) if not is_loose),
         tuple(map(tuple, covariance[np.ix_(~loose, ~loose)].tolist())),
         tuple(freedom[~loose].tolist()),
-        _describe_open(own, vectors[:, open_] * scale[:, None], at[free], vectors[:, open_]),
+        _describe_undetermined(
+            own, vectors[:, open_] * scale[:, None], at[free], vectors[:, open_]
+        ),
         _describe_trades(own, inner, scale, at[free], ~loose),
         numbers,
         len(names),
     )
 
 
-def _count_freedom(spread, most):
-    """The degrees of freedom (n,) of each variance, the sum of squares of `spread` (n, samples), by
-    Satterthwaite, at most so many: few where a few samples decide a parameter."""
+def _count_freedom(spread: FloatArray, most: float) -> FloatArray:
+    """Return the degrees of freedom (n,) of the variances, between 1 and `most`, by Satterthwaite.
+
+    A variance is the sum of squares of a row of `spread` (n, samples). It has few degrees of
+    freedom where a few samples determine a parameter.
+    """
     squares = spread * spread
     total, fourth = squares.sum(axis=1), (squares * squares).sum(axis=1)
     # The fourth moment of Gaussian noise is 3 times the square of its second
     return np.clip(3 * total**2 / np.maximum(fourth, 1e-300), 1, most)
 
 
-def _list_parameters(problem, u, weights):
-    """The names of all searched parameters, and which are free to move: not on a bound."""
+def _list_parameters(
+    problem: Problem, u: FloatArray, weights: FloatArray
+) -> tuple[list[str], BoolArray]:
+    """Return the names of all searched parameters, and whether each is free, not on a bound."""
     names = list(problem.space.names)
     for c in range(problem.channels):
         names += [f"{name}[{c}]" for name in problem.model.weights()]
@@ -158,16 +200,16 @@ def _list_parameters(problem, u, weights):
     return names, np.concatenate([inside, (weights[0] > problem.least).ravel()])
 
 
-def _find_open_bounds(jacobians, free, shapes):
+def _find_open_bounds(jacobians: list[FloatArray], free: BoolArray, shapes: int) -> BoolArray:
     """Return which parameters (n,) are shape parameters on a bound that E² does not determine.
 
-    E² stays as it is when such a parameter moves together with others, so where a search ended
-    along this direction, on the bound or off it, is due to rounding. `free` (n,): the parameters
-    that are not on a bound; `jacobians`: derivatives (shapes + lobes, samples) by channel.
+    E² stays equal if such a parameter moves together with others. So rounding decides where along
+    this direction a search ends, on the bound or off it. `free` (n,): whether a parameter is not on
+    a bound; `jacobians`: derivatives (shapes + lobes, samples) by channel.
     """
     is_open = np.zeros(len(free), bool)
     moving = free.copy()
-    # A derivative of 0, as of a lobe without weight, would make a parameter a direction by itself
+    # A parameter with a derivative of 0, as in a lobe without weight, trades off with no other
     moving[:shapes] |= np.any([jacobian[:shapes].any(axis=1) for jacobian in jacobians], axis=0)
     if (moving != free).any():
         hessian, _, _, _ = _sum_hessian(jacobians, moving, shapes)
@@ -177,13 +219,17 @@ def _find_open_bounds(jacobians, free, shapes):
     return is_open & ~free
 
 
-def _sum_hessian(jacobians, free, shapes):
-    """Return the Hessian (n, n) of the `free` parameters, in units that make its diagonal 1, these
-    units (n,), and by channel the rows of its parameters and their derivatives."""
+def _sum_hessian(
+    jacobians: list[FloatArray], free: BoolArray, shapes: int
+) -> tuple[FloatArray, FloatArray, list[Any], list[FloatArray]]:
+    """Return the Hessian (n, n) of the `free` parameters in units that make its diagonal 1.
+
+    Return these units (n,), too, and by channel the rows of its parameters and their derivatives.
+    """
     where = np.cumsum(free) - 1
     rows, derivatives = [], []
     for c, jacobian in enumerate(jacobians):
-        own = of_channel(c, shapes, len(jacobian) - shapes)
+        own = channel_rows(c, shapes, len(jacobian) - shapes)
         rows.append(where[own[free[own]]])
         derivatives.append(jacobian[free[own]])
     hessian = np.zeros((free.sum(), free.sum()))
@@ -193,9 +239,19 @@ def _sum_hessian(jacobians, free, shapes):
     return hessian * np.outer(scale, scale), scale, rows, derivatives
 
 
-def _sum(residuals, jacobians, free, shapes, shares, passes):
-    """By free parameters, each in units of `scale`: scores (n, samples), over the root of 1 - the
-    leverage, and the Hessian (n, n) with a diagonal of 1; and the `scale` (n,)."""
+def _sum_scores(
+    residuals: list[FloatArray],
+    jacobians: list[FloatArray],
+    free: BoolArray,
+    shapes: int,
+    shares: FloatArray,
+    passes: tuple[list[FloatArray], list[FloatArray]] | None,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return scores (n, samples), the Hessian (n, n) and the scale (n,) of the free parameters.
+
+    Scores are divided by the root of 1 - the leverage. The parameters are in units of the scale,
+    which makes the diagonal of the Hessian 1.
+    """
     hessian, scale, owns, jacobians = _sum_hessian(jacobians, free, shapes)
     inverse = np.linalg.pinv(hessian, rcond=SINGULAR, hermitian=True)
     scores = np.zeros((len(hessian), len(shares)))
@@ -213,29 +269,35 @@ def _sum(residuals, jacobians, free, shapes, shares, passes):
     return scores, hessian, scale
 
 
-def _describe_open(names, steps, at, vectors):
-    """A sentence on each of the `vectors` (n, count) along which E² does not rise; `steps`: the
-    same, in units of the parameters, which are `at` (n,)."""
-    said = {}
-    # Relative changes; of what is 0, as good as infinite ones
+def _describe_undetermined(
+    names: Sequence[str], steps: FloatArray, at: FloatArray, vectors: FloatArray
+) -> tuple[str, ...]:
+    """Return a sentence on each of the `vectors` (n, count) along which E² does not rise.
+
+    `steps`: the vectors in units of the parameters; `at` (n,): the values of the parameters.
+    """
+    sentences = {}
+    # Relative changes; practically infinite for a parameter that is 0
     shares = np.clip(steps, -1e5, 1e5) / np.where(at == 0, 1e-300, at)[:, None]
     for share_of, vector in zip(shares.T, vectors.T, strict=True):
-        relative = {}
+        relative: dict[str, float] = {}
         for j in np.argsort(-np.abs(vector)):
             if abs(vector[j]) > ABSENT:
-                relative.setdefault(_plain(names[j]), share_of[j])
+                relative.setdefault(_strip_channel(names[j]), share_of[j])
         if len(relative) == 1:
-            said[f"the data do not determine {next(iter(relative))}"] = True
+            sentences[f"the data do not determine {next(iter(relative))}"] = True
             continue
-        several = sorted(relative, key=lambda name: list(map(_plain, names)).index(name))
+        several = sorted(relative, key=lambda name: list(map(_strip_channel, names)).index(name))
         share = relative[several[0]] / relative[several[1]] if len(several) == 2 else np.nan
-        said[_describe_trade(several, share)] = True
-    return tuple(said)
+        sentences[_describe_trade(several, share)] = True
+    return tuple(sentences)
 
 
-def _describe_trade(names, share):
-    """The sentence on parameters that trade off; `share`: the change of the first of two, relative
-    to its value, over that of the second."""
+def _describe_trade(names: Sequence[str], share: float) -> str:
+    """Return a sentence on parameters that trade off.
+
+    `share`: the relative change of the first of two parameters over the second's.
+    """
     what = "a combination of them"
     if 0.8 < abs(share) < 1.25:
         what = "their product" if share < 0 else "their ratio"
@@ -244,47 +306,55 @@ def _describe_trade(names, share):
     return f"{join_words(names)} trade off: only {what} is determined"
 
 
-def _plain(name):
-    """The name of a parameter without its channel."""
+def _strip_channel(name: str) -> str:
+    """Return the name of a parameter without its channel."""
     return name.partition("[")[0]
 
 
-def explain_end(certainty):
-    """The message of a fit whose numbers say nothing of certainty, or None."""
-    known, sought = certainty.numbers, certainty.parameters
-    if known < sought:
-        return f"underdetermined: the values are some of many that meet the {known} numbers"
-    if known == sought:
-        return f"as many numbers as parameters, {known}: nothing tells how certain the values are"
+def explain_end(certainty: Certainty) -> str | None:
+    """Return the message of a fit whose data do not determine all parameters, or None."""
+    numbers, parameters = certainty.numbers, certainty.parameters
+    if numbers < parameters:
+        return f"underdetermined: the values are some of many that meet the {numbers} numbers"
+    if numbers == parameters:
+        return f"as many numbers as parameters, {numbers}: nothing tells how certain the values are"
     if certainty.undetermined:
         return "ended, and not all values are determined"
     return None
 
 
-def _describe_trades(names, inverse, scale, at, closed):
-    """Sentences on the parameters that the Hessian, of this `inverse` (n, n) in units of `scale`,
-    hardly tells apart: of the directions that were measured, whatever their noise. `at`: where they
-    are; `closed`: those that are determined."""
-    (rows,) = np.nonzero(closed)
+def _describe_trades(
+    names: Sequence[str],
+    inverse: FloatArray,
+    scale: FloatArray,
+    at: FloatArray,
+    determined: BoolArray,
+) -> tuple[str, ...]:
+    """Return sentences on the parameters that the data hardly distinguish, whatever their noise.
+
+    `inverse` (n, n): of the Hessian, in units of `scale` (n,); `at` (n,): the values of the
+    parameters; `determined` (n,): whether the data determine a parameter.
+    """
+    (rows,) = np.nonzero(determined)
     errors = np.sqrt(np.diagonal(inverse))[rows]
     correlation = inverse[np.ix_(rows, rows)] / np.outer(errors, errors)
     relative = errors * scale[rows] / np.maximum(np.abs(at[rows]), 1e-300)
-    plain = [_plain(names[row]) for row in rows]
-    pairs = {}
-    for i, j in zip(*np.nonzero(np.triu(np.abs(correlation) > CLOSE, 1)), strict=True):
+    plain = [_strip_channel(names[int(row)]) for row in rows]
+    pairs: dict[tuple[str, str], tuple[float, float]] = {}
+    for i, j in zip(*np.nonzero(np.triu(np.abs(correlation) > HIGH_CORRELATION, 1)), strict=True):
         pair, size = (plain[i], plain[j]), correlation[i, j]
         if plain[i] != plain[j] and abs(size) > abs(pairs.get(pair, [0])[0]):
             pairs[pair] = size, relative[i] / relative[j]
-    worst, said = sorted(pairs.items(), key=lambda item: -abs(item[1][0])), []
+    worst, sentences = sorted(pairs.items(), key=lambda item: -abs(item[1][0])), []
     for pair, (size, share) in worst[:3]:
         trade = _describe_trade(pair, np.copysign(share, size))
-        said.append(f"{trade} (correlation {size:.4f})")
+        sentences.append(f"{trade} (correlation {size:.4f})")
     if len(worst) > 3:
-        said.append(f"so do {len(worst) - 3} more pairs of parameters")
+        sentences.append(f"so do {len(worst) - 3} more pairs of parameters")
     if not worst and len(rows):
         values, vectors = np.linalg.eigh(correlation)
         strong = np.abs(vectors[:, 0]) > 0.1 * np.abs(vectors[:, 0]).max()
         several = list(dict.fromkeys(n for n, is_in in zip(plain, strong, strict=True) if is_in))
-        if values[0] < NARROW and len(several) > 1:
-            said.append(_describe_trade(several, np.nan))
-    return tuple(said)
+        if values[0] < SMALL_EIGENVALUE and len(several) > 1:
+            sentences.append(_describe_trade(several, np.nan))
+    return tuple(sentences)

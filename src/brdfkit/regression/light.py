@@ -1,38 +1,48 @@
-"""The light that a fit reflects, beside that of its data: albedos at a few angles of incidence."""
+"""Compares the light that a fit and its data reflect: albedos at a few angles of incidence."""
+
+from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.quadrature import directional_albedo, make_ring_rule
 from brdfkit.images.ball import Pixels
 
-# The factor between the albedos of a fit and its data beyond which the fit is searched once more,
-# and the one beyond which its light is said to be wrong: 1.25, less what a quadrature may be off
-HELD, WRONG = 1.2, 1.24
-# Beyond this angle [degrees] a model that is too dark is left so: few rise as materials do
-STEEP = 60
-# More angles of incidence [degrees] at which a fit is only looked at
-OTHERS = 60.0, 80.0, 89.0
-# No surface reflects more; beyond rounding of the quadrature
-ALL = 1.001
-# A measurement that reflects more has another unit than 1/sr, and tells nothing of light
-OTHER_UNIT = 2.0
+# Beyond the first factor between the albedos of a fit and its data, the fit is searched once more;
+# beyond the second one, 1.25 less the error of the quadrature, its light is called wrong
+ACCEPTED_FACTOR, WRONG_FACTOR = 1.2, 1.24
+# Beyond this angle [degrees] a model may be too dark: few models rise like materials there
+STEEP_ANGLE = 60
+# Further angles of incidence [degrees] at which only the fit is evaluated
+OTHER_ANGLES = 60.0, 80.0, 89.0
+# No surface reflects more light, beyond rounding of the quadrature
+LARGEST_ALBEDO = 1.001
+# A measurement with a larger albedo has another unit than 1/sr, so its albedo means nothing
+LARGEST_MEASURED_ALBEDO = 2.0
 # Half the rings of the quadrature, and the points on each
 POINTS = 32
-# Azimuths of incidence [rad], of an isotropic material and of another one
-ONE, FOUR = (0.0,), tuple(np.arange(4) * np.pi / 2)
+# Azimuths of incidence [rad]
+ISOTROPIC_AZIMUTHS, ANISOTROPIC_AZIMUTHS = (0.0,), tuple(np.arange(4) * np.pi / 2)
 UP = 0.0, 0.0, 1.0
 
 
 @cache
-def albedo_pixels(theta_i: tuple[float, ...], azimuths: tuple[float, ...] = ONE) -> Pixels:
-    """The quadrature by which `Pixels.look` gives the albedos (n, channels) of a BRDF for light
-    from angles `theta_i` [degrees] (n,), the mean over `azimuths` [rad]; without values."""
+def make_albedo_pixels(
+    theta_i: tuple[float, ...], azimuths: tuple[float, ...] = ISOTROPIC_AZIMUTHS
+) -> Pixels:
+    """Return the quadrature with which `Pixels.look` computes the albedos (n, channels) of a BRDF.
+
+    Light arrives at the angles `theta_i` [degrees] (n,); the albedos are means over `azimuths`
+    [rad]. The pixels have no values.
+    """
     rules = [
         [(wi, *make_ring_rule(wi, POINTS)) for wi in from_angles(np.radians(theta), azimuths)]
         for theta in theta_i
@@ -52,11 +62,11 @@ def albedo_pixels(theta_i: tuple[float, ...], azimuths: tuple[float, ...] = ONE)
 
 @dataclass(frozen=True, eq=False)
 class Light:
-    """What a measurement reflects of light from some angles.
+    """The albedos of a measurement at some angles of incidence, to compare a fit with.
 
     `theta_i`: the angles [degrees] (n,); `values` (n, channels): the albedos; `known` (n,): whether
-    the samples tell them; `pixels`: the quadrature that sums a model up to its own albedos, the
-    mean over `azimuths` [rad].
+    the samples determine them; `pixels`: the quadrature that computes the albedos of a model, means
+    over `azimuths` [rad].
     """
 
     theta_i: tuple[float, ...]
@@ -66,28 +76,28 @@ class Light:
     azimuths: tuple[float, ...]
 
     @classmethod
-    def of(cls, albedo, anisotropic):
-        """The light of a `MeasuredAlbedo`."""
-        azimuths = FOUR if anisotropic else ONE
-        pixels = albedo_pixels(albedo.theta_i, azimuths)
-        target = np.minimum(albedo.values, 1)  # what a file may gain, no fit should
+    def of(cls, albedo: Any, anisotropic: bool) -> Light:
+        """Return the light of a `MeasuredAlbedo`."""
+        azimuths = ANISOTROPIC_AZIMUTHS if anisotropic else ISOTROPIC_AZIMUTHS
+        pixels = make_albedo_pixels(albedo.theta_i, azimuths)
+        target = np.minimum(albedo.values, 1)  # a file may reflect more light than arrives, no fit
         pixels = replace(pixels, values=target)
         return cls(albedo.theta_i, albedo.values, albedo.known, pixels, azimuths)
 
     @property
-    def target(self):
-        """The albedos (n, channels) that a fit should have: the measured ones, but at most 1."""
+    def target(self) -> FloatArray:
+        """The albedos (n, channels) that a fit should have: the measured ones, at most 1."""
         return self.pixels.values
 
     @property
-    def has_another_unit(self):
+    def has_another_unit(self) -> bool:
         """Whether the measurement reflects so much that its values cannot be in 1/sr."""
-        return bool((self.known[:, None] & (self.values > OTHER_UNIT)).any())
+        return bool((self.known[:, None] & (self.values > LARGEST_MEASURED_ALBEDO)).any())
 
-    def judge(self, brdf):
-        """The `Albedo` of a fit, a BRDF (wi, wo) → (n, channels)."""
-        angles = (*self.theta_i, *OTHERS)
-        every = [albedo_pixels(angles, (azimuth,)).look(brdf) for azimuth in self.azimuths]
+    def judge(self, brdf: Callable[[FloatArray, FloatArray], FloatArray]) -> Albedo:
+        """Return the `Albedo` of a fit, a BRDF (wi, wo) → (n, channels)."""
+        angles = (*self.theta_i, *OTHER_ANGLES)
+        every = [make_albedo_pixels(angles, (azimuth,)).look(brdf) for azimuth in self.azimuths]
         fit = np.mean(every, axis=0)[: len(self.theta_i)]
         measured = [
             tuple(row.tolist()) if known else None
@@ -96,49 +106,61 @@ class Light:
         peak = self._find_peak(brdf, angles, np.max(every, axis=2))
         return Albedo(self.theta_i, tuple(map(tuple, fit.tolist())), tuple(measured), peak)
 
-    def _find_peak(self, brdf, angles, peaks):
-        """The angle at which a BRDF reflects most, and how much that is, of its `peaks` (azimuths,
-        angles): summed with more points where it seems to gain light."""
-        for azimuth, row in np.argwhere(peaks > ALL):
+    def _find_peak(
+        self,
+        brdf: Callable[[FloatArray, FloatArray], FloatArray],
+        angles: tuple[float, ...],
+        peaks: FloatArray,
+    ) -> tuple[float, float]:
+        """Return the angle [degrees] at which a BRDF reflects most light, and its albedo there.
+
+        `peaks` (azimuths, angles): the largest albedos over the channels; they are computed again,
+        with more points, where they are above 1.
+        """
+        for azimuth, row in np.argwhere(peaks > LARGEST_ALBEDO):
             wi = from_angles(np.radians(angles[row]), self.azimuths[azimuth])
             peaks[azimuth, row] = directional_albedo(brdf, wi).max()
         row = int(np.argmax(peaks.max(axis=0)))
         return angles[row], float(peaks[:, row].max())
 
-    def look(self, brdf):
-        """The albedos (n, channels) of a BRDF (wi, wo) → (n, channels)."""
+    def look(self, brdf: Callable[[FloatArray, FloatArray], FloatArray]) -> FloatArray:
+        """Return the albedos (n, channels) of a BRDF (wi, wo) → (n, channels)."""
         return self.pixels.look(brdf)
 
-    def is_right(self, albedos):
-        """Whether `albedos` (n, channels) are near the measured ones, and no light is gained."""
-        return self.departure(albedos) <= np.log(HELD) and albedos.max() <= ALL
+    def is_right(self, albedos: FloatArray) -> bool:
+        """Return whether `albedos` (n, channels) are close to the measured ones, and at most 1."""
+        near = self.departure(albedos) <= np.log(ACCEPTED_FACTOR)
+        return bool(near and albedos.max() <= LARGEST_ALBEDO)
 
-    def counted(self, albedos):
-        """The angles (n,) at which a fit of these `albedos` (n, channels) is to come nearer."""
-        dark = self._steep() & (self.factors(albedos) < 1)
-        return (self.known & ~dark) | (albedos.max(axis=1) > ALL)
+    def find_wrong_angles(self, albedos: FloatArray) -> BoolArray:
+        """Return at which angles (n,) a fit with these `albedos` (n, channels) should improve."""
+        dark = self._are_steep() & (self.factors(albedos) < 1)
+        return (self.known & ~dark) | (albedos.max(axis=1) > LARGEST_ALBEDO)
 
-    def departure(self, albedos):
-        """How far `albedos` (n, channels) are from the measured ones, as the logarithm of the
-        largest factor; light that is gained adds its own. A model that is too dark at grazing
-        angles is not far."""
-        apart = np.log(self.factors(albedos))
-        apart = np.where(self._steep(), np.maximum(apart, 0), np.abs(apart))
-        most = albedos.max()
-        return float(apart.max()) + (float(np.log(most / ALL)) if most > ALL else 0.0)
+    def departure(self, albedos: FloatArray) -> float:
+        """Return the distance of `albedos` (n, channels) from the measured ones.
 
-    def factors(self, albedos):
-        """The light of `albedos` (n, channels) over the measured (n,); 1 where that is unknown."""
+        It is the logarithm of the largest factor between them, plus the logarithm of the largest
+        albedo if this is above 1. Albedos that are too dark at grazing angles do not count.
+        """
+        logs = np.log(self.factors(albedos))
+        logs = np.where(self._are_steep(), np.maximum(logs, 0), np.abs(logs))
+        most = float(albedos.max())
+        return float(logs.max()) + (math.log(most / LARGEST_ALBEDO) if most > LARGEST_ALBEDO else 0)
+
+    def factors(self, albedos: FloatArray) -> FloatArray:
+        """Return `albedos` (n, channels) over the measured ones, as means (n,); 1 where unknown."""
         measured, own = (np.maximum(a.mean(axis=1), 1e-9) for a in (self.target, albedos))
         return np.where(self.known, own / measured, 1.0)
 
-    def _steep(self):
-        return np.array(self.theta_i) > STEEP
+    def _are_steep(self) -> BoolArray:
+        """Return which angles (n,) are beyond `STEEP_ANGLE`."""
+        return np.array(self.theta_i) > STEEP_ANGLE
 
 
 @dataclass(frozen=True)
 class Albedo:
-    """The light that a fit reflects, and its data.
+    """The albedos of a fit and of its data.
 
     Attributes
     ----------
@@ -147,10 +169,10 @@ class Albedo:
     fit : tuple of tuple of float
         The directional albedo of the fit at each angle, by channel.
     measured : tuple of tuple of float or None
-        That of the data; None where the samples do not tell it.
+        The albedo of the data; None where the samples do not determine it.
     peak : tuple of float, optional
-        The angle [degrees], of some up to 89°, at which a channel of the fit reflects most, and how
-        much that is.
+        The angle [degrees], of some angles up to 89°, at which a channel of the fit reflects most,
+        and its albedo there.
     """
 
     theta_i: tuple[float, ...]
@@ -159,36 +181,38 @@ class Albedo:
     peak: tuple[float, float] | None = None
 
     def warnings(self) -> list[str]:
-        """What is wrong with the light of the fit, in sentences."""
-        found = []
+        """Return sentences on what is wrong with the albedos of the fit."""
+        sentences = []
         most = [max(albedos) for albedos in self.fit]
         pairs = list(zip(self.theta_i, most, strict=True))
         angle, gain = self.peak or max(pairs, key=lambda pair: pair[1])
-        if gain > ALL:
+        if gain > LARGEST_ALBEDO:
             text = f"{gain:.3f}" if gain < 1.01 else format_share(gain)
-            found.append(
+            sentences.append(
                 f"it reflects {text} of the light at {angle:g}°, more than arrives; a "
                 "constraint prevents it: AlbedoAtMost(1), or --albedo-at-most 1"
             )
         means = zip(self.theta_i, *self.means(), strict=True)
         angle, fit, measured = max(means, key=lambda row: factor_between(row[1], min(row[2], 1.0)))
-        if factor_between(fit, min(measured, 1.0)) > WRONG:
-            found.append(
+        if factor_between(fit, min(measured, 1.0)) > WRONG_FACTOR:
+            sentences.append(
                 f"it reflects {format_share(fit)} of the light at {angle:g}°, where the "
                 f"measurement reflects {format_share(measured)}"
             )
-        return found
+        return sentences
 
     def means(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """The mean over the channels of the light of the fit, and of its data, at each angle; nan
-        where the samples do not tell it."""
+        """Return the albedos of the fit and of its data at each angle, averaged over the channels.
+
+        They are nan where the samples do not determine them.
+        """
         fit = tuple(sum(row) / len(row) for row in self.fit)
         measured = tuple(sum(row) / len(row) if row else math.nan for row in self.measured)
         return fit, measured
 
 
 def format_share(share: float) -> str:
-    """A share of light as text.
+    """Return a share of light as text.
 
     >>> format_share(0.3521), format_share(0.01201), format_share(2e9)
     ('0.35', '0.012', '2e+09')
@@ -199,7 +223,7 @@ def format_share(share: float) -> str:
 
 
 def factor_between(one: float, other: float) -> float:
-    """The factor between two albedos, at least 1, and 1 where one of them is nan."""
+    """Return the factor between two albedos, at least 1; it is 1 if one of them is nan."""
     if math.isnan(one + other):
         return 1.0
     low, high = sorted((max(one, 1e-9), max(other, 1e-9)))

@@ -1,62 +1,79 @@
-"""Fits that use the standard errors of a measurement: a sample counts by how noisy it is.
+"""Fits with the standard errors of a measurement, in which noisy samples count less.
 
-A model differs from the measured value by noise, of the standard error σ that the measurement
-states, and because it is wrong, by τ, alike everywhere, in the loss's differences. The best weight
-is then 1 / (τ² + σ²) [DerSimonian & Laird 1986]: where noise is less than the model is wrong, all
-samples count alike, whatever their σ; where it is more, by 1 / σ².
+A model differs from a measured value for two reasons: noise, with the standard error σ that the
+measurement states, and the model's own error τ, which is assumed equal for all samples. Both are in
+units of the loss's differences. The best weight of a sample is then 1 / (τ² + σ²)
+[DerSimonian & Laird 1986]: all samples count alike where the noise is smaller than the model's
+error, and by 1 / σ² where it is larger.
 """
 
+from __future__ import annotations
+
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitFloat
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.double_precision import differentiate
-from brdfkit.regression.regression import regress
+from brdfkit.model import Model
+from brdfkit.model.samples import Samples
+from brdfkit.regression.losses.loss import Loss
+from brdfkit.regression.regression import Solution, regress
 
-# The least τ², as a share of the mean σ²: a σ of 0 is not trusted beyond it
-LEAST = 0.01
-# How the note begins that says it, by which a fit is known again
+# The smallest τ², as a share of the mean σ², because a σ of 0 cannot be trusted
+SMALLEST_MODEL_ERROR = 0.01
+# The start of the note on such a fit, by which it can be recognised
 BY_ERRORS = "samples count by their standard errors"
-# Weights within this share of each other are alike
-ALIKE = 0.05
+# Weights within this share of each other are equal
+EQUAL_WEIGHTS = 0.05
 
 
-def regress_noisy(model, samples, loss, **how):
-    """The `Solution` of `regress` on `Samples` that have standard errors, which it uses."""
-    found = regress(model, samples, loss, **how)
-    shares = find_shares(samples, loss, found.eval(model, samples), found.loss)
-    if shares.min() > (1 - ALIKE) * shares.max():
-        return found
-    found = regress(model, replace(samples, weight=samples.weight * shares), loss, **how)
+def regress_noisy(model: type[Model], samples: Samples, loss: Any, **how: Any) -> Solution:
+    """Return the `Solution` of `regress`, with `Samples` weighted by their standard errors.
+
+    `how`: the other arguments of `regress`.
+    """
+    solution = regress(model, samples, loss, **how)
+    shares = find_shares(samples, loss, solution.eval(model, samples), solution.loss)
+    if shares.min() > (1 - EQUAL_WEIGHTS) * shares.max():
+        return solution
+    solution = regress(model, replace(samples, weight=samples.weight * shares), loss, **how)
     least = shares.min() / shares.max()
     note = f"{BY_ERRORS}, the noisiest {least:.0%}; so in the loss"
-    return replace(found, notes=(*found.notes, note))
+    return replace(solution, notes=(*solution.notes, note))
 
 
-def find_shares(samples, loss, values, error):
-    """τ² / (τ² + σ²) of each sample (n,), where a fit gave the model's `values` (n, channels) and
-    the `error` E of the `loss`."""
-    variance = sum(
+def find_shares(samples: Samples, loss: Loss, values: FloatArray, error: float) -> FloatArray:
+    """Return the weights τ² / (τ² + σ²) of the samples (n,).
+
+    `values` (n, channels): the model's, from a first fit; `error`: E, the loss of this fit.
+    """
+    errors: Any = samples.errors
+    variances = [
         _variance(samples, loss, *channel)
-        for channel in zip(values.T, samples.values.T, samples.errors.T, strict=True)
-    )
+        for channel in zip(values.T, samples.values.T, errors.T, strict=True)
+    ]
+    variance = sum(variances, np.zeros(len(values)))
     mean = loss.importance(samples) @ variance
-    # As E² has them, of which they are a part
+    # In the units of E², which is a mean over the channels
     variance /= values.shape[1] if loss.channel_mean else 1
-    tau2 = max(error**2 - mean, LEAST * mean)
+    tau2 = max(error**2 - mean, SMALLEST_MODEL_ERROR * mean)
     return tau2 / (tau2 + variance) if tau2 else np.ones(len(values))
 
 
-def _variance(samples, loss, model, measured, sigma):
-    """The variances (n,) of a channel's differences, at the `model`'s values (n,)."""
+def _variance(
+    samples: Samples, loss: Loss, model: FloatArray, measured: FloatArray, sigma: FloatArray
+) -> FloatArray:
+    """Return the variances (n,) of a channel's differences, at the values `model` (n,)."""
     cos_i, cos_o = (double_precision.to_array(w[:, 2]) for w in (samples.wi, samples.wo))
     measured = double_precision.to_array(measured)
 
-    def difference(value):
+    def difference(value: JitFloat) -> JitFloat:
         return loss.difference(value, measured, cos_i, cos_o)
 
     _, slope = differentiate(difference, double_precision.to_array(model))
-    # No spread was seen, as where no ray came: σ is not 0, but as the least known
+    # A σ of 0 means that no spread was seen, as without rays; the smallest other σ replaces it
     known = sigma[sigma > 0]
     return (np.array(slope) * np.maximum(sigma, known.min() if len(known) else 0)) ** 2

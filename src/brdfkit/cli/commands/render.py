@@ -161,11 +161,11 @@ def render(
 
 def _warn_of_gains(models):
     """Say which models reflect more light than arrives, by the values that were set."""
-    from brdfkit.regression.light import ALL, albedo_pixels, format_share
+    from brdfkit.regression.light import LARGEST_ALBEDO, format_share, make_albedo_pixels
 
     for model in models:
-        most = float(albedo_pixels((5.0, 45.0, 75.0)).look(model.eval).max())
-        if most > ALL:
+        most = float(make_albedo_pixels((5.0, 45.0, 75.0)).look(model.eval).max())
+        if most > LARGEST_ALBEDO:
             say(f"{model.name} reflects {format_share(most)} of the light, more than arrives.")
 
 

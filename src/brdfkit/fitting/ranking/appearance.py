@@ -17,7 +17,7 @@ from brdfkit.images.errors.colour_difference import ciede2000
 from brdfkit.images.errors.psnr import find_peak
 from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Samples
-from brdfkit.regression.light import ONE, albedo_pixels
+from brdfkit.regression.light import ISOTROPIC_AZIMUTHS, make_albedo_pixels
 
 Array = NDArray[np.float64]
 Brdf = Callable[[Array, Array], Array]  # (wi, wo) → (n, channels)
@@ -45,10 +45,10 @@ class Appearance:
     def __init__(self, data: Measured, samples: Samples, max_angle: float, seed: int):
         brdf = data.rgb.eval
         self.pixels = draw_pixels(tuple(LIGHTS), brdf, max_angle, seed, directions=DIRECTIONS)
-        self.azimuths = (0.0, np.pi / 2) if data.anisotropic else ONE
+        self.azimuths = (0.0, np.pi / 2) if data.anisotropic else ISOTROPIC_AZIMUTHS
         end = samples.largest_angle
         angles = [angle for angle in ANGLES if angle <= end] or [end]
-        self.albedos = albedo_pixels(tuple(angles), self.azimuths).look(brdf)
+        self.albedos = make_albedo_pixels(tuple(angles), self.azimuths).look(brdf)
 
     def picture_error(self, brdf: Brdf) -> float:
         """RMS difference of the pixels of a BRDF from the measured ones, by sRGB's curve from 0 to
@@ -60,7 +60,7 @@ class Appearance:
 
     def find_doubt(self, brdf: Brdf) -> str:
         """A clause on what a BRDF does at 85° that the material hardly does; or nothing."""
-        (albedo,) = albedo_pixels((GRAZING,), self.azimuths).look(brdf)
+        (albedo,) = make_albedo_pixels((GRAZING,), self.azimuths).look(brdf)
         if (albedo > GAIN * np.maximum(self.albedos.max(axis=0), 1)).any():
             return f"more light is reflected at {GRAZING:g}° than arrives"
         if len(albedo) == 3 and self._difference(albedo) > OTHER:

@@ -16,7 +16,7 @@ from brdfkit.images.ball import Pixels
 from brdfkit.model.evaluation import make_model
 from brdfkit.model.samples import Samples
 from brdfkit.regression import Loss, Picture, losses, regress
-from brdfkit.regression.losses.loss import squares
+from brdfkit.regression.losses.loss import squared_differences
 from brdfkit.regression.problem.subset import draw_part
 
 # Of more samples a part of so many is drawn
@@ -48,7 +48,7 @@ class HeldOut:
         generator."""
         of_samples = loss if pixels is None else losses.named["log"]
         if len(samples.wi) > PART:
-            black = squares(of_samples, np.zeros_like(samples.values), samples)
+            black = squared_differences(of_samples, np.zeros_like(samples.values), samples)
             samples, _ = draw_part(samples, of_samples.importance(samples) * black, PART, rng)
         blocks = number_blocks(samples.wi, samples.wo, anisotropic)
         own = assign_folds(blocks, folds, rng, "samples")
@@ -74,11 +74,11 @@ class HeldOut:
         samples = self.samples.at(of_samples)
         values = solution.eval(model, samples)
         if self.pixels is None:
-            return squares(self.loss, values, samples)
+            return squared_differences(self.loss, values, samples)
         pixels = self.pixels.at(of_pixels)
         brdf = make_model(model, solution.shapes, solution.weights).eval
-        apart = squares(self.loss.of_pixels, pixels.look(brdf), _as_samples(pixels))
-        return np.concatenate([squares(losses.named["log"], values, samples), apart])
+        apart = squared_differences(self.loss.pixel_loss, pixels.look(brdf), _as_samples(pixels))
+        return np.concatenate([squared_differences(losses.named["log"], values, samples), apart])
 
     def sum_by_block(self, values):
         """The sums (blocks,) of `values` (n,), each times its importance."""

@@ -22,7 +22,7 @@ from brdfkit.images.ball import draw_pixels
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model import Model, labels
-from brdfkit.regression import Picture, as_loss
+from brdfkit.regression import Picture, to_loss
 from brdfkit.regression.light import Light
 
 # The sums that are ranked by default: the best of docs/leaderboard.md with few and with more
@@ -97,7 +97,7 @@ def rank(
     require_material_first("rank(material, models)", material)
     data, classes = to_measured(material), _find_classes(models)
     folds, seed = to_whole_number("folds", folds, 2), to_whole_number("seed", seed, 0)
-    chosen = as_loss(loss)
+    chosen = to_loss(loss)
     anisotropic = data.anisotropic if anisotropic is None else anisotropic
     samples, pixels, rng = select_samples(data, max_angle), None, np.random.default_rng(seed)
     if isinstance(chosen, Picture):

@@ -13,7 +13,7 @@ from brdfkit.fitting.ranking.held_out import HeldOut
 from brdfkit.fitting.ranking.ranked import to_decibels
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.regression import Fit, Picture, as_loss
+from brdfkit.regression import Fit, Picture, to_loss
 
 FOLDS = 5
 # Settings of a sweep's fit that its fits without a fold share; they begin where it ended
@@ -31,7 +31,7 @@ class Judge:
         angle, seed = settings["max_angle"], settings["seed"]
         samples = select_samples(data, angle, None, False, settings["spectral"])
         self.appearance = Appearance(data, samples, angle, seed + 1)
-        self.held_out, loss = None, as_loss(settings["loss"])
+        self.held_out, loss = None, to_loss(settings["loss"])
         if not isinstance(loss, Picture):
             rng = np.random.default_rng(seed)
             with suppress(BrdfkitError):  # fewer blocks of directions than folds

@@ -16,7 +16,7 @@ from brdfkit.fitting.sweeping import tables
 from brdfkit.materials.measured.albedos import ANGLES
 from brdfkit.regression import losses
 from brdfkit.regression.albedo_cells import format_albedo, is_wrong, mean_albedos
-from brdfkit.regression.light import WRONG
+from brdfkit.regression.light import WRONG_FACTOR
 
 TINT_STEPS = 10  # of colour, as the page's style has them
 COLOURLESS_RATIO = 4.0  # of an error to the best one, from which a cell has no tint
@@ -85,7 +85,7 @@ def _explain_errors(sweep: Any) -> str:
     )
     marks = (
         " Marked are fits whose light is wrong: they reflect more than arrives, or differ by more "
-        f"than a factor of {WRONG:g} from the measured albedo."
+        f"than a factor of {WRONG_FACTOR:g} from the measured albedo."
     )
     return (
         f"Loss {loss.name}: {loss.meaning}. The best of a row is bold, the others have the more "

@@ -118,7 +118,7 @@ def bootstrap(
     """
     draws, seed = to_whole_number("draws", draws, least=2), to_whole_number("seed", seed, least=0)
     again = refit(fit, material)
-    problem, samples, rng = again.problem(), again.samples, np.random.default_rng(seed)
+    problem, samples, rng = again.make_problem(), again.samples, np.random.default_rng(seed)
     refitted = []
     for number in range(1, draws + 1):
         times = np.bincount(rng.integers(len(samples.wi), size=len(samples.wi)))
@@ -126,7 +126,7 @@ def bootstrap(
         drawn = samples.at(rows)
         drawn = replace(drawn, weight=drawn.weight * times[rows])
         *end, _ = again.descend(problem.on(drawn), fit.values, again.weights, rng)
-        refitted.append(again.values(*end))
+        refitted.append(again.to_values(*end))
         if progress:
             progress(number, draws)
     return Bootstrap(fit, {name: np.array([f[name] for f in refitted]) for name in refitted[0]})

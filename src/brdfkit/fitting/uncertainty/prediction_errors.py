@@ -13,8 +13,8 @@ from brdfkit.fitting.settings import fitted_samples
 from brdfkit.materials.resolve import MaterialLike, to_material
 from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.regression import Fit
-from brdfkit.regression.losses.loss import squares
-from brdfkit.regression.losses.named_losses import as_loss
+from brdfkit.regression.losses.loss import squared_differences
+from brdfkit.regression.losses.named_losses import to_loss
 from brdfkit.regression.refitting import Refit
 
 
@@ -95,10 +95,10 @@ def prediction_error(
     samples = fitted_samples(fit, material)
     _require_linear(fit, samples)
     # raises for weights, constraints and standard errors, not known here
-    Refit(fit, samples).require_least()
+    Refit(fit, samples).require_least_loss()
     Z = compute_lobe_values(fit.model, samples.wi, samples.wo)[0]
     # (Z'WZ)⁻¹ Z'W, of the weights W of the loss
-    root = _root_weights(as_loss(fit.loss_name), samples)
+    root = _root_weights(to_loss(fit.loss_name), samples)
     solve = np.linalg.pinv(root[:, None] * Z) * root
     values = samples.values if truth is None else to_material(truth).eval(samples.wi, samples.wo)
     if values.shape != samples.values.shape:
@@ -138,7 +138,7 @@ def _require_linear(fit, samples):
         reason = f"it was searched for {', '.join(sought)}"
     elif any(lobe.quadratic for lobe in fit.model.lobes()):
         reason = "it holds squares of weights"
-    elif not as_loss(fit.loss_name).linear:
+    elif not to_loss(fit.loss_name).linear:
         reason = f"the {fit.loss_name} loss is not linear"
     elif settings.get("robust"):
         reason = f"{settings['robust']} weighs samples by their values"
@@ -153,4 +153,4 @@ def _root_weights(loss, samples):
     """√W (n,) of a linear loss, whose squared differences are W (model - measured)²."""
     ones = np.ones((len(samples.wi), 1))
     black = replace(samples, values=0 * ones)
-    return np.sqrt(loss.importance(samples) * squares(loss, ones, black))
+    return np.sqrt(loss.importance(samples) * squared_differences(loss, ones, black))

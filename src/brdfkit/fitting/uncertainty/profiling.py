@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -16,7 +17,7 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.fitting.settings import refit
 from brdfkit.materials.resolve import MaterialLike
 from brdfkit.regression import Fit
-from brdfkit.regression.profiling import curvature, follow
+from brdfkit.regression.profiling import follow_profile, profile_curvature
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -111,8 +112,8 @@ def profile(fit: Fit, material: MaterialLike, *, parameter: str, points: int = 2
 
     points = to_whole_number("points", points, least=5)
     again = refit(fit, material)
-    again.require_least()
-    space = again.problem().space
+    again.require_least_loss()
+    space = again.make_problem().space
     if parameter not in space.names:
         raise BrdfkitError(
             f"{fit.name}: {parameter} was not searched, so it has no profile; searched were "
@@ -122,16 +123,16 @@ def profile(fit: Fit, material: MaterialLike, *, parameter: str, points: int = 2
     if fit.settings.get("robust") or freedom < 1:
         why = "is robust, and minimises no loss" if freedom >= 1 else "has no number to spare"
         raise BrdfkitError(f"{fit.name}: the fit {why}, so it has no profile; try bootstrap.")
-    middle = fit.values[parameter]
+    middle: Any = fit.values[parameter]
     k = space.names.index(parameter)
-    rise = curvature(again, parameter, float(space.low[k]), float(space.high[k]))
+    rise = profile_curvature(again, parameter, float(space.low[k]), float(space.high[k]))
     low, high = np.ravel(fit.intervals[parameter]).tolist()
     if rise is None:  # on a bound, where no interval is known
         level = fit.loss * np.sqrt(1 + stdtrit(freedom, 0.975) ** 2 / freedom)
     else:
         level = np.sqrt(fit.loss**2 + rise * ((high - low) / 2) ** 2)
     (low, below), (high, above) = (
-        follow(again, parameter, middle, bound, level, points // 2)
+        follow_profile(again, parameter, middle, bound, level, points // 2)
         for bound in (float(space.low[k]), float(space.high[k]))
     )
     values, losses = np.array(sorted([*below, (middle, fit.loss), *above])).T

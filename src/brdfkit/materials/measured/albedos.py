@@ -15,7 +15,11 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured.measured_data import MeasuredData
 from brdfkit.model.samples.coordinates import compute_coordinates, compute_sample_coordinates
 from brdfkit.model.samples.measures import REACH
-from brdfkit.regression.light import FOUR, ONE, OTHER_UNIT
+from brdfkit.regression.light import (
+    ANISOTROPIC_AZIMUTHS,
+    ISOTROPIC_AZIMUTHS,
+    LARGEST_MEASURED_ALBEDO,
+)
 
 # Angles of incidence [degrees] at which fits and measurements are compared, and a grazing angle at
 # which no measurement is trusted, but no fit should reflect more light than arrives
@@ -45,7 +49,7 @@ class MeasuredAlbedo:
     @property
     def has_another_unit(self) -> bool:
         """Whether the albedo is so large that the values cannot be in 1/sr."""
-        return bool((self.known[:, None] & (self.values > OTHER_UNIT)).any())
+        return bool((self.known[:, None] & (self.values > LARGEST_MEASURED_ALBEDO)).any())
 
     @property
     def means(self) -> tuple[float, ...]:
@@ -87,7 +91,7 @@ def place_directions(wi: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def compute_measured_albedo(data: MeasuredData) -> MeasuredAlbedo:
     """Return the `MeasuredAlbedo` of a `Measured` at `ANGLES` and `GRAZING`."""
-    azimuths = FOUR if data.anisotropic else ONE
+    azimuths = ANISOTROPIC_AZIMUTHS if data.anisotropic else ISOTROPIC_AZIMUTHS
     angles, is_near, values, known = (*ANGLES, GRAZING), _make_nearness_test(data), [], []
     for angle in angles:
         directions = [from_angles(np.radians(angle), phi) for phi in azimuths]

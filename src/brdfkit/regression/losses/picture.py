@@ -1,10 +1,10 @@
-"""`Picture`: the loss of a fit that looks right, the difference of pictures.
+"""`Picture`: a loss that compares pictures, for fits that look like the material.
 
     E² = mean of (t(I_p) - t(J_p))² over pixels p and channels + share · E_log²
 
-I is a picture of the model, J of the measured material: a ball under direct light, one picture for
-each light, exposed so that its brightest hundredth is white. t is sRGB's curve [IEC 1999].
-E_log is the log loss, by which directions that no picture shows keep to the measurement.
+I is a picture of the model and J of the measured material: a ball under direct light, one picture
+for each light, exposed so that its brightest hundredth is white. t is the curve of sRGB [IEC 1999].
+E_log is the log loss, which fits the directions that no picture shows.
 """
 
 from dataclasses import dataclass
@@ -12,6 +12,7 @@ from functools import cached_property
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.names import join_words
 from brdfkit.images.ball import LIGHTS
@@ -20,10 +21,10 @@ from brdfkit.regression.losses.loss import Loss
 
 @dataclass(frozen=True)
 class Picture:
-    """A loss E by which a fit makes a model look like the measured material.
+    """A loss E for fits that look like the measured material.
 
-    It compares pictures of a ball under direct light, as a screen shows them. Lights are grey; they
-    are ``"court"``, open to the sky, ``"hall"``, with small lamps, ``"sky"``, with a low sun, and
+    It compares pictures of a ball under direct light, as a screen shows them. The grey lights are
+    ``"court"``, open to the sky, ``"hall"``, with small lamps, ``"sky"``, with a low sun, and
     ``"studio"``, with softboxes.
 
     Parameters
@@ -31,13 +32,13 @@ class Picture:
     lights : tuple of str, default ("court", "hall", "sky", "studio")
         The lights, one picture for each.
     share : float, default 0.003
-        How much the square of the log loss counts beside the mean square of pixels, at least 0:
-        more of it keeps to the measurement where the pictures show little.
+        Factor of the squared log loss, at least 0, beside the mean square of pixels. With a larger
+        one the fit stays closer to the measurement where the pictures show little.
 
     Raises
     ------
     BrdfkitError
-        For a light that is unknown, none at all, and a share below 0.
+        For an unknown light, no light at all, and a share below 0.
 
     Examples
     --------
@@ -71,24 +72,24 @@ class Picture:
 
     @property
     def meaning(self) -> str:
-        """The loss in a sentence."""
+        """The meaning of the loss in a sentence."""
         return f"RMS difference of what is seen: {self.describe()}"
 
     def describe(self) -> str:
-        """What is seen, in words."""
+        """Return the pictures that are compared, in words."""
         return f"pictures of a ball under {join_words(self.lights)}"
 
     @cached_property
-    def of_pixels(self) -> Loss:
-        """The loss of pixels, in place of samples."""
+    def pixel_loss(self) -> Loss:
+        """The part of the loss that compares pixels."""
         return Loss(
             self.name,
             self.meaning,
-            lambda model, measured, cos_i, cos_o: _srgb(model) - _srgb(measured),
+            lambda model, measured, cos_i, cos_o: _encode_srgb(model) - _encode_srgb(measured),
         )
 
 
-def _srgb(x):
-    """sRGB's curve, which goes on above 1."""
+def _encode_srgb(x: JitFloat) -> JitFloat:
+    """Return linear values encoded by the curve of sRGB, continued above 1."""
     bright = 1.055 * dr.power(dr.maximum(x, 0.0031308), 1 / 2.4) - 0.055
     return dr.select(x < 0.0031308, 12.92 * x, bright)

@@ -1,27 +1,35 @@
-"""Samples in blocks, in Dr.Jit's arrays: a kernel's results on one block stay small in memory."""
+"""Splits samples into blocks of Dr.Jit arrays, so that results of a kernel stay small in memory."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitFloat
 from brdfkit.core.jit import double_precision
+from brdfkit.core.jit.double_precision import Vector
 from brdfkit.core.jit.padding import pad
+from brdfkit.model.samples import Samples
+from brdfkit.regression.losses.loss import Loss
+from brdfkit.regression.problem.columns import Columns
 
-# Channels that one kernel evaluates: of more, one group after the other goes through the same one
+# Channels that one kernel evaluates; if there are more, it runs for one group after the other
 GROUP = 8
-# Samples of a block, times the points at which it is evaluated, times the groups of channels
-SIZE = 2**17
+# The number of samples in a block, times the points of its evaluation, times groups of channels
+BLOCK_SIZE = 2**17
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Samples, repeated for each of `count` points, one point after the other.
+    """Samples as Dr.Jit arrays, repeated for each of `count` points of the search.
 
-    `loss`: theirs; `rows`: which samples; `wi`, `wo`: directions; `measured`: an array per channel;
-    `importance`; `point`: the number of the point, all of Dr.Jit's and `count` times as long as
-    `rows`.
+    `loss`: their `Loss`; `rows`: which samples; `wi`, `wo`: directions; `measured`: an array for
+    each channel; `importance`: the weights of the samples; `point`: the index of the point. All
+    arrays are `count` times as long as `rows`, one point after the other.
     """
 
     loss: Any
@@ -34,10 +42,12 @@ class Block:
     point: Any
 
     @classmethod
-    def of(cls, samples, importance, loss, rows, count):
-        """The block of the `rows` of `Samples`, whose `importance` is (n,), under a `Loss`."""
+    def of(
+        cls, samples: Samples, importance: FloatArray, loss: Loss, rows: slice, count: int
+    ) -> Block:
+        """Return the block with the `rows` of `Samples`; `importance` (n,): weights of samples."""
 
-        def array(values):
+        def array(values: FloatArray) -> JitFloat:
             part = values[rows]
             return double_precision.to_array(part if count == 1 else np.tile(part, count))
 
@@ -50,49 +60,49 @@ class Block:
         measured = [array(channel) for channel in samples.values.T]
         return cls(loss, rows, count, wi, wo, measured, array(importance), index(pad(point)))
 
-    def spread(self, table):
-        """A list of arrays, one value per sample: the columns of `table` (count, columns)."""
+    def spread(self, table: FloatArray) -> list[JitFloat]:
+        """Return the columns of `table` (count, columns) as arrays with one value per sample."""
         float64, columns = double_precision.float_type(), table.shape[1]
-        if not double_precision.has_derivatives():  # such arrays cannot be gathered from
+        if not double_precision.has_derivatives():  # these arrays do not support dr.gather
             size = self.rows.stop - self.rows.start
             return [float64(np.repeat(column, size)) for column in table.T]
         flat, first = double_precision.to_array(table.ravel()), self.point * columns
         return [dr.gather(float64, flat, first + k) for k in range(columns)]
 
-    def columns(self, columns, table):
-        """Arrays of all `Columns` at the parameters in `table` (count, shapes)."""
+    def columns(self, columns: Columns, table: FloatArray) -> list[JitFloat]:
+        """Evaluate all `Columns` at the parameters in `table` (count, shapes); return arrays."""
         return columns.eval(self.spread(table) if table.size else [], self.wi, self.wo)
 
-    def first(self):
-        """(wi, wo) of the samples, once."""
-        return [
-            double_precision.Vector(
-                *(double_precision.to_array(self.fold(x)[0]) for x in (w.x, w.y, w.z))
-            )
+    def directions(self) -> tuple[Vector, Vector]:
+        """Return (wi, wo) of the samples, without the repetition."""
+        wi, wo = (
+            Vector(*(double_precision.to_array(self.fold(x)[0]) for x in (w.x, w.y, w.z)))
             for w in (self.wi, self.wo)
-        ]
+        )
+        return wi, wo
 
-    def fold(self, array):
-        """An array of Dr.Jit's as NumPy's (count, samples)."""
+    def fold(self, array: JitFloat) -> FloatArray:
+        """Return a Dr.Jit array as a NumPy array (count, samples)."""
         return np.asarray(array).reshape(self.count, -1)
 
 
 class Blocks:
-    """The blocks of `Samples`. A single one is kept, several are made anew for each use."""
+    """The blocks of `Samples`. A single block is cached, several are made anew for each use."""
 
-    def __init__(self, samples, importance, loss):
-        self.samples, self.importance, self.loss, self._kept = samples, importance, loss, {}
+    def __init__(self, samples: Samples, importance: FloatArray, loss: Loss) -> None:
+        self.samples, self.importance, self.loss = samples, importance, loss
+        self._cache: dict[int, Block] = {}
 
-    def __call__(self, count):
-        """The blocks for `count` points."""
+    def __call__(self, count: int) -> Iterator[Block]:
+        """Yield the blocks for `count` points."""
         groups = -(-self.samples.values.shape[1] // GROUP)
         given = self.samples, self.importance, self.loss
-        n, step = len(self.importance), max(SIZE // (count * groups), 1)
+        n, step = len(self.importance), max(BLOCK_SIZE // (count * groups), 1)
         if n > step:
             for start in range(0, n, step):
                 rows = slice(start, min(start + step, n))
                 yield Block.of(*given, rows, count)
             return
-        if count not in self._kept:
-            self._kept[count] = Block.of(*given, slice(0, n), count)
-        yield self._kept[count]
+        if count not in self._cache:
+            self._cache[count] = Block.of(*given, slice(0, n), count)
+        yield self._cache[count]

@@ -2,16 +2,20 @@
 
 import numpy as np
 
-# After as many rounds, only one entry changes its place at a time, by which no round comes again
-EAGER = 10
+from brdfkit.core.array_types import BoolArray, FloatArray
+
+# After this number of rounds only one entry changes at a time, so that no active set repeats
+PARALLEL_ROUNDS = 10
 
 
-def minimise_in_box(hessian, gradient, low, high):
-    """The z (b, n) that minimise ½ zᵀ H z + gᵀ z with `low` ≤ z ≤ `high`.
+def minimise_in_box(
+    hessian: FloatArray, gradient: FloatArray, low: float | FloatArray, high: float | FloatArray
+) -> FloatArray:
+    """Return the z (b, n) that minimise ½ zᵀ H z + gᵀ z with `low` ≤ z ≤ `high`.
 
-    `hessian` H (b, n, n): positive semidefinite; `gradient` g, `low`, `high`: (b, n), or what
-    broadcasts to it. The active sets follow the signs of the solution and of its multipliers, in
-    all entries at once [Hintermüller et al. 2002], then by the least index [Murty 1974].
+    `hessian` H (b, n, n): positive semidefinite; `gradient` g, `low`, `high`: arrays that broadcast
+    to (b, n). The active sets change by the signs of the solution and of its multipliers, in all
+    entries at once [Hintermüller et al. 2002], later at the smallest index only [Murty 1974].
 
     >>> minimise_in_box(np.eye(2)[None], np.array([[-1.0, 1.0]]), 0.0, np.inf)
     array([[1., 0.]])
@@ -25,7 +29,7 @@ def minimise_in_box(hessian, gradient, low, high):
     z = np.linalg.solve(form, -force[:, :, None])[:, :, 0]
     low, high = low / scale, high / scale
     at_low, at_high = z < low, z > high
-    for round_ in range(EAGER + 20 * n):
+    for round_ in range(PARALLEL_ROUNDS + 20 * n):
         fixed = at_low | at_high
         if not fixed.any():
             break
@@ -37,15 +41,15 @@ def minimise_in_box(hessian, gradient, low, high):
         changed = (to_low != at_low) | (to_high != at_high)
         if not changed.any():
             break
-        if round_ >= EAGER:
+        if round_ >= PARALLEL_ROUNDS:
             first = np.arange(n) == changed.argmax(axis=1)[:, None]
             to_low, to_high = np.where(first, to_low, at_low), np.where(first, to_high, at_high)
         at_low, at_high = to_low, to_high
     return np.minimum(np.maximum(z, low), high) * scale
 
 
-def _solve(form, force, fixed, values):
-    """z with z = `values` where `fixed`, and (F z + f) = 0 elsewhere."""
+def _solve(form: FloatArray, force: FloatArray, fixed: BoolArray, values: FloatArray) -> FloatArray:
+    """Return z with z = `values` where `fixed`, and F z + f = 0 elsewhere."""
     free = ~fixed
     reduced = form * (free[:, :, None] & free[:, None, :])
     n = form.shape[1]

@@ -1,28 +1,36 @@
-"""The columns of a fit: a model's lobes at direction pairs, and their derivatives by its shapes.
+"""Evaluates the lobes of a model at pairs of directions, and their derivatives by its shapes.
 
-With weights a, a model is M = Σ_l (a_l P_l + a_l² Q_l); few lobes have a Q. The values are the P,
-then the Q; the slopes are the derivatives of values by searched shape parameters, where there are
-any. Values, then slopes: these are the columns.
+With weights a, a model is M = Σ_l (a_l P_l + a_l² Q_l), where few lobes l have a Q. The "columns"
+of a fit are its values and its slopes: values are all P, then all Q; slopes are the derivatives of
+values by searched shape parameters, unless they are always 0.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import IntArray, JitFloat
 from brdfkit.core.jit import double_precision
+from brdfkit.core.jit.double_precision import Vector
+from brdfkit.model import Model
+from brdfkit.model.lobes import Lobe
 
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns of a model class whose parameters `names` are searched and `fixed` are not.
+    """The columns of a model class: `names` are searched shape parameters, `fixed` the others.
 
-    `lobes`, `powers`: of each value, the number of its lobe and the power of the weight, 1 or 2;
-    `slopes`: (number of the value, number of the name) of each slope.
+    `lobes`, `powers`: for each value the index of its lobe, and the power of its weight, 1 or 2;
+    `slopes`: (index of the value, index of the name) for each slope.
     """
 
-    model: type
+    model: type[Model]
     names: tuple[str, ...]
     fixed: dict[str, float]
     lobes: np.ndarray
@@ -30,31 +38,40 @@ class Columns:
     slopes: tuple[tuple[int, int], ...]
 
     @classmethod
-    def of(cls, model, names, fixed):
-        """The columns of the `model`; the parameters `fixed` have a value by name."""
-        return cls(model, tuple(names), fixed, *_trace(model, tuple(names), tuple(sorted(fixed))))
+    def of(cls, model: type[Model], names: Sequence[str], fixed: dict[str, float]) -> Columns:
+        """Return the columns of a `model` class; `fixed`: values by the parameters' names."""
+        key: Any = model
+        traced = _trace_columns(key, tuple(names), tuple(sorted(fixed)))
+        return cls(model, tuple(names), fixed, *traced)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.lobes) + len(self.slopes)
 
-    def bind(self, shapes):
-        """The model at `shapes`, one array or number for each name."""
+    def bind(self, shapes: Sequence[JitFloat]) -> Model:
+        """Return the model with `shapes`, one array or number for each name."""
         fixed = {name: double_precision.to_scalar(value) for name, value in self.fixed.items()}
         return self.model.bind(dict(zip(self.names, shapes, strict=True)) | fixed)
 
-    def eval(self, shapes, wi, wo, factor=None):
-        """Arrays (n,) of all columns, at `shapes`, one array (n,) for each name.
+    def eval(
+        self,
+        shapes: Sequence[JitFloat],
+        wi: Vector,
+        wo: Vector,
+        factor: Callable[[Lobe], JitFloat] | None = None,
+    ) -> list[JitFloat]:
+        """Evaluate all columns at `shapes`, one array (n,) for each name; return arrays (n,).
 
-        `wi`, `wo`: `double_precision.Vector` of n directions. `factor(lobe)`: replaces the value of
-        a lobe.
+        `wi`, `wo`: n directions, each a `double_precision.Vector`; `factor(lobe)`: replaces the
+        value of a lobe.
         """
         if not self.slopes:
             return self.values(shapes, wi, wo, factor)
         if not double_precision.has_derivatives():
-            return self.values(shapes, wi, wo) + self._differences(shapes, wi, wo)
+            return self.values(shapes, wi, wo) + self._difference_slopes(shapes, wi, wo)
         for shape in shapes:
             dr.enable_grad(shape)
-        values, slopes = self.values(shapes, wi, wo, factor), {}
+        values = self.values(shapes, wi, wo, factor)
+        slopes: dict[tuple[int, int], JitFloat] = {}
         for j, shape in enumerate(shapes):
             dr.clear_grad(values)
             dr.set_grad(shape, 1)
@@ -63,16 +80,24 @@ class Columns:
             slopes |= {(v, k): dr.grad(values[v]) for v, k in self.slopes if k == j}
         return [dr.detach(value) for value in values] + [slopes[key] for key in self.slopes]
 
-    def values(self, shapes, wi, wo, factor=None):
-        """Arrays (n,) of the values alone; see `eval`."""
+    def values(
+        self,
+        shapes: Sequence[JitFloat],
+        wi: Vector,
+        wo: Vector,
+        factor: Callable[[Lobe], JitFloat] | None = None,
+    ) -> list[JitFloat]:
+        """Evaluate only the values, and return arrays (n,); see `eval`."""
         lobes = [lobe for _, lobe in self.bind(shapes).terms()]
-        none = 0 * wi.z  # a constant lobe is a number
-        plain = [(factor(lobe) if factor else lobe.eval(wi, wo)) + none for lobe in lobes]
-        return plain + [lobe.quadratic(wi, wo) + none for lobe in lobes if lobe.quadratic]
+        zeros = 0 * wi.z  # makes an array of a constant lobe
+        plain = [(factor(lobe) if factor else lobe.eval(wi, wo)) + zeros for lobe in lobes]
+        return plain + [lobe.quadratic(wi, wo) + zeros for lobe in lobes if lobe.quadratic]
 
-    def _differences(self, shapes, wi, wo):
-        """The slopes by central differences, for a backend without derivatives."""
-        slopes = {}
+    def _difference_slopes(
+        self, shapes: Sequence[JitFloat], wi: Vector, wo: Vector
+    ) -> list[JitFloat]:
+        """Return the slopes by central differences, for a backend without derivatives."""
+        slopes: dict[tuple[int, int], JitFloat] = {}
         for j, name in enumerate(self.names):
             low, high = self.model.parameters[name].bounds
             h = 1e-6 * dr.maximum(dr.abs(shapes[j]), 1e-3)
@@ -86,8 +111,10 @@ class Columns:
 
 
 @cache
-def _trace(model, names, fixed):
-    """(lobes, powers, slopes) of `Columns`, found by evaluating the model at one direction pair."""
+def _trace_columns(
+    model: Any, names: tuple[str, ...], fixed: tuple[str, ...]
+) -> tuple[IntArray, IntArray, tuple[tuple[int, int], ...]]:
+    """Return (lobes, powers, slopes) of `Columns`, from the model at one pair of directions."""
     constants = {name: double_precision.to_scalar(model().values[name]) for name in fixed}
     up = double_precision.to_vector(np.array([[0.0, 0.0, 1.0]]))
     slopes, lobes, powers = [], [], []

@@ -1,20 +1,27 @@
-"""E² about a point of the search, to second order, by Gauss and Newton."""
+"""Expands E² about points of the search to second order, by Gauss and Newton."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
+from brdfkit.regression.problem.columns import Columns
+from brdfkit.regression.problem.parameter_space import Space
+from brdfkit.regression.problem.sums import Sums
 
 
 @dataclass(eq=False)
 class Expansion:
-    """E² about points: E² + 2 gᵀ s + sᵀ H s for a step s, in coordinates, then weights by channel.
+    """E² about points: E² + 2 gᵀ s + sᵀ H s for a step s.
 
-    `u` (points, shapes), `weights` (points, channels, lobes): the points; `error` E² (points,);
-    `gradient` g (points, n); `hessian` H (points, n, n), None where no Gram matrix was summed;
-    `gram`, `moment`: as in `Sums`; `columns`, `space`: of the problem.
+    A step changes the coordinates of the shape parameters, then the weights by channel. `u`
+    (points, shapes), `weights` (points, channels, lobes): the points; `error` E² (points,);
+    `gradient` g (points, n); `hessian` H (points, n, n), None if no Gram matrix was summed; `gram`,
+    `moment`: as in `Sums`; `columns`, `space`: of the problem.
     """
 
     columns: Any
@@ -23,25 +30,28 @@ class Expansion:
     weights: np.ndarray
     error: np.ndarray
     gradient: np.ndarray
-    hessian: np.ndarray | None
-    gram: np.ndarray | None
+    hessian: Any
+    gram: Any
     moment: np.ndarray
 
     @classmethod
-    def of(cls, columns, space, sums, u, weights):
-        """The expansion that `Sums` at the points give."""
+    def of(
+        cls, columns: Columns, space: Space, sums: Sums, u: FloatArray, weights: FloatArray
+    ) -> Expansion:
+        """Return the expansion made from `Sums` at the points."""
         points, channels, lobes = weights.shape
         shapes = len(columns.names)
-        change = combine(columns, weights, space.slopes(u))
+        change = combine_columns(columns, weights, space.slopes(u))
         by_channel = (change @ sums.moment[..., None])[..., 0]
         gradient = np.zeros((points, shapes + channels * lobes))
         gradient[:, :shapes] = by_channel[:, :, :shapes].sum(axis=1)
         gradient[:, shapes:] = by_channel[:, :, shapes:].reshape(points, channels * lobes)
         given = columns, space, u, weights, sums.error, gradient
-        found = cls(*given, None, sums.gram, sums.moment)
-        return found if sums.gram is None else replace(found, hessian=found._hessian(change))
+        made = cls(*given, None, sums.gram, sums.moment)
+        return made if sums.gram is None else replace(made, hessian=made._make_hessian(change))
 
-    def _hessian(self, change):
+    def _make_hessian(self, change: FloatArray) -> FloatArray:
+        """Return the Hessian (points, n, n); `change`: as `combine_columns` returns."""
         points, channels, lobes = self.weights.shape
         shapes = self.u.shape[1]
         products = change @ self.gram @ change.transpose(0, 1, 3, 2)
@@ -54,12 +64,12 @@ class Expansion:
             hessian[:, own, :shapes] = products[:, c, shapes:, :shapes]
         return hessian
 
-    def follow(self, u, least):
-        """The best weights (points, channels, lobes), at least `least`, at other coordinates `u`,
-        if the lobes were linear in their parameters and the loss quadratic in the model.
+    def predict_weights(self, u: FloatArray, least: FloatArray) -> FloatArray:
+        """Return the best weights (points, channels, lobes) at other coordinates `u`.
 
-        A lobe's strength and its Fresnel reflectance trade off along a curve: by this, a step goes
-        round it.
+        The prediction assumes lobes that are linear in their parameters, and a loss that is
+        quadratic in the model; weights are at least `least` (lobes,). So a step follows the curve
+        along which the strength of a lobe and its Fresnel reflectance trade off.
         """
         columns, count = self.columns, len(self.columns.lobes)
         by = self.space.table(u) - self.space.table(self.u)
@@ -78,12 +88,12 @@ class Expansion:
             gram.reshape(-1, count, count), moment.reshape(-1, count), least, np.inf
         ).reshape(self.weights.shape)
 
-    def at(self, rows):
-        """The expansion about some of the points."""
+    def at(self, rows: Any) -> Expansion:
+        """Return the expansion about some of the points."""
         return replace(self, **{name: getattr(self, name)[rows] for name in ARRAYS})
 
-    def put(self, rows, other):
-        """Replace the points `rows` by those of the expansion `other`."""
+    def put(self, rows: IntArray, other: Expansion) -> None:
+        """Replace the points `rows` by the points of the expansion `other`."""
         for name in ARRAYS:
             getattr(self, name)[rows] = getattr(other, name)
 
@@ -91,9 +101,12 @@ class Expansion:
 ARRAYS = [f.name for f in fields(Expansion) if f.name not in ("columns", "space")]
 
 
-def combine(columns, weights, slopes):
-    """The model's derivatives (points, channels, shapes + lobes, columns), by coordinates, then by
-    weights, as combinations of the columns; `slopes`: of the parameters by coordinates."""
+def combine_columns(columns: Columns, weights: FloatArray, slopes: FloatArray) -> FloatArray:
+    """Return the model's derivatives as combinations of its columns.
+
+    The array (points, channels, shapes + lobes, columns) has the derivatives by coordinates, then
+    by weights. `slopes` (points, shapes): the derivatives of the parameters by coordinates.
+    """
     points, channels, lobes = weights.shape
     shapes, values = len(columns.names), len(columns.lobes)
     change = np.zeros((points, channels, shapes + lobes, len(columns)))

@@ -1,46 +1,56 @@
-"""A linear loss folded: sums over the samples that share a half vector, made once for a whole fit.
+"""Folds a linear loss: sums over samples with equal half vectors are made once for a whole fit.
 
-Where each lobe is a factor S, which holds the shape parameters and depends on the half vector and
-theta_d alone, times a factor A without parameters, the sums of a linear loss,
+Folding needs lobes that are a factor S, which has the shape parameters and depends only on the half
+vector and theta_d, times a factor A without parameters. Then the sums of a linear loss,
 
     Σ w κ² S S A A,   Σ w κ² S A R,   Σ w κ² R²,
 
-are sums over the half vectors of a table, 90 of MERL's, of S S or S times sums that are made once.
+with measured values R, weights w and the slope κ of the loss, are sums over the half vectors of a
+table, 90 in MERL's: of S S or S times inner sums that never change.
 """
+
+from __future__ import annotations
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, IntArray, JitFloat
 from brdfkit.core.geometry.vectors import cos_theta_d, half_vector
 from brdfkit.core.jit import double_precision
+from brdfkit.core.jit.double_precision import Vector
+from brdfkit.model.lobes import Lobe
+from brdfkit.regression.problem.blocks import Block
 from brdfkit.regression.problem.expansion import Expansion
+from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.sums import Sums, move_weights, solve_weights
 
-# Folding is worth its sums where nodes are so many times fewer than samples
-WORTHWHILE = 20
-# Nodes of so many samples are multiplied one by one
-LONG = 1000
+# Folding pays if a node, a half vector with its sums, stands for at least this number of samples
+SAMPLES_PER_NODE = 20
+# Nodes of this number of samples are multiplied one by one
+LONG_NODE = 1000
 
 
-def fold(problem):
-    """The `Folded` problem of a `Problem`, or None where it does not fold."""
+def fold_problem(problem: Problem) -> Folded | None:
+    """Return the `Folded` problem of a `Problem`, or None if it cannot be folded."""
     cells = problem.samples.cells
-    few = len(problem.groups) == 1  # a node has the products of all channels
+    few = len(problem.groups) == 1  # a node holds the products of all channels
     if not (problem.linear and few) or cells is None or not double_precision.has_derivatives():
         return None
-    pairs = _depend_on_cos_d(problem)
+    pairs = _depends_on_cos_d(problem)
     if pairs is None:
         return None
     numbers = cells[1 if pairs else 0]
-    if not problem.columns.slopes:  # nothing changes: a single node
+    if not problem.columns.slopes:  # without slopes S is constant, and one node is enough
         numbers = np.zeros_like(numbers)
     starts = np.flatnonzero(np.diff(numbers, prepend=-1))
-    return Folded(problem, starts) if len(starts) * WORTHWHILE <= len(numbers) else None
+    return Folded(problem, starts) if len(starts) * SAMPLES_PER_NODE <= len(numbers) else None
 
 
-def _depend_on_cos_d(problem):
-    """Whether a factor S depends on cosθ_d, beside the half vector; None where a factor A, or a
-    lobe that has no factors, depends on a parameter."""
+def _depends_on_cos_d(problem: Problem) -> bool | None:
+    """Return whether a factor S depends on cosθ_d, beside the half vector.
+
+    None stands for a factor A, or a lobe without factors, that depends on a parameter.
+    """
     space, up = problem.space, double_precision.to_vector(np.array([[0.0, 0.0, 1.0]]))
     shapes = [
         double_precision.to_scalar(x) for x in space.table(np.full((1, len(space.names)), 0.5))[0]
@@ -59,11 +69,11 @@ def _depend_on_cos_d(problem):
 
 
 class Folded:
-    """A `Problem` of a linear loss, as sums over nodes, which begin at the samples `starts`."""
+    """A `Problem` of a linear loss as sums over nodes; `starts`: the first samples of the nodes."""
 
     clamped = False
 
-    def __init__(self, problem, starts):
+    def __init__(self, problem: Problem, starts: IntArray) -> None:
         self.problem, self.space, self.least = problem, problem.space, problem.least
         self.columns, self.channels = problem.columns, problem.channels
         self.wi, self.wo = (
@@ -76,15 +86,15 @@ class Folded:
             inside = starts[(starts > block.rows.start) & (starts < block.rows.stop)]
             first = int(np.searchsorted(starts, block.rows.start, "right")) - 1
             edges = np.concatenate([[block.rows.start], inside]) - block.rows.start
-            sums[first : first + len(edges)] += _multiply(self._constants(block), edges)
+            sums[first : first + len(edges)] += _sum_products(self._constants(block), edges)
         by_node = sums.transpose(1, 2, 0)
         values = [*range(lobes), *(value for value, _ in self.columns.slopes)]
         self.grams = by_node[np.ix_(values, values)]
         self.moments = by_node[np.ix_(values, range(lobes, lobes + channels))]
         self.squares = float(np.trace(by_node[lobes:, lobes:].sum(axis=2)))
 
-    def _constants(self, block):
-        """The factors κ A of the lobes, and -κ R by channel, times √w: NumPy's (..., n)."""
+    def _constants(self, block: Block) -> FloatArray:
+        """Return the factors κ A of the lobes, and -κ R by channel, times √w, as (..., n)."""
         columns, problem = self.columns, self.problem
         middle = self.space.table(np.full((1, len(self.space.names)), 0.5))[0]
         lobes = columns.bind([double_precision.to_scalar(x) for x in middle]).lobes()
@@ -98,24 +108,24 @@ class Folded:
         dr.eval(constants, differences)
         return np.stack([np.asarray(array) for array in constants + differences])
 
-    def start(self, u):
-        """As `Problem.start`."""
+    def start(self, u: FloatArray) -> FloatArray:
+        """Return the best weights at coordinates `u`; see `Problem.start`."""
         return solve_weights(self.columns, self._sums(u), self.least)
 
-    def expand(self, u, weights, curvature=True):
-        """As `Problem.expand`."""
+    def expand(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
+        """Return the `Expansion` of E² with the best weights; see `Problem.expand`."""
         sums = self._sums(u)
         weights = solve_weights(self.columns, sums, self.least)
         sums = move_weights(self.columns, sums, weights)
         return Expansion.of(self.columns, self.space, sums, u, weights)
 
-    def expand_here(self, u, weights, curvature=True):
-        """As `Problem.expand_here`; the Hessian costs nothing more."""
+    def expand_here(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
+        """Return the `Expansion` at these `weights`, with the Hessian, which costs nothing."""
         sums = move_weights(self.columns, self._sums(u), weights)
         return Expansion.of(self.columns, self.space, sums, u, weights)
 
-    def _sums(self, u):
-        """The `Sums` at weights of 0."""
+    def _sums(self, u: FloatArray) -> Sums:
+        """Return the `Sums` at weights of 0."""
         points, nodes = len(u), len(self.wi.x)
         table = self.space.table(u)
         shapes = [double_precision.to_array(np.repeat(x, nodes)) for x in table.T]
@@ -123,7 +133,7 @@ class Folded:
             double_precision.Vector(*(dr.tile(x, points) for x in (w.x, w.y, w.z)))
             for w in (self.wi, self.wo)
         )
-        columns = self.columns.eval(shapes, wi, wo, factor=lambda lobe: _facets(lobe, wi, wo))
+        columns = self.columns.eval(shapes, wi, wo, factor=lambda lobe: _eval_factor(lobe, wi, wo))
         dr.eval(columns)
         T = np.stack([np.asarray(column).reshape(points, nodes) for column in columns], axis=1)
         gram = np.einsum("pai,pbi,abi->pab", T, T, self.grams)[:, None]
@@ -133,15 +143,15 @@ class Folded:
         return Sums(error, moment, gram)
 
 
-def _facets(lobe, wi, wo):
-    """The factor S of a lobe, 1 where its parameters are fixed."""
+def _eval_factor(lobe: Lobe, wi: Vector, wo: Vector) -> JitFloat:
+    """Return the factor S of a lobe; 1 for a lobe without factors, which has no parameters."""
     return lobe.factors[0](half_vector(wi, wo), cos_theta_d(wi, wo)) if lobe.factors else 1.0
 
 
-def _multiply(rows, edges):
-    """The products of `rows` (k, n) with each other, summed from edge to edge: (edges, k, k)."""
+def _sum_products(rows: FloatArray, edges: IntArray) -> FloatArray:
+    """Return products of `rows` (k, n) with each other, summed between `edges` (edges, k, k)."""
     count, n = rows.shape
-    if n > LONG * len(edges):
+    if n > LONG_NODE * len(edges):
         parts = np.split(rows, edges[1:], axis=1)
         return np.stack([part @ part.T for part in parts])
     products = np.empty((len(edges), count, count))

@@ -1,24 +1,36 @@
-"""Errors for a model whose formula, or a derivative of it, is not finite at some sample.
+"""Raises errors if a model's formula, or its derivative, is not finite at a sample.
 
-A sum over all samples would hide which one, and a search would go wrong or end in another library's
-error.
+The errors name the sample. A sum over all samples would hide it, and a search would fail with an
+unclear error.
 """
+
+from collections.abc import Iterable, Mapping
+from typing import Any, NoReturn
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitFloat
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import to_angles
 from brdfkit.core.jit import double_precision
+from brdfkit.core.jit.double_precision import Vector
+from brdfkit.regression.losses.loss import Loss
+from brdfkit.regression.problem.blocks import Block
+from brdfkit.regression.problem.columns import Columns
+from brdfkit.regression.problem.parameter_space import Space
 
 REMEDY = "keep the formula finite there, as by dr.maximum, or leave the direction out of the data"
 
 
-def require_finite_columns(columns, values, block, space, u):
-    """The arrays `values` (points, n) of the `Columns` at the samples of a `Block`, all finite.
+def require_finite_columns(
+    columns: Columns, values: list[FloatArray], block: Block, space: Space, u: FloatArray
+) -> list[FloatArray]:
+    """Return the arrays `values` (points, n) of `Columns` at the samples of a `Block`, all finite.
 
-    Raises `BrdfkitError` where one is not. Slopes that are finite backwards, as those of 0^p by p,
-    become 0: forwards, Dr.Jit has NaN there. `u` (points, shapes): coordinates in the `space`.
+    Raises `BrdfkitError` if one is not. Slopes that are finite in Dr.Jit's reverse mode become 0:
+    for the derivative of 0^p by p, forward mode returns NaN. `u` (points, shapes): coordinates in
+    the `space`.
     """
     if all(np.isfinite(value.sum()) for value in values):  # quick: one sum per column
         return values
@@ -30,56 +42,68 @@ def require_finite_columns(columns, values, block, space, u):
                 columns.model,
                 lobe,
                 value[~np.isfinite(value)][0],
-                describe_pair(*block.first(), row),
+                describe_pair(*block.directions(), row),
             )
     for point in np.flatnonzero(
         [not np.isfinite([v[k] for v in values]).all() for k in range(len(u))]
     ):
         shapes = space.values(u[point])
-        require_finite_slopes(columns.model, shapes, space.names, *block.first())
+        require_finite_slopes(columns.model, shapes, space.names, *block.directions())
     return [*values[:count], *(np.nan_to_num(v, posinf=0, neginf=0) for v in values[count:])]
 
 
-def require_finite_loss(loss, block, model, measured, difference, slope):
-    """Raise `BrdfkitError` where the `difference` of a `Loss`, or its `slope`, is not finite at one
-    of the samples of a `Block`; all arrays of Dr.Jit's."""
-    found, by = np.array(difference), np.array(slope)
-    rows = np.flatnonzero(~(np.isfinite(found) & np.isfinite(by)))
+def require_finite_loss(
+    loss: Loss,
+    block: Block,
+    model: JitFloat,
+    measured: JitFloat,
+    difference: JitFloat,
+    slope: JitFloat,
+) -> None:
+    """Raise `BrdfkitError` if the `difference` of a `Loss`, or its `slope`, is not finite.
+
+    All arrays are Dr.Jit arrays over the samples of a `Block`.
+    """
+    differences, slopes = np.array(difference), np.array(slope)
+    rows = np.flatnonzero(~(np.isfinite(differences) & np.isfinite(slopes)))
     if not len(rows):
         return
     row = rows[0]
-    what = "is" if not np.isfinite(found[row]) else "has the derivative"
-    value = by[row] if np.isfinite(found[row]) else found[row]
+    verb = "is" if not np.isfinite(differences[row]) else "has the derivative"
+    value = slopes[row] if np.isfinite(differences[row]) else differences[row]
     raise BrdfkitError(
-        f"The loss {loss.name} {what} {value:g} at {describe_pair(block.wi, block.wo, row)}, where "
+        f"The loss {loss.name} {verb} {value:g} at {describe_pair(block.wi, block.wo, row)}, where "
         f"the measured value is {np.array(measured)[row]:.4g} and the model's "
         f"{np.array(model)[row]:.4g}; keep it finite for all of these, as by dr.maximum."
     )
 
 
-def require_finite(model, columns, wi, wo):
-    """Raise `BrdfkitError` where a lobe's values, `columns` (lobes, n), are not finite."""
+def require_finite(model: Any, columns: FloatArray, wi: Vector, wo: Vector) -> None:
+    """Raise `BrdfkitError` if a lobe's values, `columns` (lobes, n), are not finite."""
     if np.isfinite(columns.sum(axis=1)).all():  # quick: one sum per lobe
         return
     lobe, row = np.argwhere(~np.isfinite(columns))[0]
     _raise_for_lobe(model, lobe, columns[lobe, row], describe_pair(wi, wo, row))
 
 
-def _raise_for_lobe(model, lobe, value, pair):
+def _raise_for_lobe(model: Any, lobe: int, value: float, pair: str) -> NoReturn:
+    """Raise `BrdfkitError` for the `value` of a lobe at a `pair` of directions in words."""
     raise BrdfkitError(
         f"{model.type_name()}: the lobe of {model.weights()[lobe]} is {value:g} at {pair}; "
         f"{REMEDY}."
     )
 
 
-def require_finite_slopes(model, values, names, wi, wo):
-    """Raise `BrdfkitError` where a lobe's derivative by one of the parameters `names` is not
-    finite, at `values` of the shape parameters; `wi`, `wo`: `double_precision.Vector`.
+def require_finite_slopes(
+    model: Any, values: Mapping[str, float], names: Iterable[str], wi: Vector, wo: Vector
+) -> None:
+    """Raise `BrdfkitError` if a lobe's derivative by one of the parameters `names` is not finite.
 
-    The derivatives are taken in reverse mode: in forward mode Dr.Jit gives no finite derivative of
-    0^p by p, which is 0.
+    `values`: of all shape parameters, by name; `wi`, `wo`: `double_precision.Vector`. Derivatives
+    are taken in reverse mode, because Dr.Jit's forward mode returns NaN for the derivative of 0^p
+    by p, which is 0.
     """
-    # One value for each pair, so that its derivative is that of the pair, and no sum is taken
+    # One value for each pair, so that its derivative belongs to the pair, and is no sum
     count = len(wi.x)
     bound = {n: double_precision.to_array(np.full(count, v)) for n, v in values.items()}
     for name in names:
@@ -92,8 +116,8 @@ def require_finite_slopes(model, values, names, wi, wo):
         dr.backward(lobe, dr.ADFlag.ClearInterior)
         slopes = {name: dr.grad(bound[name]) for name in names}
         dr.eval(slopes)  # in one kernel
-        for name, found in slopes.items():
-            slope = np.array(found)
+        for name in names:
+            slope = np.array(slopes[name])
             if not np.isfinite(slope).all():
                 row = int(np.argmin(np.isfinite(slope)))
                 raise BrdfkitError(
@@ -102,12 +126,14 @@ def require_finite_slopes(model, values, names, wi, wo):
                 )
 
 
-def describe_pair(wi, wo, row):
-    """The direction pair number `row` in words; `wi`, `wo`: `double_precision.Vector`."""
+def describe_pair(wi: Vector, wo: Vector, row: int) -> str:
+    """Return the pair of directions with the index `row` in words.
+
+    `wi`, `wo`: `double_precision.Vector`.
+    """
     pair = [np.array([np.array(c)[row] for c in (w.x, w.y, w.z)]) for w in (wi, wo)]
     (theta_i, phi_i), (theta_o, phi_o) = map(to_angles, pair)
-    apart = np.mod(phi_o - phi_i, 2 * np.pi)
-    angles = np.degrees([theta_i, theta_o, apart])
+    angles = np.degrees([theta_i, theta_o, np.mod(phi_o - phi_i, 2 * np.pi)])
     h = pair[0] + pair[1]
     normal = ", where h is the normal" if np.hypot(h[0], h[1]) < 1e-7 * np.linalg.norm(h) else ""
     return "theta_i {:.4g}°, theta_o {:.4g}°, Δφ {:.4g}°".format(*angles) + normal

@@ -1,44 +1,53 @@
-"""The search space of a fit: the shape parameters within their bounds.
+"""The search space of a fit: the shape parameters, with coordinates between their bounds.
 
-A coordinate runs from 0 at the lower to 1 at the upper bound of its parameter, logarithmically for
+A coordinate is 0 at the lower bound of its parameter and 1 at the upper one. It is logarithmic for
 a parameter that is declared so.
 """
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.model import Model
+from brdfkit.model.samples import Samples
 
 
-def join(u, weights):
-    """The vectors (points, n) of coordinates `u` (points, shapes) and `weights` (points, channels,
-    lobes)."""
+def join(u: FloatArray, weights: FloatArray) -> FloatArray:
+    """Join `u` (points, shapes) and `weights` (points, channels, lobes) to vectors (points, n)."""
     return np.concatenate([u, weights.reshape(len(u), math.prod(weights.shape[1:]))], axis=1)
 
 
-def split(z, shapes, channels):
-    """The coordinates and weights of vectors `z` (points, n), as `join` takes them."""
+def split(z: FloatArray, shapes: int, channels: int) -> tuple[FloatArray, FloatArray]:
+    """Split vectors `z` (points, n) into coordinates and weights, as `join` takes them."""
     lobes = (z.shape[1] - shapes) // channels
     return z[:, :shapes], z[:, shapes:].reshape(len(z), channels, lobes)
 
 
-def limits(shapes, channels, least):
-    """The bounds low and high (n,) of vectors; `least` (lobes,): the least weights."""
+def limits(shapes: int, channels: int, least: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the bounds low and high (n,) of vectors; `least` (lobes,): the smallest weights."""
     count = channels * len(least)
     low = np.concatenate([np.zeros(shapes), np.tile(least, channels)])
     return low, np.concatenate([np.ones(shapes), np.full(count, np.inf)])
 
 
-def of_channel(c, shapes, lobes):
-    """The numbers in a vector of what one channel depends on: all shapes, and its own weights."""
+def channel_rows(c: int, shapes: int, lobes: int) -> IntArray:
+    """Return the indices of the entries that channel `c` depends on: all shapes, its weights."""
     return np.r_[0:shapes, shapes + c * lobes : shapes + (c + 1) * lobes]
 
 
 @dataclass(frozen=True)
 class Space:
-    """The shape parameters that are searched, with bounds (low, high) each, and the fixed ones."""
+    """The searched shape parameters `names`, with bounds, and the values of the `fixed` ones.
+
+    `low`, `high` (n,): the bounds; `log` (n,): whether a coordinate is logarithmic.
+    """
 
     names: tuple[str, ...]
     low: np.ndarray
@@ -47,14 +56,20 @@ class Space:
     fixed: dict[str, float]
 
     @classmethod
-    def of(cls, model, bounds, fixed, anisotropic):
-        """The space of the shape parameters of `model` that are not `fixed`, within its bounds or
-        the narrower `bounds`.
+    def of(
+        cls,
+        model: type[Model],
+        bounds: Mapping[str, tuple[float, float]],
+        fixed: Mapping[str, float],
+        anisotropic: bool,
+    ) -> Space:
+        """Return the space of the shape parameters of a `model` class that are not `fixed`.
 
-        Raises `BrdfkitError` for a parameter that is not searched, and bounds beyond the model's.
+        `bounds`: narrower bounds by name. Raises `BrdfkitError` for a parameter that is not
+        searched, and for bounds beyond the model's.
         """
         shapes = model.shapes(anisotropic)
-        _check(model, shapes, bounds, fixed)
+        _check_arguments(model, shapes, bounds, fixed)
         names = tuple(name for name in shapes if name not in fixed)
         limits = [bounds.get(n, model.parameters[n].bounds) for n in names]
         low, high = np.array(limits).reshape(-1, 2).T
@@ -62,44 +77,59 @@ class Space:
         return cls(names, low, high, log, {k: float(v) for k, v in fixed.items()})
 
     @classmethod
-    def on(cls, samples, model, bounds, fixed, anisotropic):
-        """The space of a fit to `Samples`, whose directions determine some parameters, unless these
-        have `bounds` or are `fixed`; see `of`."""
+    def on(
+        cls,
+        samples: Samples,
+        model: type[Model],
+        bounds: Mapping[str, tuple[float, float]],
+        fixed: Mapping[str, float],
+        anisotropic: bool,
+    ) -> Space:
+        """Return the space of a fit to `Samples`, whose directions determine some parameters.
+
+        Parameters with `bounds`, or that are `fixed`, are not determined so; see `of`.
+        """
         determined = {
             n: v for n, v in model.determine_parameters(samples).items() if n not in bounds
         }
-        return cls.of(model, bounds, determined | fixed, anisotropic)
+        return cls.of(model, bounds, {**determined, **fixed}, anisotropic)
 
-    def table(self, u):
-        """The parameters (points, shapes) at coordinates `u`, of the same shape."""
+    def table(self, u: FloatArray) -> FloatArray:
+        """Return the parameters (points, shapes) at coordinates `u`, of the same shape."""
         linear = self.low + u * (self.high - self.low)
         return np.where(self.log, self._geometric(u), linear)
 
-    def values(self, u):
-        """The parameters by name, with the fixed ones, at the coordinates `u` (shapes,)."""
+    def values(self, u: FloatArray) -> dict[str, float]:
+        """Return the parameters by name, with the fixed ones, at the coordinates `u` (shapes,)."""
         return dict(zip(self.names, map(float, self.table(u)), strict=True)) | self.fixed
 
-    def coordinates(self, values):
-        """The coordinates (shapes,) of parameters by name, clamped to [0, 1]."""
+    def coordinates(self, values: Mapping[str, Any]) -> FloatArray:
+        """Return the coordinates (shapes,) of parameters by name, clamped to [0, 1]."""
         x = np.array([values[name] for name in self.names])
         linear = (x - self.low) / (self.high - self.low)
         with np.errstate(divide="ignore", invalid="ignore"):
             log = np.log(x / self.low) / np.log(self.high / self.low)
         return np.clip(np.where(self.log, log, linear), 0, 1)
 
-    def slopes(self, u):
-        """The derivative of each parameter by its coordinate, at coordinates `u`; as `table`."""
+    def slopes(self, u: FloatArray) -> FloatArray:
+        """Return the derivative of each parameter by its coordinate, at coordinates `u`."""
         with np.errstate(divide="ignore", invalid="ignore"):
             log = self._geometric(u) * np.log(self.high / self.low)
         return np.where(self.log, log, self.high - self.low)
 
-    def _geometric(self, u):
+    def _geometric(self, u: FloatArray) -> FloatArray:
+        """Return the parameters at coordinates `u` as if all were logarithmic."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return self.low * (self.high / self.low) ** u
 
 
-def _check(model, shapes, bounds, fixed):
-    """Raise `BrdfkitError` for bounds or fixed values that the search cannot have."""
+def _check_arguments(
+    model: type[Model],
+    shapes: Sequence[str],
+    bounds: Mapping[str, tuple[float, float]],
+    fixed: Mapping[str, float],
+) -> None:
+    """Raise `BrdfkitError` for bounds or fixed values that do not suit the model."""
     for name in (*bounds, *fixed):
         if name not in shapes:
             model.parameter(name)

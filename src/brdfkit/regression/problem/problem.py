@@ -1,35 +1,45 @@
-"""What a fit minimises: E² of a model on samples, as a function of its shapes and weights.
+"""The function that a fit minimises: E² of a model on samples, by its shapes and weights.
 
-A point is the coordinates u of the searched shape parameters and the weights of all channels. Many
-points are evaluated together, each with all samples, by one kernel.
+A point consists of the coordinates u of the searched shape parameters and of the weights of all
+channels. One kernel evaluates many points together, each with all samples.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
 from functools import cached_property
+from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitFloat
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.double_precision import differentiate
-from brdfkit.regression.problem.blocks import GROUP, Blocks
+from brdfkit.model import Model
+from brdfkit.model.samples import Samples
+from brdfkit.regression.losses.loss import Loss
+from brdfkit.regression.problem.blocks import GROUP, Block, Blocks
 from brdfkit.regression.problem.columns import Columns
-from brdfkit.regression.problem.expansion import Expansion, combine
+from brdfkit.regression.problem.expansion import Expansion, combine_columns
 from brdfkit.regression.problem.not_finite import require_finite_columns, require_finite_loss
+from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.sums import Sums, move_weights, solve_weights
 
 
 class Problem:
-    """E² of a model class on `Samples`, all of them valid.
+    """E² of a model class on `Samples`, which are all valid, under a `Loss`.
 
-    Weights that may be negative can make the model negative, where it is clamped at 0; where E² is
-    `extended`, it goes on below 0 with the slope of the loss at 0.
-
-    `space`: the search space of its shape parameters. Arguments: coordinates `u` (points, shapes)
-    and `weights` (points, channels, lobes).
+    A model with negative weights is clamped at 0 where it is negative. If E² is `extended`, it
+    continues there with the slope of the loss at 0. `space`: the search space of the shape
+    parameters. The methods take coordinates `u` (points, shapes) and `weights` (points, channels,
+    lobes).
     """
 
-    def __init__(self, model, samples, loss, space, extended=False):
+    def __init__(
+        self, model: type[Model], samples: Samples, loss: Loss, space: Space, extended: bool = False
+    ) -> None:
         self.model, self.samples, self.loss, self.space = model, samples, loss, space
         self.columns = Columns.of(model, space.names, space.fixed)
         self.channels = samples.values.shape[1]
@@ -40,7 +50,7 @@ class Problem:
         self.clamped = not loss.linear and bool((self.least < 0).any())
         self.extended = extended
         self.linear = loss.linear and (self.columns.powers == 1).all()
-        self.factors = None
+        self.factors: list[FloatArray] | None = None
 
         importance = loss.importance(samples)
         if not importance.any():
@@ -48,15 +58,16 @@ class Problem:
             raise BrdfkitError(
                 f"The {loss.name} loss weighs no sample: of its weights {why}; choose another loss."
             )
-        self.importance, self.blocks = importance, Blocks(samples, importance, loss)
+        self.importance = importance
+        self.blocks: Callable[[int], Iterator[Block]] = Blocks(samples, importance, loss)
 
-    def on(self, samples):
-        """The same problem on other `Samples`."""
+    def on(self, samples: Samples) -> Problem:
+        """Return the same problem on other `Samples`."""
         return Problem(self.model, samples, self.loss, self.space)
 
     @cached_property
-    def black(self):
-        """What each sample adds to E² of a black model (n,)."""
+    def black(self) -> FloatArray:
+        """The contributions (n,) of the samples to E² of a black model."""
         squares = []
         for block in self.blocks(1):
             total = 0
@@ -64,15 +75,18 @@ class Problem:
                 total += sum(dr.square(self._difference(block, 0.0, c)[0]) for c in group)
                 self._end_group(total)
             squares.append(np.asarray(block.importance * total))
-        found = np.concatenate(squares)
-        if not np.isfinite(found).all():
+        contributions = np.concatenate(squares)
+        if not np.isfinite(contributions).all():
             black = np.zeros((1, self.channels, len(self.least)))
             self._explain_not_finite(np.full((1, len(self.space.names)), 0.5), black)
-        return found
+        return contributions
 
-    def start(self, u, evenly=False):
-        """The weights with the least E² where the loss is linearised at the measured values, or
-        `evenly`, by their differences: exact for a linear one, otherwise where a search begins."""
+    def start(self, u: FloatArray, evenly: bool = False) -> FloatArray:
+        """Return the weights with the least E² at coordinates `u`, exact for a linear loss.
+
+        Another loss is linearised at the measured values, or if `evenly`, replaced by the plain
+        difference of the values. Then the weights are a start for the search.
+        """
         sums = Sums.zeros(len(u), self.channels, len(self.columns))
         for block in self.blocks(len(u)):
             columns = self._columns(block, u)
@@ -88,13 +102,16 @@ class Problem:
                 self._end_group(columns, moments, weights)
             squares = [0 * block.importance]
             sums.add(*self._evaluate(block, u, columns, squares, moments, weights))
-        if not sums.finite():
+        if not sums.is_finite():
             self._explain_not_finite(u)
         return solve_weights(self.columns, sums, self.least)
 
-    def expand(self, u, weights, curvature=True):
-        """The `Expansion` of E² about points, by Gauss and Newton; its Hessian is None without
-        `curvature`. Where E² is quadratic in the weights, the best ones replace `weights`."""
+    def expand(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
+        """Return the `Expansion` of E² about points, by Gauss and Newton.
+
+        Without `curvature` its Hessian is None. If E² is quadratic in the weights, the best weights
+        replace `weights`.
+        """
         solve = self.linear and curvature and self.factors is None
         if solve:
             weights = np.zeros_like(weights)
@@ -104,27 +121,32 @@ class Problem:
             sums = move_weights(self.columns, sums, weights)
         return Expansion.of(self.columns, self.space, sums, u, weights)
 
-    def sums(self, u, weights, curvature=True):
-        """The `Sums` at points."""
+    def sums(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Sums:
+        """Return the `Sums` at points."""
         sums = Sums.zeros(len(u), self.channels, len(self.columns), curvature)
         for _, evaluated in self._evaluate_blocks(u, weights):
             sums.add(*evaluated)
-        if not sums.finite():
+        if not sums.is_finite():
             self._explain_not_finite(u, weights)
         return sums
 
-    def jacobians(self, u, weights):
-        """At one point, by channel: the residuals (n,), where they have a slope, and their
-        derivatives (shapes + lobes, n) by the parameters, not by their coordinates."""
+    def jacobians(self, u: FloatArray, weights: FloatArray) -> list[list[FloatArray]]:
+        """Return the residuals (n,) at one point, and their derivatives (shapes + lobes, n).
+
+        Both are lists by channel. The derivatives are by the parameters, not by their coordinates;
+        a residual without a slope is 0.
+        """
         _, residuals, jacobians = zip(*self.jacobian_blocks(u, weights), strict=True)
         return [
             [np.concatenate(own, axis=-1) for own in zip(*blocks, strict=True)]
             for blocks in (residuals, jacobians)
         ]
 
-    def jacobian_blocks(self, u, weights):
-        """The rows of a block, and its `jacobians`, block by block."""
-        change = combine(self.columns, weights, np.ones_like(u))[0]
+    def jacobian_blocks(
+        self, u: FloatArray, weights: FloatArray
+    ) -> Iterator[tuple[slice, list[FloatArray], list[FloatArray]]]:
+        """Yield the rows, residuals and derivatives of each block; see `jacobians`."""
+        change = combine_columns(self.columns, weights, np.ones_like(u))[0]
         for block, (columns, _, moments, grams) in self._evaluate_blocks(u, weights):
             roots = [np.sqrt(gram[0]) for gram in grams]
             residuals = [
@@ -135,8 +157,10 @@ class Problem:
             jacobians = [(by @ T) * root for by, root in zip(change, roots, strict=True)]
             yield block.rows, residuals, jacobians
 
-    def _evaluate_blocks(self, u, weights):
-        """Each block, and what `Sums.add` takes of it."""
+    def _evaluate_blocks(
+        self, u: FloatArray, weights: FloatArray
+    ) -> Iterator[tuple[Block, tuple[Any, ...]]]:
+        """Yield each block with its arguments of `Sums.add`."""
         for block in self.blocks(len(u)):
             columns = self._columns(block, u)
             squares, moments, grams = [], [], []
@@ -156,14 +180,14 @@ class Problem:
                 self._end_group(columns, squares, moments, grams)
             yield block, self._evaluate(block, u, columns, squares, moments, grams)
 
-    def expand_here(self, u, weights, curvature=True):
-        """The `Expansion` at these very `weights`."""
+    def expand_here(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
+        """Return the `Expansion` about points without changing their `weights`."""
         sums = self.sums(u, weights, curvature)
         return Expansion.of(self.columns, self.space, sums, u, weights)
 
-    def residuals(self, u, weights):
-        """The residuals at one point, an array (n,) per channel; their squares add up to E²."""
-        parts = []
+    def residuals(self, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
+        """Return the residuals (n,) at one point, by channel; E² is the sum of their squares."""
+        parts: list[list[JitFloat]] = []
         for block in self.blocks(1):
             columns, root = self._columns(block, u), dr.sqrt(block.importance)
             parts.append([])
@@ -175,16 +199,17 @@ class Problem:
             dr.eval(parts[-1])
         return [np.concatenate([np.asarray(p) for p in part]) for part in zip(*parts, strict=True)]
 
-    def _end_group(self, *arrays):
-        """Evaluate what a group of channels gives, so that the next has a kernel of its own."""
+    def _end_group(self, *arrays: Any) -> None:
+        """Evaluate the arrays of a group of channels, so that the next group has its own kernel."""
         if len(self.groups) > 1:
             dr.eval(*arrays)
 
-    def _columns(self, block, u):
+    def _columns(self, block: Block, u: FloatArray) -> list[JitFloat]:
+        """Return the columns of a block at coordinates `u`, a list of Dr.Jit arrays."""
         return block.columns(self.columns, self.space.table(u))
 
-    def _mix(self, block, columns, weights):
-        """The model at a block's samples, an array per channel."""
+    def _mix(self, block: Block, columns: list[JitFloat], weights: FloatArray) -> list[JitFloat]:
+        """Return the model at the samples of a block, a Dr.Jit array for each channel."""
         factors = weights[:, :, self.columns.lobes] ** self.columns.powers
         points, channels, values = factors.shape
         spread = block.spread(factors.reshape(points, -1))
@@ -194,16 +219,16 @@ class Problem:
             mixed.append(sum(f * column for f, column in zip(own, columns, strict=False)))
         return mixed
 
-    def _difference(self, block, value, c):
-        """The loss's difference, and its derivative by the model's `value`, in channel `c`."""
+    def _difference(self, block: Block, value: JitFloat, c: int) -> tuple[JitFloat, JitFloat]:
+        """Return the loss's difference in channel `c`, and its slope by the model's `value`."""
 
-        def difference(value):
+        def difference(value: JitFloat) -> JitFloat:
             return block.loss.difference(value, block.measured[c], block.wi.z, block.wo.z)
 
-        def clamped(value):
+        def clamped(value: JitFloat) -> JitFloat:
             return difference(dr.select(value < 0, 0, value))
 
-        def extended(value):
+        def extended(value: JitFloat) -> JitFloat:
             return clamped(value) + slope * dr.minimum(value, 0)
 
         value = double_precision.float_type()(value) + 0 * block.wi.z
@@ -214,19 +239,29 @@ class Problem:
         _, slope = differentiate(difference, 0 * value)
         return differentiate(extended, value)
 
-    def _explain_not_finite(self, u, weights=None):
-        """Raise `BrdfkitError` for a loss that is not finite somewhere, with the model's `weights`
-        or, by default, where the model meets the measured values."""
+    def _explain_not_finite(self, u: FloatArray, weights: FloatArray | None = None) -> None:
+        """Raise `BrdfkitError` that names a sample at which the loss is not finite.
+
+        The model has these `weights`, or by default meets the measured values.
+        """
         for block in self.blocks(len(u)):
             model = block.measured
             if weights is not None:
                 model = self._mix(block, self._columns(block, u), weights)
             for c, value in enumerate(model):
-                found = self._difference(block, value, c)
-                require_finite_loss(block.loss, block, value, block.measured[c], *found)
+                both = self._difference(block, value, c)
+                require_finite_loss(block.loss, block, value, block.measured[c], *both)
 
-    def _evaluate(self, block, u, columns, squares, moments, weights):
-        """What `Sums.add` takes, of a block, in one kernel."""
+    def _evaluate(
+        self,
+        block: Block,
+        u: FloatArray,
+        columns: list[JitFloat],
+        squares: list[JitFloat],
+        moments: list[JitFloat],
+        weights: list[JitFloat],
+    ) -> tuple[Any, ...]:
+        """Evaluate a block in one kernel, and return the arguments of `Sums.add`."""
         total = sum(squares)
         dr.eval(columns, total, moments, weights)
         values = [block.fold(column) for column in columns]

@@ -1,45 +1,59 @@
-"""Sums over samples, of which a fit is made, and the weights that follow from them."""
+"""Sums over samples that E² and its derivatives are made of, and the best weights from them."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
+from brdfkit.regression.problem.columns import Columns
 
 # Columns are multiplied in parts of this many numbers, which stay in the processor's cache
-PART = 2**16
+PART_SIZE = 2**16
 
 
 @dataclass(eq=False)
 class Sums:
-    """Sums over samples at several points, with T the columns, d the loss's difference, d' its
-    derivative by the model's value and w a sample's importance.
+    """Sums over samples at several points.
 
     `error` Σ w d² (points,); `moment` Σ w d d' T (points, channels, columns); `gram`
-    Σ w d'² T Tᵀ (points, channels, columns, columns), or None.
+    Σ w d'² T Tᵀ (points, channels, columns, columns), or None. T are the columns, d is the
+    difference of the loss, d' its derivative by the model's value, and w the weight of a sample.
     """
 
     error: np.ndarray
     moment: np.ndarray
-    gram: np.ndarray | None
+    gram: Any
 
     @classmethod
-    def zeros(cls, points, channels, columns, curvature=True):
-        """No samples yet."""
+    def zeros(cls, points: int, channels: int, columns: int, curvature: bool = True) -> Sums:
+        """Return sums over no samples."""
         gram = np.zeros((points, channels, columns, columns)) if curvature else None
         return cls(np.zeros(points), np.zeros((points, channels, columns)), gram)
 
-    def finite(self):
-        """Whether they are finite."""
+    def is_finite(self) -> bool:
+        """Return whether the errors and moments are finite."""
         return bool(np.isfinite(self.error).all() and np.isfinite(self.moment).all())
 
-    @np.errstate(invalid="ignore")  # `finite` tells
-    def add(self, columns, squares, moments, weights):
-        """Add samples: `columns`, a list of T (points, n); `squares` Σ_c w d² (points, n);
-        `moments` w d d' and `weights` w d'², lists by channel of (points, n)."""
+    @np.errstate(invalid="ignore")  # `is_finite` reports it
+    def add(
+        self,
+        columns: list[FloatArray],
+        squares: FloatArray,
+        moments: list[FloatArray],
+        weights: list[FloatArray],
+    ) -> None:
+        """Add samples.
+
+        `columns`: a list of T (points, n); `squares` Σ_c w d² (points, n); `moments` w d d' and
+        `weights` w d'²: lists by channel of arrays (points, n).
+        """
         points, n = squares.shape
         self.error += squares.sum(axis=1)
-        step = max(PART // (points * len(columns)), 64)
+        step = max(PART_SIZE // (points * len(columns)), 64)
         for start in range(0, n, step):
             part = slice(start, start + step)
             T = np.stack([column[:, part] for column in columns], axis=1)
@@ -49,9 +63,12 @@ class Sums:
                     self.gram[:, c] += (T * weight[:, None, part]) @ T.transpose(0, 2, 1)
 
 
-def solve_weights(columns, sums, low):
-    """The weights (points, channels, lobes) that minimise E² to second order, of `Sums` at weights
-    of 0; without the values that are factors of squared weights. `low` (lobes,): least weights."""
+def solve_weights(columns: Columns, sums: Sums, low: FloatArray) -> FloatArray:
+    """Return the weights (points, channels, lobes) that minimise E² to second order.
+
+    `sums`: the `Sums` at weights of 0; values that are factors of squared weights are ignored;
+    `low` (lobes,): the smallest weights.
+    """
     points, channels = sums.moment.shape[:2]
     lobes = int(columns.lobes.max()) + 1
     gram = sums.gram[:, :, :lobes, :lobes].reshape(-1, lobes, lobes)
@@ -59,8 +76,8 @@ def solve_weights(columns, sums, low):
     return minimise_in_box(gram, moment, low, np.inf).reshape(points, channels, lobes)
 
 
-def move_weights(columns, sums, weights):
-    """The `Sums` at `weights`, of those at weights of 0, where the difference is linear."""
+def move_weights(columns: Columns, sums: Sums, weights: FloatArray) -> Sums:
+    """Return the `Sums` at `weights`, from `sums` at weights of 0, for a linear difference."""
     factors = weights[:, :, columns.lobes] ** columns.powers
     values = len(columns.lobes)
     by_values = sums.gram[:, :, :, :values] @ factors[..., None]

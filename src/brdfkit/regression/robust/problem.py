@@ -1,124 +1,140 @@
-"""A `Problem` whose samples are weighed by their residuals, over the scale of these."""
+"""A `Problem` whose samples have weights that depend on their residuals, for robust fits."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.parameter_space import join, limits
+from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.robust.reweighting import (
     WEIGHTS,
-    least_scale,
     leverages,
     require_more_samples,
-    scale_of,
+    residual_scale,
+    smallest_scale,
 )
 
-# One of so many samples, those with residuals next to the median, tell how it changes
-NEXT = 200
+# One of this number of samples, with residuals next to the median, determines its derivative
+MEDIAN_SHARE = 200
 # Step of the central difference in r for the derivative of a weight
-SMALL = 1e-5
+DIFFERENCE_STEP = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """Coordinates `u` (1, shapes), `weights` (1, channels, lobes), and the residuals there, an
-    array (n,) by channel."""
+    """Coordinates `u` (1, shapes), `weights` (1, channels, lobes), residuals (n,) by channel."""
 
     u: np.ndarray
     weights: np.ndarray
     residuals: list[np.ndarray]
 
-    def join(self):
-        """The point as a vector (k,)."""
+    def join(self) -> FloatArray:
+        """Return the point as a vector (k,)."""
         return join(self.u, self.weights)[0]
 
 
 class RobustProblem:
-    """A `Problem` with the weight `name` of samples, by their residuals.
+    """A `Problem` with the weight function `name` of `WEIGHTS`.
 
-    `u`, `weights`: the optimum where all samples count alike, (1, shapes) and (1, channels, lobes);
-    `part`, `rows`: a problem on some of the samples and their numbers, which gives the Hessians; by
-    default the problem itself. By channel, `scales` are those of the residuals, tuned.
+    `u` (1, shapes), `weights` (1, channels, lobes): the optimum where all samples count alike;
+    `part`, `rows`: a problem on some of the samples and their indices, for the Hessians; by default
+    the problem itself. The methods take `scales`: for each channel the scale of its residuals,
+    times the constant of the weight function.
 
-    A residual is a difference times the root of how much its sample counts, and a sample is an
-    outlier by the difference alone. So `levers` hold that root, beside √(1 - h).
+    A residual is a difference times the root of its sample's importance, but only the difference
+    makes a sample an outlier. So `levers` include this root, beside √(1 - h).
     """
 
-    def __init__(self, problem, u, weights, name, part=None, rows=slice(None)):
+    def __init__(
+        self,
+        problem: Problem,
+        u: FloatArray,
+        weights: FloatArray,
+        name: str,
+        part: Problem | None = None,
+        rows: Any = slice(None),
+    ) -> None:
         self.problem, self.part, self.rows = problem, part or problem, rows
         self.function, self.tune, self.rho = WEIGHTS[name]
         self.rank = u.shape[1] + weights.shape[2]
         require_more_samples(len(problem.samples.wi), self.rank)
-        # Neither leverages, least scales nor the metric of fitted values change from pass to pass
+        # Leverages, smallest scales and the metric of fitted values do not change between passes
         self.metric = self.part.expand_here(u, weights).hessian[0]
         root = np.sqrt(problem.importance / problem.importance.mean())
         root[root == 0] = 1.0  # its residual is 0
-        self.levers = [root * np.sqrt(1 - h) for h in self._leverages(u, weights)]
+        self.levers = [root * np.sqrt(1 - h) for h in self._find_leverages(u, weights)]
         black = problem.residuals(u, 0 * weights)
-        self.least = [least_scale(target / root) for target in black]
+        self.least = [smallest_scale(target / root) for target in black]
         self.spread = np.sqrt(sum(len(t) * np.var(t) for t in black)) or 1.0
         self.low, self.high = limits(u.shape[1], problem.channels, problem.least)
 
-    def _leverages(self, u, weights):
-        """The leverages (n,) of the linear parameters, by channel: exact, or of a part's size."""
+    def _find_leverages(self, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
+        """Return the leverages (n,) of the linear parameters by channel, exact or from the part."""
         if self.part is self.problem:
-            blocks = [own for _, own in _by_weights(self.problem, u, weights)]
+            blocks = [own for _, own in _iterate_columns(self.problem, u, weights)]
             return [leverages(np.concatenate(own, axis=1)) for own in zip(*blocks, strict=True)]
-        # A part's columns, as many times as it is smaller than the whole
-        blocks = [own for _, own in _by_weights(self.part, u, weights)]
+        # The part's weights make up for the other samples, so its products stand for all
+        blocks = [own for _, own in _iterate_columns(self.part, u, weights)]
         inverses = []
         for own in zip(*blocks, strict=True):
             gram = sum(columns @ columns.T for columns in own)
             inverses.append(np.linalg.pinv(gram, hermitian=True))
-        found = [np.empty(len(self.problem.samples.wi)) for _ in inverses]
-        for rows, by_channel in _by_weights(self.problem, u, weights):
-            for h, inverse, columns in zip(found, inverses, by_channel, strict=True):
+        all_leverages: list[FloatArray] = [np.empty(len(self.problem.samples.wi)) for _ in inverses]
+        for rows, own_columns in _iterate_columns(self.problem, u, weights):
+            for h, inverse, columns in zip(all_leverages, inverses, own_columns, strict=True):
                 h[rows] = np.minimum((columns * (inverse @ columns)).sum(axis=0), 0.9999)
-        return found
+        return all_leverages
 
-    def forget_part(self):
-        """From now on the Hessians are those of all samples."""
+    def forget_part(self) -> None:
+        """Compute the Hessians from all samples from now on."""
         self.part, self.rows = self.problem, slice(None)
 
-    def at(self, u, weights):
-        """The `Point` of coordinates and weights."""
+    def make_point(self, u: FloatArray, weights: FloatArray) -> Point:
+        """Return the `Point` of coordinates and weights."""
         return Point(u, weights, self.problem.residuals(u, weights))
 
-    def move(self, point, step):
-        """The `Point` after a step (k,), within the bounds."""
+    def move(self, point: Point, step: FloatArray) -> Point:
+        """Return the `Point` after a step (k,), within the bounds."""
         shapes = point.u.shape[1]
         moved = point.weights + step[shapes:].reshape(point.weights.shape)
         u = np.clip(point.u + step[:shapes], 0, 1)
-        return self.at(u, np.maximum(moved, self.problem.least))
+        return self.make_point(u, np.maximum(moved, self.problem.least))
 
-    def scales(self, point):
-        """The scales at a point."""
+    def scales(self, point: Point) -> list[float]:
+        """Return the scales at a point, by channel."""
         adjusted = [r / lever for r, lever in zip(point.residuals, self.levers, strict=True)]
         return [
-            self.tune * scale_of(r, self.rank, least)
+            self.tune * residual_scale(r, self.rank, least)
             for r, least in zip(adjusted, self.least, strict=True)
         ]
 
-    def ratios(self, point, scales):
-        """r of the weights: residuals over levers and scales, by channel."""
+    def ratios(self, point: Point, scales: list[float]) -> list[FloatArray]:
+        """Return the arguments r (n,) of the weights, residuals over levers and scales."""
         both = zip(point.residuals, self.levers, scales, strict=True)
         return [residual / (lever * scale) for residual, lever, scale in both]
 
-    def merit(self, point, scales):
-        """What a pass makes small: Σ lever² ρ(r), in units of the squared residuals."""
+    def merit(self, point: Point, scales: list[float]) -> float:
+        """Return the sum that a pass reduces, Σ lever² ρ(r) in units of squared residuals."""
         each = zip(self.ratios(point, scales), self.levers, scales, strict=True)
         return sum(scale**2 * (lever**2 * self.rho(r)).sum() for r, lever, scale in each)
 
-    def say(self, u, weights):
-        """By channel, the weights ω of the samples, and the derivatives of ω r by r."""
-        point = self.at(u, weights)
+    def weights_and_slopes(
+        self, u: FloatArray, weights: FloatArray
+    ) -> tuple[list[FloatArray], list[FloatArray]]:
+        """Return the weights ω of the samples, and the derivatives of ω r by r, by channel."""
+        point = self.make_point(u, weights)
         ratios = self.ratios(point, self.scales(point))
         return [self.function(r) for r in ratios], [self._slope(r) for r in ratios]
 
-    def weigh(self, point, factors):
-        """Gradient (k,) and Hessian (k, k) of E² with the samples weighted by `factors`."""
+    def expand_weighted(
+        self, point: Point, factors: list[FloatArray]
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return gradient (k,) and Hessian (k, k) of E² with the samples weighted by `factors`."""
         own = self.part is self.problem
         here = self._expand(self.problem, point, factors, own)
         if not own:
@@ -126,61 +142,69 @@ class RobustProblem:
         hessian = here.hessian if own else self._expand(self.part, point, factors).hessian
         return here.gradient[0], hessian[0]
 
-    def newton(self, point, ratios):
-        """Newton's matrix (k, k), that knows how the weights of the samples change, at held
-        scales."""
+    def newton_matrix(self, point: Point, ratios: list[FloatArray]) -> FloatArray:
+        """Return Newton's matrix (k, k), with the change of the weights at constant scales."""
         slopes = [self._slope(r[self.rows]) for r in ratios]
         return self._expand(self.part, point, slopes).hessian[0]
 
-    def by_scales(self, point, ratios, scales):
-        """The derivatives ∂g/∂ln s (k, channels) of the gradient, and ∂ln s/∂z (channels, k)."""
+    def scale_derivatives(
+        self, point: Point, ratios: list[FloatArray], scales: list[float]
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return ∂g/∂ln s (k, channels) of the gradient g, and ∂ln s/∂z (channels, k)."""
         of_gradient, of_scale = [], []
         for c, (r, scale) in enumerate(zip(ratios, scales, strict=True)):
             r = r[self.rows]
             of_gradient.append(self._gradient(point, c, self.function(r) - self._slope(r)))
-            of_scale.append(self._gradient(point, c, self._about_median(c, r, scale)))
+            of_scale.append(self._gradient(point, c, self._median_weights(c, r, scale)))
         return np.array(of_gradient).T, np.array(of_scale)
 
-    def best_step(self, hessian, gradient, point):
-        """The step (k,) within the bounds that minimises the quadratic model."""
+    def find_best_step(self, hessian: FloatArray, gradient: FloatArray, point: Point) -> FloatArray:
+        """Return the step (k,) within the bounds that minimises the quadratic model."""
         z = point.join()
         return minimise_in_box(hessian[None], gradient[None], self.low - z, self.high - z)[0]
 
-    def _gradient(self, point, channel, factors):
-        """The gradient (k,) of the part's E² in one channel, its samples weighted by `factors`."""
+    def _gradient(self, point: Point, channel: int, factors: FloatArray) -> FloatArray:
+        """Return the gradient (k,) of the part's E² in one channel, weighted by `factors` (n,)."""
         every = [0 * factors for _ in self.levers]
         every[channel] = factors
         return self._expand(self.part, point, every, curvature=False).gradient[0]
 
-    def _about_median(self, channel, r, scale):
-        """Weights of the part's samples by which the gradient is that of ln s: of those whose
-        residuals, of the ratios `r`, are next to the median, which s is of."""
-        found = np.zeros(len(r))
+    def _median_weights(self, channel: int, r: FloatArray, scale: float) -> FloatArray:
+        """Return weights of the part's samples, with which the gradient of E² is that of ln s.
+
+        Only samples whose ratios `r` are next to the median, which determines s, have weight.
+        """
+        weights = np.zeros(len(r))
         if scale <= self.tune * self.least[channel] * (1 + 1e-9):
-            return found
-        median, count = 0.6745 / self.tune, max(len(r) // NEXT, 2)
+            return weights
+        median, count = 0.6745 / self.tune, max(len(r) // MEDIAN_SHARE, 2)
         near = np.argpartition(np.abs(np.abs(r) - median), count - 1)[:count]
         levers = self.levers[channel]
         size = np.abs(r[near]) * median * (scale * levers[self.rows][near]) ** 2
-        found[near] = 1 / (size * count * (len(levers) / len(r)))
-        return found
+        weights[near] = 1 / (size * count * (len(levers) / len(r)))
+        return weights
 
-    def _expand(self, problem, point, factors, curvature=True):
-        """The `Expansion` of E² with the samples weighted by `factors`."""
+    def _expand(
+        self, problem: Problem, point: Point, factors: list[FloatArray], curvature: bool = True
+    ) -> Expansion:
+        """Return the `Expansion` of E² with the samples weighted by `factors`."""
         problem.factors = factors
         try:
             sums = problem.sums(point.u, point.weights, curvature)
-        finally:  # Ctrl-C may come here
+        finally:  # also after Ctrl-C
             problem.factors = None
         return Expansion.of(problem.columns, problem.space, sums, point.u, point.weights)
 
-    def _slope(self, r):
-        """The derivative of weight times r."""
-        ends = [self.function(r + step) * (r + step) for step in (-SMALL, SMALL)]
-        return (ends[1] - ends[0]) / (2 * SMALL)
+    def _slope(self, r: FloatArray) -> FloatArray:
+        """Return the derivative of ω r by r."""
+        steps = -DIFFERENCE_STEP, DIFFERENCE_STEP
+        ends = [self.function(r + step) * (r + step) for step in steps]
+        return (ends[1] - ends[0]) / (2 * DIFFERENCE_STEP)
 
 
-def _by_weights(problem, u, weights):
-    """The rows of each block, and by channel the residuals' derivatives (lobes, n) by weights."""
+def _iterate_columns(
+    problem: Problem, u: FloatArray, weights: FloatArray
+) -> Iterator[tuple[slice, list[FloatArray]]]:
+    """Yield the rows of each block, and by channel the residuals' derivatives by weights."""
     for rows, _, jacobians in problem.jacobian_blocks(u, weights):
         yield rows, [jacobian[u.shape[1] :] for jacobian in jacobians]

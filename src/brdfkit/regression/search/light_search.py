@@ -1,33 +1,36 @@
-"""Searches a fit once more, with a term for its light, where the first search ends far from it.
+"""Corrects the light that a fit reflects: a second search has a term for its albedos.
 
-A loss compares values, and a model that cannot meet them all may end with far too much light or too
-little: where grazing angles are missing, a highlight falls between the samples, or a material
-reflects light back. The second search minimises
+A loss compares single values. A model that cannot meet all of them may reflect far too much or too
+little light in total, for instance if grazing angles are missing, a highlight falls between the
+samples, or the material has retro-reflection. The second search minimises
 
     E² / E₀² + share · mean over θ_i and channels of ((a - a*) / ā*)²,
 
-a being the model's albedo and a* the data's, ā* its mean over the channels, and E₀ the error of the
-first search. A fit whose light is right is left as it is.
+where a is the model's albedo, a* the data's at the angle of incidence θ_i, ā* its mean over the
+channels, and E₀ the error of the first search. A fit with correct albedos is not changed.
 """
+
+from __future__ import annotations
 
 import numpy as np
 
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.model.evaluation import mix_lobes
-from brdfkit.regression.light import format_share
+from brdfkit.model.samples import Samples
+from brdfkit.regression.light import Light, format_share
 from brdfkit.regression.losses.loss import Loss
 from brdfkit.regression.problem.pixel_problem import PixelProblem
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.search.levenberg_marquardt import ROUNDING
-from brdfkit.regression.search.multistart import search, with_parts
+from brdfkit.regression.search.multistart import add_parts, search_from_starts
 
-# How much the light counts beside the error: more where less does not do
+# Factors of the term for the light, tried one after the other
 SHARES = 10.0, 40.0, 160.0
-# The second end is kept where it brings the logarithm of the factor between the albedos to this
-# share, and where E is at most so many times as large, times the light that is gained, if any: a
-# model that pays more for its light is left as it is
-NEARER, DEAREST = 0.6, 1.4
+# The second end is accepted if the logarithm of the factor between the albedos falls to this share,
+# and if E grows at most by this factor (times the first end's albedo, if that is above 1)
+DEPARTURE_SHARE, LARGEST_LOSS_RATIO = 0.6, 1.4
 
-# How the note begins on a fit that keeps the light
+# The start of the note on a fit with corrected light
 NOTE = "by the loss alone"
 
 DIFFERENCE = Loss(
@@ -38,45 +41,56 @@ DIFFERENCE = Loss(
 )
 
 
-def keep_light(whole, u, weights, light, points, rng):
-    """Where a search has ended with other light than the data's, the end (u, weights) of another
-    one with a term for it, and a note; None where the light is right, or the model cannot.
+def correct_light(
+    whole: Problem,
+    u: FloatArray,
+    weights: FloatArray,
+    light: Light,
+    points: FloatArray,
+    rng: np.random.Generator,
+) -> tuple[FloatArray, FloatArray, str] | None:
+    """Search again if a fit reflects other light than its data; return (u, weights, note).
 
-    `points` (count, shapes): where it begins, beside the first end.
+    None stands for a fit with correct light, or a model that cannot have it. `whole`: the
+    `Problem`; `u`, `weights`: the end of the first search; `light`: the `Light` of the data;
+    `points` (count, shapes): further start points; `rng`: a generator for parts of many samples.
     """
 
-    def look(u, weights):
+    def look(u: FloatArray, weights: FloatArray) -> FloatArray:
         model = whole.model(**whole.space.values(u[0]))
         return light.look(lambda wi, wo: mix_lobes(model, weights[0].T, wi, wo))
 
     free = look(u, weights)
     if light.is_right(free):
         return None
-    counted = light.counted(free)
+    wrong = light.find_wrong_angles(free)
     first = max(whole.sums(u, weights, curvature=False).error[0], ROUNDING * whole.black.sum())
-    parts, points, kept = with_parts(whole, rng), np.concatenate([u, points]), None
+    parts, points, accepted = add_parts(whole, rng), np.concatenate([u, points]), None
     for share in SHARES:
-        problems = [LightProblem(part, light, counted, first, share) for part in parts]
-        ends, *_ = search(problems, points, lambda done, total: None)
+        problems = [LightProblem(part, light, wrong, first, share) for part in parts]
+        ends, *_ = search_from_starts(problems, points, lambda done, total: None)
         end = ends.u[:1], ends.weights[:1]
-        held, error = look(*end), whole.sums(*end, curvature=False).error[0]
-        if error > (DEAREST * max(free.max(), 1)) ** 2 * first:
+        corrected, error = look(*end), whole.sums(*end, curvature=False).error[0]
+        if error > (LARGEST_LOSS_RATIO * max(free.max(), 1)) ** 2 * first:
             break
-        if light.departure(held) <= NEARER * light.departure(free):
-            kept = *end, _explain_light(light, counted, free, held)
-        if light.is_right(held):
+        if light.departure(corrected) <= DEPARTURE_SHARE * light.departure(free):
+            accepted = *end, _explain_light(light, wrong, free, corrected)
+        if light.is_right(corrected):
             break
         points = end[0]
-    return kept
+    return accepted
 
 
-def _explain_light(light, counted, free, held):
-    """The note on a fit that keeps the `light` at the `counted` angles (n,); `free`, `held`:
-    albedos without and with it."""
+def _explain_light(light: Light, wrong: BoolArray, free: FloatArray, corrected: FloatArray) -> str:
+    """Return the note on a fit with corrected light.
+
+    `wrong` (n,): at which angles the albedos were wrong; `free`, `corrected` (n, channels): albedos
+    without and with the term for the light.
+    """
     gains = np.log(np.maximum(free.max(axis=1), 1e-9))
-    apart = np.maximum(np.abs(np.log(light.factors(free))), gains)
-    row = int(np.argmax(np.where(counted, apart, -np.inf)))
-    shares = (format_share(albedos[row].mean()) for albedos in (free, light.values, held))
+    logs = np.maximum(np.abs(np.log(light.factors(free))), gains)
+    row = int(np.argmax(np.where(wrong, logs, -np.inf)))
+    shares = (format_share(albedos[row].mean()) for albedos in (free, light.values, corrected))
     before, measured, after = shares
     measured = f", where the measurement reflects {measured}"
     return (
@@ -87,21 +101,24 @@ def _explain_light(light, counted, free, held):
 
 
 class LightProblem(PixelProblem):
-    """E² of a model class on `Samples`, over that of a first search, and its difference in light.
+    """E² of a model on `Samples` over E² of a first search, plus a term for the albedos.
 
-    `counted`: at which angles of the `light` (n,); `error`: E² of the first search; `share`: how
-    much the light counts.
+    `wrong` (n,): the angles of the `light` that have the term; `error`: E² of the first search;
+    `share`: the factor of the term.
     """
 
-    def __init__(self, problem, light, counted, error, share):
-        self.given = light, counted, error, share
-        mean = np.maximum(light.target[counted].mean(axis=1), 1e-6)
+    def __init__(
+        self, problem: Problem, light: Light, wrong: BoolArray, error: float, share: float
+    ) -> None:
+        self.light_settings = light, wrong, error, share
+        mean = np.maximum(light.target[wrong].mean(axis=1), 1e-6)
         weights = share / (len(mean) * problem.channels) / mean**2
-        of_pixels = light.pixels.at(counted), weights, DIFFERENCE
-        given = problem.model, problem.samples, problem.loss, problem.space
-        super().__init__(*given, 1 / error, *of_pixels)
+        super().__init__(
+            *(problem.model, problem.samples, problem.loss, problem.space, 1 / error),
+            *(light.pixels.at(wrong), weights, DIFFERENCE),
+        )
 
-    def on(self, samples):
-        """The same problem on other `Samples`."""
+    def on(self, samples: Samples) -> LightProblem:
+        """Return the same problem on other `Samples`."""
         part = Problem(self.model, samples, self.loss, self.space)
-        return LightProblem(part, *self.given)
+        return LightProblem(part, *self.light_settings)

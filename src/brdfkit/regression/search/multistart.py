@@ -1,34 +1,60 @@
-"""The search for the end of a fit: all starts at once, on ever more of the samples."""
+"""Searches from many starts at once, on ever larger parts of the samples."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
+from brdfkit.core.array_types import BoolArray, FloatArray
+from brdfkit.core.progress_bar import Progress
+from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import draw_part
-from brdfkit.regression.search.levenberg_marquardt import levenberg_marquardt
-from brdfkit.regression.search.zero_weights import light_up
+from brdfkit.regression.search.levenberg_marquardt import Search, levenberg_marquardt
+from brdfkit.regression.search.zero_weights import revive_zero_weights
 
-# Many samples are searched by parts: all starts on the smallest, those that end best on the next,
-# and the best on all; no part is more than half of what it is drawn from
+# Sizes of parts of many samples. All starts are searched on the smallest part, those with the best
+# ends on the next one, and the best on all samples; a part is at most half of the next
 PARTS = 40_000, 3_000
-# How many starts go on after so many steps; and where more shape parameters are searched than FEW,
-# those of a sum, whose best end few starts lead to
-EXPLORING, LONGER = ((24, 4), (8, 6)), ((32, 20), (8, 30))
-FEW = 3
-# Ends on a part within this share of the least E² are followed to all samples, up to so many
+# (number of starts that continue, after this number of steps). The second rule applies to more
+# shape parameters than FEW_SHAPES, as sums of models have: few starts lead to their best end
+FEW_SHAPES_ROUNDS, MANY_SHAPES_ROUNDS = ((24, 4), (8, 6)), ((32, 20), (8, 30))
+FEW_SHAPES = 3
+# From a part, ends within this share of the least E² are followed to all samples, at most so many
 CLOSE, FINALISTS = 0.02, 3
-MOST_STEPS, FEW_STEPS = 200, 10
-# A search ends where the next step would lower E² by less than this share of it: of few samples, so
-# many times as much of many, and of a part of them
-EXACT, MANY, LOOSE = 1e-11, 100, 1e-6
+LARGEST_STEPS, FEW_STEPS = 200, 10
+# A search converges if the next step would lower E² by less than this share: on few samples; on
+# many samples, with this factor; on a part of them
+EXACT, MANY_SAMPLES_FACTOR, LOOSE = 1e-11, 100, 1e-6
 
 
-def with_parts(whole, rng):
-    """The problems of a search: `whole`, and before it those on ever smaller parts of its samples,
-    where these are many."""
+def default_start_count(shapes: int) -> int:
+    """Return the default number of start points for this number of shape parameters."""
+    return max(1, min(16 * shapes, 96))
+
+
+def make_start_points(default: FloatArray, count: int, seed: int) -> FloatArray:
+    """Return start points (count, shapes) as coordinates: `default`, then points over the bounds.
+
+    Halton's sequence spreads these points. Without shape parameters there is one start point.
+    """
+    count = count if len(default) else 1
+    return np.vstack([default, *_spread_points(len(default), count - 1, seed)])
+
+
+@lru_cache
+def _spread_points(dimensions: int, count: int, seed: int) -> FloatArray | tuple[()]:
+    """Return points (count, dimensions) of Halton's sequence, scrambled by `seed`."""
+    from scipy.stats import qmc
+
+    return qmc.Halton(dimensions, rng=seed).random(count) if count and dimensions else ()
+
+
+def add_parts(whole: Problem, rng: np.random.Generator) -> list[Problem]:
+    """Return the problems of a search: parts of many samples, the smallest first, then `whole`."""
     problems = [whole]
-    # A clamped model has so many ends that a small part has others than the whole
+    # A clamped model has many ends, and a small part has other ends than the whole
     for size in PARTS[:1] if whole.clamped else PARTS:
         samples = problems[0].samples
         if 2 * size < len(samples.wi):
@@ -37,75 +63,96 @@ def with_parts(whole, rng):
     return problems
 
 
-def search(problems, u, report, iterations=MOST_STEPS, tolerance=EXACT):
-    """The `Expansion` about the points, the best first, where the search of `problems`, on ever
-    more of the samples, ends, which of them converged, and the number of evaluations; `u`
-    (starts, shapes): where it begins; `iterations`, `tolerance`: see `levenberg_marquardt`."""
+def search_from_starts(
+    problems: Sequence[Problem],
+    u: FloatArray,
+    report: Progress,
+    iterations: int = LARGEST_STEPS,
+    tolerance: float = EXACT,
+) -> tuple[Expansion, BoolArray, int]:
+    """Search `problems`, on ever larger parts of the samples, from `u` (starts, shapes).
+
+    Return the `Expansion` about the ends, the best first, which of them converged, and the number
+    of evaluations. `iterations`, `tolerance`: see `levenberg_marquardt`.
+    """
     first, last, starts = problems[0], problems[-1], u
     weights, evaluations = first.start(u), 0
     if first.clamped:
-        u, weights = _avoid_clamping(first, u, weights)
+        u, weights = _add_unclamped_starts(first, u, weights)
     # A few steps from all starts, a few more from the best of these, and so on
-    for count, steps in LONGER if u.shape[1] > FEW else EXPLORING:
-        found = levenberg_marquardt(first.expand, u, weights, first.least, steps)
-        evaluations += found.evaluations
-        ends = found.ends.at(found.best(count))
+    for count, steps in MANY_SHAPES_ROUNDS if u.shape[1] > FEW_SHAPES else FEW_SHAPES_ROUNDS:
+        search = levenberg_marquardt(first.expand, u, weights, first.least, steps)
+        evaluations += search.evaluations
+        ends = search.ends.at(search.find_best(count))
         u, weights = ends.u, ends.weights
-    lit = light_up(first, ends.at([0]), starts)
-    u, weights = (np.concatenate(parts) for parts in zip((u, weights), lit, strict=True))
+    revived = revive_zero_weights(first, ends.at([0]), starts)
+    u, weights = (np.concatenate(parts) for parts in zip((u, weights), revived, strict=True))
     for number, problem in enumerate(problems):
         report(number, len(problems))
         if number:
-            rows = found.best(FINALISTS)
-            error = found.ends.error
-            ends = found.ends.at(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
+            rows = search.find_best(FINALISTS)
+            error = search.ends.error
+            ends = search.ends.at(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
             u, weights = ends.u, ends.weights
-        # A clamped model creeps from kink to kink: let it do so on a part
-        tight = MANY * tolerance
+        # A clamped model moves slowly from kink to kink, which is cheaper on a part
+        tight = MANY_SAMPLES_FACTOR * tolerance
         loose = tight if problem.clamped else max(LOOSE, tight)
         limit = loose if problem is not last else tight if number else tolerance
         part = problems[number - 1] if number else None
-        found, count = _descend(problem, part, u, weights, iterations, limit)
+        search, count = _search_problem(problem, part, u, weights, iterations, limit)
         evaluations += count
     report(len(problems), len(problems))
-    best = found.best(FINALISTS)
-    return found.ends.at(best), found.converged[best], evaluations
+    best = search.find_best(FINALISTS)
+    return search.ends.at(best), search.converged[best], evaluations
 
 
-def _avoid_clamping(problem, u, weights):
-    """More starts, with weights by which more or less of the model is clamped at 0: where much is,
-    a search may rest."""
+def _add_unclamped_starts(problem: Problem, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
+    """Return more starts (u, weights), by which more or less of the model is clamped at 0.
+
+    A search may stall where much of the model is clamped.
+    """
     extended = Problem(problem.model, problem.samples, problem.loss, problem.space, extended=True)
-    ends = levenberg_marquardt(extended.expand, u, weights, problem.least, MOST_STEPS).ends
+    ends = levenberg_marquardt(extended.expand, u, weights, problem.least, LARGEST_STEPS).ends
     evenly = problem.start(u, evenly=True)
     starts = [(u, weights), (ends.u, ends.weights), (u, evenly), (u, (evenly + weights) / 2)]
     starts.append(((u + ends.u) / 2, (weights + ends.weights) / 2))
     return [np.concatenate(parts) for parts in zip(*starts, strict=True)]
 
 
-def _descend(problem, part, u, weights, iterations, tolerance):
-    """The `Search` of a problem from the points `u` and `weights`, and the number of evaluations;
-    `part`: a problem on some of its samples, at whose ends it begins, or None."""
+def _search_problem(
+    problem: Problem,
+    part: Problem | None,
+    u: FloatArray,
+    weights: FloatArray,
+    iterations: int,
+    tolerance: float,
+) -> tuple[Search, int]:
+    """Search a problem from `u` and `weights`; return the `Search` and the number of evaluations.
+
+    `part`: None, or a problem on a part of the samples, whose ends are the starts.
+    """
     evaluations, damping = 0, 1e-4
     if part is not None:
-        # The Hessian of all samples is nearly that of a part, if the part is like them
+        # All samples have nearly the Hessian of a part, if the part represents them
         expand, damping = _borrow_curvature(problem, part), 1e-7
-        found = levenberg_marquardt(
+        search = levenberg_marquardt(
             expand, u, weights, problem.least, FEW_STEPS, tolerance, damping
         )
-        if found.converged.all():
-            return found, found.evaluations
-        u, weights, evaluations = found.ends.u, found.ends.weights, found.evaluations
-    found = levenberg_marquardt(
+        if search.converged.all():
+            return search, search.evaluations
+        u, weights, evaluations = search.ends.u, search.ends.weights, search.evaluations
+    search = levenberg_marquardt(
         problem.expand, u, weights, problem.least, iterations, tolerance, damping
     )
-    return found, evaluations + found.evaluations
+    return search, evaluations + search.evaluations
 
 
-def _borrow_curvature(whole, part):
-    """The function `whole.expand` with the Hessian of `part`, a problem on some of its samples."""
+def _borrow_curvature(
+    whole: Problem, part: Problem
+) -> Callable[[FloatArray, FloatArray], Expansion]:
+    """Return the function `whole.expand` with the Hessian of `part`, a part of its samples."""
 
-    def expand(u, weights):
+    def expand(u: FloatArray, weights: FloatArray) -> Expansion:
         expansion = whole.expand(u, weights, curvature=False)
         near = part.expand_here(u, weights)
         return replace(expansion, hessian=near.hessian, gram=near.gram)

@@ -1,26 +1,32 @@
-"""Lobes that a search left black: E² does not tell their shapes any more, and the search rests.
+"""Revives lobes whose weight became 0 in a search.
 
-With other shapes a black lobe might lower E²: whether it does is seen by the derivative of E² by
-its weights.
+E² no longer depends on the shape parameters of such a lobe, so the search stalls there. With other
+shapes the lobe might lower E²; the derivative of E² by its weights says whether it would.
 """
 
 import itertools
 
 import numpy as np
 
-# How many points are gone on from, at most, and the least share of E² that a lobe should promise
-MOST, LEAST = 4, 1e-7
+from brdfkit.core.array_types import FloatArray
+from brdfkit.regression.problem.columns import Columns
+from brdfkit.regression.problem.expansion import Expansion
+from brdfkit.regression.problem.problem import Problem
+
+# The largest number of points for each lobe, and the smallest share of E² that it should gain
+LARGEST_COUNT, SMALLEST_GAIN = 4, 1e-7
 
 
-def light_up(problem, end, starts):
-    """Points (u, weights) at which one black lobe of an `Expansion` about one point shines.
+def revive_zero_weights(problem: Problem, end: Expansion, starts: FloatArray) -> list[FloatArray]:
+    """Return points (u, weights) at which a lobe has weight that has none at `end`.
 
-    Its shapes are some of the `starts` (count, shapes), or ends of their bounds: those by which E²
-    would fall most. There are no points where it would not fall.
+    `end`: an `Expansion` about one point; `starts` (count, shapes): coordinates to try for the
+    shapes of the lobe, beside the ends of their bounds. The points are those at which E² would fall
+    most; there are none if it would not fall.
     """
-    found = [(end.u[:0], end.weights[:0])]
+    points = [(end.u[:0], end.weights[:0])]
     for lobe in np.flatnonzero((end.weights[0] == 0).all(axis=0) & (problem.least == 0)):
-        shapes = _own_shapes(problem.columns, lobe)
+        shapes = _find_own_shapes(problem.columns, int(lobe))
         if not shapes:
             continue
         corners = np.array(list(itertools.product((0.0, 1.0), repeat=len(shapes))))
@@ -33,15 +39,15 @@ def light_up(problem, end, starts):
         best = np.maximum(-slope, 0) / np.maximum(bend, 1e-300)
         gain = -(slope * best).sum(axis=1)
         weights[:, :, lobe] = best
-        order = np.argsort(-gain, kind="stable")[:MOST]
-        order = order[gain[order] > LEAST * end.error[0]]
-        found.append((u[order], weights[order]))
-    return [np.concatenate(parts) for parts in zip(*found, strict=True)]
+        order = np.argsort(-gain, kind="stable")[:LARGEST_COUNT]
+        order = order[gain[order] > SMALLEST_GAIN * end.error[0]]
+        points.append((u[order], weights[order]))
+    return [np.concatenate(parts) for parts in zip(*points, strict=True)]
 
 
-def _own_shapes(columns, lobe):
-    """The numbers of the searched shapes that no other lobe has."""
-    users = {}
+def _find_own_shapes(columns: Columns, lobe: int) -> list[int]:
+    """Return the indices of the searched shape parameters that no other lobe has."""
+    users: dict[int, set[int]] = {}
     for value, shape in columns.slopes:
         users.setdefault(shape, set()).add(columns.lobes[value])
     return [shape for shape, lobes in users.items() if lobes == {lobe}]

@@ -1,11 +1,11 @@
-"""Solvers: how a fit finds the end of its search; each is one file, and so is `albedo_at_most.py`.
+"""Solvers: the algorithms that minimise the loss of a fit, each in one file, and constraints.
 
-A solver is an object with one method, `minimise(objective)`. It gets an `Objective`
-(`objective.py`) and returns the `End` with the least E² that it finds. Where it has an attribute
-`constrained` that is True, it also keeps to the `constraints.py` of the objective. `settings.py`
-knows ours by their names.
+A solver is an object with one method, `minimise(objective)`. It takes an `Objective`
+(`objective.py`) and returns the `End` with the least E² that it finds. A solver with an attribute
+`constrained` = True also meets the constraints of the objective (`constraints.py`,
+`albedo_at_most.py`). `settings.py` finds brdfkit's solvers by their names.
 
-A search at random is a solver, too:
+A random search, for example, is a solver:
 
     class RandomSearch:
         def minimise(self, objective):
@@ -19,7 +19,7 @@ A search at random is a solver, too:
                     best, error = near[errors.argmin()], errors.min()
                 else:
                     width *= 0.9
-            return End(best, error, "as good as chance had it")
+            return End(best, error, "stopped after 300 rounds")
 """
 
 import lazy_loader

@@ -1,24 +1,27 @@
-"""`AlbedoAtMost`: a constraint on the share of light that the model reflects."""
+"""`AlbedoAtMost`: a constraint on the share of light that a model reflects."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from brdfkit.core.arguments import to_positive
+from brdfkit.core.array_types import FloatArray, IntArray, JitFloat
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.quadrature import make_ring_rule
 from brdfkit.core.jit import double_precision
-from brdfkit.regression.problem.expansion import combine
+from brdfkit.core.jit.double_precision import Vector
+from brdfkit.regression.problem.expansion import combine_columns
 from brdfkit.regression.problem.not_finite import require_finite
-from brdfkit.regression.problem.parameter_space import of_channel
+from brdfkit.regression.problem.parameter_space import channel_rows
+from brdfkit.regression.problem.problem import Problem
 
-# Half the rings of a quadrature, and the points on each: albedos are exact to 1e-7
+# Half the rings of a quadrature, and the points on each; they make albedos exact to 1e-7
 POINTS = 128
 
 Angles: TypeAlias = tuple[float, ...]
@@ -26,15 +29,16 @@ Angles: TypeAlias = tuple[float, ...]
 
 @dataclass(frozen=True)
 class AlbedoAtMost:
-    """A constraint: of the light from some directions the model reflects at most a share.
+    """A constraint: the model reflects at most a share of the light from some directions.
 
     Parameters
     ----------
     limit : float, default 1
-        The largest directional albedo of each channel, above 0; at most 1 where no light is gained.
+        The largest directional albedo of each channel, above 0. With 1, no more light leaves than
+        arrives.
     theta : tuple of float, default (0, 30, 60, 75, 85, 89)
-        Angles of incidence to the normal [degrees, from 0 to below 90]. Nothing is held beyond the
-        last of them, where the formulas of `ward` and `ward_duer` grow without bound.
+        Angles of incidence to the normal [degrees, from 0 to below 90]. The constraint does not
+        hold beyond the last one, where the formulas of `ward` and `ward_duer` grow without bound.
     phi : tuple of float, default (0,)
         Azimuths of incidence [degrees], each with every `theta`; isotropic models need one.
 
@@ -52,35 +56,41 @@ class AlbedoAtMost:
         object.__setattr__(self, "theta", _to_angles("theta", self.theta, 0, 90))
         object.__setattr__(self, "phi", _to_angles("phi", self.phi, -np.inf, np.inf))
 
-    def values(self, problem, u, weights):
-        """The values (m,) at a point, not negative where the constraint is met: by directions, then
-        channels."""
-        found = []
+    def values(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
+        """Return the values (m,) at a point, at least 0 where the constraint is met.
+
+        They are ordered by directions, then channels.
+        """
+        values = []
         for rule, T in self._integrate(problem, problem.columns.values, u):
             # A model with negative weights is clamped at 0
-            found.append(self.limit - np.maximum(_mix(problem, weights, T), 0) @ rule)
-        return np.concatenate(found)
+            values.append(self.limit - np.maximum(_mix_columns(problem, weights, T), 0) @ rule)
+        return np.concatenate(values)
 
-    def slopes(self, problem, u, weights):
-        """Their derivatives (m, n) by coordinates, then by weights."""
-        change = combine(problem.columns, weights, problem.space.slopes(u))[0]
+    def slopes(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
+        """Return the derivatives (m, n) of the values by coordinates, then by weights."""
+        change = combine_columns(problem.columns, weights, problem.space.slopes(u))[0]
         shapes, (channels, lobes) = u.shape[1], weights.shape[1:]
         slopes = []
         for rule, T in self._integrate(problem, problem.columns.eval, u):
-            for c, model in enumerate(_mix(problem, weights, T)):
+            for c, model in enumerate(_mix_columns(problem, weights, T)):
                 slope = np.zeros(shapes + channels * lobes)
-                slope[of_channel(c, shapes, lobes)] = -change[c] @ (T @ (rule * (model >= 0)))
+                slope[channel_rows(c, shapes, lobes)] = -change[c] @ (T @ (rule * (model >= 0)))
                 slopes.append(slope)
         return np.array(slopes)
 
-    def describe(self, rows, channels):
-        """What the values of these numbers limit, in words."""
+    def describe(self, rows: IntArray, channels: int) -> str:
+        """Return what the values with the indices `rows` limit, in words."""
         angles = np.repeat(self.theta, len(self.phi))[rows // channels]
         return f"the albedo at {', '.join(dict.fromkeys(f'{angle:g}°' for angle in angles))}"
 
-    def _integrate(self, problem, evaluate, u):
-        """Yield for each direction of incidence the weights (n,) of the quadrature's nodes, and the
-        columns (columns, n) that `evaluate` gives there."""
+    def _integrate(
+        self, problem: Problem, evaluate: Callable[..., list[JitFloat]], u: FloatArray
+    ) -> Iterator[tuple[FloatArray, FloatArray]]:
+        """Yield for each incident direction a quadrature's weights (n,) and the columns there.
+
+        `evaluate`: a method of `Columns`, which returns (columns, n).
+        """
         wi, wo, rules = _place_nodes(self.theta, self.phi)
         shapes = [
             double_precision.to_array(np.full(len(wi.z), x)) for x in problem.space.table(u)[0]
@@ -88,16 +98,20 @@ class AlbedoAtMost:
         T = np.stack([np.asarray(column) for column in evaluate(shapes, wi, wo)])
         values = len(problem.columns.lobes)
         require_finite(problem.model, T[: problem.columns.lobes.max() + 1], wi, wo)
-        # Forwards, Dr.Jit has NaN where 0^p has a slope of 0 by p
+        # For the derivative of 0^p by p, which is 0, Dr.Jit's forward mode returns NaN
         T[values:] = np.nan_to_num(T[values:], posinf=0, neginf=0)
         ends = np.cumsum([len(rule) for rule in rules])
         yield from zip(rules, np.split(T, ends[:-1], axis=1), strict=True)
 
 
 @lru_cache(maxsize=4)
-def _place_nodes(theta, phi):
-    """wi and wo, `double_precision.Vector`, of the quadratures for all directions of incidence, and
-    the weights (n,) of the nodes of each."""
+def _place_nodes(
+    theta: tuple[float, ...], phi: tuple[float, ...]
+) -> tuple[Vector, Vector, tuple[FloatArray, ...]]:
+    """Return wi and wo of the quadratures for all incident directions, and their weights.
+
+    wi and wo are `double_precision.Vector`; the weights are an array (n,) for each direction.
+    """
     angles = np.meshgrid(np.radians(theta), np.radians(phi), indexing="ij")
     incident = from_angles(*angles).reshape(-1, 3)
     nodes, rules = zip(*(make_ring_rule(wi, POINTS) for wi in incident), strict=True)
@@ -105,15 +119,15 @@ def _place_nodes(theta, phi):
     return double_precision.to_vector(wi), double_precision.to_vector(np.concatenate(nodes)), rules
 
 
-def _mix(problem, weights, T):
-    """The model (channels, n), not clamped, of its columns (columns, n)."""
+def _mix_columns(problem: Problem, weights: FloatArray, T: FloatArray) -> FloatArray:
+    """Return the model (channels, n), not clamped, from its columns (columns, n)."""
     columns = problem.columns
     factors = (weights[0][:, columns.lobes]) ** columns.powers
     return factors @ T[: len(columns.lobes)]
 
 
-def _to_angles(name, given, low, high):
-    """One or several angles [degrees], from `low` to below `high`, as a tuple of floats."""
+def _to_angles(name: str, given: Any, low: float, high: float) -> tuple[float, ...]:
+    """Return one or several angles [degrees], from `low` to below `high`, as a tuple of floats."""
     try:
         angles = tuple(map(float, given if isinstance(given, Iterable) else [given]))
     except (TypeError, ValueError):

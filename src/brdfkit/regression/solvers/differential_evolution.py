@@ -1,6 +1,7 @@
-"""`DifferentialEvolution`: a population of points that explores all bounds, for hard cases.
+"""`DifferentialEvolution`: a global search by a population of points, for difficult fits.
 
-SciPy's, [Storn & Price 1997], over the shape parameters; the weights follow them.
+SciPy's implementation of [Storn & Price 1997] searches the shape parameters; the best weights are
+computed at each point.
 """
 
 from dataclasses import dataclass
@@ -8,29 +9,31 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.core.arguments import check_numbers
+from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt
 from brdfkit.regression.solvers.objective import End, Objective
 
-# Steps by which the weights follow the shape parameters, where the loss is not linear
-STEPS = 4
-# They stop where one lowers no E² by more than this share
+# Steps to the best weights at a point, if the loss is not linear
+WEIGHT_STEPS = 4
+# They stop if a step lowers no E² by more than this share
 SETTLED = 1e-3
 
 
 @dataclass(frozen=True)
 class DifferentialEvolution:
-    """Differential evolution, a global search by `scipy.optimize.differential_evolution`, ended by
-    `LevenbergMarquardt`. It takes longer, and depends less on where it begins.
+    """Differential evolution, a global search by `scipy.optimize.differential_evolution`.
+
+    `LevenbergMarquardt` refines its end. It takes longer, and depends less on the start points.
 
     Parameters
     ----------
     population : int, default 15
-        How many points there are for each searched shape parameter.
+        Number of points for each searched shape parameter.
     iterations : int, default 100
-        The most generations.
+        Largest number of generations.
     tolerance : float, default 0.001
-        The search ends where E² varies by less than this share within the population.
+        The search ends if E² varies by less than this share within the population.
 
     Examples
     --------
@@ -45,17 +48,17 @@ class DifferentialEvolution:
         check_numbers(self)
 
     def minimise(self, objective: Objective) -> End:
-        """The end of the search."""
+        """Return the end of the search."""
         coordinates = self._explore(objective) if objective.shapes else objective.coordinates
         return LevenbergMarquardt().find_ends(objective, coordinates)[0]
 
-    def _explore(self, objective):
-        """The coordinates (points, shapes) of the last population, the best first."""
+    def _explore(self, objective: Objective) -> FloatArray:
+        """Return the coordinates (points, shapes) of the last population, the best first."""
         from scipy.optimize import differential_evolution
 
         first = objective.stages()[0]
-        found = differential_evolution(
-            lambda u: _least_error(first, u.T),
+        result = differential_evolution(
+            lambda u: _find_least_error(first, u.T),
             [(0, 1)] * objective.shapes,
             popsize=self.population,
             maxiter=self.iterations,
@@ -66,16 +69,16 @@ class DifferentialEvolution:
             polish=False,
             x0=objective.coordinates[0],
         )
-        order = np.argsort(found.population_energies, kind="stable")
-        return found.population[order]
+        order = np.argsort(result.population_energies, kind="stable")
+        return result.population[order]
 
 
-def _least_error(objective, u):
-    """E² (points,) at coordinates `u` (points, shapes), nearly the least by the weights."""
+def _find_least_error(objective: Objective, u: FloatArray) -> FloatArray:
+    """Return E² (points,) at coordinates `u` (points, shapes), with nearly the best weights."""
     shapes, problem = objective.shapes, objective.problem
     low = np.tile(problem.least, problem.channels)
     z, least = objective.join(u, problem.start(u)), np.full(len(u), np.inf)
-    for _ in range(STEPS):
+    for _ in range(WEIGHT_STEPS):
         here = objective.expand(z)
         gained = (least - here.error) > SETTLED * here.error
         least = np.fmin(least, here.error)

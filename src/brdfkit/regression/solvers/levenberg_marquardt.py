@@ -1,4 +1,4 @@
-"""`LevenbergMarquardt`: damped Gauss-Newton steps from all starts at once; what `fit` does itself.
+"""`LevenbergMarquardt`: the default solver, damped Gauss-Newton steps from all starts at once.
 
 [Levenberg 1944]; [Marquardt 1963].
 """
@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.core.arguments import check_numbers
-from brdfkit.regression.search.multistart import EXACT, MOST_STEPS, search
-from brdfkit.regression.solvers.objective import End, Floats, Objective
+from brdfkit.core.array_types import FloatArray
+from brdfkit.regression.search.multistart import EXACT, LARGEST_STEPS, search_from_starts
+from brdfkit.regression.solvers.objective import End, Objective
 
 
 @dataclass(frozen=True)
@@ -21,30 +22,30 @@ class LevenbergMarquardt:
     Parameters
     ----------
     iterations : int, default 200
-        The most steps of one search.
+        Largest number of steps of one search.
     tolerance : float, default 1e-11
-        A search ends where its next step would lower E² by less than this share of it; of large
-        tables, a hundred times as much.
+        A search ends if its next step would lower E² by less than this share of it; for large
+        tables, by less than a hundred times this share.
 
     Examples
     --------
     >>> fit("paint.binary", "ggx", solver=LevenbergMarquardt(iterations=50))    # doctest: +SKIP
     """
 
-    iterations: int = MOST_STEPS
+    iterations: int = LARGEST_STEPS
     tolerance: float = EXACT
 
     def __post_init__(self) -> None:
         check_numbers(self)
 
     def minimise(self, objective: Objective) -> End:
-        """The end of the search."""
+        """Return the end of the search."""
         return self.find_ends(objective, objective.coordinates)[0]
 
-    def find_ends(self, objective: Objective, coordinates: Floats) -> list[End]:
-        """The best ends of the search from `coordinates` (count, shapes), the very best first."""
+    def find_ends(self, objective: Objective, coordinates: FloatArray) -> list[End]:
+        """Return the best ends of the search from `coordinates` (count, shapes), the best first."""
         problems = [stage.problem for stage in objective.stages()]
-        ends, converged, evaluations = search(
+        ends, converged, evaluations = search_from_starts(
             problems, coordinates, objective.report, self.iterations, self.tolerance
         )
         objective.evaluations += evaluations

@@ -1,4 +1,4 @@
-"""Solvers and constraints as arguments: objects, names, or the plain data that a saved fit has."""
+"""Reads solvers and constraints from arguments: objects, names, or the data of a saved fit."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -21,53 +21,54 @@ SOLVERS: dict[str, Any] = {
 CONSTRAINTS: dict[str, Any] = {"albedo_at_most": AlbedoAtMost, "weights_at_most": WeightsAtMost}
 
 
-def to_solver(given: Any) -> Any:
-    """The solver that an argument means, an object with `minimise`; None for None."""
-    if isinstance(given, str):
-        given = {"name": given}
-    if isinstance(given, Mapping):
-        return _make("solver", SOLVERS, given)
-    if given is not None and (isinstance(given, type) or not hasattr(given, "minimise")):
+def to_solver(value: Any) -> Any:
+    """Return the solver that an argument means, an object with `minimise`; None for None."""
+    if isinstance(value, str):
+        value = {"name": value}
+    if isinstance(value, Mapping):
+        return _make_from_data("solver", SOLVERS, value)
+    if value is not None and (isinstance(value, type) or not hasattr(value, "minimise")):
         raise BrdfkitError(
-            f"solver = {given!r} should be a solver such as SLSQP(), or the name of one: "
+            f"solver = {value!r} should be a solver such as SLSQP(), or the name of one: "
             f"{', '.join(SOLVERS)}."
         )
-    return given
+    return value
 
 
-def to_constraints(given: Any) -> tuple[Any, ...]:
-    """The constraints that an argument means: our objects, and functions."""
-    if given is None:
+def to_constraints(value: Any) -> tuple[Any, ...]:
+    """Return the constraints that an argument means, objects of brdfkit and functions."""
+    if value is None:
         return ()
-    several = isinstance(given, Iterable) and not isinstance(given, Mapping | str)
-    return tuple(map(_to_constraint, given if several else [given]))
+    several = isinstance(value, Iterable) and not isinstance(value, Mapping | str)
+    return tuple(map(_to_constraint, value if several else [value]))
 
 
-def _to_constraint(given):
-    if isinstance(given, Mapping):
-        return _make("constraint", CONSTRAINTS, given)
-    if isinstance(given, type) or not (callable(given) or hasattr(given, "slopes")):
+def _to_constraint(value: Any) -> Any:
+    """Return the constraint that a value means, an object of brdfkit or a function."""
+    if isinstance(value, Mapping):
+        return _make_from_data("constraint", CONSTRAINTS, value)
+    if isinstance(value, type) or not (callable(value) or hasattr(value, "slopes")):
         raise BrdfkitError(
-            f"{given!r} is no constraint; give one such as AlbedoAtMost(1.0), or a function of the "
+            f"{value!r} is no constraint; give one such as AlbedoAtMost(1.0), or a function of the "
             "model that returns a number ≥ 0 where it is met."
         )
-    return given
+    return value
 
 
-def to_plain(thing: Any) -> Any:
-    """A solver or a constraint as JSON has it; one of a user's by its name alone."""
+def to_plain(setting: Any) -> Any:
+    """Return a solver or a constraint as data for JSON, or only the name of a user's own."""
     for name, cls in (SOLVERS | CONSTRAINTS).items():
-        if type(thing) is cls:
-            return {"name": name, **to_json(thing)}
-    return thing and getattr(thing, "__qualname__", type(thing).__qualname__)
+        if type(setting) is cls:
+            return {"name": name, **to_json(setting)}
+    return setting and getattr(setting, "__qualname__", type(setting).__qualname__)
 
 
 def require_suitable(solver: Any, constraints: tuple[Any, ...], robust: str | None) -> None:
-    """Raise `BrdfkitError` for constraints that the solver, or a robust fit, does not know of."""
+    """Raise `BrdfkitError` for constraints that the solver, or a robust fit, does not support."""
     if constraints and robust:
         raise BrdfkitError(
-            "A robust fit takes no constraints, for its passes would leave them; give one or the "
-            "other."
+            "A robust fit takes no constraints, because its passes would violate them; give one or "
+            "the other."
         )
     if constraints and solver is not None and not getattr(solver, "constrained", False):
         raise BrdfkitError(
@@ -76,21 +77,21 @@ def require_suitable(solver: Any, constraints: tuple[Any, ...], robust: str | No
 
 
 def require_plain(solver: Any, constraints: tuple[Any, ...]) -> None:
-    """Raise `BrdfkitError` for a solver or constraints that other processes could not have."""
-    for thing in (solver, *constraints):
-        if isinstance(to_plain(thing), str):
+    """Raise `BrdfkitError` for a solver or constraints that cannot be sent to other processes."""
+    for setting in (solver, *constraints):
+        if isinstance(to_plain(setting), str):
             raise BrdfkitError(
-                f"{to_plain(thing)} is code; where other processes fit, solvers and constraints "
+                f"{to_plain(setting)} is code; where other processes fit, solvers and constraints "
                 "should be brdfkit's."
             )
 
 
-def _make(what, classes, given):
-    """The object of plain data as `to_plain` gives."""
-    numbers = dict(given)
+def _make_from_data(kind: str, classes: Mapping[str, Any], data: Mapping[str, Any]) -> Any:
+    """Return the object of one of the `classes` from data, as `to_plain` returns them."""
+    numbers = dict(data)
     name = numbers.pop("name", None)
     if not isinstance(name, str) or name not in classes:
-        raise no_such(what, name, classes)
+        raise no_such(kind, name, classes)
     known = classes[name].__dataclass_fields__
     for number in numbers:
         if number not in known:

@@ -1,9 +1,9 @@
-"""`TrustRegion`: Gauss-Newton steps within a region of trust, by SciPy's `least_squares`.
+"""`TrustRegion`: Gauss-Newton steps within a trust region, by SciPy's `least_squares`.
 
-Its method "trf" [Branch et al. 1999] takes residuals and their Jacobian, which for a full table
-would be a gigabyte. It needs their products alone; so it is given the few residuals r and the small
-Jacobian J that have the same ones: E² = rᵀr, g = Jᵀr and H = JᵀJ. SciPy's "trust-constr" with the
-same Hessian ends where "trf" does, after three to seven times as many evaluations.
+Its method "trf" [Branch et al. 1999] takes residuals and their Jacobian, which would be a gigabyte
+for a full table. It uses only their products. So it receives few residuals r and a small Jacobian J
+with the same products: E² = rᵀr, g = Jᵀr and H = JᵀJ. SciPy's "trust-constr" with the same Hessian
+reaches the same end after three to seven times as many evaluations.
 """
 
 from dataclasses import dataclass
@@ -11,25 +11,27 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.core.arguments import check_numbers
+from brdfkit.core.array_types import FloatArray
+from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.solvers.objective import End, Objective
-from brdfkit.regression.solvers.several_starts import best_starts, descend
+from brdfkit.regression.solvers.several_starts import find_best_starts, search_stages
 
-# Eigenvalues of a Hessian, beside the largest, that are rounding
+# Eigenvalues of a Hessian below this share of the largest are rounding
 SINGULAR = 1e-14
 
 
 @dataclass(frozen=True)
 class TrustRegion:
-    """Gauss-Newton steps within a region of trust, by `scipy.optimize.least_squares` ("trf").
+    """Gauss-Newton steps within a trust region, by `scipy.optimize.least_squares` ("trf").
 
     Parameters
     ----------
     iterations : int, default 200
-        The most steps of one search.
+        Largest number of steps of one search.
     tolerance : float, default 1e-12
-        A search ends where a step lowers E² by less than this share of it.
+        A search ends if a step lowers E² by less than this share of it.
     starts : int, default 8
-        How many of the starts are searched from: those with the least E².
+        Number of starts to search from, those with the least E².
 
     Examples
     --------
@@ -44,22 +46,22 @@ class TrustRegion:
         check_numbers(self)
 
     def minimise(self, objective: Objective) -> End:
-        """The end of the search."""
-        return descend(objective, self._search, best_starts(objective, self.starts))
+        """Return the end of the search."""
+        return search_stages(objective, self._search, find_best_starts(objective, self.starts))
 
-    def _search(self, objective, z):
-        """The `End` of the search from one point."""
+    def _search(self, objective: Objective, z: FloatArray) -> End:
+        """Return the `End` of the search from one point."""
         from scipy.optimize import least_squares
 
-        known = {}
+        cache: dict[bytes, tuple[FloatArray, FloatArray]] = {}
 
-        def compress(z):
-            if z.tobytes() not in known:
-                known.clear()
-                known[z.tobytes()] = _compress(objective.expand(z))
-            return known[z.tobytes()]
+        def compress(z: FloatArray) -> tuple[FloatArray, FloatArray]:
+            if z.tobytes() not in cache:
+                cache.clear()
+                cache[z.tobytes()] = _compress_expansion(objective.expand(z))
+            return cache[z.tobytes()]
 
-        found = least_squares(
+        result = least_squares(
             lambda z: compress(z)[0],
             z,
             lambda z: compress(z)[1],
@@ -70,12 +72,15 @@ class TrustRegion:
             gtol=self.tolerance,
             max_nfev=self.iterations,
         )
-        message = "converged" if found.status > 0 else f"stopped after {self.iterations} steps"
-        return End(found.x, 2 * found.cost, message)
+        message = "converged" if result.status > 0 else f"stopped after {self.iterations} steps"
+        return End(result.x, 2 * result.cost, message)
 
 
-def _compress(expansion):
-    """The residuals (n + 1,) and the Jacobian (n + 1, n) of an `Expansion` about one point."""
+def _compress_expansion(expansion: Expansion) -> tuple[FloatArray, FloatArray]:
+    """Return residuals (n + 1,) and their Jacobian (n + 1, n) with the products of an `Expansion`.
+
+    The expansion is about one point.
+    """
     values, vectors = np.linalg.eigh(expansion.hessian[0])
     roots = np.sqrt(np.where(values > SINGULAR * values.max(), values, 0))
     along = vectors.T @ expansion.gradient[0]

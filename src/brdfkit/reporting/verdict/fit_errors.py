@@ -20,8 +20,8 @@ from brdfkit.materials.measured.albedos import ANGLES
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.regression import Fit, losses
 from brdfkit.regression.albedo_cells import format_albedo, is_wrong
-from brdfkit.regression.light import WRONG
-from brdfkit.regression.losses.loss import squares
+from brdfkit.regression.light import WRONG_FACTOR
+from brdfkit.regression.losses.loss import squared_differences
 from brdfkit.regression.losses.named_losses import DEFAULT
 
 SAMPLE_LIMIT = 200_000  # for quantiles and ties: of more samples, so many are drawn
@@ -82,7 +82,7 @@ def compute_fit_errors(material: Measured, fits: Sequence[Fit], loss: str) -> li
     sums, factors = [], []
     for fit in fits:
         values = np.broadcast_to(fit.rgb.eval(samples.wi, samples.wo), samples.values.shape)
-        sums.append(np.bincount(blocks, weight * squares(by_sample, values, samples)))
+        sums.append(np.bincount(blocks, weight * squared_differences(by_sample, values, samples)))
         factors.append(_compute_factors(values, samples))
     best = min(sums, key=np.sum)
     shares = np.bincount(blocks, weight)
@@ -176,7 +176,7 @@ def make_errors_table(
     return {
         "losses": by_loss,
         "angles": [f"{angle:g}°" for angle in ANGLES],
-        "factor": WRONG,
+        "factor": WRONG_FACTOR,
         "measured": [(format_albedo(known), is_wrong(known)) for known in measured],
         "rows": rows,
     }

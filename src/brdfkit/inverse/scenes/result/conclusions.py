@@ -17,7 +17,7 @@ from brdfkit.inverse.scenes.result.residual_noise import ResidualNoise
 from brdfkit.inverse.scenes.search.gauss_newton import Search, find_free, solve_step
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 from brdfkit.regression import Fit
-from brdfkit.regression.certainty import Certainty, conclude
+from brdfkit.regression.certainty import Certainty, conclude_certainty
 
 
 def conclude_search(
@@ -97,7 +97,7 @@ def estimate_certainty(views: Views, state: Search, noise: ResidualNoise) -> Cer
     hessian[unseen] = hessian[:, unseen] = scores[unseen] = 0
     scale = 1 / np.sqrt(np.where(np.diagonal(hessian) > 0, np.diagonal(hessian), 1))
     blocks = scores.shape[1]
-    certainty = conclude(
+    certainty = conclude_certainty(
         views.names,
         free,
         np.concatenate(views.to_values(here.x)),

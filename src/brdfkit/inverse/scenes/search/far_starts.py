@@ -19,7 +19,7 @@ from brdfkit.inverse.scenes.search.gauss_newton import (
 )
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
-from brdfkit.regression.search.starting_points import start_points
+from brdfkit.regression.search.multistart import make_start_points
 
 FINALISTS = 3  # points that take steps
 FINALIST_STEPS = 2
@@ -43,7 +43,7 @@ def find_start(views: Views, count: int, seed: int, report: Callable[[], object]
     nonlinear = views.is_nonlinear_share
     if count == 1 or not nonlinear.any():
         return views.start
-    points = start_points(None, views.start[None, nonlinear][0], count, seed)
+    points = make_start_points(views.start[None, nonlinear][0], count, seed)
     spp = choose_initial_samples(views)
     tried: list[Residuals] = []
     finalists: list[Residuals] = []
