@@ -38,7 +38,7 @@ from brdfkit.reporting.verdict.verdict import write_verdict
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """What a report shows.
+    """The contents of a report.
 
     page : the variables of its template.
     material : the name of the material.

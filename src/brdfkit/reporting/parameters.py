@@ -14,7 +14,7 @@ from brdfkit.core.json_values import round_numbers, to_json
 from brdfkit.model.value_table import LARGEST_COUNT
 from brdfkit.regression import Fit
 
-DIGITS = 9  # of numbers in JSON: enough to make the model, and the same on every machine
+DIGITS = 9  # for numbers in JSON: enough to make the model, and equal on every machine
 
 
 def describe_fit(fit: Fit, known_notes: Collection[str] = ()) -> dict[str, Any]:

@@ -18,8 +18,8 @@ from brdfkit.regression import losses
 from brdfkit.regression.albedo_cells import format_albedo, is_wrong, mean_albedos
 from brdfkit.regression.light import WRONG_FACTOR
 
-TINT_STEPS = 10  # of colour, as the page's style has them
-COLOURLESS_RATIO = 4.0  # of an error to the best one, from which a cell has no tint
+TINT_STEPS = 10  # shades of colour in the page's style
+COLOURLESS_RATIO = 4.0  # a cell with so many times the best error has no tint
 ALBEDOS = (
     f"Under {join_words([f'{angle:g}°' for angle in ANGLES])}: the albedo of the fit, the share of "
     "the light from that angle to the normal that it reflects, the mean over the channels; below "

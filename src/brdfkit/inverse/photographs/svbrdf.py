@@ -184,6 +184,7 @@ def _count_progress(progress: Progress | None, estimate: int) -> Callable[[], No
     done = 0
 
     def report() -> None:
+        """Count a step and report it."""
         nonlocal done
         done += 1
         if progress:

@@ -32,7 +32,7 @@ from brdfkit.inverse.scenes.search.descent import count_steps, descend
 from brdfkit.inverse.scenes.search.far_starts import FINALISTS, default_start_count, find_start
 from brdfkit.inverse.scenes.search.gauss_newton import Search, run_gauss_newton
 
-STEP_LIMIT = 30  # by default; nearly all searches converge before
+STEP_LIMIT = 30  # the default; nearly all searches converge earlier
 NO_ERRORS = "descent, the search for many numbers, gives no standard errors"
 
 
@@ -221,6 +221,7 @@ def _count_progress(progress: Progress | None, total: int) -> Callable[[], None]
     done = 0
 
     def report() -> None:
+        """Count a step and report it."""
         nonlocal done
         done += 1
         if progress:

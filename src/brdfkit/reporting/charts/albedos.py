@@ -42,7 +42,7 @@ def is_extrapolated(measured: Albedo) -> BoolArray:
 
 
 def _compute_luminance(model: Any, anisotropic: bool) -> FloatArray:
-    """Return the luminance (n,) of a model's albedo at the angles of the measurement's."""
+    """Return the luminance (n,) of a model's albedo at the angles of the measured albedo."""
     grey: Any = SimpleNamespace(
         channels=("Y",),
         anisotropic=anisotropic,

@@ -14,7 +14,7 @@ from brdfkit.reporting.charts.svg import BOTTOM, HEIGHT, TOP, Axis, Chart, linea
 
 LINE_STEP, DOT_STEP = 0.5, 3.0  # degrees between points of a line, and between dots of a table
 SAMPLING = 0.1  # degrees between the values of a lobe
-DOT_RADIUS = 2.0  # as the page's style has it: it hides shorter bars
+DOT_RADIUS = 2.0  # the same as in the page's style; a dot hides shorter bars
 PEAK_WIDTH = 4.0  # degrees on each side of the peak, where points are six times as dense
 
 

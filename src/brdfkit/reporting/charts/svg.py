@@ -14,7 +14,7 @@ from brdfkit.core.array_types import ArrayLike
 WIDTH, HEIGHT = 290, 236
 LEFT, RIGHT, TOP, BOTTOM = 48, 10, 26, 36  # margins
 COLOURS = 6  # for fits; the page's style defines as many
-STROKES = "", " dashed", " dotted"  # of fits in turn, so that lines on each other are all seen
+STROKES = "", " dashed", " dotted"  # taken in turn, so that lines on each other are all visible
 
 
 @dataclass(frozen=True)

@@ -84,6 +84,7 @@ def _build_with_box_filter(scene: str | Path) -> BuildScene:
     build, is_mesh = find_scene(scene), bool(Path(scene).suffix)
 
     def build_sharp(bsdf: Any, size: Any) -> dict[str, Any]:
+        """Return the dictionary of the scene with a BSDF, for a picture of this size."""
         if is_mesh and isinstance(bsdf, dict):  # the back of a mesh may be in view
             bsdf = load_material(bsdf, "material", both_sides=True)
         dictionary: dict[str, Any] = build(bsdf, size)

@@ -19,7 +19,7 @@ from brdfkit.core.pages.images import apply_colour_map
 DARKEST = -12  # the binary logarithm of the smallest light above 0
 STEPS = 128  # per doubling of the light
 LAST_CODE = 4095  # for the light 2^20
-COLOUR_MAP = "magma"  # of colour differences
+COLOUR_MAP = "magma"  # for colour differences
 BRIGHT_DIFFERENCE = 10  # ΔE at the bright end of the colour map
 LARGEST_DIFFERENCE = 100  # ΔE that a byte can hold
 

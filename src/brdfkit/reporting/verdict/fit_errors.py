@@ -32,7 +32,7 @@ LARGEST_FACTOR = 1000  # a larger one says no more than that the fit fails
 
 @dataclass(frozen=True)
 class FitErrors:
-    """How far a fit is from the measurement.
+    """The distances of a fit from the measurement.
 
     A value is met within a factor if measured / fitted and its inverse do not exceed it. Measured
     values above 0 count, those of each channel by themselves.

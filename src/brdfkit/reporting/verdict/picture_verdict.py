@@ -9,8 +9,8 @@ from brdfkit.reporting.pictures.picture_errors import PictureError
 
 # ΔE: the smallest difference that is visible side by side, and one that is plain
 VISIBLE, PLAIN = 1.0, 3.0
-UNKNOWN_SHARE = 0.5  # of the noise: smaller differences are not known
-HIDDEN_RATIO = 2.0  # to noise that is visible itself: smaller differences are hidden by it
+UNKNOWN_SHARE = 0.5  # differences below this share of the noise are not known
+HIDDEN_RATIO = 2.0  # visible noise hides differences that are less than twice as large
 
 
 def describe_visibility(errors: Mapping[str, PictureError]) -> str:

@@ -14,8 +14,8 @@ from brdfkit.reporting.verdict.picture_verdict import (
     leads_in_picture,
 )
 
-MARKED_RATIO = 1.5  # of the worst band's logarithm to the typical one, worth a sentence
-AHEAD_RATIO = 1.01  # of errors: a smaller lead of another fit is not worth a sentence
+MARKED_RATIO = 1.5  # log(worst factor) / log(typical factor) above it is worth a sentence
+AHEAD_RATIO = 1.01  # between errors: a smaller lead of another fit is not worth a sentence
 
 
 def write_verdict(

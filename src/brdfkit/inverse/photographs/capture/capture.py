@@ -11,10 +11,10 @@ from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
 from brdfkit.inverse.photographs.capture.checks import check_capture
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole
 
-CLIPPED_SHARE = 1e-4  # of the numbers: if more equal the largest one, this is not by chance
-SMALLEST_COSINE = 0.05  # of a light's angle: below it bumps of the sample cast shadows
+CLIPPED_SHARE = 1e-4  # if a larger share of the numbers equals the largest, it is clipped
+SMALLEST_COSINE = 0.05  # below, light grazes the sample, and its bumps cast shadows
 SMALLEST_MAP = 4  # texels along a side
-PIXELS_PER_TEXEL = 1.4  # along a side, at least, after photographs are made smaller
+PIXELS_PER_TEXEL = 1.4  # along a side: so many remain at least in photographs made smaller
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +107,7 @@ class Capture:
 
     @cached_property
     def counted(self) -> BoolArray:
-        """Which numbers (lights, height, width, 3) show the sample reliably and are not lost."""
+        """The mask (lights, height, width, 3) of numbers that show the sample and are not lost."""
         shown = [
             self.is_shown(k, camera.on_sample(self.picture_size))
             for k, camera in enumerate(self.cameras)
@@ -121,7 +121,7 @@ class Capture:
 
     @cached_property
     def clipped(self) -> BoolArray:
-        """Which numbers (lights, height, width, 3) equal the largest value the camera could store.
+        """The mask (lights, height, width, 3) of numbers at the largest value of the camera.
 
         Each colour has its own largest value, because a white balance scales them.
         """
@@ -132,7 +132,7 @@ class Capture:
 
     @property
     def excluded(self) -> BoolArray:
-        """Which numbers (lights, height, width, 3) do not count: the lost ones, or the clipped."""
+        """The mask (lights, height, width, 3) of numbers that do not count: lost or clipped."""
         return self.clipped if self.lost is None else self.lost
 
 

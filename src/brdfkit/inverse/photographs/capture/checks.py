@@ -70,7 +70,7 @@ def _check_lights(capture: Any) -> None:
 
 
 def _check_cameras(capture: Any, count: int) -> None:
-    """Raise `BrdfkitError` unless there are one or `count` cameras that see the sample."""
+    """Raise `BrdfkitError` unless there are one or `count` cameras, which all see the sample."""
     value = capture.camera
     if not isinstance(value, Pinhole | tuple | list) or not all(
         isinstance(camera, Pinhole) for camera in capture.cameras

@@ -13,12 +13,12 @@ from brdfkit.inverse.photographs.capture.capture import Capture
 
 ARRAYS = "radiance", "weights", "to_light", "irradiance", "to_camera"
 POOLED_TEXELS = 8  # along a side of a large texel: more of them add nothing
-DARK_OFFSET = 0.05  # of the mean radiance, added to a radiance, so that relative errors stay finite
+DARK_OFFSET = 0.05  # times the mean radiance, added so that relative errors stay finite
 
 
 @dataclass(frozen=True)
 class Observations:
-    """What k photographs show of n texels.
+    """The content of k photographs at n texels.
 
     radiance : (k, n, 3) [W/(m² sr)].
     weights : (k, n, 3), the weights of squared errors: about 1 / radiance², 0 if lost or clipped.

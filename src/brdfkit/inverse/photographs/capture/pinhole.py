@@ -14,7 +14,7 @@ from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import make_axes, make_rigid, project_all
 
 CLIP_DISTANCES = 1e-2, 1e4  # near and far, in heights of the camera above the sample
-SMALLEST_SINE = 1e-5  # of the angle between view and up, below which Mitsuba finds no axes
+SMALLEST_SINE = 1e-5  # with a smaller angle between view and up, Mitsuba finds no axes
 
 
 @dataclass(frozen=True, eq=False)

@@ -38,7 +38,7 @@ class Maps:
         shape: tuple[int, int],
         size: tuple[float, float],
     ) -> Maps:
-        """Return the maps of `shape` (height, width) that rows `x` (n, count) hold."""
+        """Return the maps of `shape` (height, width) of texels with the numbers `x` (n, count)."""
         maps = {}
         for lobe, name in enumerate(parameters.lobes):
             weights = x[:, CHANNELS * lobe : CHANNELS * (lobe + 1)]
@@ -54,7 +54,7 @@ class Maps:
 
 
 def to_rows(svbrdf: Any) -> tuple[TexelParameters, FloatArray]:
-    """Return the rows (n, count) of `Maps` or an `Svbrdf`, and their layout."""
+    """Return the layout and the numbers (n, count) of the texels of `Maps` or an `Svbrdf`."""
     model, maps = labels.model(svbrdf.model), svbrdf.maps
     weights = model.weights()
     names = tuple(name for name in maps if name not in (*weights, "normal", ANGLE))
@@ -77,7 +77,7 @@ def find_pair(model: type[Model], names: Iterable[str]) -> tuple[str, str] | Non
 def to_error_maps(
     parameters: TexelParameters, errors: FloatArray, x: FloatArray, shape: tuple[int, int]
 ) -> dict[str, FloatArray]:
-    """Return maps (height, width) of standard errors, given those (n, count) of the rows `x`.
+    """Return maps (height, width) of standard errors from the `errors` (n, count) of numbers `x`.
 
     Colours have the RMS error of their channels, normals that of their direction [radians].
     """

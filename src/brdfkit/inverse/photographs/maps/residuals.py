@@ -8,11 +8,11 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.capture.observations import Observations
 
-UNEXPLAINED = 3  # times the noise, from which a texel is not explained
-UNEXPLAINED_SHARE = 0.03  # of the texels, from which a sentence says so
+UNEXPLAINED = 3  # a texel with residuals of so many times the noise is not explained
+UNEXPLAINED_SHARE = 0.03  # if so many texels are not explained, a sentence says so
 LARGEST_NOISE = 0.04  # relative: cameras hardly have more
 LARGEST_RESIDUAL = 0.5  # relative, over all texels: more means that some lie beside the sample
-OUTLIER = 2.5  # times the median residual of the photographs
+OUTLIER = 2.5  # a photograph with so many times the median residual is named
 PALEST, DARKEST = 1.05, 0.004  # median reflectances beyond these are hardly any sample's
 
 

@@ -59,18 +59,18 @@ class TexelParameters:
 
     @property
     def shape_columns(self) -> slice:
-        """Where the numbers of the shape parameters are in a row."""
+        """The columns of the shape parameters in a row of numbers."""
         first = CHANNELS * len(self.lobes)
         return slice(first, first + len(self.shapes.number_names))
 
     @property
     def normal_columns(self) -> slice:
-        """Where x and y of the normal are in a row."""
+        """The columns of x and y of the normal in a row of numbers."""
         return slice(self.shape_columns.stop, self.shape_columns.stop + 2)
 
     @property
     def count(self) -> int:
-        """How many numbers a row has."""
+        """The number of columns, which is that of the numbers of a texel."""
         return int(self.normal_columns.stop)
 
     @property
@@ -87,7 +87,7 @@ class TexelParameters:
         return low, high
 
     def compute_radiances(self, x: FloatArray, observed: Observations) -> FloatArray:
-        """Return the radiances (k, n, 3) of rows `x` (n, count) under the observed lights."""
+        """Return the radiances (k, n, 3) of texels with the numbers `x` (n, count)."""
         lobes, _ = self.evaluate_lobes(x, observed, differentiate=False)
         weights = x[:, : self.shape_columns.start].reshape(len(x), -1, CHANNELS)
         shown = sum(lobe[..., None] * weights[:, k] for k, lobe in enumerate(lobes))
@@ -98,7 +98,7 @@ class TexelParameters:
     def evaluate_lobes(
         self, x: FloatArray, observed: Observations, differentiate: bool = True
     ) -> tuple[Lobes, list[Lobes]]:
-        """Return the lobes at rows `x` (n, count), and their derivatives.
+        """Return the lobes of texels with the numbers `x` (n, count), and their derivatives.
 
         The derivatives are by each number of the shapes and the normal; there are none unless
         `differentiate`.
@@ -124,6 +124,7 @@ class TexelParameters:
         dr.eval(values, derivatives)  # all of them in one kernel
 
         def to_numpy(lobes: Sequence[JitFloat]) -> Lobes:
+            """Return lobes of Dr.Jit as arrays (lights, texels)."""
             return [np.array(lobe).reshape(lights, texels) for lobe in lobes]
 
         return to_numpy(values), [to_numpy(lobes) for lobes in derivatives]

@@ -8,10 +8,10 @@ from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
 from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 
-SMALLEST_EIGENVALUE = 1e-4  # of a Hessian with unit diagonal: below, a combination is undetermined
-MAIN_PART = 0.3  # of the largest entry of an eigenvector: numbers above it are in the combination
-MENTIONED_SHARE = 0.25  # of the undetermined texels, in which a number has to be to be named
-UNDETERMINED_SHARE = 0.05  # of the texels, from which a sentence says so
+SMALLEST_EIGENVALUE = 1e-4  # below it, a combination of numbers is undetermined
+MAIN_PART = 0.3  # relative to the largest entry: such numbers take part in a combination
+MENTIONED_SHARE = 0.25  # a number is named if it is undetermined in more of these texels
+UNDETERMINED_SHARE = 0.05  # if so many texels are undetermined, a sentence says so
 
 
 def describe_undetermined(

@@ -18,7 +18,7 @@ WIDEST = 512  # pixels of a picture on the page
 VALUE_SCALE, DIFFERENCE_SCALE = "viridis", "RdBu_r"
 LARGEST_MISFIT = 2 * UNEXPLAINED  # times the noise, the end of the colour scale
 LARGEST_DIFFERENCE = 0.2  # relative, the ends of the colour scale
-DARK_OFFSET = 0.05  # of white, added where differences are relative
+DARK_OFFSET = 0.05  # times white, added so that relative differences stay finite
 
 
 def write_report(svbrdf: Any, path: Path) -> None:

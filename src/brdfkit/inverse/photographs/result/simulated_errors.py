@@ -33,7 +33,7 @@ from brdfkit.inverse.photographs.search.through_renderer import (
 
 AVERAGED_SIDE = 9  # texels: simulated errors are averaged over this square
 LARGEST_ERROR_RATIO = 5.0  # a simulated error over that of the equations: larger ones are clipped
-FEWEST_FREE = 0.3  # of the photographed numbers, the smallest share that the maps do not follow
+FEWEST_FREE = 0.3  # at least this share of the photographs' noise is not fitted by the maps
 
 
 def simulate_errors(
@@ -83,7 +83,7 @@ def _sum_around(values: AnyArray, shape: tuple[int, int]) -> FloatArray:
 def _find_noise_factor(
     parameters: TexelParameters, observed: Observations, capture: Capture
 ) -> float:
-    """Return the noise over the residuals, which are smaller as the numbers follow part of it."""
+    """Return the ratio of the noise to the residuals, which the fit makes smaller."""
     shown = int(np.any(observed.weights > 0, axis=(0, 2)).sum())
     photographed = max(1, int(capture.counted.sum()))
     free = 1 - parameters.count * shown / photographed

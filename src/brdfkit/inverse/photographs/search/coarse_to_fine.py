@@ -30,14 +30,14 @@ from brdfkit.inverse.photographs.search.starts import (
 DEFAULT_TAU = 0.1  # the typical difference of neighbours, in their units
 COARSEST_SIDE = 4  # texels along the longer side of the first maps
 NOISE_ROUNDS = 5  # searches until the estimate of the noise settles, at most
-SETTLED = 0.7  # of the noise before: a smaller decrease ends them
-SWEEPS = 2  # in which numbers are handed on to neighbours
+SETTLED = 0.7  # a larger ratio to the noise before ends these searches
+SWEEPS = 2  # times that neighbours take over better numbers
 
 
 def fit_coarse_to_fine(
     parameters: TexelParameters, observed: Observations, report: Report
 ) -> Iterator[tuple[FloatArray, float, tuple[int, int]]]:
-    """Yield the rows, the variance of the noise and the shape of ever finer maps."""
+    """Yield the texels' numbers, the variance of the noise and the shape of ever finer maps."""
     side = 2 ** max(0, int(np.ceil(np.log2(max(observed.shape) / COARSEST_SIDE))))
     pooled = observed.pool(side)
     trials = [
@@ -64,9 +64,9 @@ def fit_coarse_to_fine(
 def _settle_noise(
     parameters: TexelParameters, x: FloatArray, observed: Observations, noise: float, report: Report
 ) -> tuple[FloatArray, float]:
-    """Return the rows and the variance of the noise after searches from coarser maps.
+    """Return the texels' numbers and the variance of the noise, after searches from coarser maps.
 
-    The residuals of coarser maps are no noise of finer ones, which would become too smooth by it.
+    Coarse maps leave more than noise. With that as the noise, finer maps would be too smooth.
     """
     for _ in range(NOISE_ROUNDS):
         hessian = compute_equations(parameters, x, observed).hessian
@@ -80,7 +80,7 @@ def _settle_noise(
 
 
 def enlarge(x: FloatArray, coarse: tuple[int, int], fine: tuple[int, int], side: int) -> FloatArray:
-    """Return rows of maps of the shape `coarse` for maps of the shape `fine`.
+    """Return the texels' numbers of maps of the shape `coarse` for maps of the shape `fine`.
 
     Each texel is repeated `side` × `side` times.
     """
@@ -96,7 +96,7 @@ def finish_level(
     noise: float,
     report: Report,
 ) -> FloatArray:
-    """Return the rows that fit all texels together, after restarts of unexplained texels."""
+    """Return the numbers of texels that are fitted together, after restarts of unexplained ones."""
     x = fit_all_texels(parameters, x, observed, strength, report=report)
     other = restart_unexplained(parameters, x, observed, noise, report)
     for _ in range(SWEEPS):

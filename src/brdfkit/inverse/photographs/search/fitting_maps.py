@@ -35,7 +35,7 @@ FEWEST_LIGHTS_TO_HOLD_OUT = 8
 class UnfinishedMaps:
     """Maps from a search that may have been interrupted.
 
-    x : the rows (n, count).
+    x : the numbers (n, count) of the n texels.
     tau : the typical difference of neighbours, in their units.
     held_out : the relative error of held-out photographs, by each τ that was tried.
     """

@@ -22,13 +22,13 @@ from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelPar
 from brdfkit.inverse.photographs.search.smoothness import apply_laplacian, sum_squared_differences
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 
-STEPS = 12  # of a texel by itself
+STEPS = 12  # for a texel by itself
 STEPS_TOGETHER = 6
 DAMPING, DAMPING_TOGETHER = 1e-2, 1e-3  # at the start
-SMALLEST_GAIN = 1e-4  # of E²: a smaller one ends the search of all texels
+SMALLEST_GAIN = 1e-4  # relative to E²: a smaller gain ends the search of all texels
 BLOCK = 8192  # texels whose equations are computed at once
-RIDGE = 1e-9  # of the diagonal, added where the lights leave numbers undetermined
-SOLVER_ROUNDS, SOLVER_TOLERANCE = 40, 1e-3  # of the conjugate gradients
+RIDGE = 1e-9  # relative to the diagonal; it keeps undetermined numbers from making H singular
+SOLVER_ROUNDS, SOLVER_TOLERANCE = 40, 1e-3  # limits of the conjugate gradients
 
 Report = Callable[[], object]
 
@@ -63,21 +63,21 @@ class Equations:
 def compute_errors(
     parameters: TexelParameters, x: FloatArray, observed: Observations
 ) -> FloatArray:
-    """Return E² (n,) of rows `x` (n, count), without the differences of neighbours."""
+    """Return E² (n,) of texels with the numbers `x` (n, count), without their differences."""
     return _compute(parameters, x, observed, differentiate=False).error
 
 
 def compute_equations(
     parameters: TexelParameters, x: FloatArray, observed: Observations
 ) -> Equations:
-    """Return the `Equations` of rows `x` (n, count)."""
+    """Return the `Equations` of texels with the numbers `x` (n, count)."""
     return _compute(parameters, x, observed, differentiate=True)
 
 
 def _compute(
     parameters: TexelParameters, x: FloatArray, observed: Observations, differentiate: bool
 ) -> Equations:
-    """Return the `Equations` of rows `x`; unless `differentiate`, only their error is set."""
+    """Return the `Equations` of texels; unless `differentiate`, only their error is set."""
     texels, count, lobes = len(x), parameters.count, len(parameters.lobes)
     error = np.zeros(texels)
     gradient = np.zeros((texels, count) if differentiate else 0)
@@ -120,7 +120,7 @@ def fit_each_texel(
     steps: int = STEPS,
     report: Report = lambda: None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the rows (n, count) that fit each texel by itself, and their E² (n,).
+    """Return the numbers (n, count) of texels that are each fitted alone, and their E² (n,).
 
     The search begins at `x`; `report()` is called after each step.
     """
@@ -148,7 +148,7 @@ def fit_all_texels(
     steps: int = STEPS_TOGETHER,
     report: Report = lambda: None,
 ) -> FloatArray:
-    """Return the rows (n, count) that fit all texels and the differences of neighbours.
+    """Return the numbers (n, count) of texels that are fitted together, with smooth differences.
 
     `strength` (count,) holds σ² / τ² for each number. The search begins at `x`; `report()` is
     called after each step.

@@ -58,7 +58,7 @@ def find_units(
 
 
 def sum_squared_differences(x: FloatArray, shape: tuple[int, int]) -> FloatArray:
-    """Return the sums (count,) of squared differences of neighbours, for rows `x` (n, count)."""
+    """Return the sums (count,) of squared differences of neighbours with numbers `x` (n, count)."""
     grid = x.reshape(*shape, -1)
     down, right = np.diff(grid, axis=0), np.diff(grid, axis=1)
     sums: FloatArray = (down**2).sum(axis=(0, 1)) + (right**2).sum(axis=(0, 1))

@@ -15,18 +15,18 @@ from brdfkit.inverse.photographs.maps.residuals import compute_misfit
 from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
 from brdfkit.inverse.photographs.search.least_squares import Report, compute_errors, fit_each_texel
 
-WIDTHS = 0.08, 0.2, 0.45  # of highlights, as shares of the shape parameters' range
-START_WEIGHT = 0.1  # of all lobes but the first, the diffuse one
-MATT_SHARE = 0.6  # of the observations: the darker ones, which count as free of highlights
+WIDTHS = 0.08, 0.2, 0.45  # highlights to begin with, as shares of the shape parameters' range
+START_WEIGHT = 0.1  # every lobe begins with it, except for the first, which is diffuse
+MATT_SHARE = 0.6  # this share of the observations, the darker ones, counts as without highlights
 DOUBTFUL = 2  # times the noise, from which a texel is restarted
 RESTART_STEPS = 10
 OFFSETS = [(way * a, way * b) for way in (1, 3) for a, b in ((0, 1), (1, 0), (0, -1), (-1, 0))]
 
 
 def make_start(parameters: TexelParameters, observed: Observations, width: float) -> FloatArray:
-    """Return rows (n, count) to begin at, flat and isotropic.
+    """Return the numbers (n, count) with which n texels begin, flat and isotropic.
 
-    `width` is that of the highlight, as a share of the range of the shape parameters.
+    `width` is the width of the highlight, as a share of the range of the shape parameters.
     """
     low, high = parameters.limits()
     x = np.zeros((observed.radiance.shape[1], parameters.count))
@@ -58,7 +58,7 @@ def _estimate_albedos(observed: Observations) -> FloatArray:
 def restart_unexplained(
     parameters: TexelParameters, x: FloatArray, observed: Observations, noise: float, report: Report
 ) -> FloatArray:
-    """Return rows `x` (n, count) in which texels with large residuals are searched anew."""
+    """Return the texels' numbers `x` (n, count), searched anew where residuals are large."""
     errors = compute_errors(parameters, x, observed)
     wrong = np.flatnonzero(compute_misfit(errors, noise, observed) > DOUBTFUL)
     if not len(wrong):
@@ -75,10 +75,10 @@ def restart_unexplained(
 def propagate_from_neighbours(
     parameters: TexelParameters, x: FloatArray, observed: Observations, report: Report
 ) -> FloatArray:
-    """Return rows `x` (n, count) in which texels take over numbers that suit them better.
+    """Return the texels' numbers `x` (n, count), replaced where other numbers fit better.
 
-    The candidates are the median around the texel and the numbers of texels nearby, handed on as
-    matches are in [Barnes et al. 2009].
+    The candidates are the median around the texel and the numbers of texels nearby, so that good
+    numbers spread as matches do in [Barnes et al. 2009].
     """
     grid = x.reshape(*observed.shape, -1)
     errors = compute_errors(parameters, x, observed)

@@ -40,7 +40,7 @@ from brdfkit.inverse.photographs.search.smoothness import compute_strength
 SAMPLES = 16  # per pixel, evenly spread
 ROUND_LIMIT = 5
 STEPS_PER_ROUND = 3  # few, because each round begins near its end
-LARGEST_REMAINDER = 0.9  # of the difference before: a round that leaves more found only noise
+LARGEST_REMAINDER = 0.9  # a round that leaves a larger share of the difference found only noise
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ def correct_maps(
 
 
 def measure_misfit(differences: FloatArray, noise: float, observed: Observations) -> FloatArray:
-    """Return the `compute_misfit` (n,) of differences (k, n, 3) of radiances."""
+    """Return the size (n,) of differences (k, n, 3) of radiances, in units of the noise."""
     return compute_misfit((observed.weights * differences**2).sum(axis=(0, 2)), noise, observed)
 
 

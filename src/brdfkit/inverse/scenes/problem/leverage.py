@@ -10,9 +10,9 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, IntArray, MitsubaObject
 
-NEGLIGIBLE_TRACE = 0.02  # of a leverage matrix: blocks below it are left as they are
+NEGLIGIBLE_TRACE = 0.02  # blocks whose leverage matrix has a smaller trace are not corrected
 SMALLEST_REMAINDER = (
-    0.05  # of 1 - leverage: a block that decides alone says nothing about its error
+    0.05  # for 1 - leverage, as a block that decides alone says nothing about its error
 )
 
 Blocks = tuple[IntArray, int]
@@ -50,10 +50,10 @@ def sum_by_block(values: AnyArray, blocks: Blocks) -> FloatArray:
 
 
 def correct_for_leverage(scores: FloatArray, jacobian: AnyArray, blocks: Blocks) -> FloatArray:
-    """Return `scores` (n, blocks) divided by the matrix root of 1 - leverage of their blocks.
+    """Return the `scores` (n, blocks) corrected for the leverage of each block.
 
-    `jacobian` (n, pixels, channels) holds the derivatives of the pixels by the n parameters, times
-    the square roots of the pixels' weights.
+    They are divided by the square root of the matrix 1 - leverage. `jacobian` (n, pixels, channels)
+    holds the derivatives of the pixels by the n parameters, times the square roots of the weights.
     """
     n = len(jacobian)
     flat = jacobian.reshape(n, -1).astype(float)

@@ -15,9 +15,9 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_file
 from brdfkit.mitsuba_bridge.properties.picture_file import read_photograph, read_pixels
 
-DARK_OFFSET = 0.02  # of the mean brightness, added to a pixel's, so that weights stay finite
+DARK_OFFSET = 0.02  # times the mean brightness, added to each pixel so that weights stay finite
 WHITE_QUANTILE = 0.99  # the share of numbers that are darker than white
-CLIPPED_SHARE = 1e-3  # of the numbers: if more equal the largest one, this is not by chance
+CLIPPED_SHARE = 1e-3  # if a larger share of the numbers equals the largest, it is clipped
 
 Pictures = FloatArray | str | Path | Iterable[FloatArray | str | Path]
 

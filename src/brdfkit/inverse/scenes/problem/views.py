@@ -139,7 +139,7 @@ class Views:
         return pictures
 
     def join_pictures(self, pictures: Iterable[Any]) -> FloatArray:
-        """Return one picture per sensor as pixels (pixels, channels); the inverse of the above."""
+        """Return one picture per sensor as pixels (pixels, channels); invert `split_pictures`."""
         arrays = [np.array(picture, float) for picture in pictures]
         channels = self.targets[0].pixels.shape[2]
         films = {min(a.shape[2], 3) for a in arrays}

@@ -211,7 +211,7 @@ class Refinement(Shown):
     __hash__ = None  # type: ignore[assignment]
 
     def _by_value(self, known: dict[str, float]) -> dict[str, Any]:
-        """Return numbers known by name, such as errors, in the form of `values`; NaN if missing."""
+        """Arrange numbers by name as `values` are, in tuples and arrays; NaN if unknown."""
         nan = float("nan")
         return {
             name: np.full(value.shape, nan)

@@ -27,7 +27,7 @@ CLEAR_CHI2 = 1.25  # per degree of freedom: clearly above 1
 
 @dataclass(frozen=True)
 class ResidualNoise:
-    """What correlations say about the residuals.
+    """The correlations of residuals, which tell noise from model errors.
 
     chi2 : a lower estimate of χ² per degree of freedom, squared residuals over those of pure noise.
     significance : the correlation of neighbours in units of its standard error.
@@ -55,7 +55,7 @@ class ResidualNoise:
             sums += _correlate_pictures(a, b, counted, side)
             near += _compare_rows(a, b, counted, side)
             a, b, counted = (array.swapaxes(0, 1) for array in (a, b, counted))
-            near += _compare_rows(a, b, counted, side)  # and now columns
+            near += _compare_rows(a, b, counted, side)  # columns in place of rows
         products, squares, variance = near
         if not (squares > 0 and variance > 0):
             return cls(1.0, 0.0, 1.0)

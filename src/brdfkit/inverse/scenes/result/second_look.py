@@ -25,13 +25,13 @@ from brdfkit.inverse.scenes.search.normal_equations import (
 
 SAMPLE_FACTOR = 2  # the samples of the check, over those of the search's end
 CHANCE_LIMIT = 4  # standard errors: other samples move no number farther by chance
-AGREEMENT_SHARE = 0.5  # of the power of derivatives, on which two renderings should agree
-SEED_OFFSET = 7_000  # so that no seed of the search is used again
+AGREEMENT_SHARE = 0.5  # two renderings of derivatives should agree on so much of their power
+SEED_OFFSET = 7_000  # it keeps the check from using a seed of the search again
 
 
 @dataclass(frozen=True)
 class SecondLook:
-    """What twice the samples say about the end of a search.
+    """The comparison of a search's end with a rendering of twice the samples.
 
     step : the step (n,) that the new equations suggest, in coordinates; 0 for uncertain numbers.
     moves : the size of this step for each number, by name, in standard errors.

@@ -19,10 +19,10 @@ from brdfkit.inverse.scenes.search.backward_derivatives import compute_error_and
 from brdfkit.inverse.scenes.search.gauss_newton import Search
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 
-STAGE_SAMPLES = 4, 16, 64  # per pixel and half, of the stages
+STAGE_SAMPLES = 4, 16, 64  # samples per pixel of each picture, stage by stage
 SMOOTHNESS_TRIALS = 0.3, 0.03, 0.003, 0.0003, 0.00003  # weights among which held-out pixels choose
-TRIAL_STEPS = 8  # for each of these weights
-HELD_OUT_INTERVAL = 10  # one of so many pixels is held out
+TRIAL_STEPS = 8  # L-BFGS-B steps for each of these weights
+HELD_OUT_INTERVAL = 10  # one pixel of so many is held out
 
 
 def count_steps(smoothness: float | None, steps: int) -> int:
@@ -125,6 +125,7 @@ def _run_stage(
         return error + smoothness * penalty, gradient + smoothness * slope
 
     def count_step(x: FloatArray) -> None:
+        """Remember the coordinates after a step, and report it."""
         nonlocal last
         last = x.copy()
         state.steps += 1

@@ -11,9 +11,9 @@ from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.inverse.scenes.problem.views import Views, make_opaque
 
 DERIVATIVE_COST = 2.3  # the time for a picture of derivatives, over that for a picture
-DIFFERENCE_STEP = 0.05  # of finite differences: in coordinates, or relative if without bounds
+DIFFERENCE_STEP = 0.05  # of coordinates between bounds, or relative to those without
 BACKWARD_ONLY = "PRBVolpathIntegrator", "BasicVolumetricPrimitiveRadianceFieldIntegrator"
-NOT_ATTACHED = "not attached to the AD graph"  # in Mitsuba's error if nothing has a derivative
+NOT_ATTACHED = "not attached to the AD graph"  # Mitsuba's error if nothing has a derivative
 
 
 def compute_derivatives(views: Views, x: FloatArray, spp: int, seed: int) -> AnyArray:

@@ -19,13 +19,13 @@ from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search.normal_equations import CONFIDENCE, Equations, Residuals
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 
-INITIAL_RAYS = 2**18  # of the first pictures: rays are cheap compared with starting a kernel
+INITIAL_RAYS = 2**18  # for the first pictures, as rays cost little compared with starting a kernel
 INITIAL_SAMPLES = 8, 128  # per pixel, the fewest and the most of the first pictures
 GROWTH = 4, 16  # factors, the smallest and the largest by which the samples grow at once
-CONVERGED_GRADIENT = 0.1  # of its variance: a shorter gradient promises less than the noise
-QUIET_SHARE = 0.25  # of E²: less noise of rendering adds at most 12 % to the standard errors
+CONVERGED_GRADIENT = 0.1  # in units of its variance: less promises a gain below the noise
+QUIET_SHARE = 0.25  # rendering noise of at most this share of E² adds 12 % to the standard errors
 NONLINEAR_REACH = (
-    0.25  # of the range: farther away the derivatives of nonlinear numbers mean little
+    0.25  # relative to the range: farther away, derivatives of nonlinear numbers mean little
 )
 WEIGHT_REACH = 10  # times a weight or 1, the longest step: hidden weights have no other limit
 FRESH_SAMPLES = 3  # times that other samples are tried where no step is a gain

@@ -37,10 +37,10 @@ from brdfkit.inverse.scenes.search.forward_derivatives import (
 )
 
 DERIVATIVE_SHARE = 2.0  # the cost of all derivatives at most, over that of the residuals
-ROUNDING = 1e-6  # of white: the rounding of pictures in single precision
-NOISE_FLOOR = 0.1  # of the power of derivatives: the smallest diagonal of H that is trusted
+ROUNDING = 1e-6  # relative to white: the rounding of pictures in single precision
+NOISE_FLOOR = 0.1  # relative to the power of derivatives: a smaller diagonal of H is noise
 CONFIDENCE = 2  # standard deviations, beyond which a difference is not by chance
-SMALLEST_EIGENVALUE = 1e-5  # of H with unit diagonal: smaller ones are noise
+SMALLEST_EIGENVALUE = 1e-5  # smaller eigenvalues of H, with unit diagonal, are noise
 
 
 @dataclass(frozen=True)
