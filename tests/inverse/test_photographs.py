@@ -21,7 +21,7 @@ from brdfkit.inverse.photographs.maps.maps import Maps, to_rows
 from brdfkit.inverse.photographs.maps.scene import bsdf_dict, scene_xml
 from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE
 from brdfkit.inverse.photographs.search import coarse_to_fine
-from brdfkit.inverse.photographs.search.least_squares import compute_equations, compute_errors
+from brdfkit.inverse.photographs.search.problem import Problem
 from brdfkit.mitsuba_bridge.scene_file import load_scene_file
 
 TEXELS, LIGHTS = 32, 16
@@ -123,10 +123,11 @@ def test_derivatives_are_those_of_differences(made, model, anisotropic):
     seen = Observations.collect(made[1], (TEXELS, TEXELS)).select_texels(np.arange(100, 108))
     low, high = (np.clip(limit, -0.3, 1) for limit in numbers.limits())
     x = low + (0.3 + 0.4 * rng.random((8, numbers.count))) * (high - low)
-    about = compute_equations(numbers, x, seen)
+    problem = Problem(numbers, seen)
+    about = problem.compute_equations(x)
     for j in range(numbers.count):
         step = 1e-5 * np.eye(numbers.count)[j]
-        ends = [compute_errors(numbers, x + sign * step, seen) for sign in (1, -1)]
+        ends = [problem.compute_errors(x + sign * step) for sign in (1, -1)]
         slope = (ends[0] - ends[1]) / 4e-5  # half of E²'s
         np.testing.assert_allclose(about.gradient[:, j], slope, rtol=1e-4, atol=1e-6)
 

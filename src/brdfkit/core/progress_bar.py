@@ -19,6 +19,20 @@ SPEED_PERIOD = 3600.0  # seconds over which the speed is averaged: one fit may t
 INTERVAL = 0.1  # seconds between two updates of the bar in a notebook
 
 
+def count_steps(function: Progress | None, total: int) -> Callable[[], None]:
+    """Return a function that reports one more step, of about `total`, to a progress function."""
+    done = 0
+
+    def report() -> None:
+        """Count a step and report it."""
+        nonlocal done
+        done += 1
+        if function:
+            function(done, max(done, total))
+
+    return report
+
+
 @contextmanager
 def progress(what: str) -> Iterator[Progress]:
     """Show a bar within the block for a function that takes long; it disappears with the block.

@@ -1,7 +1,5 @@
 """Collects what a report shows, as plain data for its template."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain

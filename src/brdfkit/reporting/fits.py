@@ -1,7 +1,5 @@
 """Collects the fits of a report: fits models, and accepts finished and saved fits."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Writes reports of many measured materials, and a page with links to them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

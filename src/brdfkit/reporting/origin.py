@@ -1,7 +1,5 @@
 """Describes the provenance of a report: file, checksums, versions, and a command to repeat it."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Describes the parameters of the fits for the report, as rows of a table and as JSON."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Collection
 from typing import Any

@@ -1,7 +1,5 @@
 """Writes the page of a sweep: tables of errors by material and model, failures, and all fits."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Checks the arguments of `svbrdf` and converts them; each error is one sentence."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path

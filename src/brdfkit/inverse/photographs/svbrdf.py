@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.core.progress_bar import Progress
+from brdfkit.core.progress_bar import Progress, count_steps
 from brdfkit.inverse.photographs.arguments import (
     check_variant,
     to_capture,
@@ -30,6 +30,7 @@ from brdfkit.inverse.photographs.result.levelling import describe_capture, descr
 from brdfkit.inverse.photographs.result.result import Svbrdf
 from brdfkit.inverse.photographs.result.simulated_errors import simulate_errors
 from brdfkit.inverse.photographs.search.fitting_maps import UnfinishedMaps, estimate_steps, fit_maps
+from brdfkit.inverse.photographs.search.problem import Problem
 from brdfkit.inverse.photographs.search.through_renderer import (
     RenderedMaps,
     compute_psnr,
@@ -112,7 +113,8 @@ def svbrdf(
     photographs = downsample(photographs, shape)
     observed = Observations.collect(photographs, shape)
     lights = len(photographs.names)
-    report = _count_progress(progress, estimate_steps(lights, smoothness))
+    report = count_steps(progress, estimate_steps(lights, smoothness))
+    problem = Problem(parameters, observed, report)
 
     def make_result(fitted: UnfinishedMaps, notes: tuple[str, ...], **known: Any) -> Svbrdf:
         """Return the `Svbrdf` of maps; `known` holds what only finished searches have."""
@@ -155,11 +157,9 @@ def svbrdf(
 
     fitted = rendered = None
     try:
-        fitted = fit_maps(parameters, observed, smoothness, report)
-        rendered, rounds = refine_through_renderer(
-            parameters, fitted, observed, photographs, report
-        )
-        errors = simulate_errors(parameters, rendered, rounds, observed, photographs, report)
+        fitted = fit_maps(problem, smoothness)
+        rendered, rounds = refine_through_renderer(problem, fitted, photographs)
+        errors = simulate_errors(problem, rendered, rounds, photographs)
         return conclude(rendered, errors)
     except KeyboardInterrupt as stop:
         best = (stop.best if isinstance(stop, Interrupted) else rendered) or fitted
@@ -177,17 +177,3 @@ def _compare(rendered: RenderedMaps, capture: Capture) -> dict[str, Any]:
     """Return the attributes of an `Svbrdf` that compare renderings with the photographs."""
     psnr = compute_psnr(capture, rendered.pictures)
     return {"residual": rendered.difference, "predicted": psnr, "rendered": rendered.pictures}
-
-
-def _count_progress(progress: Progress | None, estimate: int) -> Callable[[], None]:
-    """Return a function that reports one more step to `progress`; their total is an estimate."""
-    done = 0
-
-    def report() -> None:
-        """Count a step and report it."""
-        nonlocal done
-        done += 1
-        if progress:
-            progress(done, max(done + 1, estimate))
-
-    return report

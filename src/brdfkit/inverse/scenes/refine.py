@@ -15,7 +15,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.core.progress_bar import Progress
+from brdfkit.core.progress_bar import Progress, count_steps
 from brdfkit.inverse.scenes.problem.parameters import PARAMETER_LIMIT, choose_unknowns
 from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
 from brdfkit.inverse.scenes.problem.targets import Pictures, Target, read_targets
@@ -28,7 +28,7 @@ from brdfkit.inverse.scenes.result.second_look import (
     conclude_checked_search,
     take_second_look,
 )
-from brdfkit.inverse.scenes.search.descent import count_steps, descend
+from brdfkit.inverse.scenes.search.descent import count_descent_steps, descend
 from brdfkit.inverse.scenes.search.far_starts import FINALISTS, default_start_count, find_start
 from brdfkit.inverse.scenes.search.gauss_newton import Search, run_gauss_newton
 
@@ -144,13 +144,13 @@ def refine(
     seed_of_search = seed + 100
     try:
         if by_descent:
-            report = _count_progress(progress, count_steps(smoothness, steps))
+            report = count_steps(progress, count_descent_steps(smoothness, steps))
             state, weight = descend(views, smoothness, steps, spp, seed_of_search, report)
             how = "by held-out pixels" if smoothness is None else "as given"
             notes: tuple[str, ...] = f"smoothness {weight:g}, {how}", NO_ERRORS
             return conclude_search(views, state, time.perf_counter() - began, notes=notes)
         count = default_start_count(views) if starts is None else starts
-        report = _count_progress(progress, (count + FINALISTS if count > 1 else 0) + steps)
+        report = count_steps(progress, (count + FINALISTS if count > 1 else 0) + steps)
         with silence_samplers():
             x = find_start(views, count, seed, report)
             state, second_look = _search(views, x, steps, spp, seed_of_search, report)
@@ -214,17 +214,3 @@ def _make_views(
             "count; give larger pictures, or name fewer."
         )
     return Views(loaded, make_integrator(loaded), targets, traversed, unknowns)
-
-
-def _count_progress(progress: Progress | None, total: int) -> Callable[[], None]:
-    """Return a function that reports one more step of `total` to `progress`."""
-    done = 0
-
-    def report() -> None:
-        """Count a step and report it."""
-        nonlocal done
-        done += 1
-        if progress:
-            progress(min(done, total), total)
-
-    return report

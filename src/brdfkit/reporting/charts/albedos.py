@@ -1,7 +1,5 @@
 """Draws the albedo over the angle of incidence: the measurement as dots, the fits as lines."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any

@@ -1,7 +1,5 @@
 """Draws the lobes: the BRDF over the angle θo, the measurement as dots and the fits as lines."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

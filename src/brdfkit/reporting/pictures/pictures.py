@@ -5,8 +5,6 @@ A box filter keeps each sample within its own pixel, and passes of 16, 8 or 4 sa
 a pixel in one block of one thread. So on a CPU the same seed gives the same report.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from math import ceil

@@ -5,8 +5,6 @@ are alike, so that their differences are small and compress well. PNG files woul
 may convert what a canvas reads from them for the screen, or change it a little to prevent tracking.
 """
 
-from __future__ import annotations
-
 import zlib
 from base64 import b64encode
 from typing import Any

@@ -1,7 +1,5 @@
 """Compares the fits: their errors by every loss, how far values are off, and which are tied."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Puts into words whether a fit's picture can be told from the measured one."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from math import isnan
 

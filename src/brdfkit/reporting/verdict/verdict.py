@@ -1,7 +1,5 @@
 """Puts the verdict of a report into words: which fit to take, why, and how far off it is."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from brdfkit.core.names import join_words

@@ -1,7 +1,5 @@
 """Reads a folder of photographs with the file capture.toml, which describes cameras and lights."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Checks the photographs, cameras and lights of a `Capture`; each error is one sentence."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

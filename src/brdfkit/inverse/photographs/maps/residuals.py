@@ -1,7 +1,5 @@
 """Measures what the maps leave unexplained in the photographs, and describes likely causes."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray

@@ -1,7 +1,5 @@
 """Writes the sample as a Mitsuba scene: a rectangle whose textures are the maps."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 

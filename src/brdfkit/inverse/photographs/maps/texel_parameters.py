@@ -8,8 +8,6 @@ texel's frame around n. The texel then has the radiance
     L_i = E_i max(n · l_i, 0) Σ_l a_l f_l(v, l_i).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

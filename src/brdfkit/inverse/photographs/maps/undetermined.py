@@ -1,7 +1,5 @@
 """Finds numbers that the photographs do not determine, and describes them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray, IntArray

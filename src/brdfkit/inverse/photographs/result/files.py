@@ -1,7 +1,5 @@
 """Writes the files of an `Svbrdf`: maps, a Mitsuba scene, and a report."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

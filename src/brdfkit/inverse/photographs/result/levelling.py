@@ -1,7 +1,5 @@
 """Checks whether the normals are those of a flat sample, and what the photographs do not show."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray

@@ -1,7 +1,5 @@
 """Writes the HTML report of an `Svbrdf`: maps, standard errors, and photographs beside pictures."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

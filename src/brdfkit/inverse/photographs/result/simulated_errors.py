@@ -7,8 +7,6 @@ is what is left of the photographs, each pixel's residual with a random sign: th
 which the equations of single texels ignore.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -16,14 +14,10 @@ from scipy.ndimage import uniform_filter
 
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.inverse.photographs.capture.capture import Capture
-from brdfkit.inverse.photographs.capture.observations import Observations, sample_pictures
-from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
+from brdfkit.inverse.photographs.capture.observations import sample_pictures
 from brdfkit.inverse.photographs.search.fitting_maps import compute_standard_errors
-from brdfkit.inverse.photographs.search.least_squares import (
-    Report,
-    compute_equations,
-    fit_all_texels,
-)
+from brdfkit.inverse.photographs.search.least_squares import fit_all_texels
+from brdfkit.inverse.photographs.search.problem import Problem
 from brdfkit.inverse.photographs.search.through_renderer import (
     STEPS_PER_ROUND,
     RenderedMaps,
@@ -37,33 +31,27 @@ FEWEST_FREE = 0.3  # at least this share of the photographs' noise is not fitted
 
 
 def simulate_errors(
-    parameters: TexelParameters,
-    rendered: RenderedMaps,
-    rounds: int,
-    observed: Observations,
-    capture: Capture,
-    report: Report = lambda: None,
+    problem: Problem, rendered: RenderedMaps, rounds: int, capture: Capture
 ) -> FloatArray:
     """Return the standard errors (n, count) of the numbers of maps.
 
     They are those of the equations of each texel, scaled by what the simulation shows around it.
     `rounds` is the number of corrections that led to the maps.
     """
-    fitted = rendered.fitted
+    fitted, observed = rendered.fitted, problem.observed
     signs = np.random.default_rng(0).choice([-1.0, 1.0], capture.pictures.shape[:3])[..., None]
     residuals = capture.pictures - rendered.pictures
-    noise = residuals * signs * _find_noise_factor(parameters, observed, capture)
+    noise = residuals * signs * _find_noise_factor(problem, capture)
     pictures = np.where(capture.counted, rendered.pictures + noise, rendered.pictures)
     simulated = replace(capture, pictures=pictures, lost=capture.excluded)
-    target = replace(observed, radiance=sample_pictures(simulated, pictures, observed.shape))
-    x = fit_all_texels(
-        parameters, fitted.x.copy(), target, fitted.strength, STEPS_PER_ROUND, report
-    )
-    again = replace(fitted, x=x, equations=compute_equations(parameters, x, target))
+    radiance = sample_pictures(simulated, pictures, observed.shape)
+    target = problem.on(replace(observed, radiance=radiance))
+    x = fit_all_texels(target, fitted.x.copy(), fitted.strength, STEPS_PER_ROUND)
+    again = replace(fitted, x=x, equations=target.compute_equations(x))
     for number in range(rounds):
-        start = render_maps(parameters, again, observed, simulated, report)
-        again = correct_maps(parameters, start, number == 0, observed, simulated, report)
-    errors = compute_standard_errors(parameters, fitted, observed)
+        start = render_maps(problem, again, simulated)
+        again = correct_maps(problem, start, number == 0, simulated)
+    errors = compute_standard_errors(problem, fitted)
     ratio = np.abs(again.x - fitted.x) / np.maximum(errors, 1e-300)
     ratio = np.minimum(ratio, LARGEST_ERROR_RATIO)
     shown = (observed.weights > 0).any(axis=(0, 2)).astype(float)
@@ -80,11 +68,9 @@ def _sum_around(values: AnyArray, shape: tuple[int, int]) -> FloatArray:
     return AVERAGED_SIDE**2 * mean.reshape(len(values), -1)
 
 
-def _find_noise_factor(
-    parameters: TexelParameters, observed: Observations, capture: Capture
-) -> float:
+def _find_noise_factor(problem: Problem, capture: Capture) -> float:
     """Return the ratio of the noise to the residuals, which the fit makes smaller."""
-    shown = int(np.any(observed.weights > 0, axis=(0, 2)).sum())
+    shown = int(np.any(problem.observed.weights > 0, axis=(0, 2)).sum())
     photographed = max(1, int(capture.counted.sum()))
-    free = 1 - parameters.count * shown / photographed
+    free = 1 - problem.parameters.count * shown / photographed
     return float(1 / np.sqrt(max(free, FEWEST_FREE)))

@@ -1,7 +1,5 @@
 """Fits maps to observations, with the smoothness that best predicts photographs held out."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +8,6 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.inverse.photographs.capture.observations import Observations
 from brdfkit.inverse.photographs.maps.residuals import UNEXPLAINED, compute_misfit
-from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 from brdfkit.inverse.photographs.maps.undetermined import is_observed, is_undetermined
 from brdfkit.inverse.photographs.search.coarse_to_fine import (
     DEFAULT_TAU,
@@ -18,13 +15,7 @@ from brdfkit.inverse.photographs.search.coarse_to_fine import (
     finish_level,
     fit_coarse_to_fine,
 )
-from brdfkit.inverse.photographs.search.least_squares import (
-    Equations,
-    Report,
-    compute_equations,
-    compute_errors,
-)
-from brdfkit.inverse.photographs.search.smoothness import compute_strength, find_units
+from brdfkit.inverse.photographs.search.problem import Equations, Problem
 
 TAUS = 1.0, 0.3, 0.1, 0.03  # typical differences of neighbours, among which held-out lights choose
 PATCH_SIDE = 48  # texels: the part of the maps on which they choose
@@ -65,55 +56,45 @@ def estimate_steps(lights: int, smoothness: float | None) -> int:
     return 250 + 300 * chooses
 
 
-def fit_maps(
-    parameters: TexelParameters,
-    observed: Observations,
-    smoothness: float | None = None,
-    report: Report = lambda: None,
-) -> FittedMaps:
+def fit_maps(problem: Problem, smoothness: float | None = None) -> FittedMaps:
     """Return the maps fitted to the observations; without a `smoothness` (τ), choose it.
 
     On Ctrl-C `Interrupted` holds the finest `UnfinishedMaps`, if there are any.
     """
     finest = None
     try:
-        for finest in fit_coarse_to_fine(parameters, observed, report):
+        for finest in fit_coarse_to_fine(problem):
             start, noise, _ = finest
         held_out = {}
         tau = smoothness
         if tau is None:
             tau = DEFAULT_TAU
-            if len(observed.radiance) >= FEWEST_LIGHTS_TO_HOLD_OUT:
-                held_out = _predict_held_out(parameters, observed, noise, report)
+            if len(problem.observed.radiance) >= FEWEST_LIGHTS_TO_HOLD_OUT:
+                held_out = _predict_held_out(problem, noise)
                 tau = min(held_out, key=held_out.__getitem__)
-        hessian = compute_equations(parameters, start, observed).hessian
-        strength = compute_strength(parameters, hessian, observed, noise, tau)
-        x = finish_level(parameters, start, observed, strength, noise, report)
+        strength = problem.compute_strength(problem.compute_equations(start).hessian, noise, tau)
+        x = finish_level(problem, start, strength, noise)
     except KeyboardInterrupt:
         if finest is None:
             raise
         x, _, shape = finest
-        raise Interrupted(_enlarge_unfinished(observed.shape, x, shape)) from None
-    equations = compute_equations(parameters, x, observed)
-    return FittedMaps(x, tau, held_out, equations, noise, strength)
+        raise Interrupted(_enlarge_unfinished(problem.observed.shape, x, shape)) from None
+    return FittedMaps(x, tau, held_out, problem.compute_equations(x), noise, strength)
 
 
-def _predict_held_out(
-    parameters: TexelParameters, observed: Observations, noise: float, report: Report
-) -> dict[float, float]:
+def _predict_held_out(problem: Problem, noise: float) -> dict[float, float]:
     """Return the RMS relative error of held-out photographs for each τ, on a patch of the maps."""
-    patch = _select_patch(observed)
-    lights = np.arange(len(observed.radiance))
+    patch = _select_patch(problem.observed)
+    lights = np.arange(len(patch.radiance))
     held_out = lights[1 :: max(2, len(lights) // 3)]
-    fitted = patch.select_lights(np.setdiff1d(lights, held_out))
-    hidden = patch.select_lights(held_out)
-    *_, (start, _, _) = fit_coarse_to_fine(parameters, fitted, report)
-    hessian, errors = compute_equations(parameters, start, fitted).hessian, {}
+    fitted = problem.on(patch.select_lights(np.setdiff1d(lights, held_out)))
+    hidden = problem.on(patch.select_lights(held_out))
+    *_, (start, _, _) = fit_coarse_to_fine(fitted)
+    hessian, errors = fitted.compute_equations(start).hessian, {}
     for tau in TAUS:
-        strength = compute_strength(parameters, hessian, fitted, noise, tau)
-        x = finish_level(parameters, start, fitted, strength, noise, report)
-        error = compute_errors(parameters, x, hidden).sum()
-        errors[tau] = float(np.sqrt(error / max(1, (hidden.weights > 0).sum())))
+        x = finish_level(fitted, start, fitted.compute_strength(hessian, noise, tau), noise)
+        error = hidden.compute_errors(x).sum()
+        errors[tau] = float(np.sqrt(error / max(1, (hidden.observed.weights > 0).sum())))
     return errors
 
 
@@ -137,9 +118,7 @@ def _enlarge_unfinished(
     return UnfinishedMaps(enlarge(x, coarse, shape, side), DEFAULT_TAU, {})
 
 
-def compute_standard_errors(
-    parameters: TexelParameters, fitted: FittedMaps, observed: Observations
-) -> FloatArray:
+def compute_standard_errors(problem: Problem, fitted: FittedMaps) -> FloatArray:
     """Return the standard errors (n, count) of all numbers, with the neighbours taken as known.
 
     Those of unexplained texels are scaled by their residuals. Where the photographs leave numbers
@@ -147,13 +126,13 @@ def compute_standard_errors(
     range, or its unit, as an error instead.
     """
     noise, own = fitted.noise, fitted.equations.hessian
-    ranges, (low, high) = find_units(parameters, own, observed), parameters.limits()
+    ranges, (low, high) = problem.find_units(own), problem.parameters.limits()
     is_limited = np.isfinite(high - low)
     ranges[is_limited] = (high - low)[is_limited] / 2
     prior = np.diag(noise / ranges**2)
     together = own + 4 * np.diag(fitted.strength * is_observed(own)) + prior
     matrix = np.where(is_undetermined(own)[:, None, None], own + prior, together)
     variance = np.diagonal(np.linalg.inv(matrix), axis1=1, axis2=2)
-    misfit = compute_misfit(fitted.equations.error, noise, observed)
+    misfit = compute_misfit(fitted.equations.error, noise, problem.observed)
     variance = np.maximum(variance, 0) * noise
     return np.sqrt(variance) * np.where(misfit > UNEXPLAINED, misfit, 1)[:, None]

@@ -9,160 +9,56 @@ photographed ones J_i, the weights w and the variance σ² of the noise,
 The damping is that of [Levenberg 1944] and [Marquardt 1963].
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
-from dataclasses import dataclass
-
 import numpy as np
 
-from brdfkit.core.array_types import BoolArray, FloatArray
-from brdfkit.inverse.photographs.capture.observations import Observations
-from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
-from brdfkit.inverse.photographs.search.smoothness import apply_laplacian, sum_squared_differences
+from brdfkit.core.array_types import FloatArray
+from brdfkit.inverse.photographs.search.problem import Equations, Problem
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 
 STEPS = 12  # for a texel by itself
 STEPS_TOGETHER = 6
 DAMPING, DAMPING_TOGETHER = 1e-2, 1e-3  # at the start
 SMALLEST_GAIN = 1e-4  # relative to E²: a smaller gain ends the search of all texels
-BLOCK = 8192  # texels whose equations are computed at once
-RIDGE = 1e-9  # relative to the diagonal; it keeps undetermined numbers from making H singular
 SOLVER_ROUNDS, SOLVER_TOLERANCE = 40, 1e-3  # limits of the conjugate gradients
-
-Report = Callable[[], object]
-
-
-@dataclass
-class Equations:
-    """The normal equations of n texels, each by itself.
-
-    error : E² (n,) without the differences of neighbours.
-    gradient : half of its gradient (n, count).
-    hessian : half of its Gauss-Newton Hessian (n, count, count).
-    """
-
-    error: FloatArray
-    gradient: FloatArray
-    hessian: FloatArray
-
-    def damp(self, damping: FloatArray | float) -> FloatArray:
-        """Return the Hessians with a diagonal that is larger by a factor `damping` and a ridge."""
-        diagonal = np.diagonal(self.hessian, axis1=1, axis2=2)
-        floor = RIDGE * diagonal.max(axis=1, keepdims=True) + 1e-300
-        added = np.einsum("np,pq->npq", damping * diagonal + floor, np.eye(diagonal.shape[1]))
-        return self.hessian + added
-
-    def replace(self, texels: BoolArray, other: Equations) -> None:
-        """Take over the equations of some texels from `other`."""
-        self.error[texels] = other.error[texels]
-        self.gradient[texels] = other.gradient[texels]
-        self.hessian[texels] = other.hessian[texels]
-
-
-def compute_errors(
-    parameters: TexelParameters, x: FloatArray, observed: Observations
-) -> FloatArray:
-    """Return E² (n,) of texels with the numbers `x` (n, count), without their differences."""
-    return _compute(parameters, x, observed, differentiate=False).error
-
-
-def compute_equations(
-    parameters: TexelParameters, x: FloatArray, observed: Observations
-) -> Equations:
-    """Return the `Equations` of texels with the numbers `x` (n, count)."""
-    return _compute(parameters, x, observed, differentiate=True)
-
-
-def _compute(
-    parameters: TexelParameters, x: FloatArray, observed: Observations, differentiate: bool
-) -> Equations:
-    """Return the `Equations` of texels; unless `differentiate`, only their error is set."""
-    texels, count, lobes = len(x), parameters.count, len(parameters.lobes)
-    error = np.zeros(texels)
-    gradient = np.zeros((texels, count) if differentiate else 0)
-    hessian = np.zeros((texels, count, count) if differentiate else 0)
-    for first in range(0, texels, BLOCK):
-        rows = slice(first, min(first + BLOCK, texels))
-        part = observed.select_texels(rows)
-        values, derivatives = parameters.evaluate_lobes(x[rows], part, differentiate)
-        for c in range(CHANNELS):
-            of_channel = [CHANNELS * lobe + c for lobe in range(lobes)]
-            weights = x[rows][:, of_channel].T
-            light = part.irradiance[..., c]
-            root = np.sqrt(part.weights[..., c])
-            shown = sum(w * lobe for w, lobe in zip(weights, values, strict=True))
-            residual = root * (light * shown - part.radiance[..., c])
-            error[rows] += (residual * residual).sum(axis=0)
-            if not differentiate:
-                continue
-            own = of_channel + list(range(parameters.shape_columns.start, count))
-            slopes = [
-                sum(w * slope for w, slope in zip(weights, by_lobe, strict=True))
-                for by_lobe in derivatives
-            ]
-            factor = root * light
-            columns = [factor * column for column in (*values, *slopes)]
-            for a, column in zip(own, columns, strict=True):
-                gradient[rows, a] += (column * residual).sum(axis=0)
-                for b, other in zip(own, columns, strict=True):
-                    if b >= a:
-                        hessian[rows, a, b] += (column * other).sum(axis=0)
-    if differentiate:
-        hessian += np.triu(hessian, 1).transpose(0, 2, 1)
-    return Equations(error, gradient, hessian)
 
 
 def fit_each_texel(
-    parameters: TexelParameters,
-    x: FloatArray,
-    observed: Observations,
-    steps: int = STEPS,
-    report: Report = lambda: None,
+    problem: Problem, x: FloatArray, steps: int = STEPS
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the numbers (n, count) of texels that are each fitted alone, and their E² (n,).
-
-    The search begins at `x`; `report()` is called after each step.
-    """
-    low, high = parameters.limits()
+    """Return the numbers (n, count) of texels that are each fitted alone from `x`, and E² (n,)."""
+    low, high = problem.parameters.limits()
     x = np.clip(x, low, high)
     damping = np.full(len(x), DAMPING)
-    now = compute_equations(parameters, x, observed)
+    now = problem.compute_equations(x)
     for _ in range(steps):
         step = minimise_in_box(now.damp(damping[:, None]), now.gradient, low - x, high - x)
         trial = np.clip(x + step, low, high)
-        there = compute_equations(parameters, trial, observed)
+        there = problem.compute_equations(trial)
         better = there.error < now.error
         damping *= np.where(better, 0.2, 6)
         x[better] = trial[better]
         now.replace(better, there)
-        report()
+        problem.report()
     return x, now.error
 
 
 def fit_all_texels(
-    parameters: TexelParameters,
-    x: FloatArray,
-    observed: Observations,
-    strength: FloatArray,
-    steps: int = STEPS_TOGETHER,
-    report: Report = lambda: None,
+    problem: Problem, x: FloatArray, strength: FloatArray, steps: int = STEPS_TOGETHER
 ) -> FloatArray:
-    """Return the numbers (n, count) of texels that are fitted together, with smooth differences.
+    """Return the numbers (n, count) of texels that are fitted together from `x`, and smoothly.
 
-    `strength` (count,) holds σ² / τ² for each number. The search begins at `x`; `report()` is
-    called after each step.
+    `strength` (count,) holds σ² / τ² for each number.
     """
-    low, high = parameters.limits()
-    shape, damping = observed.shape, DAMPING_TOGETHER
-    now = compute_equations(parameters, x, observed)
+    low, high = problem.parameters.limits()
+    shape, damping = problem.observed.shape, DAMPING_TOGETHER
+    now = problem.compute_equations(x)
     total = now.error.sum() + (strength * sum_squared_differences(x, shape)).sum()
     for _ in range(steps):
         step = _solve(now, x, strength, shape, damping)
         trial = np.clip(x + step, low, high)
-        there = compute_equations(parameters, trial, observed)
+        there = problem.compute_equations(trial)
         error = there.error.sum() + (strength * sum_squared_differences(trial, shape)).sum()
-        report()
+        problem.report()
         if error < total:
             gain, x, now, total, damping = total - error, trial, there, error, damping * 0.2
             if gain < SMALLEST_GAIN * error:
@@ -204,3 +100,23 @@ def _solve(
         before, size = size, (residual * preconditioned).sum()
         direction = preconditioned + size / before * direction
     return step
+
+
+def sum_squared_differences(x: FloatArray, shape: tuple[int, int]) -> FloatArray:
+    """Return the sums (count,) of squared differences of neighbours with numbers `x` (n, count)."""
+    grid = x.reshape(*shape, -1)
+    down, right = np.diff(grid, axis=0), np.diff(grid, axis=1)
+    sums: FloatArray = (down**2).sum(axis=(0, 1)) + (right**2).sum(axis=(0, 1))
+    return sums
+
+
+def apply_laplacian(x: FloatArray, shape: tuple[int, int]) -> FloatArray:
+    """Return half of the derivative (n, count) of `sum_squared_differences`."""
+    grid = x.reshape(*shape, -1)
+    result = np.zeros_like(grid)
+    down, right = np.diff(grid, axis=0), np.diff(grid, axis=1)
+    result[1:] += down
+    result[:-1] -= down
+    result[:, 1:] += right
+    result[:, :-1] -= right
+    return result.reshape(x.shape)

@@ -4,16 +4,15 @@ All texels begin matt and flat, with a few widths of the highlight. Restarted te
 again, or with the numbers of their neighbours.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.ndimage import median_filter
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.inverse.photographs.capture.observations import Observations
 from brdfkit.inverse.photographs.maps.residuals import compute_misfit
-from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
-from brdfkit.inverse.photographs.search.least_squares import Report, compute_errors, fit_each_texel
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
+from brdfkit.inverse.photographs.search.least_squares import fit_each_texel
+from brdfkit.inverse.photographs.search.problem import Problem
 
 WIDTHS = 0.08, 0.2, 0.45  # highlights to begin with, as shares of the shape parameters' range
 START_WEIGHT = 0.1  # every lobe begins with it, except for the first, which is diffuse
@@ -23,16 +22,16 @@ RESTART_STEPS = 10
 OFFSETS = [(way * a, way * b) for way in (1, 3) for a, b in ((0, 1), (1, 0), (0, -1), (-1, 0))]
 
 
-def make_start(parameters: TexelParameters, observed: Observations, width: float) -> FloatArray:
+def make_start(problem: Problem, width: float) -> FloatArray:
     """Return the numbers (n, count) with which n texels begin, flat and isotropic.
 
     `width` is the width of the highlight, as a share of the range of the shape parameters.
     """
+    parameters, at = problem.parameters, problem.parameters.shape_columns
     low, high = parameters.limits()
-    x = np.zeros((observed.radiance.shape[1], parameters.count))
-    x[:, :CHANNELS] = _estimate_albedos(observed)
-    x[:, CHANNELS : parameters.shape_columns.start] = START_WEIGHT
-    at = parameters.shape_columns
+    x = np.zeros((problem.observed.radiance.shape[1], parameters.count))
+    x[:, :CHANNELS] = _estimate_albedos(problem.observed)
+    x[:, CHANNELS : at.start] = START_WEIGHT
     x[:, at] = low[at] + width**0.5 * (high[at] - low[at])
     if parameters.pair:
         x[:, at.stop - 2 : at.stop] = 0
@@ -55,40 +54,35 @@ def _estimate_albedos(observed: Observations) -> FloatArray:
     return np.pi * np.maximum(slope, 0)
 
 
-def restart_unexplained(
-    parameters: TexelParameters, x: FloatArray, observed: Observations, noise: float, report: Report
-) -> FloatArray:
+def restart_unexplained(problem: Problem, x: FloatArray, noise: float) -> FloatArray:
     """Return the texels' numbers `x` (n, count), searched anew where residuals are large."""
-    errors = compute_errors(parameters, x, observed)
-    wrong = np.flatnonzero(compute_misfit(errors, noise, observed) > DOUBTFUL)
+    errors = problem.compute_errors(x)
+    wrong = np.flatnonzero(compute_misfit(errors, noise, problem.observed) > DOUBTFUL)
     if not len(wrong):
         return x
-    part, x = observed.select_texels(wrong), x.copy()
+    part, x = problem.on(problem.observed.select_texels(wrong)), x.copy()
     for width in WIDTHS:
-        start = make_start(parameters, part, width)
-        trial, error = fit_each_texel(parameters, start, part, RESTART_STEPS, report)
+        trial, error = fit_each_texel(part, make_start(part, width), RESTART_STEPS)
         better = error < errors[wrong]
         x[wrong[better]], errors[wrong[better]] = trial[better], error[better]
     return x
 
 
-def propagate_from_neighbours(
-    parameters: TexelParameters, x: FloatArray, observed: Observations, report: Report
-) -> FloatArray:
+def propagate_from_neighbours(problem: Problem, x: FloatArray) -> FloatArray:
     """Return the texels' numbers `x` (n, count), replaced where other numbers fit better.
 
     The candidates are the median around the texel and the numbers of texels nearby, so that good
     numbers spread as matches do in [Barnes et al. 2009].
     """
-    grid = x.reshape(*observed.shape, -1)
-    errors = compute_errors(parameters, x, observed)
+    grid = x.reshape(*problem.observed.shape, -1)
+    errors = problem.compute_errors(x)
     median = median_filter(grid, size=(3, 3, 1), mode="nearest")
     for candidate in (median, *(_shift(grid, *offset) for offset in OFFSETS)):
         candidate = candidate.reshape(x.shape)
-        there = compute_errors(parameters, candidate, observed)
+        there = problem.compute_errors(candidate)
         better = there < errors
         x, errors = np.where(better[:, None], candidate, x), np.where(better, there, errors)
-        report()
+        problem.report()
     return x
 
 

@@ -10,8 +10,7 @@ At the end R(x) equals P up to noise, whatever the formula ignores; it only has 
 about as R does. [Van Cittert 1931] removes a blur by the same iteration.
 """
 
-from __future__ import annotations
-
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,14 +27,9 @@ from brdfkit.inverse.photographs.capture.observations import (
 from brdfkit.inverse.photographs.maps.maps import Maps
 from brdfkit.inverse.photographs.maps.residuals import compute_misfit
 from brdfkit.inverse.photographs.maps.scene import sample_dict
-from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 from brdfkit.inverse.photographs.search.fitting_maps import FittedMaps
-from brdfkit.inverse.photographs.search.least_squares import (
-    Report,
-    compute_equations,
-    fit_all_texels,
-)
-from brdfkit.inverse.photographs.search.smoothness import compute_strength
+from brdfkit.inverse.photographs.search.least_squares import fit_all_texels
+from brdfkit.inverse.photographs.search.problem import Problem
 
 SAMPLES = 16  # per pixel, evenly spread
 ROUND_LIMIT = 5
@@ -58,11 +52,7 @@ class RenderedMaps:
 
 
 def refine_through_renderer(
-    parameters: TexelParameters,
-    fitted: FittedMaps,
-    observed: Observations,
-    capture: Capture,
-    report: Report = lambda: None,
+    problem: Problem, fitted: FittedMaps, capture: Capture
 ) -> tuple[RenderedMaps, int]:
     """Return the best maps with their renderings, and the number of rounds that led to them.
 
@@ -70,10 +60,10 @@ def refine_through_renderer(
     """
     best = None
     try:
-        best = render_maps(parameters, fitted, observed, capture, report)
+        best = render_maps(problem, fitted, capture)
         for rounds in range(ROUND_LIMIT):
-            corrected = correct_maps(parameters, best, rounds == 0, observed, capture, report)
-            trial = render_maps(parameters, corrected, observed, capture, report)
+            corrected = correct_maps(problem, best, rounds == 0, capture)
+            trial = render_maps(problem, corrected, capture)
             if not trial.difference < LARGEST_REMAINDER * best.difference:
                 return best, rounds
             best = trial
@@ -83,29 +73,24 @@ def refine_through_renderer(
 
 
 def correct_maps(
-    parameters: TexelParameters,
-    rendered: RenderedMaps,
-    is_first: bool,
-    observed: Observations,
-    capture: Capture,
-    report: Report,
+    problem: Problem, rendered: RenderedMaps, is_first: bool, capture: Capture
 ) -> FittedMaps:
     """Return the maps after one round of correction.
 
     The first round adds the whole difference between photographs and renderings. Later ones add
     only what exceeds the noise in each texel, so that noise is not sharpened [Wiener 1949].
     """
-    fitted = rendered.fitted
+    fitted, observed = rendered.fitted, problem.observed
     beyond = sample_pictures(capture, capture.pictures - rendered.pictures, observed.shape)
     if not is_first:
         misfit = np.maximum(measure_misfit(beyond, fitted.noise, observed), 1)
         beyond *= (1 - 1 / misfit**2)[:, None]
-    target = replace(observed, radiance=parameters.compute_radiances(fitted.x, observed) + beyond)
-    hessian = fitted.equations.hessian  # does not depend on the radiances
-    strength = compute_strength(parameters, hessian, observed, fitted.noise, fitted.tau)
-    x = fit_all_texels(parameters, fitted.x.copy(), target, strength, STEPS_PER_ROUND, report)
-    equations = compute_equations(parameters, x, target)
-    return replace(fitted, x=x, equations=equations, strength=strength)
+    radiance = problem.parameters.compute_radiances(fitted.x, observed) + beyond
+    target = problem.on(replace(observed, radiance=radiance))
+    # The Hessian does not depend on the radiances
+    strength = target.compute_strength(fitted.equations.hessian, fitted.noise, fitted.tau)
+    x = fit_all_texels(target, fitted.x.copy(), strength, STEPS_PER_ROUND)
+    return replace(fitted, x=x, equations=target.compute_equations(x), strength=strength)
 
 
 def measure_misfit(differences: FloatArray, noise: float, observed: Observations) -> FloatArray:
@@ -113,16 +98,11 @@ def measure_misfit(differences: FloatArray, noise: float, observed: Observations
     return compute_misfit((observed.weights * differences**2).sum(axis=(0, 2)), noise, observed)
 
 
-def render_maps(
-    parameters: TexelParameters,
-    fitted: FittedMaps,
-    observed: Observations,
-    capture: Capture,
-    report: Report,
-) -> RenderedMaps:
+def render_maps(problem: Problem, fitted: FittedMaps, capture: Capture) -> RenderedMaps:
     """Return fitted maps with Mitsuba's renderings of the photographs."""
-    maps = Maps.from_rows(parameters, fitted.x, observed.shape, capture.size)
-    pictures = _render_photographs(maps, capture, report)
+    shape = problem.observed.shape
+    maps = Maps.from_rows(problem.parameters, fitted.x, shape, capture.size)
+    pictures = _render_photographs(maps, capture, problem.report)
     relative = _compare(capture, pictures)[capture.counted]
     return RenderedMaps(fitted, pictures, float(np.sqrt((relative**2).mean())))
 
@@ -133,7 +113,7 @@ def _compare(capture: Capture, pictures: FloatArray) -> FloatArray:
     return (pictures - capture.pictures) / scale
 
 
-def _render_photographs(maps: Maps, capture: Capture, report: Report) -> FloatArray:
+def _render_photographs(maps: Maps, capture: Capture, report: Callable[[], object]) -> FloatArray:
     """Render maps with the cameras and lights of a `Capture`: (lights, height, width, 3)."""
     import mitsuba as mi
 

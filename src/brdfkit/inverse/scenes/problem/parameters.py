@@ -1,7 +1,5 @@
 """Chooses which entries of a scene `refine` searches, and within which bounds."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Reads the pictures that `refine` has to match, and weighs their pixels."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path

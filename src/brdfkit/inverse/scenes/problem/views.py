@@ -1,7 +1,5 @@
 """Renders a scene at given parameters and compares its pictures with the target pictures."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -33,6 +31,13 @@ class Views:
     target_pixels, weights : the targets' pixels and weights, (pixels, channels).
     counted : which pixels (pixels,) have a weight above 0.
     blocks : the blocks of pixels whose noise is correlated, from `number_blocks`.
+    names : a name for each number.
+    start : the coordinates (n,) of the scene's own values, where the search begins.
+    lower_bounds, upper_bounds : the bounds (n,) of the coordinates.
+    is_linear : whether pictures of direct light are linear in each number (n,).
+    is_nonlinear_share : whether each number (n,) has finite bounds, and pictures are not linear.
+    is_unlimited_weight : whether each number (n,) is a lobe's weight without an upper bound.
+    has_wrong_derivatives : whether Mitsuba's derivatives by each number (n,) are wrong.
     cost : samples per pixel rendered so far; derivatives count by the time that they take.
     """
 
@@ -53,6 +58,21 @@ class Views:
         self.weights /= sum(target.count for target in targets)
         self.counted: BoolArray = np.any(self.weights > 0, axis=1)
         self.blocks = number_blocks(scene, self.counted)
+        self.names = tuple(name for unknown in unknowns for name in unknown.names)
+        self.start = np.concatenate([u.to_coordinates(u.start) for u in unknowns])
+
+        def repeat(values: Iterable[Any]) -> AnyArray:
+            """Return one value for each unknown, repeated for each of its numbers: (n,)."""
+            return np.repeat(list(values), [len(unknown.start) for unknown in unknowns])
+
+        self.lower_bounds = repeat(u.limits[0] for u in unknowns)
+        self.upper_bounds = repeat(u.limits[1] for u in unknowns)
+        self.is_linear = repeat(u.is_linear for u in unknowns)
+        self.is_nonlinear_share = repeat(u.is_bounded and not u.is_linear for u in unknowns)
+        self.is_unlimited_weight = repeat(
+            u.model is not None and u.is_linear and not u.is_bounded for u in unknowns
+        )
+        self.has_wrong_derivatives = repeat(u.has_wrong_derivatives for u in unknowns)
         self.cost = 0.0
 
     def to_values(self, x: FloatArray) -> list[FloatArray]:
@@ -71,52 +91,6 @@ class Views:
     def split(self, x: AnyArray) -> list[AnyArray]:
         """Return an array (n,) split into the parts that belong to each unknown."""
         return np.split(np.asarray(x), self.ends[:-1])
-
-    @property
-    def start(self) -> FloatArray:
-        """The coordinates (n,) of the scene's own values, where the search begins."""
-        return np.concatenate([unknown.to_coordinates(unknown.start) for unknown in self.unknowns])
-
-    @property
-    def lower_bounds(self) -> FloatArray:
-        """The lower bounds (n,) of the coordinates."""
-        return self._repeat(unknown.limits[0] for unknown in self.unknowns)
-
-    @property
-    def upper_bounds(self) -> FloatArray:
-        """The upper bounds (n,) of the coordinates."""
-        return self._repeat(unknown.limits[1] for unknown in self.unknowns)
-
-    def _repeat(self, values: Iterable[Any]) -> AnyArray:
-        """Return one value per unknown, repeated for each of its numbers: (n,)."""
-        return np.repeat(list(values), [len(unknown.start) for unknown in self.unknowns])
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """A name for each of the n numbers."""
-        return tuple(name for unknown in self.unknowns for name in unknown.names)
-
-    @property
-    def is_linear(self) -> BoolArray:
-        """Whether pictures of direct light are linear in each number (n,)."""
-        return self._repeat(unknown.is_linear for unknown in self.unknowns)
-
-    @property
-    def is_nonlinear_share(self) -> BoolArray:
-        """Whether each number (n,) has two finite bounds, and pictures are not linear in it."""
-        return self._repeat(u.is_bounded and not u.is_linear for u in self.unknowns)
-
-    @property
-    def is_unlimited_weight(self) -> BoolArray:
-        """Whether each number (n,) is the weight of a model's lobe, without an upper bound."""
-        return self._repeat(
-            u.model is not None and u.is_linear and not u.is_bounded for u in self.unknowns
-        )
-
-    @property
-    def has_wrong_derivatives(self) -> BoolArray:
-        """Whether Mitsuba's derivatives by each number (n,) are wrong."""
-        return self._repeat(unknown.has_wrong_derivatives for unknown in self.unknowns)
 
     def render_residuals(self, x: FloatArray, spp: int, seed: int) -> FloatArray:
         """Return rendered minus target pixels (pixels, channels) at `x`, with `spp` samples."""

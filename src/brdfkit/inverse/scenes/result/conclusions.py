@@ -1,7 +1,5 @@
 """Makes the `Refinement` from the end of a search: values, standard errors and notes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -4,8 +4,6 @@ The check tells whether the end is worse than the scene's own values, and whethe
 would move the numbers by more than chance.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

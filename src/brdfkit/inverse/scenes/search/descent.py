@@ -4,8 +4,6 @@ The gradient comes from renderings backwards, and L-BFGS-B [Byrd et al. 1995] st
 fixed samples. Several stages follow each other, each with more and with other samples.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -25,7 +23,7 @@ TRIAL_STEPS = 8  # L-BFGS-B steps for each of these weights
 HELD_OUT_INTERVAL = 10  # one pixel of so many is held out
 
 
-def count_steps(smoothness: float | None, steps: int) -> int:
+def count_descent_steps(smoothness: float | None, steps: int) -> int:
     """Return how many steps a descent may take in total, for its progress."""
     trials = TRIAL_STEPS * len(SMOOTHNESS_TRIALS) if smoothness is None else 0
     return trials + steps * len(STAGE_SAMPLES)

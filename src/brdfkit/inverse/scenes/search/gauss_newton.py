@@ -5,8 +5,6 @@ only as far as the noise of rendering demands. Damping is that of [Levenberg 194
 [Marquardt 1963].
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 

@@ -1,0 +1,139 @@
+"""Defines the least-squares problem of the texels: residuals, their derivatives, noise and units.
+
+A difference of one unit times τ between neighbouring texels counts as much as a residual of one
+standard deviation of the noise. So maps are smoothed more where the photographs are noisy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from brdfkit.core.array_types import BoolArray, FloatArray
+from brdfkit.inverse.photographs.capture.observations import Observations
+from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
+
+BLOCK = 8192  # texels whose equations are computed at once
+RIDGE = 1e-9  # relative to the diagonal; it keeps undetermined numbers from making H singular
+
+
+@dataclass
+class Equations:
+    """The normal equations of n texels, each by itself.
+
+    error : E² (n,) without the differences of neighbours.
+    gradient : half of its gradient (n, count).
+    hessian : half of its Gauss-Newton Hessian (n, count, count).
+    """
+
+    error: FloatArray
+    gradient: FloatArray
+    hessian: FloatArray
+
+    def damp(self, damping: FloatArray | float) -> FloatArray:
+        """Return the Hessians with a diagonal that is larger by a factor `damping` and a ridge."""
+        diagonal = np.diagonal(self.hessian, axis1=1, axis2=2)
+        floor = RIDGE * diagonal.max(axis=1, keepdims=True) + 1e-300
+        added = np.einsum("np,pq->npq", damping * diagonal + floor, np.eye(diagonal.shape[1]))
+        return self.hessian + added
+
+    def replace(self, texels: BoolArray, other: Equations) -> None:
+        """Take over the equations of some texels from `other`."""
+        self.error[texels] = other.error[texels]
+        self.gradient[texels] = other.gradient[texels]
+        self.hessian[texels] = other.hessian[texels]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """The least-squares problem of n texels, whose numbers `x` (n, count) are sought.
+
+    parameters : the layout of the numbers.
+    observed : the content of the photographs at the texels.
+    report : called after each step of a search.
+    """
+
+    parameters: TexelParameters
+    observed: Observations
+    report: Callable[[], object] = lambda: None
+
+    def on(self, observed: Observations) -> Problem:
+        """Return the problem for other observations."""
+        return replace(self, observed=observed)
+
+    def compute_errors(self, x: FloatArray) -> FloatArray:
+        """Return E² (n,) of the texels at `x`, without the differences of neighbours."""
+        return self._compute(x, differentiate=False).error
+
+    def compute_equations(self, x: FloatArray) -> Equations:
+        """Return the `Equations` of the texels at `x`."""
+        return self._compute(x, differentiate=True)
+
+    def _compute(self, x: FloatArray, differentiate: bool) -> Equations:
+        """Return the `Equations` at `x`; unless `differentiate`, only their error is set."""
+        texels, count, lobes = len(x), self.parameters.count, len(self.parameters.lobes)
+        error = np.zeros(texels)
+        gradient = np.zeros((texels, count) if differentiate else 0)
+        hessian = np.zeros((texels, count, count) if differentiate else 0)
+        for first in range(0, texels, BLOCK):
+            rows = slice(first, min(first + BLOCK, texels))
+            part = self.observed.select_texels(rows)
+            values, derivatives = self.parameters.evaluate_lobes(x[rows], part, differentiate)
+            for c in range(CHANNELS):
+                of_channel = [CHANNELS * lobe + c for lobe in range(lobes)]
+                weights = x[rows][:, of_channel].T
+                light = part.irradiance[..., c]
+                root = np.sqrt(part.weights[..., c])
+                shown = sum(w * lobe for w, lobe in zip(weights, values, strict=True))
+                residual = root * (light * shown - part.radiance[..., c])
+                error[rows] += (residual * residual).sum(axis=0)
+                if not differentiate:
+                    continue
+                own = of_channel + list(range(self.parameters.shape_columns.start, count))
+                slopes = [
+                    sum(w * slope for w, slope in zip(weights, by_lobe, strict=True))
+                    for by_lobe in derivatives
+                ]
+                factor = root * light
+                columns = [factor * column for column in (*values, *slopes)]
+                for a, column in zip(own, columns, strict=True):
+                    gradient[rows, a] += (column * residual).sum(axis=0)
+                    for b, other in zip(own, columns, strict=True):
+                        if b >= a:
+                            hessian[rows, a, b] += (column * other).sum(axis=0)
+        if differentiate:
+            hessian += np.triu(hessian, 1).transpose(0, 2, 1)
+        return Equations(error, gradient, hessian)
+
+    def estimate_noise(self, errors: FloatArray) -> float:
+        """Return the variance of relative radiances, from E² (n,) of the texels.
+
+        The median over texels is robust against those that the maps do not explain.
+        """
+        counted = (self.observed.weights > 0).sum(axis=(0, 2))
+        free = np.maximum(counted - self.parameters.count, 0.2 * counted)
+        return max(float(np.median(errors / np.maximum(free, 1))), 1e-10)
+
+    def compute_strength(self, hessian: FloatArray, noise: float, tau: float) -> FloatArray:
+        """Return the weights (count,) of squared differences, σ² / τ², for each number in its unit.
+
+        `noise` is σ², `tau` is τ, and `hessian` (n, count, count) determines the units.
+        """
+        return noise / (tau * self.find_units(hessian)) ** 2
+
+    def find_units(self, hessian: FloatArray) -> FloatArray:
+        """Return the units (count,) of differences, from the Hessians of the texels.
+
+        The unit of a weight is the one with which its lobe alone would be as bright as the
+        photographs. The current weight would be a bad unit: one near 0 would then stay there.
+        """
+        of_weights = slice(0, self.parameters.shape_columns.start)
+        brightness = np.diagonal(hessian, axis1=1, axis2=2)[:, of_weights]
+        counted = (self.observed.weights > 0).sum(axis=(0, 2))[:, None] / CHANNELS
+        alone = np.sqrt(counted / np.maximum(brightness, 1e-12 * counted + 1e-300))
+        units, lit = np.ones(self.parameters.count), self.observed.lit_channels()
+        median = np.median(alone[counted[:, 0] > 0], axis=0).reshape(-1, CHANNELS)
+        units[of_weights] = np.repeat(median[:, lit].mean(axis=1), CHANNELS)
+        return units
