@@ -11,7 +11,7 @@ from brdfkit.images.ball import LIGHTS, draw_pixels
 from brdfkit.images.ball.half_vectors import HalfVectors
 from brdfkit.images.ball.lights import get_sampling
 from brdfkit.images.ball.normals import VIEW, draw_normals
-from brdfkit.images.ball.pixels import BRIGHTER
+from brdfkit.images.ball.pixels import BRIGHT_SHARE
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.pixel_problem import PictureProblem
@@ -130,7 +130,7 @@ def test_pixels_are_exposed_and_linear():
     assert pixels.take_first(7).look(dark.eval) == pytest.approx(pixels.values[:7])
     for picture in (0, 1):
         values, weights = pixels.values[picture::2, 0], pixels.weights[picture::2]
-        assert weights[values > 1].sum() / weights.sum() == pytest.approx(BRIGHTER, abs=0.01)
+        assert weights[values > 1].sum() / weights.sum() == pytest.approx(BRIGHT_SHARE, abs=0.01)
     limited = draw_pixels(("court", "hall"), dark.eval, max_angle=60, pixels=200)
     cosines = np.stack([limited.wi[:, 2], limited.wo[:, 2]])
     assert (cosines > 0.5).all()

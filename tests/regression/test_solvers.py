@@ -116,7 +116,7 @@ def test_a_saved_fit_knows_its_solver(noisy, tmp_path):
 @pytest.mark.quick
 def test_the_solver_that_the_documentation_shows_works(noisy):
     """It is not good, but the loss is the one that it reports."""
-    code = textwrap.dedent(solvers.__doc__.partition("a solver:\n\n")[2])
+    code = textwrap.dedent(solvers.__doc__.partition("a solver::\n\n")[2])
     scope = {"np": np, "End": solvers.End}
     exec(code, scope)
     found = bk.fit(noisy, "ward", solver=scope["RandomSearch"]())

@@ -2,42 +2,41 @@
 
 from __future__ import annotations
 
-import inspect
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
 from functools import partial
-from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
 from brdfkit.core.array_types import ArrayLike
-from brdfkit.core.errors import no_such
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress
 from brdfkit.core.version import find_versions
 from brdfkit.fitting.light_of_data import light_of_data
 from brdfkit.fitting.notes import list_notes
-from brdfkit.fitting.settings import require_material_first, require_plain, to_settings
+from brdfkit.fitting.settings import (
+    Bounds,
+    Constraints,
+    FitSettings,
+    LossLike,
+    ModelLike,
+    require_material_first,
+    require_plain,
+)
 from brdfkit.images.ball import draw_pixels
 from brdfkit.materials.extrapolation import note_extrapolation
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 from brdfkit.materials.resolve import MaterialLike, to_measured
-from brdfkit.model import Model, labels
+from brdfkit.model import labels
 from brdfkit.model.evaluation import make_model
 from brdfkit.model.samples.measures import compute_measure, integrate_measure
+from brdfkit.model.samples.samples import Samples
 from brdfkit.regression import Fit, Loss, Picture, regress, to_loss
 from brdfkit.regression.measurement_noise import regress_noisy
-from brdfkit.regression.solvers import AlbedoAtMost, Solver, WeightsAtMost
-from brdfkit.regression.solvers.settings import to_plain
-
-ModelLike: TypeAlias = str | Path | type[Model]
-LossLike: TypeAlias = str | Loss | Picture | Callable[..., Any]
-Constraint: TypeAlias = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
-Constraints: TypeAlias = Constraint | Iterable[Constraint]
-Bounds: TypeAlias = Mapping[str, tuple[float, float]]
+from brdfkit.regression.solvers import Solver
 
 
 @in_turn
@@ -142,65 +141,64 @@ def fit(
     began = time.perf_counter()
     require_material_first("fit(material, model)", material)
     model_class, data = labels.model(labels.load_files(model)), to_measured(material)
-    how: dict[str, Any] = {"seed": seed, "starts": starts, "bounds": bounds, "fixed": fixed}
-    how |= {"solver": solver, "constraints": constraints}
-    how["anisotropic"] = data.anisotropic if anisotropic is None else anisotropic
-    given = {"robust": robust, "max_angle": max_angle, "use_standard_error": use_standard_error}
-    checked = check_settings({**given, **how}, f"{model_class.type_name()}: ")
-    how = {name: checked[name] for name in how}
-    loss = to_loss(loss)
+    settings = FitSettings(
+        loss=loss,
+        robust=robust,
+        use_standard_error=use_standard_error,
+        solver=solver,
+        constraints=constraints,
+        starts=starts,
+        bounds=bounds,
+        fixed=fixed,
+        anisotropic=data.anisotropic if anisotropic is None else anisotropic,
+        max_angle=max_angle,
+        spectral=spectral,
+        seed=seed,
+    ).checked(f"{model_class.type_name()}: ")
+    error = to_loss(loss)
     samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
 
     light = light_of_data(data if spectral else data.rgb, weights, max_angle)
 
-    def to_fit(found):
+    def to_fit(solution: Any) -> Fit:
         known = wavelengths(data) if spectral else ()
-        fitted = make_model(model_class, found.shapes, found.weights, known)
+        fitted = make_model(model_class, solution.shapes, solution.weights, known)
         albedo = light.judge(fitted.eval)
         warnings = [] if light.has_another_unit else albedo.warnings()
         return Fit(
             model=fitted,
             data=data.name,
-            loss_name=loss.name,
-            loss=found.loss,
+            loss_name=error.name,
+            loss=solution.loss,
             samples=len(samples.wi),
-            evaluations=found.evaluations,
+            evaluations=solution.evaluations,
             seconds=time.perf_counter() - began,
-            message=_add_warning(found.message) if warnings else found.message,
-            at_bounds=found.at_bounds,
-            certainty=found.certainty,
+            message=_add_warning(solution.message) if warnings else solution.message,
+            at_bounds=solution.at_bounds,
+            certainty=solution.certainty,
             notes=(
-                *found.notes,
+                *solution.notes,
                 *warnings,
-                *list_notes(data, samples, loss, found, fitted, weights is not None),
+                *list_notes(data, samples, error, solution, fitted, weights is not None),
                 *note_extrapolation(data, float(max_angle)),
             ),
             albedo=albedo,
-            **tell_weights(loss, samples, max_angle),
-            settings={
-                **given,
-                **how,
-                "max_angle": float(max_angle),
-                "spectral": bool(spectral),
-                "solver": to_plain(how["solver"]),
-                "constraints": list(map(to_plain, how["constraints"])),
-            },
+            **describe_weights(error, samples, max_angle),
+            settings=settings.to_record(),
             checksum=data.checksum,
             versions=dict(find_versions()),
         )
 
     solve = regress if samples.errors is None else regress_noisy
-    if isinstance(loss, Picture):
+    if isinstance(error, Picture):
         require_plain(robust=robust, weights=weights, spectral=spectral)
-        pixels = draw_pixels(loss.lights, data.rgb.eval, max_angle, checked["seed"])
+        pixels = draw_pixels(error.lights, data.rgb.eval, max_angle, settings.seed)
         solve = partial(regress, pixels=pixels)
-    # A sum over the samples as they are is just that
-    as_it_is = getattr(loss, "measure", None) == "samples" or light.has_another_unit
-    kept = None if as_it_is else light
+    # A sum over samples, whatever they stand for, has no light to keep
+    without_light = getattr(error, "measure", None) == "samples" or light.has_another_unit
+    search: dict[str, Any] = settings.of_search() | {"light": None if without_light else light}
     try:
-        return to_fit(
-            solve(model_class, samples, loss, robust=robust, light=kept, **how, report=progress)
-        )
+        return to_fit(solve(model_class, samples, error, **search, report=progress))
     except Interrupted as stop:
         best = to_fit(stop.best)
         raise Interrupted(
@@ -208,46 +206,22 @@ def fit(
         ) from None
 
 
-# The settings: all arguments but the model, the material with its weights, and the progress
-SETTINGS = {
-    name: parameter.default
-    for name, parameter in inspect.signature(fit).parameters.items()
-    if name not in ("material", "model", "weights", "progress")
-}
+def _add_warning(message: str) -> str:
+    """Return the message of a search with a warning that the albedo of the fit is wrong."""
+    end, semicolon, details = message.partition(";")
+    converged = end.startswith(("converged", "settled"))
+    return f"{end}, but its light is wrong{semicolon}{details}" if converged else message
 
 
-def _add_warning(message):
-    """The message of a fit whose light is wrong."""
-    end, semicolon, rest = message.partition(";")
-    ended = end.startswith(("converged", "settled"))
-    return f"{end}, but its light is wrong{semicolon}{rest}" if ended else message
-
-
-def tell_weights(loss: Loss | Picture, samples: Any, max_angle: float) -> dict[str, float]:
-    """`Fit.effective_samples` and `Fit.unrepresented` of the `Samples` of a fit."""
+def describe_weights(loss: Loss | Picture, samples: Samples, max_angle: float) -> dict[str, float]:
+    """Return `Fit.effective_samples` and `Fit.unrepresented` of fitted samples by their names."""
     if isinstance(loss, Picture):
         return {}
     weights = loss.importance(samples)
-    own, covered = compute_measure(samples.extents, loss.measure), 1.0
-    if isinstance(own, np.ndarray):
-        covered = float(own.sum()) / integrate_measure(float(max_angle), loss.measure)
+    shares, covered = compute_measure(samples.extents, loss.measure), 1.0
+    if isinstance(shares, np.ndarray):
+        covered = float(shares.sum()) / integrate_measure(float(max_angle), loss.measure)
     return {
         "effective_samples": float(weights.sum() ** 2 / (weights @ weights)),
         "unrepresented": max(1 - covered, 0.0),
     }
-
-
-def check_settings(given: Mapping[str, Any], where: str = "") -> dict[str, Any]:
-    """All `SETTINGS` of a fit: those `given` by name, and the others' defaults.
-
-    Raises the `BrdfkitError` that `fit` raises for any model and any material; in it `where` stands
-    before the names of bounds.
-
-    >>> check_settings({"loss": "cbrt"})["max_angle"]
-    80.0
-    """
-    for name in given:
-        if name not in SETTINGS:
-            raise no_such("setting of a fit", name, SETTINGS)
-    settings = {**SETTINGS, **given}
-    return to_settings(settings, where)

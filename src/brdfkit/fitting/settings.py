@@ -1,32 +1,144 @@
-"""Checks the settings of a fit: what is wrong with them for any model and any material."""
+"""The settings of a fit, checked, and what a fit that is finished was made from."""
+
+from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from typing import Any, TypeAlias
 
 from brdfkit.core.arguments import to_dictionary, to_number, to_pair, to_whole_number
+from brdfkit.core.array_types import ArrayLike
 from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.fitting.light_of_data import light_of_data
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.materials.resolve import to_measured
+from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model import Model, labels
-from brdfkit.regression import Fit, to_loss
+from brdfkit.model.samples.samples import Samples
+from brdfkit.regression import Fit, Loss, Picture, to_loss
 from brdfkit.regression.refitting import Refit
 from brdfkit.regression.robust.reweighting import WEIGHTS
-from brdfkit.regression.solvers.settings import require_suitable, to_constraints, to_solver
+from brdfkit.regression.solvers import AlbedoAtMost, WeightsAtMost
+from brdfkit.regression.solvers.settings import (
+    require_suitable,
+    to_constraints,
+    to_plain,
+    to_solver,
+)
+
+ModelLike: TypeAlias = str | Path | type[Model]
+LossLike: TypeAlias = str | Loss | Picture | Callable[..., Any]
+Constraint: TypeAlias = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
+Constraints: TypeAlias = Constraint | Iterable[Constraint]
+Bounds: TypeAlias = Mapping[str, tuple[float, float]]
 
 
-def refit(fit, data):
-    """The `Refit` of a fit and the material that was fitted."""
-    samples = fitted_samples(fit, data)
-    material = to_measured(data)
-    material = material if fit.wavelengths else material.rgb
-    light = light_of_data(material, None, fit.settings.get("max_angle", 80.0))
+@dataclass(frozen=True)
+class FitSettings:
+    """The arguments of `fit` besides the material, the model, the weights and the progress.
+
+    Attributes have the names, meanings and defaults that `fit` documents; `checked` converts the
+    solver, the constraints, the bounds and the fixed values to what a search takes.
+    """
+
+    loss: Any = "cbrt"
+    robust: str | None = None
+    use_standard_error: bool = True
+    solver: Any = None
+    constraints: Any = None
+    starts: int | None = None
+    bounds: Any = None
+    fixed: Any = None
+    anisotropic: bool | None = None
+    max_angle: float = 80.0
+    spectral: bool = False
+    seed: int = 0
+
+    @classmethod
+    def read(cls, given: Any) -> FitSettings:
+        """Return the settings in a dictionary, checked, as the argument `settings` of verbs.
+
+        The loss must be a name, because other processes may fit. Raises `BrdfkitError` for unknown
+        names and for values that `fit` would refuse for any model and any material.
+
+        >>> FitSettings.read({"loss": "log"}).max_angle
+        80.0
+        """
+        known = [field.name for field in fields(cls)]
+        for name in given:
+            if name not in known:
+                raise no_such("setting of a fit", name, known)
+        settings = cls(**given)
+        if not isinstance(settings.loss, str):
+            raise BrdfkitError(
+                f"loss = {settings.loss!r} is no name; where other processes fit, it should be one "
+                "of brdfkit.losses.named."
+            )
+        to_loss(settings.loss)
+        return settings.checked()
+
+    def checked(self, where: str = "") -> FitSettings:
+        """Return the settings in the types that a search takes; `where` precedes names in errors.
+
+        Raises `BrdfkitError` for values that no model and no material could have.
+        """
+        if self.robust not in (None, *WEIGHTS):
+            raise no_such("robust weight", self.robust, WEIGHTS)
+        solver, constraints = to_solver(self.solver), to_constraints(self.constraints)
+        require_suitable(solver, constraints, self.robust)
+        starts = self.starts
+        if starts is not None:
+            starts = to_whole_number("starts", starts, least=1)
+        seed = to_whole_number("seed", self.seed, least=0)
+        bounds = to_dictionary("bounds", self.bounds)
+        to_number("max_angle", self.max_angle, above=0, most=90)
+        return replace(
+            self,
+            solver=solver,
+            constraints=constraints,
+            starts=starts,
+            bounds={n: to_pair(f"{where}the bounds of {n}", v) for n, v in bounds.items()},
+            fixed=to_dictionary("fixed", self.fixed),
+            seed=seed,
+        )
+
+    def of_search(self) -> dict[str, Any]:
+        """Return the arguments of `regress` that checked settings determine."""
+        names = "robust", "seed", "starts", "bounds", "fixed", "solver", "constraints"
+        return {name: getattr(self, name) for name in (*names, "anisotropic")}
+
+    def to_record(self) -> dict[str, Any]:
+        """Return checked settings as plain data, for `Fit.settings` and its file."""
+        return {
+            "robust": self.robust,
+            "max_angle": float(self.max_angle),
+            "use_standard_error": self.use_standard_error,
+            "seed": self.seed,
+            "starts": self.starts,
+            "bounds": self.bounds,
+            "fixed": self.fixed,
+            "solver": to_plain(self.solver),
+            "constraints": list(map(to_plain, self.constraints)),
+            "anisotropic": self.anisotropic,
+            "spectral": bool(self.spectral),
+        }
+
+
+def prepare_refit(fit: Fit, material: MaterialLike) -> Refit:
+    """Return the `Refit` of a fit and the material that was fitted."""
+    samples = find_fitted_samples(fit, material)
+    data = to_measured(material)
+    data = data if fit.wavelengths else data.rgb
+    light = light_of_data(data, None, fit.settings.get("max_angle", 80.0))
     return Refit(fit, samples, light)
 
 
 def require_material_first(call: str, material: object) -> None:
-    """Raise `BrdfkitError` where a model stands in the place of the material, as it does in
-    `fit("ggx", paint)`; `call` is the right order, as "fit(material, model)"."""
+    """Raise `BrdfkitError` if a model takes the place of the material, as in `fit("ggx", paint)`.
+
+    `call` is the right order, such as "fit(material, model)".
+    """
     several = material if isinstance(material, list | tuple) else [material]
     if several and all(map(_is_model, several)):
         raise BrdfkitError(
@@ -35,56 +147,33 @@ def require_material_first(call: str, material: object) -> None:
 
 
 def _is_model(given: object) -> bool:
-    """Whether an argument can only mean a model: a fit, a model, its class, file or label."""
+    """Return whether an argument can only mean a model: a fit, a model, its class or its name."""
     if isinstance(given, str | Path):
         is_file = os.path.isfile(given)
         return str(given).endswith(".py") or (not is_file and labels.is_label(str(given)))
     return isinstance(given, Fit | Model) or (isinstance(given, type) and issubclass(given, Model))
 
 
-def fitted_samples(fit, data):
-    """The `Samples` of a material that were fitted; with standard errors, where these counted."""
+def find_fitted_samples(fit: Fit, material: MaterialLike) -> Samples:
+    """Return the samples of a material that were fitted, with standard errors if these counted."""
     if not isinstance(fit, Fit):
         raise BrdfkitError(
             f"Here a Fit is needed first, then the material, not a {type(fit).__name__}; make one "
             "by fit(material, model)."
         )
-    settings, data = fit.settings, to_measured(data)
+    settings, data = fit.settings, to_measured(material)
     errors = settings.get("use_standard_error", False)
     return select_samples(
         data, settings.get("max_angle", 80.0), errors=errors, spectral=bool(fit.wavelengths)
     )
 
 
-def to_settings(settings, where):
-    """The settings of a fit by name, checked, in the types that a fit takes; see `check_settings`
-    of `brdfkit.fitting.fit`."""
-    settings = dict(settings)
-    loss, robust = settings["loss"], settings["robust"]
-    if not isinstance(loss, str):
-        raise BrdfkitError(
-            f"loss = {loss!r} is no name; where other processes fit, it should be one of "
-            "brdfkit.losses.named."
-        )
-    to_loss(loss)
-    if robust not in (None, *WEIGHTS):
-        raise no_such("robust weight", robust, WEIGHTS)
-    settings["solver"] = to_solver(settings["solver"])
-    settings["constraints"] = to_constraints(settings["constraints"])
-    require_suitable(settings["solver"], settings["constraints"], robust)
-    if settings["starts"] is not None:
-        settings["starts"] = to_whole_number("starts", settings["starts"], least=1)
-    settings["seed"] = to_whole_number("seed", settings["seed"], least=0)
-    bounds = to_dictionary("bounds", settings["bounds"])
-    settings["bounds"] = {n: to_pair(f"{where}the bounds of {n}", v) for n, v in bounds.items()}
-    settings["fixed"] = to_dictionary("fixed", settings["fixed"])
-    to_number("max_angle", settings["max_angle"], above=0, most=90)
-    return settings
+def require_plain(**given: object) -> None:
+    """Raise `BrdfkitError` for arguments of a fit by pictures that need single samples.
 
-
-def require_plain(**given):
-    """Raise `BrdfkitError` for arguments that look at samples or wavelengths one by one, many of
-    which a picture shows in one pixel."""
+    A pixel mixes many samples and wavelengths, so weights of samples, robust weights and spectra
+    have no meaning there.
+    """
     for name, value in given.items():
         if value is not None and value is not False:
             raise BrdfkitError(

@@ -1,6 +1,6 @@
 """Collects the fits of a report: fits models, and accepts finished and saved fits."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
@@ -8,6 +8,7 @@ from typing import Any
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.progress_bar import Progress
 from brdfkit.fitting.fit import fit
+from brdfkit.fitting.settings import FitSettings
 from brdfkit.materials.loading import load
 from brdfkit.materials.measured import Measured
 from brdfkit.regression import Fit
@@ -27,7 +28,7 @@ def to_list(models: Any) -> list[Any]:
 def fit_each(
     models: Sequence[Any],
     material: Measured,
-    settings: Mapping[str, Any],
+    settings: FitSettings,
     show: ShowProgress = lambda what: nullcontext(),
 ) -> tuple[list[Fit], list[BrdfkitError]]:
     """Return the fits of the `models` that can be fitted, and the errors of the others.
@@ -48,7 +49,7 @@ def fit_each(
 
 
 def to_fit(
-    thing: Any, material: Measured, settings: Mapping[str, Any], progress: Progress | None = None
+    thing: Any, material: Measured, settings: FitSettings, progress: Progress | None = None
 ) -> Fit:
     """Return a finished fit, the one that is saved in a .json file, or the fit of a model.
 
@@ -59,7 +60,7 @@ def to_fit(
     if is_saved and not isinstance(finished, Fit):
         raise BrdfkitError(f"{thing}: is no saved fit; name one, or a model.")
     if not isinstance(finished, Fit):
-        return fit(material, thing, **settings, progress=progress)
+        return fit(material, thing, **vars(settings), progress=progress)
     if finished.checksum and finished.checksum != material.checksum:
         raise BrdfkitError(
             f"{finished.name} was fitted to other data, {finished.data}, than {material.name} has; "

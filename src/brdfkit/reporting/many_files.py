@@ -1,6 +1,6 @@
 """Writes reports of many measured materials, and a page with links to them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ from brdfkit.core.pages import page
 from brdfkit.core.progress_bar import Progress
 from brdfkit.core.version import __version__
 from brdfkit.fitting.compare import format_error
+from brdfkit.fitting.settings import FitSettings
 from brdfkit.materials.resolve import to_measured
 from brdfkit.reporting.contents import Contents
 from brdfkit.reporting.fits import fit_each
@@ -70,7 +71,7 @@ def report_many(
     files: Sequence[str],
     models: Sequence[Any],
     folder: str | Path,
-    settings: Mapping[str, Any],
+    settings: FitSettings,
     progress: Progress | None = None,
     **pictures: Any,
 ) -> Reports:

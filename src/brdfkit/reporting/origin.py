@@ -7,7 +7,7 @@ from typing import Any
 
 from brdfkit.core.files import sha256
 from brdfkit.core.version import find_versions
-from brdfkit.fitting.fit import SETTINGS
+from brdfkit.fitting.settings import FitSettings
 from brdfkit.materials.loading import locate
 from brdfkit.materials.measured import Measured
 from brdfkit.regression import Fit
@@ -63,7 +63,7 @@ def make_command(
     for fit in fits:
         words += ["-m", fit.model.label()]
     words += ["--loss", fits[0].loss_name]
-    defaults = {**SETTINGS, "seed": seed, "anisotropic": material.anisotropic}
+    defaults = {**vars(FitSettings()), "seed": seed, "anisotropic": material.anisotropic}
     missing = set() if all(fit.loss_name == fits[0].loss_name for fit in fits) else {"loss"}
     for name in dict.fromkeys(name for fit in fits for name in fit.settings):
         value = fits[0].settings.get(name)

@@ -12,9 +12,8 @@ from brdfkit.core.files import require_writable
 from brdfkit.core.names import to_file_stem
 from brdfkit.core.pages import page
 from brdfkit.core.progress_bar import Progress
-from brdfkit.fitting.fit import ModelLike, check_settings
 from brdfkit.fitting.ranking import Ranking
-from brdfkit.fitting.settings import require_material_first
+from brdfkit.fitting.settings import FitSettings, ModelLike, require_material_first
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.regression import Fit
@@ -90,7 +89,7 @@ def report(
     >>> report("car_paint", ["ward", "ggx"], path="car_paint.html")    # doctest: +SKIP
     """
     require_material_first("report(material, models)", material)
-    chosen = check_settings(to_dictionary("settings", settings))
+    chosen = FitSettings.read(to_dictionary("settings", settings))
     check_pictures(size, scene, environment)
     data, file = to_measured(material), material if isinstance(material, str | Path) else None
     path = check_page(choose_file_name(data) if path is None else path)

@@ -57,6 +57,7 @@ def report(files, names, how, output, scene, environment, spp, noise_floor, size
 def _report_one(file, names, how, output, pictures, console):
     """Fit the models to one file, and write and print its report."""
     from brdfkit.cli.rank_output import print_ranking, recommend
+    from brdfkit.fitting.settings import FitSettings
     from brdfkit.materials.resolve import to_measured
     from brdfkit.reporting.fits import fit_each
     from brdfkit.reporting.report import check_page, choose_file_name, write_report
@@ -67,7 +68,7 @@ def _report_one(file, names, how, output, pictures, console):
     names, ranking = recommend(names, material, how, console)
     if ranking:
         print_ranking(ranking, console)
-    fits, failed = fit_each(names, material, how, console.progress)
+    fits, failed = fit_each(names, material, FitSettings(**how), console.progress)
     with console.progress("render") as progress:
         said = write_report(material, fits, path, file, ranking, **pictures, progress=progress)
     if console.as_json:
@@ -103,13 +104,14 @@ def _report_many(files, names, how, folder, pictures, console):
     """Write a report of each file to `folder`, and the page that leads to them."""
     from brdfkit.cli.arguments import results_folder
     from brdfkit.cli.rank_output import refuse_best
+    from brdfkit.fitting.settings import FitSettings
     from brdfkit.reporting.many_files import report_many
 
     refuse_best(names)
     if folder.suffix.lower() in (".html", ".htm"):
         raise BrdfkitError(f"{folder} is one page; of several FILEs name a folder behind -o.")
     with results_folder(folder), console.progress(f"report on {len(files)} materials") as progress:
-        found = report_many(files, names, folder, how, **pictures, progress=progress)
+        found = report_many(files, names, folder, FitSettings(**how), **pictures, progress=progress)
     if console.as_json:
         console.json(
             {

@@ -11,13 +11,12 @@ import numpy as np
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.progress_bar import Progress
-from brdfkit.fitting.fit import LossLike, ModelLike
 from brdfkit.fitting.ranking.appearance import Appearance
 from brdfkit.fitting.ranking.cross_validation import cross_validate
 from brdfkit.fitting.ranking.held_out import HeldOut
 from brdfkit.fitting.ranking.ranked import rows_of
 from brdfkit.fitting.ranking.result import Ranking
-from brdfkit.fitting.settings import require_material_first
+from brdfkit.fitting.settings import LossLike, ModelLike, require_material_first
 from brdfkit.images.ball import draw_pixels
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.resolve import MaterialLike, to_measured

@@ -2,7 +2,6 @@
 
 import math
 from contextlib import suppress
-from typing import Any
 
 import numpy as np
 
@@ -11,13 +10,13 @@ from brdfkit.fitting.ranking.appearance import Appearance
 from brdfkit.fitting.ranking.cross_validation import errors_held_out
 from brdfkit.fitting.ranking.held_out import HeldOut
 from brdfkit.fitting.ranking.ranked import to_decibels
+from brdfkit.fitting.settings import FitSettings
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.regression import Fit, Picture, to_loss
 
 FOLDS = 5
 # Settings of a sweep's fit that its fits without a fold share; they begin where it ended
-SHARED = "robust", "solver", "constraints", "bounds", "fixed", "seed"
 
 
 class Judge:
@@ -26,12 +25,12 @@ class Judge:
     `settings`: all those of the fits, whose seed draws what is held out, too.
     """
 
-    def __init__(self, data: Measured, settings: dict[str, Any]):
+    def __init__(self, data: Measured, settings: FitSettings):
         self.settings, self.anisotropic = settings, data.anisotropic
-        angle, seed = settings["max_angle"], settings["seed"]
-        samples = select_samples(data, angle, None, False, settings["spectral"])
+        angle, seed = settings.max_angle, settings.seed
+        samples = select_samples(data, angle, None, False, settings.spectral)
         self.appearance = Appearance(data, samples, angle, seed + 1)
-        self.held_out, loss = None, to_loss(settings["loss"])
+        self.held_out, loss = None, to_loss(settings.loss)
         if not isinstance(loss, Picture):
             rng = np.random.default_rng(seed)
             with suppress(BrdfkitError):  # fewer blocks of directions than folds
@@ -46,9 +45,10 @@ class Judge:
         where there are too few samples."""
         if self.held_out is None:
             return math.nan
-        how = {name: self.settings[name] for name in SHARED}
-        given = self.settings["anisotropic"]
-        how["anisotropic"] = self.anisotropic if given is None else given
+        how = self.settings.of_search()
+        del how["starts"]  # the search goes on from the fit
+        if how["anisotropic"] is None:
+            how["anisotropic"] = self.anisotropic
         model = type(fit.model)
         first = {name: fit.values[name] for name in model.shapes(how["anisotropic"])}
         try:

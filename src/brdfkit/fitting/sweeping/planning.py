@@ -11,6 +11,7 @@ from brdfkit.core.discovery import plugin_files
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import sha256
 from brdfkit.core.names import make_unique, to_file_stem
+from brdfkit.fitting.settings import FitSettings
 from brdfkit.fitting.sweeping.tasks import Task
 from brdfkit.materials.formats import Source
 from brdfkit.materials.loading import locate
@@ -19,10 +20,10 @@ from brdfkit.model import Model, labels
 PARTS = 4  # tasks a worker, at least, where there are so many fits: then all end at about one time
 
 
-def plan(files: Any, models: Any, settings: dict[str, Any]) -> list[Task]:
+def plan(files: Any, models: Any, settings: FitSettings) -> list[Task]:
     """A task for every file, with all models; a file or a model that is named twice counts once.
 
-    `files`, `models`: one or several; `settings`: all those of a fit. A file that cannot be read
+    `files`, `models`: one or several; `settings`: those of all fits. A file that cannot be read
     has a task with its failure. Raises `BrdfkitError` for what is no model, and where there is no
     file or no model.
     """
@@ -50,7 +51,7 @@ def _cut(task, parts):
         yield replace(task, models=dict(models[start : start + size]))
 
 
-def _plan_file(file: Any, models: dict[str, dict[str, str]], settings: dict[str, Any]) -> Task:
+def _plan_file(file: Any, models: dict[str, dict[str, str]], settings: FitSettings) -> Task:
     """The task of one file, or of a material that is known by name."""
     if not isinstance(file, str | Path):
         raise BrdfkitError(

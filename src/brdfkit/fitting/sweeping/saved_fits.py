@@ -65,7 +65,7 @@ def _identity(task: Task, label: str) -> Any:
         "file": [[sum_, task.path.removeprefix(path)] for path, sum_ in task.checksums.items()],
         "model": label,
         "model's files": list(task.models[label].values()),
-        "settings": task.settings,
+        "settings": vars(task.settings),
         "brdfkit": task.version,
     }
     return json.loads(json.dumps(identity, default=str))

@@ -13,8 +13,7 @@ from brdfkit.core.arguments import to_dictionary, to_whole_number
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import make_folder, require_writable
 from brdfkit.core.progress_bar import Progress
-from brdfkit.fitting.fit import ModelLike, check_settings
-from brdfkit.fitting.settings import require_material_first
+from brdfkit.fitting.settings import FitSettings, ModelLike, require_material_first
 from brdfkit.fitting.sweeping import saved_fits
 from brdfkit.fitting.sweeping.cluster import count_slots, run_on_cluster
 from brdfkit.fitting.sweeping.planning import plan, split
@@ -83,10 +82,10 @@ def sweep(
     >>> print(sweep(Path("merl").glob("*.binary"), ["ward", "ggx"]))    # doctest: +SKIP
     """
     began = time.perf_counter()
-    settings = check_settings(to_dictionary("settings", settings))
-    require_plain(settings["solver"], settings["constraints"])
+    checked = FitSettings.read(to_dictionary("settings", settings))
+    require_plain(checked.solver, checked.constraints)
     slots = _count_slots(workers, client)
-    tasks = [replace(task, judge=bool(judge)) for task in plan(materials, models, settings)]
+    tasks = [replace(task, judge=bool(judge)) for task in plan(materials, models, checked)]
     require_material_first("sweep(materials, models)", materials)
     folder = None if folder is None else Path(folder)
     if folder:
@@ -163,7 +162,7 @@ def _finish(task: Task, outcome: Outcome, folder: Path | None) -> Row:
     except BrdfkitError as error:
         outcome, fit = fail(task, outcome.model, error), None
     if fit is None:
-        loss = task.settings["loss"]
+        loss = task.settings.loss
         return Row(task.material, task.file, outcome.model, loss, message=outcome.failure)
     saved = saved_fits.keep(folder, task, outcome) if folder else None
     return _make_row(task, outcome.model, fit, saved, outcome.judged)
@@ -174,7 +173,7 @@ def _make_row(
 ) -> Row:
     """The row of a fit that was `judged`, numbers by their names, or not."""
     values = fit.model.free_values.items()
-    sought = [v for n, v in values if n not in task.settings["fixed"]]
+    sought = [v for n, v in values if n not in task.settings.fixed]
     return Row(
         task.material,
         task.file,

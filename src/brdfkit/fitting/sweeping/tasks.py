@@ -7,12 +7,12 @@ takes and gives can be sent anywhere; only the files must be there, by the same 
 import io
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import sha256
 from brdfkit.core.version import __version__
 from brdfkit.fitting.fit import fit
+from brdfkit.fitting.settings import FitSettings
 from brdfkit.fitting.sweeping.judging import Judge
 from brdfkit.materials.formats import fit_json
 from brdfkit.materials.loading import load
@@ -36,7 +36,7 @@ class Task:
     path: str
     checksums: dict[str, str]
     models: dict[str, dict[str, str]]
-    settings: dict[str, Any]
+    settings: FitSettings
     judge: bool = False
     failure: str = ""
     version: str = __version__
@@ -70,7 +70,7 @@ def fit_models(task: Task) -> Iterator[Outcome]:
             for path in files:
                 labels.load_model_file(path)
             stream = io.BytesIO()
-            found = fit(data, label, **task.settings)
+            found = fit(data, label, **vars(task.settings))
             fit_json.write(found, stream)
             judged = judge.judge(found) if judge else {}
             yield Outcome(task.material, label, text=stream.getvalue().decode(), judged=judged)

@@ -14,7 +14,7 @@ from brdfkit.core.documents.parts import SOFT
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress
-from brdfkit.fitting.settings import refit
+from brdfkit.fitting.settings import prepare_refit
 from brdfkit.materials.resolve import MaterialLike
 from brdfkit.regression import Fit
 
@@ -117,7 +117,7 @@ def bootstrap(
     >>> print(bootstrap(fit("plaster", "ward"), "plaster"))    # doctest: +SKIP
     """
     draws, seed = to_whole_number("draws", draws, least=2), to_whole_number("seed", seed, least=0)
-    again = refit(fit, material)
+    again = prepare_refit(fit, material)
     problem, samples, rng = again.make_problem(), again.samples, np.random.default_rng(seed)
     refitted = []
     for number in range(1, draws + 1):
@@ -125,8 +125,8 @@ def bootstrap(
         (rows,) = np.nonzero(times)
         drawn = samples.at(rows)
         drawn = replace(drawn, weight=drawn.weight * times[rows])
-        *end, _ = again.descend(problem.on(drawn), fit.values, again.weights, rng)
-        refitted.append(again.to_values(*end))
+        shapes, weights, _ = again.descend(problem.on(drawn), fit.values, again.weights, rng)
+        refitted.append(again.to_values(shapes, weights))
         if progress:
             progress(number, draws)
     return Bootstrap(fit, {name: np.array([f[name] for f in refitted]) for name in refitted[0]})

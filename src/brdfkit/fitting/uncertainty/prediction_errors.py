@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.fitting.settings import fitted_samples
+from brdfkit.fitting.settings import find_fitted_samples
 from brdfkit.materials.resolve import MaterialLike, to_material
 from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.regression import Fit
@@ -92,7 +92,7 @@ def prediction_error(
     >>> linear = fit("plaster", "koenderink", loss="plain")    # doctest: +SKIP
     >>> print(prediction_error(linear, "plaster"))    # doctest: +SKIP
     """
-    samples = fitted_samples(fit, material)
+    samples = find_fitted_samples(fit, material)
     _require_linear(fit, samples)
     # raises for weights, constraints and standard errors, not known here
     Refit(fit, samples).require_least_loss()

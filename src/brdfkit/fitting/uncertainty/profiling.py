@@ -14,7 +14,7 @@ from brdfkit.core.documents import Document, Picture, Shown
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.figures import Plot, to_png
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.fitting.settings import refit
+from brdfkit.fitting.settings import prepare_refit
 from brdfkit.materials.resolve import MaterialLike
 from brdfkit.regression import Fit
 from brdfkit.regression.profiling import follow_profile, profile_curvature
@@ -111,7 +111,7 @@ def profile(fit: Fit, material: MaterialLike, *, parameter: str, points: int = 2
     from scipy.special import stdtrit
 
     points = to_whole_number("points", points, least=5)
-    again = refit(fit, material)
+    again = prepare_refit(fit, material)
     again.require_least_loss()
     space = again.make_problem().space
     if parameter not in space.names:

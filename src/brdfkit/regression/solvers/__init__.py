@@ -5,7 +5,7 @@ A solver is an object with one method, `minimise(objective)`. It takes an `Objec
 `constrained` = True also meets the constraints of the objective (`constraints.py`,
 `albedo_at_most.py`). `settings.py` finds brdfkit's solvers by their names.
 
-A random search, for example, is a solver:
+A random search, for example, is a solver::
 
     class RandomSearch:
         def minimise(self, objective):
