@@ -16,11 +16,10 @@ from shadow_scenes import LIGHTS, objects_on_a_ground, placement_of
 import brdfkit as bk
 from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.comparison.map_pictures import CHECKS, OUTSIDE, CompressedArray, MapPictures
-from brdfkit.shadows.comparison.page_pictures import draw_errors
-from brdfkit.shadows.comparison.paths import LIGHT_TURN, is_lit, light_path
+from brdfkit.shadows.comparison.page import draw_errors
 from brdfkit.shadows.comparison.quality import aliasing_error, share_used
 from brdfkit.shadows.comparison.scores import Scores, average, difference_of_lights
-from brdfkit.shadows.comparison.tracked_points import TrackedPoints
+from brdfkit.shadows.comparison.tracked_points import LIGHT_TURN, TrackedPoints, is_lit, light_path
 from brdfkit.shadows.maps.scenes import SCENES
 
 SCENE = """<scene version="3.0.0">

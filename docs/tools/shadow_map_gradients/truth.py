@@ -12,7 +12,7 @@ sides tell whether there is a border, or another shadow.
 
 import numpy as np
 
-from brdfkit.shadows.comparison.paths import is_lit
+from brdfkit.shadows.comparison.tracked_points import is_lit
 
 WIDTH = 0.3  # standard deviation of a patch
 CENTRES = np.array([(x, y) for x in (-0.3, 0.4, 1.1) for y in (-0.5, 0.2, 0.9)])

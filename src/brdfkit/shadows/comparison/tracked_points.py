@@ -1,19 +1,27 @@
-"""Points of a picture that are tracked while the camera moves, or while the light does."""
+"""Points of a picture that are tracked while the camera, or the light, moves a little.
+
+Such moves, as in a game, make the borders of shadows flicker, which the comparison measures.
+"""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import nan
 from typing import Any
 
 import numpy as np
 
-from brdfkit.core.array_types import AnyArray, FloatArray
-from brdfkit.shadows.comparison import paths
+from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, MitsubaObject
+from brdfkit.core.projective.homogeneous import make_rigid, project_all
+from brdfkit.core.projective.light import Light
 from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.comparison.quality import flicker
 from brdfkit.shadows.maps.placement import Placement
 
 PIXEL_STRIDE = 7  # every seventh pixel is tracked
+STEPS = 4
+CAMERA_TURN = 0.003  # the camera's turn to the right in a step [rad]
+CAMERA_STEP = 0.01  # the length of the camera's step, over the distance of the nearest surface
+LIGHT_TURN = 0.01  # the light's turn in a step, seen from the farthest place of the scene [rad]
 
 
 @dataclass(frozen=True)
@@ -34,18 +42,18 @@ class TrackedPoints:
     @classmethod
     def by_moving_camera(cls, view: LitView, placement: Placement) -> "TrackedPoints":
         """Return points that all cameras of a path see; their light stands still."""
-        path, pixels = paths.camera_path(placement), np.flatnonzero(view.facing)[::PIXEL_STRIDE]
-        pixels = pixels[paths.is_visible_to_all(path, np.array(view.si.p).T[pixels])]
+        path, pixels = camera_path(placement), np.flatnonzero(view.facing)[::PIXEL_STRIDE]
+        pixels = pixels[is_visible_to_all(path, np.array(view.si.p).T[pixels])]
         return cls(view, pixels, path, np.tile(view.exact[pixels], (len(path), 1)))
 
     @classmethod
     def by_moving_light(cls, view: LitView, placement: Placement) -> "TrackedPoints":
         """Return points that face all lights of a path; their camera stands still."""
-        path, pixels = paths.light_path(placement), np.flatnonzero(view.facing)[::PIXEL_STRIDE]
+        path, pixels = light_path(placement), np.flatnonzero(view.facing)[::PIXEL_STRIDE]
         points, normals = (np.array(vectors).T[pixels] for vectors in (view.si.p, view.si.n))
-        pixels = pixels[paths.is_facing_all(path, points, normals)]
+        pixels = pixels[is_facing_all(path, points, normals)]
         p, n = view.points(pixels)
-        true = [paths.is_lit(view.scene, each.light, p, n) for each in path]
+        true = [is_lit(view.scene, each.light, p, n) for each in path]
         return cls(view, pixels, path, np.array(true))
 
     def flicker(self, lit: FloatArray, technique: Callable[[LitView, Placement], Any]) -> float:
@@ -59,3 +67,75 @@ class TrackedPoints:
         p, n = self.view.points(self.pixels)
         later = [np.array(technique(self.view, each).lit_share(p, n)) for each in self.path[1:]]
         return flicker([lit[self.pixels], *later], self.true)
+
+
+def camera_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
+    """Return the placements of a camera that moves to the right, and turns that way.
+
+    A step moves a picture of 512 pixels by two or three of them.
+    """
+    camera = placement.camera
+    nearest, _ = placement.depths
+    path = []
+    for step in range(steps):
+        c, s = np.cos(CAMERA_TURN * step), np.sin(CAMERA_TURN * step)
+        turn = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+        moved = make_rigid(turn, np.array([CAMERA_STEP * step * nearest, 0, 0])) @ camera.view
+        path.append(replace(placement, camera=replace(camera, view=moved)))
+    return path
+
+
+def is_visible_to_all(placements: list[Placement], points: FloatArray) -> BoolArray:
+    """Return whether points (n, 3) are within the pictures of all cameras: (n,)."""
+    matrices = [placement.camera.matrix for placement in placements]
+    within = [(np.abs(project_all(m, points)) <= 1).all(axis=1) for m in matrices]
+    visible: BoolArray = np.all(within, axis=0)
+    return visible
+
+
+def light_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
+    """Return the placements of a light that moves across its direction, in equal steps."""
+    light = placement.light
+    way = light.point[:3] - light.point[3] * placement.visible.middle
+    step = LIGHT_TURN * perpendicular(way) * (1 if light.is_directional else placement.reach)
+    return [replace(placement, light=move_light(light, k * step)) for k in range(steps)]
+
+
+def perpendicular(way: FloatArray) -> FloatArray:
+    """Return the unit vector (3,) at right angles to `way` (3,) that is nearest to an axis."""
+    way = way / max(float(np.linalg.norm(way)), 1e-9)
+    across: FloatArray = np.eye(3)[np.argmin(np.abs(way))]
+    across = across - (across @ way) * way
+    return across / np.linalg.norm(across)
+
+
+def move_light(light: Light, step: FloatArray) -> Light:
+    """Return a light whose place, or the unit vector to it, is moved by a `step` (3,)."""
+    place = light.point[:3] + step
+    if light.is_directional:
+        place = place / np.linalg.norm(place)
+    return replace(light, point=np.append(place, light.point[3]))
+
+
+def is_facing_all(
+    placements: list[Placement], points: FloatArray, normals: FloatArray
+) -> BoolArray:
+    """Return whether points (n, 3) with `normals` (n, 3) turn one side to all lights: (n,)."""
+    cosines = [(normals * each.light.directions_from(points)).sum(axis=1) for each in placements]
+    facing: BoolArray = (np.min(cosines, axis=0) > 0) | (np.max(cosines, axis=0) < 0)
+    return facing
+
+
+def is_lit(scene: MitsubaObject, light: Light, p: MitsubaObject, n: MitsubaObject) -> BoolArray:
+    """Return (points,) whether shadow rays from points `p` with normals `n` reach a light."""
+    import drjit as dr
+    import mitsuba as mi
+
+    surface = dr.zeros(mi.Interaction3f, dr.width(p))
+    surface.p, surface.n = p, n
+    place = light.point[:3].tolist()
+    if light.is_directional:
+        ray = surface.spawn_ray(dr.opaque(mi.Vector3f, place))
+    else:
+        ray = surface.spawn_ray_to(dr.opaque(mi.Point3f, place))
+    return np.array(~scene.ray_test(ray))

@@ -18,7 +18,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import plain_number
 from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.moments import moving_depths
 from brdfkit.shadows.maps.moments.bounds import bound_by_two_moments
-from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap, remove_bleeding
+from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap
 
 SETTINGS = {
     "blur": BLUR,
@@ -45,8 +45,7 @@ class Lookup:
         self.warps = [(lambda z: dr.exp(exponent * z), exponent)]
         if negative_exponent:
             self.warps.append((lambda z: -dr.exp(-negative_exponent * z), negative_exponent))
-        self.moments = MomentMap(self.powers, depths, blur)
-        self.bleeding = bleeding
+        self.moments = MomentMap(self.powers, depths, blur, bleeding)
 
     def powers(self, depths: MitsubaObject) -> list[MitsubaObject]:
         """Return the warped depths and their squares, in pairs."""
@@ -61,4 +60,4 @@ class Lookup:
             least = dr.square(LEAST_DEVIATION * steepness * t)
             mean, square = means[2 * i], means[2 * i + 1]
             bound = dr.minimum(bound, bound_by_two_moments(mean, square, t, least))
-        return dr.select(self.moments.contains(point), remove_bleeding(bound, self.bleeding), 1)
+        return self.moments.lit_share(point, bound)

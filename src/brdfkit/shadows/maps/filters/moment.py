@@ -19,7 +19,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import plain_number
 from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.moments import moving_depths
 from brdfkit.shadows.maps.moments.bounds import bound_by_four_moments
-from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap, remove_bleeding
+from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap
 
 SETTINGS = {
     "blur": BLUR,
@@ -35,12 +35,12 @@ class Lookup:
     def __init__(
         self, depths: moving_depths.MovingDepths, blur: int, bleeding: float, rounding: float
     ) -> None:
-        self.moments = MomentMap(lambda z: [z, z * z, z**3, z**4], depths, blur)
-        self.bleeding, self.rounding = bleeding, rounding
+        self.moments = MomentMap(lambda z: [z, z * z, z**3, z**4], depths, blur, bleeding)
+        self.rounding = rounding
 
     def lit_share(self, point: MapPoint) -> JitFloat:
         """Return the greatest share of the light that may arrive at a point."""
         depth = point.depth - (dr.abs(point.slope_u) + dr.abs(point.slope_v)) / 2
         depth = dr.clip(depth, -1, 1)
         bound = bound_by_four_moments(self.moments.means_at(point), depth, self.rounding)
-        return dr.select(self.moments.contains(point), remove_bleeding(bound, self.bleeding), 1)
+        return self.moments.lit_share(point, bound)

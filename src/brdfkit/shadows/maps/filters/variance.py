@@ -12,14 +12,12 @@ borders are soft and have derivatives.
 [Donnelly & Lauritzen 2006], [Ergun 2008, 2.2.1.4]
 """
 
-import drjit as dr
-
 from brdfkit.core.array_types import JitFloat
 from brdfkit.mitsuba_bridge.properties.declarations import plain_number
 from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.moments import moving_depths
 from brdfkit.shadows.maps.moments.bounds import bound_by_two_moments
-from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap, remove_bleeding
+from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap
 
 SETTINGS = {
     "blur": BLUR,
@@ -39,11 +37,11 @@ class Lookup:
         bleeding: float,
         least_deviation: float,
     ) -> None:
-        self.moments = MomentMap(lambda z: [z, z * z], depths, blur)
-        self.bleeding, self.least_variance = bleeding, least_deviation**2
+        self.moments = MomentMap(lambda z: [z, z * z], depths, blur, bleeding)
+        self.least_variance = least_deviation**2
 
     def lit_share(self, point: MapPoint) -> JitFloat:
         """Return the greatest share of the light that may arrive at a point."""
         mean, square = self.moments.means_at(point)
         bound = bound_by_two_moments(mean, square, point.depth, self.least_variance)
-        return dr.select(self.moments.contains(point), remove_bleeding(bound, self.bleeding), 1)
+        return self.moments.lit_share(point, bound)

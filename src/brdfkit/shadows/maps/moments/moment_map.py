@@ -8,7 +8,7 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.core.array_types import JitFloat, JitMask
+from brdfkit.core.array_types import JitFloat
 from brdfkit.mitsuba_bridge.properties.declarations import count, plain_number
 from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.moments.moving_depths import MovingDepths
@@ -24,10 +24,15 @@ class MomentMap:
     depths : the depths of the map.
     blur : texels on each side of a texel over which its moments are averaged; places between
         texels are interpolated.
+    bleeding : the share of light that counts as a leak.
     """
 
     def __init__(
-        self, moments: Callable[[Any], list[Any]], depths: MovingDepths, blur: int
+        self,
+        moments: Callable[[Any], list[Any]],
+        depths: MovingDepths,
+        blur: int,
+        bleeding: float,
     ) -> None:
         import mitsuba as mi
 
@@ -35,7 +40,7 @@ class MomentMap:
         if blur:
             side = 2 * blur + 1
             values = dr.convolve(values, [1 / side] * side, axis=(0, 1), boundary="nearest")
-        self.resolution = values.shape[0]
+        self.resolution, self.bleeding = values.shape[0], bleeding
         texture: Any = mi.Texture2f  # Mitsuba annotates it as a mere object
         self.texture = texture(values, False, False, wrap_mode=dr.WrapMode.Clamp)
 
@@ -46,13 +51,12 @@ class MomentMap:
         scale: JitFloat = dr.opaque(mi.Float, 1 / self.resolution)
         return self.texture.eval(mi.Point2f(point.u, point.v) * scale, point.active)
 
-    def contains(self, point: MapPoint) -> JitMask:
-        """Return whether the map shows a point; beyond its edge all is lit."""
+    def lit_share(self, point: MapPoint, bound: JitFloat) -> JitFloat:
+        """Return a bound on the share of the light at a point, less bleeding; 1 beyond the map.
+
+        A leak of up to ε = `bleeding` is removed by (bound - ε)₊ / (1 - ε).
+        """
         size: JitFloat = dr.opaque(type(point.u), self.resolution)
         inside = (point.u >= 0) & (point.u <= size) & (point.v >= 0) & (point.v <= size)
-        return point.active & inside
-
-
-def remove_bleeding(lit: JitFloat, bleeding: float) -> JitFloat:
-    """Return the share of light, less a leak of up to ε = `bleeding`: (lit - ε)₊ / (1 - ε)."""
-    return dr.clip((lit - bleeding) / (1 - bleeding), 0, 1)
+        share = dr.clip((bound - self.bleeding) / (1 - self.bleeding), 0, 1)
+        return dr.select(point.active & inside, share, 1)
