@@ -32,7 +32,7 @@ class LightCone:
     start, axis : Dr.Jit points and vectors, of any backend and precision.
     d : Float, the length of the axis.
     R_0, R_1 : Float, the radii of the sections at its start and its end.
-    tan : Float, tan α.
+    tan : Float, tan α, the growth of the radius per length.
     basis : unit vectors a and b that span the sections.
     """
 

@@ -1,14 +1,15 @@
 """The single-ray methods `linear` (the default), `hard` and `convex`.
 
-`linear`: R_C is below R_T by a constant, so that τ is needed only at the end. `hard`: the same for
-a light of radius 0. `convex`: longer steps in a union of convex objects. The distance f_j of a
-convex object is a convex function, so that along the axis it lies above the line through its last
-two values; the cone cannot touch the object before
+`linear` keeps the ratio R_C, below which its steps miss nothing, a constant below the smallest
+ratio R_T so far; so τ is computed only once, at the end. `hard` does the same for a light of radius
+0. `convex` takes longer steps in a union of convex objects. The distance f_j of a convex object is
+a convex function, so that along the axis it lies above the line through its last two values. So the
+cone with the radius R_C ρ cannot touch the object before
 
     Δt_j = (f_j - R_C ρ) / (R_C tan α - slope of that line)
 
-The thesis asks for such steps and leaves the formula open. They hold within objects and where
-R_C < 0, too, as the signed distance is convex there.
+The thesis proposes such steps without a formula. They hold within objects and where R_C < 0, too,
+as the signed distance is convex there. See `march.py` for ratios and `cone.py` for ρ and α.
 
 [Bálint et al. 2019, algorithm 4 and section 4.4]
 """

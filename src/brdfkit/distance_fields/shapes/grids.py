@@ -139,7 +139,7 @@ def _compute_largest_slope(values: FloatArray, spacing: FloatArray) -> float:
     """Return the largest slope that the interpolation may have, in the steepest cell.
 
     Along an axis the slope of a cell is a mean of the slopes of its four edges. Where the box cuts
-    the solid, the distance outside grows as e + f, by √(1 + L²).
+    the solid, √(e² + f²) outside of the box has a slope up to √(1 + L²).
     """
     squared: Any = 0.0
     for axis, step in zip((2, 1, 0), spacing, strict=True):

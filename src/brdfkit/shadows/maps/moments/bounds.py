@@ -27,7 +27,7 @@ LEAST_ROOT = 1e-7  # 1 over a root that counts as infinite, where t is one of on
 def bound_by_two_moments(
     mean: JitFloat, mean_square: JitFloat, t: JitFloat, least_variance: JitFloat = 0.0
 ) -> JitFloat:
-    """Return the greatest P(X ≥ t), which is exact if X has two values and one of them is t.
+    """Return the largest lit share P(X ≥ t); it is exact if X has two values and one of them is t.
 
     least_variance : the least σ², against rounding, and for the slant of a surface in a texel.
     """
@@ -37,7 +37,7 @@ def bound_by_two_moments(
 
 
 def bound_by_four_moments(b: Sequence[JitFloat], t: JitFloat, rounding: float = 0.0) -> JitFloat:
-    """Return the greatest P(X ≥ t) of a distribution with the moments `b`, four numbers.
+    """Return the largest lit share P(X ≥ t) of a depth X with the four moments `b`.
 
     It is exact if X has two values, or three with t among them.
 
