@@ -46,8 +46,8 @@ def _check_values(what: str, values: Any, rules: Mapping[str, Any]) -> Any:
 class grid(Node):
     """Values at the corners of the cells of a box, laid out as in Mitsuba's `sdfgrid`.
 
-    Outside of its box the distance is √(e² + f²), with the distance e to the box and the value f at
-    the nearest point of the box.
+    Outside of its box the value is √(e² + f²), or e + f where f < 0, with the distance e to the box
+    and the value f at the nearest point of the box.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def _compute_largest_slope(values: FloatArray, spacing: FloatArray) -> float:
     """Return the largest slope that the interpolation may have, in the steepest cell.
 
     Along an axis the slope of a cell is a mean of the slopes of its four edges. Where the box cuts
-    the solid, √(e² + f²) outside of the box has a slope up to √(1 + L²).
+    the solid, the value outside is e + f, see `grid`, with a slope up to √(1 + L²).
     """
     squared: Any = 0.0
     for axis, step in zip((2, 1, 0), spacing, strict=True):
