@@ -76,7 +76,7 @@ def define(mi: MitsubaModule) -> type:
         def optics(
             self, front: JitVector, it: MitsubaObject, back: JitVector, active: JitMask
         ) -> tuple[JitFloat, JitColour]:
-            """Return σ and e of the part between two ends, with its middle `it`."""
+            """Return extinction σ and emission e of a part of a ray, with its middle `it`."""
             e = mi.unpolarized_spectrum(self.emission.eval(it, active)) * self.white(it)
             if not self.has_colours:
                 return self.extinction.eval_1(it, active), e

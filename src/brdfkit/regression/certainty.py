@@ -22,7 +22,7 @@ from brdfkit.regression.problem.parameter_space import channel_rows, join
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import draw_part
 
-# Of more samples, half this number are drawn
+# If there are more samples, half this number are drawn
 MANY_SAMPLES = 40_000
 # Smaller eigenvalues of a Hessian with unit diagonal are rounding, and so are smaller entries of
 # its eigenvectors
@@ -127,7 +127,7 @@ def compute_certainty(
     shares = np.ones(len(counted))
     if len(counted) > MANY_SAMPLES and rng is not None:
         part, rows = draw_part(problem.samples, problem.black, MANY_SAMPLES // 2, rng)
-        whole, problem = problem.importance[rows], problem.on(part)
+        whole, problem = problem.importance[rows], problem.with_samples(part)
         shares = whole / np.where(problem.importance > 0, problem.importance, 1)
         if passes:
             passes = [w[rows] for w in passes[0]], [slope[rows] for slope in passes[1]]

@@ -95,7 +95,7 @@ class Light:
         return bool((self.known[:, None] & (self.values > LARGEST_MEASURED_ALBEDO)).any())
 
     def judge(self, brdf: Callable[[FloatArray, FloatArray], FloatArray]) -> Albedo:
-        """Return the `Albedo` of a fit, a BRDF (wi, wo) → (n, channels)."""
+        """Return the `Albedo` of a fit beside these; `brdf`: (wi, wo) → (n, channels)."""
         angles = (*self.theta_i, *OTHER_ANGLES)
         every = [make_albedo_pixels(angles, (azimuth,)).look(brdf) for azimuth in self.azimuths]
         fit = np.mean(every, axis=0)[: len(self.theta_i)]

@@ -94,7 +94,7 @@ class Refit:
         bounds = {n: v for n, v in settings.get("bounds", {}).items() if n not in values}
         fixed = settings.get("fixed", {}) | values
         anisotropic = settings.get("anisotropic", False)
-        space = Space.on(self.samples, model, bounds, fixed, anisotropic)
+        space = Space.for_samples(self.samples, model, bounds, fixed, anisotropic)
         return Problem(model, self.samples, losses.named.by_sample[self.fit.loss_name], space)
 
     def descend(

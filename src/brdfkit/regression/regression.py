@@ -94,7 +94,7 @@ def regress(
     with (done, total). On Ctrl-C `Interrupted` is raised with the best `Solution` so far.
     """
     bounds, report = bounds or {}, report or (lambda done, total: None)
-    space = Space.on(samples, model, bounds, fixed or {}, anisotropic)
+    space = Space.for_samples(samples, model, bounds, fixed or {}, anisotropic)
     rng = np.random.default_rng(seed)
     if pixels is None:
         whole = Problem(model, samples, loss, space)
@@ -107,7 +107,7 @@ def regress(
     points = make_start_points(default, starts or default_start_count(len(space.names)), seed)
     evaluations = 0
     if len(whole.groups) > 1:  # compare the starts on few channels
-        bands = add_parts(whole.on(mix_bands(samples)), rng)
+        bands = add_parts(whole.with_samples(mix_bands(samples)), rng)
         try:
             ends, _, evaluations = search_from_starts(bands, points, report)
         except Interrupted:  # nothing is known of a fit to all channels yet

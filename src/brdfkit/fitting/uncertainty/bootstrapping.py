@@ -125,7 +125,8 @@ def bootstrap(
         (rows,) = np.nonzero(times)
         drawn = samples.at(rows)
         drawn = replace(drawn, weight=drawn.weight * times[rows])
-        shapes, weights, _ = again.descend(problem.on(drawn), fit.values, again.weights, rng)
+        part = problem.with_samples(drawn)
+        shapes, weights, _ = again.descend(part, fit.values, again.weights, rng)
         refitted.append(again.to_values(shapes, weights))
         if progress:
             progress(number, draws)

@@ -125,7 +125,7 @@ class Folded:
         return Expansion.of(self.columns, self.space, sums, u, weights)
 
     def _sums(self, u: FloatArray) -> Sums:
-        """Return the `Sums` at weights of 0."""
+        """Return the `Sums` over all samples at coordinates `u` and weights of 0."""
         points, nodes = len(u), len(self.wi.x)
         table = self.space.table(u)
         shapes = [double_precision.to_array(np.repeat(x, nodes)) for x in table.T]

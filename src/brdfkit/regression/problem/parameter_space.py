@@ -77,7 +77,7 @@ class Space:
         return cls(names, low, high, log, {k: float(v) for k, v in fixed.items()})
 
     @classmethod
-    def on(
+    def for_samples(
         cls,
         samples: Samples,
         model: type[Model],

@@ -61,7 +61,7 @@ class Problem:
         self.importance = importance
         self.blocks: Callable[[int], Iterator[Block]] = Blocks(samples, importance, loss)
 
-    def on(self, samples: Samples) -> Problem:
+    def with_samples(self, samples: Samples) -> Problem:
         """Return the same problem on other `Samples`."""
         return Problem(self.model, samples, self.loss, self.space)
 

@@ -1,4 +1,4 @@
-"""Sums over samples that E² and its derivatives are made of, and the best weights from them."""
+"""Sums over samples for E² and its derivatives, and the best weights that follow from them."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ def residual_scale(residuals: FloatArray, rank: int, least: float) -> float:
     construction and are left out. `least`: the smallest scale; smaller residuals are rounding.
     """
     left = len(residuals) - max(rank - 1, 0)
-    # The median of the others is the mean of these one or two in the order of all
+    # Indices, among all sorted residuals, of the one or two in the middle of the larger ones
     middle = len(residuals) - left + (left - 1) // 2, len(residuals) - left + left // 2
     ordered = np.partition(np.abs(residuals), middle)
     return max((ordered[middle[0]] + ordered[middle[1]]) / 2 / 0.6745, least)

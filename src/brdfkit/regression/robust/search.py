@@ -76,7 +76,7 @@ class RobustEnd:
 
     @property
     def converged(self) -> bool:
-        """Whether the passes settled; few samples, too, may cycle within this share."""
+        """Whether the passes settled to `SETTLED`, beyond which few samples may cycle, too."""
         return self.change <= SETTLED
 
 
@@ -225,7 +225,7 @@ def search_robust(
     samples = problem.samples
     if len(samples.wi) > MANY_SAMPLES:
         samples, rows = draw_part(samples, np.ones(len(samples.wi)), MANY_SAMPLES // 2, rng)
-        part = problem.on(samples)
+        part = problem.with_samples(samples)
         first = RobustSearch(RobustProblem(part, u, weights, name))
         start = first.search(u, weights, report, LOOSE, ordinary_passes=0).point
         robust = RobustProblem(problem, u, weights, name, part, rows)

@@ -118,7 +118,7 @@ class LightProblem(PixelProblem):
             *(light.pixels.at(wrong), weights, DIFFERENCE),
         )
 
-    def on(self, samples: Samples) -> LightProblem:
+    def with_samples(self, samples: Samples) -> LightProblem:
         """Return the same problem on other `Samples`."""
         part = Problem(self.model, samples, self.loss, self.space)
         return LightProblem(part, *self.light_settings)

@@ -24,8 +24,8 @@ FEW_SHAPES = 3
 # From a part, ends within this share of the least E² are followed to all samples, at most so many
 CLOSE, FINALISTS = 0.02, 3
 LARGEST_STEPS, FEW_STEPS = 200, 10
-# A search converges if the next step would lower E² by less than this share: on few samples; on
-# many samples, with this factor; on a part of them
+# A search converges if the next step would lower E² by less than this share of it: the first on few
+# samples, times the second on many, and the third on a part of them
 EXACT, MANY_SAMPLES_FACTOR, LOOSE = 1e-11, 100, 1e-6
 
 
@@ -59,7 +59,7 @@ def add_parts(whole: Problem, rng: np.random.Generator) -> list[Problem]:
         samples = problems[0].samples
         if 2 * size < len(samples.wi):
             part, _ = draw_part(samples, problems[0].black, size, rng)
-            problems.insert(0, whole.on(part))
+            problems.insert(0, whole.with_samples(part))
     return problems
 
 

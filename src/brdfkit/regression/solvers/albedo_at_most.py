@@ -68,7 +68,7 @@ class AlbedoAtMost:
         return np.concatenate(values)
 
     def slopes(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
-        """Return the derivatives (m, n) of the values by coordinates, then by weights."""
+        """Return the derivatives (m, n) of `values` by coordinates, then by weights."""
         change = combine_columns(problem.columns, weights, problem.space.slopes(u))[0]
         shapes, (channels, lobes) = u.shape[1], weights.shape[1:]
         slopes = []

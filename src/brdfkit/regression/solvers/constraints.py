@@ -47,7 +47,7 @@ class WeightsAtMost:
         return self.limit - weights[0].sum(axis=1)
 
     def slopes(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
-        """Return the derivatives (m, n) of the values by coordinates, then by weights."""
+        """Return the derivatives (m, n) of `values` by coordinates, then by weights."""
         _, channels, lobes = weights.shape
         by_weights = np.kron(np.eye(channels), np.ones(lobes))
         return np.hstack([np.zeros((channels, u.shape[1])), -by_weights])

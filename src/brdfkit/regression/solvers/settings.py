@@ -22,7 +22,7 @@ CONSTRAINTS: dict[str, Any] = {"albedo_at_most": AlbedoAtMost, "weights_at_most"
 
 
 def to_solver(value: Any) -> Any:
-    """Return the solver that an argument means, an object with `minimise`; None for None."""
+    """Return the solver for an argument: a name, data or an object with `minimise`, or None."""
     if isinstance(value, str):
         value = {"name": value}
     if isinstance(value, Mapping):
@@ -36,7 +36,7 @@ def to_solver(value: Any) -> Any:
 
 
 def to_constraints(value: Any) -> tuple[Any, ...]:
-    """Return the constraints that an argument means, objects of brdfkit and functions."""
+    """Return the constraints for an argument: data, objects of brdfkit, or functions."""
     if value is None:
         return ()
     several = isinstance(value, Iterable) and not isinstance(value, Mapping | str)
@@ -44,7 +44,7 @@ def to_constraints(value: Any) -> tuple[Any, ...]:
 
 
 def _to_constraint(value: Any) -> Any:
-    """Return the constraint that a value means, an object of brdfkit or a function."""
+    """Return the constraint for a value: data, an object of brdfkit, or a function."""
     if isinstance(value, Mapping):
         return _make_from_data("constraint", CONSTRAINTS, value)
     if isinstance(value, type) or not (callable(value) or hasattr(value, "slopes")):

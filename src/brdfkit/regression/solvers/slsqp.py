@@ -14,8 +14,7 @@ from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt
 from brdfkit.regression.solvers.objective import End, Objective
 from brdfkit.regression.solvers.several_starts import find_best_starts, search_stages
 
-# A search is repeated from its end at most so often, in new units, because it may end early in old
-# ones
+# A search is repeated from its end, in new units, because it may end early in the old units
 REPETITIONS = 8
 # The unit of E² is at least this share of a black model's E²
 SMALLEST_UNIT = 1e-6
