@@ -342,7 +342,7 @@ def test_a_gallery_has_a_row_for_each_material(tmp_path):
     with pytest.raises(BrdfkitError, match="nothing to render"):
         bk.gallery([])
     for rows in (None, "car_paint"):
-        with pytest.raises(BrdfkitError, match=f"rows = {rows!r} should be rows of materials"):
+        with pytest.raises(BrdfkitError, match=f"materials = {rows!r} should be rows of materials"):
             bk.gallery(rows)
 
 
