@@ -18,6 +18,8 @@ file, because nobody can tell which part of a measurement is diffuse.
 [Dupuy & Jakob 2018]; https://rgl.epfl.ch/materials
 """
 
+from typing import Any
+
 import numpy as np
 
 from brdfkit.core.array_types import JitColour, JitVector, MitsubaModule, MitsubaObject
@@ -41,8 +43,8 @@ def define(mi: MitsubaModule) -> type:
         def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             props = _read(props)
-            arrays = {name: np.array(props[name], np.float32) for name in ARRAYS}
-            self.lookup = AdaptiveLookup(**arrays, **{name: props[name] for name in FLAGS})
+            stored: dict[str, Any] = {name: np.array(props[name], np.float32) for name in ARRAYS}
+            self.lookup = AdaptiveLookup(**stored, **{name: props[name] for name in FLAGS})
             wavelengths = np.array(props["wavelengths"]) if "wavelengths" in props else None
             self.values, self.albedos = (
                 make_channels(np.array(props[name]).reshape(-1, props[name].shape[-1]), wavelengths)

@@ -41,7 +41,7 @@ def define(mi: MitsubaModule) -> type:
             self.table, wavelengths = _read(props)
             cells = self.table.filled_values
             self.values = make_channels(cells.reshape(-1, cells.shape[-1]), wavelengths)
-            size = ANISOTROPIC if self.table.anisotropic else {}
+            size: dict[str, Any] = ANISOTROPIC if self.table.anisotropic else {}
             half_vectors = HalfVectorTable(self.look_up, **size)
             self.albedos = make_channels(half_vectors.albedo, wavelengths)
             self.draw_by(half_vectors, self.table.anisotropic)

@@ -1,3 +1,1 @@
-"""Tools on which all of brdfkit rests and that know nothing of BRDFs: errors, files, geometry,
-pages.
-"""
+"""Tools that know nothing of BRDFs: errors, files, geometry, Dr.Jit, documents, pages."""

@@ -103,8 +103,7 @@ def list_environments() -> dict[str, Shipped]:
 
 
 def find_material_file(name: str) -> Path:
-    """Return the path of the file of a material that comes with brdfkit, with its checksum
-    verified.
+    """Return the file of a material that comes with brdfkit, after a check of its checksum.
 
     Raises `BrdfkitError` for an unknown name, and for a file that is missing or was changed.
 
@@ -115,7 +114,7 @@ def find_material_file(name: str) -> Path:
 
 
 def find_environment_file(name: str) -> Path:
-    """Return the path of an environment map that comes with brdfkit, with its checksum verified.
+    """Return the file of an environment map that comes with brdfkit, after a check of its checksum.
 
     Raises `BrdfkitError` for an unknown name, and for a file that is missing or was changed.
 

@@ -65,8 +65,7 @@ def _with_visible_greys(figure: Figure) -> Iterator[None]:
 
 
 def _to_visible(colours: Any) -> AnyArray | tuple[float, ...] | str:
-    """Return colours with black and greys replaced by a middle grey, which is fainter for lighter
-    greys.
+    """Return colours with black and greys replaced by a middle grey, fainter for lighter greys.
 
     White becomes transparent; other colours stay.
     """

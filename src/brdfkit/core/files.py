@@ -1,6 +1,4 @@
-"""Reads and writes files safely: written whole or not at all, read up to a limit, unpacked if
-needed.
-"""
+"""Reads and writes files safely: whole or not at all, up to a limit, unpacked if needed."""
 
 from __future__ import annotations
 
@@ -23,8 +21,7 @@ COMPRESSED = {GZIP: b"\x1f\x8b", XZ: b"\xfd7zXZ\x00"}  # suffix: first bytes
 
 @contextmanager
 def write_safely(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Yield a temporary path beside `path`, which is renamed to `path` when the block has
-    succeeded.
+    """Yield a temporary path beside `path`, which is renamed to it when the block succeeded.
 
     If the block is interrupted, also by Ctrl-C, an older file at `path` stays as it was and no
     other file is left. The temporary path has the suffix of `path`, for libraries that choose a
@@ -55,9 +52,7 @@ def write_safely(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 @contextmanager
 def _utf8_folder(folder: Path) -> Iterator[Path]:
-    """Yield a path of the folder in UTF-8, as native libraries need it; if necessary that of a
-    link.
-    """
+    """Yield a path of the folder in UTF-8 for native libraries, that of a link if necessary."""
     if is_utf8(folder):
         yield folder
         return
@@ -96,8 +91,7 @@ def make_folder(path: str | os.PathLike[str]) -> None:
 
 
 def require_writable(path: str | os.PathLike[str]) -> Path:
-    """Return the path of the file that `write_safely` will write; for a link, the file that it
-    leads to.
+    """Return the file that `write_safely` will write; for a link, the file that it leads to.
 
     Raises the `BrdfkitError` of `write_safely` before the work, as far as it can be foreseen.
     """

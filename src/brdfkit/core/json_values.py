@@ -19,9 +19,7 @@ def round_numbers(value: Any, digits: int) -> Any:
 
 
 def to_json(value: Any) -> Any:
-    """Convert dataclasses, arrays and NumPy numbers to JSON's types; numbers that are not finite to
-    None.
-    """
+    """Convert dataclasses, arrays and NumPy numbers to JSON's types; NaN and infinity to None."""
     if is_dataclass(value):
         value = {f.name: getattr(value, f.name) for f in fields(value)}
     if isinstance(value, dict):

@@ -56,8 +56,7 @@ def join_words(words: Sequence[str]) -> str:
 
 
 def to_file_stem(name: str) -> str:
-    """Turn a material's name into a file name without suffix, never empty or too long or in a
-    folder.
+    """Turn a material's name into a file name without suffix and folder, neither empty nor long.
 
     >>> to_file_stem("../gold: matte")
     '-gold- matte'
@@ -68,8 +67,7 @@ def to_file_stem(name: str) -> str:
 
 
 def to_fit_path(folder: str | Path, label: str) -> Path:
-    """Return the path in `folder` of a saved fit; colons, which some file systems refuse, become
-    "-".
+    """Return the path in `folder` of a saved fit; colons, which some systems refuse, become "-".
 
     >>> to_fit_path("copper", "koenderink:order=8").name
     'koenderink-order=8.json'

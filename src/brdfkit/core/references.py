@@ -20,9 +20,7 @@ CITATION = re.compile(r"\[([A-ZÀ-Ž][^\[\]]*?\s\d{4}[a-z]?)(?:,\s[^\[\]]*)?\]")
 
 @dataclass(frozen=True)
 class Reference:
-    """A cited work; `where` is the journal, conference or university, `link` an address to read it
-    at.
-    """
+    """A cited work; `where` is the journal, conference or university, `link` an address."""
 
     key: str
     authors: str

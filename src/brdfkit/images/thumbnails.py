@@ -33,9 +33,7 @@ def make_thumbnails(name: str, brdf: Brdf) -> tuple[Picture, Picture]:
 
 
 def make_ball_picture(name: str, brdf: Brdf) -> Picture:
-    """Return a picture of a ball of a BRDF, the material called `name`, on a transparent
-    background.
-    """
+    """Return a picture of a ball of a BRDF, the material `name`, without background."""
     return Picture(
         partial(_draw_ball_png, brdf), f"a ball of {name} under two softboxes", BALL_SIZE
     )
@@ -74,8 +72,7 @@ class Radius:
         return (np.log10(np.maximum(values, floor)) - self.lowest) / self.decades
 
     def ticks(self) -> AnyArray:
-        """Return the values to label from the centre to the rim: powers of ten whose labels do not
-        touch.
+        """Return the values to label: powers of ten, so few that their labels do not touch.
 
         If fewer than two decades are shown, 2 and 5 or 3 times these powers are labelled, too.
         """
@@ -141,9 +138,7 @@ def _draw_half_disc(radius: Radius) -> str:
 
 
 def _draw_curve(theta_o: AnyArray, radii: AnyArray, colour: str) -> str:
-    """Draw a line through radii (n,), in shares of the rim's, at angles `theta_o` (n,)
-    [degrees].
-    """
+    """Draw a line through radii (n,), as shares of the rim, at `theta_o` (n,) [degrees]."""
     points = " ".join(f"{x:.1f},{y:.1f}" for x, y in zip(*_to_pixels(theta_o, radii), strict=True))
     return f'<polyline points="{points}" stroke="{colour}" stroke-width="1.6"/>'
 
@@ -159,8 +154,6 @@ def _draw_arrow(theta_i: float, colour: str) -> str:
 
 
 def _to_pixels(theta: Any, radius: Any) -> tuple[Any, Any]:
-    """Return the place of a radius, in shares of the rim's, at an angle [degrees]; y is
-    downwards.
-    """
+    """Return the place of a radius, a share of the rim, at an angle [degrees]; y is down."""
     theta = np.radians(theta)
     return RADIUS * radius * np.sin(theta), -RADIUS * radius * np.cos(theta)

@@ -41,9 +41,7 @@ def _logarithmic(light: AnyArray, tone: ToneMapping, highest: float) -> AnyArray
 
 
 def _filmic(light: AnyArray, tone: ToneMapping, highest: float) -> AnyArray:
-    """Return f(2 L) / f(11.2), f(x) = (x (0.22 x + 0.03) + 0.002) / (x (0.22 x + 0.3) + 0.06) -
-    1/30.
-    """
+    """Return f(2 L) / f(11.2), with Hable's rational function f."""
 
     def f(x: float | AnyArray) -> Any:
         return (x * (0.22 * x + 0.03) + 0.002) / (x * (0.22 * x + 0.3) + 0.06) - 1 / 30
@@ -134,8 +132,7 @@ class ToneMapping:
         return np.clip(light * curve(y, self, highest) / np.where(y > 0, y, 1), 0, 1)
 
     def brightest_of(self, picture: ArrayLike) -> float:
-        """Return the largest finite value of a picture, of a channel or of its luminance; at least
-        0.
+        """Return the largest finite value of a picture's channels or luminance, at least 0.
 
         Examples
         --------

@@ -1,7 +1,12 @@
 """Constant arrays that a plugin reads by index, and brackets, in every variant of Mitsuba."""
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
+from brdfkit.core.array_types import ArrayLike, JitFloat, JitInt, JitMask
 from brdfkit.core.jit.padding import pad
 
 BELOW_ONE = 1 - 2**-24  # the largest number below 1 in single precision
@@ -14,15 +19,15 @@ class Rows:
     [[0.1, 0.2, 0.3]]
     """
 
-    def __init__(self, values):
+    def __init__(self, values: ArrayLike) -> None:
         import mitsuba as mi
 
         values = np.ascontiguousarray(values, np.float32)
-        self.scalar = mi.variant().startswith("scalar")
+        self.scalar = str(mi.variant()).startswith("scalar")
         self.values = values if self.scalar else mi.Float(mi.TensorXf(values).array)
 
-    def at(self, index, kind=None, active=True):
-        """Row `index` as `kind` (a colour), by default `mi.Float`; 0 if not `active`."""
+    def at(self, index: JitInt, kind: Any = None, active: JitMask = True) -> Any:
+        """Return row `index` as `kind` (a colour), by default `mi.Float`; 0 if not `active`."""
         import drjit as dr
         import mitsuba as mi
 
@@ -36,16 +41,15 @@ class Rows:
 class Integers:
     """Whole numbers (n,), 0 to 2³² - 1, in the current variant's memory."""
 
-    def __init__(self, values):
+    def __init__(self, values: ArrayLike) -> None:
         import mitsuba as mi
 
-        self.scalar = mi.variant().startswith("scalar")
-        self.values = np.ascontiguousarray(values, np.uint32)
-        if not self.scalar:
-            self.values = mi.UInt32(pad(self.values))
+        self.scalar = str(mi.variant()).startswith("scalar")
+        integers = np.ascontiguousarray(values, np.uint32)
+        self.values: Any = integers if self.scalar else mi.UInt32(pad(integers))
 
-    def at(self, index, active=True):
-        """The number of this `index`, a `mi.UInt32`; 0 if not `active`."""
+    def at(self, index: JitInt, active: JitMask = True) -> JitInt:
+        """Return the number of an index, a `mi.UInt32`; 0 if not `active`."""
         import drjit as dr
         import mitsuba as mi
 
@@ -54,16 +58,16 @@ class Integers:
         return int(self.values[index]) if active else 0
 
 
-def find_cell(x, n):
-    """The index of the cell around `x`, of `n` cells of length 1; the first and last beyond."""
+def find_cell(x: JitFloat, n: int) -> JitInt:
+    """Return the index of the cell around `x` among `n` cells of length 1, clamped at the ends."""
     import drjit as dr
     import mitsuba as mi
 
     return mi.UInt32(dr.clip(x, 0, n - 1))
 
 
-def find_bracket(x, n):
-    """The bracket around `x` on an axis of `n` nodes; see `core/geometry/multilinear.py`."""
+def find_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
+    """Return the bracket around `x` on an axis of `n` nodes; see `core/geometry/multilinear.py`."""
     import drjit as dr
     import mitsuba as mi
 
@@ -72,8 +76,8 @@ def find_bracket(x, n):
     return lower, dr.minimum(lower + 1, n - 1), x - mi.Float(lower)
 
 
-def find_periodic_bracket(x, n):
-    """The bracket around `x` on a periodic axis, where node n is node 0."""
+def find_periodic_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
+    """Return the bracket around `x` on a periodic axis, where node n is node 0."""
     import drjit as dr
     import mitsuba as mi
 
@@ -83,13 +87,13 @@ def find_periodic_bracket(x, n):
 
 
 class Nodes:
-    """The nodes of an axis: increasing numbers, at any distances."""
+    """The nodes of an axis: increasing numbers at any distances."""
 
-    def __init__(self, values):
+    def __init__(self, values: Any) -> None:
         self.count, self.rows = len(values), Rows(values)
 
-    def find_bracket(self, x):
-        """The bracket around `x`, clamped: (lower node, upper node, share of the upper node)."""
+    def find_bracket(self, x: JitFloat) -> tuple[JitInt, JitInt, JitFloat]:
+        """Return the clamped bracket around `x`: lower node, upper node, share of the upper one."""
         import drjit as dr
         import mitsuba as mi
 

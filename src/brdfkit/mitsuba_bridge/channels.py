@@ -1,20 +1,26 @@
-"""Values per colour channel or wavelength, as the spectrum type of the current variant.
+"""Converts values per colour channel or wavelength to the spectrum type of the current variant.
 
 A class here has `mean(corners, si)`: the mean of stored rows of values, weighted by the `corners`
 (row, share), as a spectrum at the wavelengths of the rays `si`. Rows may be negative, so that noise
 about 0 averages out; a mean below 0 becomes 0, as in `Measured.eval`.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, ArrayLike, JitColour, JitFloat, JitInt, MitsubaObject
 from brdfkit.core.colours import LUMINANCE, import_colour
 from brdfkit.mitsuba_bridge.arrays import Nodes, Rows, find_bracket
 
 
-def make_channels(values, wavelengths=None):
-    """The `Colours` of rows `values` (n, 3), linear sRGB, or (n, 1), achromatic.
+def make_channels(values: AnyArray, wavelengths: ArrayLike | None = None) -> Colours | Wavelengths:
+    """Return the `Colours` of rows `values` (n, 3), linear sRGB, or (n, 1), achromatic.
 
-    With `wavelengths` (channels,) [nm], the `Wavelengths` of rows (n, channels).
+    With `wavelengths` (channels,) [nm], return the `Wavelengths` of rows (n, channels).
     """
     if wavelengths is not None:
         return Wavelengths(values, wavelengths)
@@ -24,10 +30,10 @@ def make_channels(values, wavelengths=None):
 class Colours:
     """Rows of linear sRGB."""
 
-    def __init__(self, values):
+    def __init__(self, values: AnyArray) -> None:
         self.rows, self.spectrum = Rows(values), make_rgb_spectrum()
 
-    def mean(self, corners, si):
+    def mean(self, corners: Iterable[tuple[JitInt, JitFloat]], si: MitsubaObject) -> JitColour:
         import drjit as dr
         import mitsuba as mi
 
@@ -35,8 +41,8 @@ class Colours:
         return self.spectrum(dr.maximum(rgb, 0), si)
 
 
-def make_rgb_spectrum():
-    """A function (rgb, si) → spectrum of a reflectance in linear sRGB, in the current variant."""
+def make_rgb_spectrum() -> Callable[[Any, Any], Any]:
+    """Return a function (rgb, si) → spectrum of a reflectance, for the current variant."""
     import drjit as dr
     import mitsuba as mi
 
@@ -45,8 +51,8 @@ def make_rgb_spectrum():
     return SmoothSpectrum() if mi.is_spectral else lambda rgb, si: rgb
 
 
-def make_rgb_emission():
-    """A function (rgb, it) → spectrum of a radiance in linear sRGB, in the current variant.
+def make_rgb_emission() -> Callable[[Any, Any], Any]:
+    """Return a function (rgb, it) → spectrum of a radiance in linear sRGB, for the current variant.
 
     (1, 1, 1) has the spectrum of the white point, D65.
     """
@@ -54,8 +60,8 @@ def make_rgb_emission():
     return lambda rgb, it: spectrum(rgb, it) * light(it)
 
 
-def make_white_light():
-    """A function (interaction) → the factor by which the spectrum of a reflectance becomes light.
+def make_white_light() -> Callable[[Any], Any]:
+    """Return a function (interaction) → factor that turns a reflectance's spectrum into light.
 
     It is the spectrum of D65 in spectral variants, 1 in the others.
     """
@@ -63,9 +69,9 @@ def make_white_light():
 
     if not mi.is_spectral:
         return lambda it: 1
-    daylight = mi.Texture.D65(1.0)
+    daylight: Any = mi.Texture.D65(1.0)
 
-    def spectrum(it):
+    def spectrum(it: MitsubaObject) -> JitColour:
         si = mi.SurfaceInteraction3f()  # a texture takes no other interaction
         si.wavelengths = it.wavelengths
         return mi.unpolarized_spectrum(daylight.eval(si))
@@ -76,49 +82,49 @@ def make_white_light():
 class SmoothSpectrum:
     """A function (rgb, si) → spectrum of a linear sRGB colour in a spectral variant.
 
-    It is the sum of three basis spectra, times R, G and B: linear, so that a mean of colours has
-    the mean of their spectra, and exact under D65. [Mallett & Yuksel 2019]
+    It is the sum of three basis spectra, times R, G and B. Since it is linear, a mean of colours
+    has the mean of their spectra; under D65 it is exact. [Mallett & Yuksel 2019]
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         basis = import_colour().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
         self.first, self.step = float(basis.shape.start), float(basis.shape.interval)
         self.count, self.basis = len(basis.values), Rows(basis.values)
 
-    def __call__(self, rgb, si):
+    def __call__(self, rgb: JitColour, si: MitsubaObject) -> JitColour:
         import drjit as dr
         import mitsuba as mi
 
         spectrum = mi.UnpolarizedSpectrum(0)
         for k, wavelength in enumerate(si.wavelengths):
             lower, upper, t = find_bracket((wavelength - self.first) / self.step, self.count)
-            basis = [self.basis.at(node, mi.Color3f) for node in (lower, upper)]
-            spectrum[k] = dr.dot(rgb, dr.lerp(*basis, t))
+            first, second = (self.basis.at(node, mi.Color3f) for node in (lower, upper))
+            spectrum[k] = dr.dot(rgb, dr.lerp(first, second, t))
         return dr.maximum(spectrum, 0)
 
 
 class Wavelengths:
-    """Rows of values at measured wavelengths, linear between these, constant beyond."""
+    """Rows of values at measured wavelengths, linear between these and constant beyond."""
 
-    def __init__(self, values, wavelengths):
+    def __init__(self, values: AnyArray, wavelengths: ArrayLike) -> None:
         order = np.argsort(wavelengths)
         self.count = len(order)
         self.nodes = Nodes(np.asarray(wavelengths, float)[order])
         self.values = Rows(values[:, order].ravel())
 
-    def mean(self, corners, si):
+    def mean(self, corners: Iterable[tuple[JitInt, JitFloat]], si: MitsubaObject) -> JitColour:
         import drjit as dr
         import mitsuba as mi
 
         corners, spectrum = list(corners), mi.UnpolarizedSpectrum(0)
         for k, wavelength in enumerate(si.wavelengths):
-            *nodes, t = self.nodes.find_bracket(wavelength)
-            means = [self._mean(corners, node) for node in nodes]
-            spectrum[k] = dr.lerp(*means, t)
+            lower, upper, t = self.nodes.find_bracket(wavelength)
+            first, second = (self._mean(corners, node) for node in (lower, upper))
+            spectrum[k] = dr.lerp(first, second, t)
         return spectrum
 
-    def _mean(self, corners, node):
-        """The mean at the measured wavelength of index `node`."""
+    def _mean(self, corners: Iterable[tuple[JitInt, JitFloat]], node: JitInt) -> JitFloat:
+        """Return the mean at the measured wavelength of index `node`."""
         import drjit as dr
 
         values = (share * self.values.at(row * self.count + node) for row, share in corners)

@@ -1,10 +1,16 @@
-"""The small scene with known radiance by which integrators with shadows are checked."""
+"""Makes the small scenes with known radiance that check integrators."""
+
+from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray
 
-def make_film(size=8):
-    """The dictionary of a square film of independent pixels, in colours if there are any."""
+
+def make_film(size: int = 8) -> dict[str, Any]:
+    """Return the dictionary of a square film of independent pixels, in colours if there are any."""
     import mitsuba as mi
 
     pixels = "luminance" if mi.is_monochromatic else "rgb"
@@ -12,17 +18,16 @@ def make_film(size=8):
     return {"type": "hdrfilm", "pixel_format": pixels, **edges}
 
 
-def make_cube_camera():
-    """The dictionary of a camera whose rays all go through the unit cube, along -z."""
+def make_cube_camera() -> dict[str, Any]:
+    """Return the dictionary of a camera whose rays all go through the unit cube, along -z."""
     import mitsuba as mi
 
     to_world = mi.ScalarTransform4f().look_at([0.5, 0.5, 3], [0.5, 0.5, 0], [0, 1, 0]).scale(0.4)
     return {"type": "orthographic", "to_world": to_world, "film": make_film()}
 
 
-def make_shadow_scene(integrator):
-    """A scene with the dictionary of an `integrator`, and the radiance (3,) of each of its pixels:
-    ρ E cosθ / π.
+def make_shadow_scene(integrator: dict[str, Any]) -> tuple[dict[str, Any], AnyArray]:
+    """Return a scene with an integrator, and the radiance (3,) of its pixels, ρ E cosθ / π.
 
     The sun shines aslant on a wide ground; a ball shadows another part of it.
     """

@@ -1,7 +1,20 @@
-"""Direct light of lights that have one place or direction, with shadows however they are found."""
+"""Direct light from lights with one position or direction, with shadows by any method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import (
+    JitColour,
+    JitFloat,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import give_back_interrupts
 from brdfkit.core.projective.body import Empty
@@ -9,21 +22,32 @@ from brdfkit.mitsuba_bridge.properties.declarations import derive_plugin
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 
 
-def derive_shadow_integrator(mi, parameters):
-    """The base class of integrators of direct light that find all shadows before each picture.
+def derive_shadow_integrator(mi: MitsubaModule, parameters: dict[str, Any]) -> Any:
+    """Return the base class of integrators that find all shadows before each picture.
 
-    A class derived from it has `shadow_of(scene, sensor)`: a function from an emitter of the scene
-    to what `direct_light` takes, which raises `Empty` where the light reaches nothing that is seen.
+    A derived class has `shadow_of(scene, sensor)`: a function from an emitter of the scene to a
+    shadow for `direct_light`. The function raises `Empty` where the light reaches nothing that the
+    camera sees.
     """
 
-    class Shadowed(derive_plugin(mi.SamplingIntegrator, parameters)):
-        lights = ()
+    Base: Any = derive_plugin(mi.SamplingIntegrator, parameters)
 
-        def __init__(self, props):
+    class Shadowed(Base):
+        lights: list[tuple[Any, Any]] = []  # noqa: RUF012  a new list for every picture
+
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             self.name = props.plugin_name()
 
-        def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
+        def render(
+            self,
+            scene: MitsubaObject,
+            sensor: Any = 0,
+            seed: int = 0,
+            spp: int = 0,
+            develop: bool = True,
+            evaluate: bool = True,
+        ) -> Any:
             require_vectorised(self.name)
             sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
             shadow_of = self.shadow_of(scene, sensor)
@@ -33,7 +57,14 @@ def derive_shadow_integrator(mi, parameters):
             finally:
                 give_back_interrupts()
 
-        def sample(self, scene, sampler, ray, medium=None, active=True):
+        def sample(
+            self,
+            scene: MitsubaObject,
+            sampler: MitsubaObject,
+            ray: MitsubaObject,
+            medium: MitsubaObject = None,
+            active: JitMask = True,
+        ) -> tuple[JitColour, JitMask, list[Any]]:
             if [emitter for emitter, _ in self.lights] != scene.emitters():
                 raise BrdfkitError(
                     f"{self.name} finds the shadows of a whole picture, and another integrator "
@@ -46,35 +77,37 @@ def derive_shadow_integrator(mi, parameters):
 
 
 class NoShadow:
-    """Of a light that reaches nothing that is seen, to which any shadow is right."""
+    """The shadow of a light that reaches nothing visible, for which any shadow is right."""
 
-    def lit_share(self, p, n, active=True):
+    def lit_share(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:
         return 1
 
 
-def find_shadow(shadow_of, emitter):
-    """The shadow of an emitter, `NoShadow` where that is `Empty`."""
+def find_shadow(shadow_of: Callable[[Any], Any], emitter: MitsubaObject) -> Any:
+    """Return the shadow of an emitter, or `NoShadow` if it is `Empty`."""
     try:
         return shadow_of(emitter)
     except Empty:
         return NoShadow()
 
 
-def direct_light(si, sampler, lights, active):
-    """The light that surfaces send to the camera: Σ ρ(ω_l, ω_o) cosθ_l E_l V.
+def direct_light(
+    si: MitsubaObject, sampler: MitsubaObject, lights: Iterable[tuple[Any, Any]], active: JitMask
+) -> JitColour:
+    """Return the light that surfaces reflect to the camera: Σ ρ(ω_l, ω_o) cosθ_l E_l V.
 
     si : a `mi.SurfaceInteraction3f`.
-    lights : pairs of an emitter and its shadow, whose `lit_share(p, n, active)` is V, in [0, 1], at
-        points of surfaces and by their normals.
+    lights : pairs of an emitter and its shadow, whose `lit_share(p, n, active)` is the visibility
+        V, in [0, 1], at points of surfaces with normals n.
     """
     import mitsuba as mi
 
-    seen = active & si.is_valid()
+    valid = active & si.is_valid()
     bsdf, context = si.bsdf(), mi.BSDFContext()
-    radiance = mi.UnpolarizedSpectrum(0)
+    radiance: Any = mi.UnpolarizedSpectrum(0)
     for emitter, shadow in lights:
-        ds, light = emitter.sample_direction(si, sampler.next_2d(seen), seen)
-        value = bsdf.eval(context, si, si.to_local(ds.d), seen)
-        lit = shadow.lit_share(si.p, si.n, seen)
+        ds, light = emitter.sample_direction(si, sampler.next_2d(valid), valid)
+        value = bsdf.eval(context, si, si.to_local(ds.d), valid)
+        lit = shadow.lit_share(si.p, si.n, valid)
         radiance += mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * lit
-    return mi.depolarizer(dr.select(seen, radiance, 0))
+    return mi.depolarizer(dr.select(valid, radiance, 0))

@@ -1,7 +1,10 @@
-"""Meshes in OBJ that count vertices backwards, -1 for the last one, which Mitsuba does not read."""
+"""Rewrites OBJ meshes with relative indices, -1 for the last vertex, for Mitsuba."""
+
+from __future__ import annotations
 
 import re
 import tempfile
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -11,8 +14,8 @@ ELEMENTS = b"v", b"vt", b"vn"  # in the order of a corner: vertex/texture/normal
 
 
 @contextmanager
-def use_absolute_indices(path):
-    """The `Path` of a mesh without relative indices: the file itself, or a temporary copy."""
+def use_absolute_indices(path: Path) -> Iterator[Path]:
+    """Yield the path of a mesh without relative indices: the file itself, or a temporary copy."""
     data = path.read_bytes()
     if path.suffix.lower() != ".obj" or not FACE.search(data):
         yield path
@@ -23,8 +26,8 @@ def use_absolute_indices(path):
         yield copy
 
 
-def _make_lines_absolute(lines):
-    """The lines of an OBJ with indices from 1: -1 is the last element before a face."""
+def _make_lines_absolute(lines: Iterable[bytes]) -> Iterator[bytes]:
+    """Yield the lines of an OBJ with indices from 1; -1 is the last element before a face."""
     count = dict.fromkeys(ELEMENTS, 0)
     for line in lines:
         first, *corners = line.split() or [b""]
@@ -37,8 +40,11 @@ def _make_lines_absolute(lines):
         yield line
 
 
-def _make_corner_absolute(corner, counts):
-    """A corner of a face, as b"-1/-1"; an index before the first becomes 0, which is refused."""
+def _make_corner_absolute(corner: bytes, counts: Iterable[int]) -> bytes:
+    """Return a corner of a face, such as b"-1/-1", with indices from 1.
+
+    An index before the first element becomes 0, which Mitsuba refuses.
+    """
     indices = zip(corner.split(b"/"), counts, strict=False)
     return b"/".join(
         b"%d" % max(int(i) + count + 1, 0) if RELATIVE.fullmatch(i) else i for i, count in indices

@@ -1,23 +1,44 @@
-"""The base of phase functions that depend on the angle alone by which they deflect light."""
+"""Base classes of phase functions that depend only on the scattering angle."""
+
+from __future__ import annotations
+
+from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import (
+    JitColour,
+    JitFloat,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.mitsuba_bridge.properties.declarations import derive_plugin
 
 
-def derive_phase_function(mi, parameters):
-    """A class derived from `mi.PhaseFunction`, with the `parameters` of `derive_plugin`.
+def derive_phase_function(mi: MitsubaModule, parameters: dict[str, Any]) -> Any:
+    """Return a class derived from `mi.PhaseFunction` with `parameters` as in `derive_plugin`.
 
-    A class derived from it adds `density(mu)`, p(μ) [sr⁻¹] at the cosine μ of the angle, 1 for
-    straight on, and `cosine(lobe, u)`, a random μ for two numbers of 0 to 1.
+    A derived class adds `density(mu)`, p(μ) [sr⁻¹] at the cosine μ of the scattering angle, 1 for
+    straight on, and `cosine(lobe, u)`, a random μ for two numbers from 0 to 1.
     """
 
-    class Deflection(derive_plugin(mi.PhaseFunction, parameters)):
-        def __init__(self, props):
+    Base: Any = derive_plugin(mi.PhaseFunction, parameters)
+
+    class Deflection(Base):
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             self.m_flags = mi.PhaseFunctionFlags.Anisotropic
 
-        def sample(self, ctx, interaction, sample1, sample2, active=True):
+        def sample(
+            self,
+            ctx: MitsubaObject,
+            interaction: MitsubaObject,
+            sample1: JitFloat,
+            sample2: JitVector,
+            active: JitMask = True,
+        ) -> tuple[JitVector, JitColour, JitFloat]:
             mu = self.cosine(sample1, sample2.x)
             radius = dr.safe_sqrt(1 - mu * mu)
             sin_phi, cos_phi = dr.sincos(2 * dr.pi * sample2.y)
@@ -27,31 +48,39 @@ def derive_phase_function(mi, parameters):
             value, pdf = self.eval_pdf(ctx, interaction, wo, active)
             return wo, value / dr.detach(pdf), pdf
 
-        def eval_pdf(self, ctx, interaction, wo, active=True):
+        def eval_pdf(
+            self,
+            ctx: MitsubaObject,
+            interaction: MitsubaObject,
+            wo: JitVector,
+            active: JitMask = True,
+        ) -> tuple[JitColour, JitFloat]:
             pdf = self.density(-dr.dot(interaction.wi, wo))  # wi points back
             return mi.Spectrum(pdf), pdf
 
     return Deflection
 
 
-def density(n, mu):
-    """p(μ) = (1 + (n + 1) ((1 + μ) / 2)ⁿ) / 8π [sr⁻¹]."""
+def density(n: float, mu: JitFloat) -> JitFloat:
+    """Return p(μ) = (1 + (n + 1) ((1 + μ) / 2)ⁿ) / 8π [sr⁻¹]."""
     return (1 + (n + 1) * (0.5 + 0.5 * mu) ** n) / (8 * dr.pi)
 
 
-def cosine(n, lobe, u):
-    """A μ of one of the halves, which `lobe` chooses: the one below which its share `u` lies."""
+def cosine(n: float, lobe: JitFloat, u: JitFloat) -> JitFloat:
+    """Draw a μ from one half of p, which `lobe` chooses, by inverting its integral at `u`."""
     return 2 * dr.select(lobe < 0.5, u, u ** (1 / (n + 1))) - 1
 
 
-def define_even_and_forward(mi, n):
-    """The class of `mi.PhaseFunction` with the power `n`."""
+def define_even_and_forward(mi: MitsubaModule, n: float) -> Any:
+    """Return the class of `mi.PhaseFunction` that is half even, half forward with the power `n`."""
 
-    class EvenAndForward(derive_phase_function(mi, {})):
-        def density(self, mu):
+    Base: Any = derive_phase_function(mi, {})
+
+    class EvenAndForward(Base):
+        def density(self, mu: JitFloat) -> JitFloat:
             return density(n, mu)
 
-        def cosine(self, lobe, u):
+        def cosine(self, lobe: JitFloat, u: JitFloat) -> JitFloat:
             return cosine(n, lobe, u)
 
     return EvenAndForward

@@ -1,33 +1,40 @@
-"""Scene files of Mitsuba's: rendered as they are, or with a material put in."""
+"""Loads scene files of Mitsuba, as they are or with a material put in."""
+
+from __future__ import annotations
 
 import re
+from collections.abc import Callable, Sequence
 from html import unescape
+from os import PathLike
+from pathlib import Path
+from typing import Any
 
+from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.errors import BrdfkitError, nearest
 from brdfkit.core.files import require_file
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.mitsuba_bridge.properties.radiance_rows import require_rows
 
 SUFFIX = ".xml"
-MAP = re.compile(r"""["']([^"'\n]+\.(?:hdr|rgbe))["']""", re.IGNORECASE)  # a Radiance file's name
-PLACE = "material"  # id of the BSDF that a material replaces, where none is named
+RADIANCE_FILE = re.compile(r"""["']([^"'\n]+\.(?:hdr|rgbe))["']""", re.IGNORECASE)
+DEFAULT_ID = "material"  # of the BSDF that a material replaces
 
 
-def load_scene_file(path, **how):
-    """The `mitsuba.Scene` in a file; `how`: for `mitsuba.load_file`.
+def load_scene_file(path: str | PathLike[str], **how: Any) -> MitsubaObject:
+    """Load the `mitsuba.Scene` in a file; `how` are arguments of `mitsuba.load_file`.
 
     Raises `BrdfkitError` for a file that is missing or that Mitsuba cannot load, and for a scene
     without a sensor or an integrator.
     """
     import mitsuba as mi
 
-    path = require_file(path)
-    _require_maps(path)
+    file = require_file(path)
+    _require_maps(file)
 
-    def load(source, parallel):
+    def load(source: str, parallel: bool) -> MitsubaObject:
         return mi.load_file(source, parallel=parallel, **how)
 
-    scene = load_by_mitsuba(load, str(path), path)
+    scene = load_by_mitsuba(load, str(file), file)
     if not scene.sensors():
         raise BrdfkitError(f"{path}: the scene has no sensor to see it with; add a <sensor>.")
     if scene.integrator() is None:
@@ -35,21 +42,21 @@ def load_scene_file(path, **how):
     return scene
 
 
-def make_scene_builder(source):
-    """A function like those of `brdfkit.rendering.scenes`, which puts the material into a file's
-    scene, in the place of one of its BSDFs.
+def make_scene_builder(source: str | PathLike[str]) -> Callable[[Any, Any], MitsubaObject]:
+    """Return a function (bsdf, size) that puts a material into the scene of a file.
 
-    `source`: "FILE.xml#ID", with the id of that BSDF, or "FILE.xml", where the id is "material".
-    The function returns a `mitsuba.Scene`, in the file's own size unless one is given. Raises
-    `BrdfkitError` for a file that cannot be rendered, and for one without that id.
+    `source` is "FILE.xml#ID", with the id of the BSDF that the material replaces, or "FILE.xml",
+    where the id is "material". The function returns a `mitsuba.Scene`, in the file's own size
+    unless one is given. Raises `BrdfkitError` for a file that cannot be rendered, and for one
+    without that id.
     """
-    path, _, place = str(source).partition("#")
-    path, place = require_file(path), place or PLACE
+    name, _, place = str(source).partition("#")
+    path, place = require_file(name), place or DEFAULT_ID
 
-    def build(bsdf, size):
-        # equal BSDFs would become one, with one of their ids
+    def build(bsdf: MitsubaObject, size: tuple[int, int] | None) -> MitsubaObject:
+        # optimize=True would merge equal BSDFs, which leaves one of their ids
         scene = load_scene_file(path, optimize=False)
-        by_id = {}
+        by_id: dict[str, list[MitsubaObject]] = {}
         for shape in scene.shapes():
             if shape.bsdf():
                 by_id.setdefault(shape.bsdf().id(), []).append(shape)
@@ -64,16 +71,16 @@ def make_scene_builder(source):
     return build
 
 
-def _require_maps(path):
-    """Raise `BrdfkitError` for a damaged Radiance map to which a scene file refers."""
-    for name in MAP.findall(path.read_text(encoding="utf-8", errors="replace")):
+def _require_maps(path: Path) -> None:
+    """Raise `BrdfkitError` for a damaged Radiance map that a scene file refers to."""
+    for name in RADIANCE_FILE.findall(path.read_text(encoding="utf-8", errors="replace")):
         file = path.parent / unescape(name)
         if file.is_file():
             require_rows(file, f"{path}: {file}")
 
 
-def _missing_id_error(path, place, known):
-    """The error where no shape has the BSDF that the material should replace."""
+def _missing_id_error(path: Path, place: str, known: Sequence[str]) -> BrdfkitError:
+    """Return the error where no shape has the BSDF that the material should replace."""
     near = nearest(place, known)
     guess = f"did you mean {path}#{near}? " if near else ""
     return BrdfkitError(
@@ -82,7 +89,7 @@ def _missing_id_error(path, place, known):
     )
 
 
-def _resize(sensor, size):
+def _resize(sensor: MitsubaObject, size: tuple[int, int]) -> None:
     """Give the pictures of a sensor another (width, height) [pixels]."""
     import mitsuba as mi
 

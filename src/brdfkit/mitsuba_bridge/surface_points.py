@@ -1,21 +1,31 @@
-"""How far off a surface rays begin, lest rounding make them meet it: over the scale of the world.
+"""Points on surfaces: their interactions, and rays that begin off the surface by a safe distance.
 
-Rays of Mitsuba begin at ε (1 + max |p_i|). In a world of 1e-5, one in metres of an object of 10 µm,
-the 1 leaps over all there is: a tenth and more of the shadows are wrong. Here
+Rounding would make a ray hit the surface that it begins on. Mitsuba begins its rays at ε (1 + max
+|p_i|). In a world of 1e-5, such as an object of 10 µm in metres, the 1 is larger than the whole
+world, and a tenth and more of the shadows are wrong. Here the distance is
 
-    max(ε/2 |p|, ε/40 t),   |p| the largest coordinate, t the distance from which p was seen
+    max(ε/2 |p|, ε/40 t),   |p| the largest coordinate, t the distance from the eye to p
 
-since both the point and the distance were rounded on the way, the distance once. Half of Mitsuba's
-ε is as far as in scenes of usual size; with twice or a quarter of it, single pixels of leaves or of
-a street differ between rays and shadow volumes. As much of t would be half a house from afar.
+since both the point and the distance were rounded. Half of Mitsuba's ε is as far as in scenes of
+usual size. With twice or a quarter of it, single pixels of leaves or of a street differ between
+rays and shadow volumes. As much of t would be half a house for a distant eye.
 """
+
+from __future__ import annotations
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitMask, JitVector, MitsubaObject
 
-def make_interaction(ray, t, p, n, found):
-    """The `mi.SurfaceInteraction3f` at p: u and v are x and y, the tangent is the x axis laid onto
-    the surface; where that stands upright, the z axis."""
+
+def make_interaction(
+    ray: MitsubaObject, t: JitFloat, p: JitVector, n: JitVector, found: JitMask
+) -> MitsubaObject:
+    """Return the `mi.SurfaceInteraction3f` of rays at points p with the normals n.
+
+    u and v are x and y. The tangent is the x axis projected onto the surface, or the z axis where
+    the surface stands upright.
+    """
     import mitsuba as mi
 
     si = dr.zeros(mi.SurfaceInteraction3f, dr.width(t))
@@ -31,15 +41,15 @@ def make_interaction(ray, t, p, n, found):
     return si
 
 
-def clearance(p, t):
-    """The length off a surface at `p`, a point that was seen from the distance `t`."""
+def clearance(p: JitVector, t: JitFloat) -> JitFloat:
+    """Return the distance off a surface at which rays begin; the eye sees `p` at distance `t`."""
     import mitsuba as mi
 
     return mi.math.RayEpsilon * dr.maximum(0.025 * t, 0.5 * dr.max(dr.abs(p)))
 
 
-def spawn_ray(p, n, t, direction):
-    """The `mi.Ray3f` from a surface at `p` with the normal `n`, on the side of its direction."""
+def spawn_ray(p: JitVector, n: JitVector, t: JitFloat, direction: JitVector) -> MitsubaObject:
+    """Return the `mi.Ray3f` from `p`, off the surface with normal `n` in its direction."""
     import mitsuba as mi
 
     off = dr.mulsign(clearance(p, t), dr.dot(n, direction))

@@ -34,8 +34,7 @@ class Declaration:
 
     @classmethod
     def more_parameters(cls) -> dict[str, Parameter | None]:
-        """Return the parameters, by name, that depend on the options; the options are attributes of
-        `cls`.
+        """Return the parameters, by name, that depend on the options, attributes of `cls`.
 
         None stands for a declared parameter that is left out.
         """
@@ -70,9 +69,7 @@ class Declaration:
 
     @classmethod
     def make_known(cls) -> None:
-        """Add a class from a notebook or a user's module to the models, for Mitsuba and labels to
-        find it.
-        """
+        """Add a class from a notebook or a user's module to the models known by name."""
         model, name = cls.without_options(), cls.type_name()
         if not cls.is_in_plugin_file() and _find_source(name) is not model:
             plugin_files.add_plugins(plugin_files.MODELS, {name: model})
@@ -92,24 +89,18 @@ class Declaration:
 
     @classmethod
     def label(cls) -> str:
-        """Return the type with the options that differ from their defaults, as
-        "lafortune:lobe_count=2".
-        """
+        """Return the type with changed options, such as "lafortune:lobe_count=2"."""
         options = ",".join(f"{name}={value}" for name, value in cls.changed_options().items())
         return f"{cls.type_name()}:{options}" if options else cls.type_name()
 
     @classmethod
     def made_of(cls) -> tuple[Any, ...]:
-        """Return the classes without options that a pickled model needs: its own, then those of its
-        terms.
-        """
+        """Return the classes that a pickled model needs: its own, then those of its terms."""
         return (cls.without_options(),)
 
     @classmethod
     def parameter(cls, name: str) -> Parameter:
-        """Return the parameter of a name; raise `BrdfkitError`, which proposes the nearest, if it
-        is unknown.
-        """
+        """Return the parameter of a name; raise `BrdfkitError` for an unknown name."""
         if name in cls.options:
             raise BrdfkitError(
                 f"{cls.type_name()}: {name} is an option; write {cls.type_name()}:{name}=VALUE."
@@ -125,9 +116,7 @@ class Declaration:
 
     @classmethod
     def shapes(cls, anisotropic: bool = False) -> list[str]:
-        """Return the names of the nonlinear parameters; those that follow another only if
-        `anisotropic`.
-        """
+        """Return the names of the nonlinear parameters, without followers unless `anisotropic`."""
         return [
             name
             for name, p in cls.parameters.items()
@@ -136,9 +125,7 @@ class Declaration:
 
     @classmethod
     def is_anisotropic(cls) -> bool:
-        """Return whether the BRDF may depend on the surface's azimuth: a parameter follows another
-        one.
-        """
+        """Return whether the BRDF may depend on the azimuth, as a parameter follows another one."""
         return any(p.follows for p in cls.parameters.values())
 
     @classmethod

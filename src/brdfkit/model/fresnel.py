@@ -46,8 +46,7 @@ class FresnelModel(Model):
         sampling: Sampling,
         albedo: float = 1.0,
     ) -> tuple[Lobe, ...]:
-        """Return the lobe, or the two lobes, of the term `D(h)` `geometry(wi, wo)` [sr⁻¹] times k_s
-        F.
+        """Return the lobe or the two lobes of k_s F `D(h)` `geometry(wi, wo)` [sr⁻¹].
 
         `albedo` is the approximate albedo of the term without k_s F.
         """

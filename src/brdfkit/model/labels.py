@@ -83,9 +83,7 @@ def model(label: str | type[Model]) -> type[Model]:
 
 
 def is_label(word: str) -> bool:
-    """Return whether a word is the label of a known model: "ggx", "ggx+ward",
-    "koenderink:order=4".
-    """
+    """Return whether a word is the label of a known model, such as "koenderink:order=4"."""
     return all(part.partition(":")[0] in models() for part in word.split("+"))
 
 
@@ -143,9 +141,7 @@ def find_model_in(source: Path | type) -> type[Model] | None:
 
 
 def _find_named_model(name: str) -> type[Model]:
-    """Return the model of a name; raise `BrdfkitError`, which proposes the nearest, if it is
-    unknown.
-    """
+    """Return the model of a name; raise `BrdfkitError` for an unknown name."""
     source = plugin_files.find_plugins(MODELS).get(name)
     named = source and find_model_in(source)
     if not named:

@@ -56,8 +56,7 @@ def make_factored_lobe(
     sampling: Sampling,
     energy: Callable[[Any], Any] = lambda wi: 1.0,
 ) -> Lobe:
-    """Make the lobe `facets(h, cos_d)` · `geometry(wi, wo)`, with the half vector h and cos_d =
-    wi·h.
+    """Make the lobe `facets(h, cos_d)` · `geometry(wi, wo)`; h is the half vector, cos_d wi·h.
 
     A fit to a table with a linear loss sums over the cells once and for all if the shape parameters
     occur in `facets` alone. The fit finds out by itself whether they do.
@@ -70,9 +69,7 @@ def make_factored_lobe(
 
 
 def group_components(lobes: Sequence[Lobe]) -> list[list[int]]:
-    """Return the indices of the lobes in each component; lobes that share a sampling are one
-    component.
-    """
+    """Return the lobes' indices of each component; lobes with one sampling are one component."""
     groups: dict[int, list[int]] = {}
     for index, lobe in enumerate(lobes):
         groups.setdefault(id(lobe.sampling), []).append(index)

@@ -30,9 +30,7 @@ def fifth_power(x: JitFloat) -> JitFloat:
 
 
 def v_groove(wi: JitVector, wo: JitVector, h: JitVector) -> JitFloat:
-    """Return the shadowing and masking in V-grooves [Torrance & Sparrow 1967]; [Kurt 2007, eq.
-    3.27].
-    """
+    """Return the masking of V-grooves [Torrance & Sparrow 1967]; [Kurt 2007, eq. 3.27]."""
     s = 2 * h.z / cos_theta_d(wi, wo)
     return dr.minimum(1, s * dr.minimum(wi.z, wo.z))
 
@@ -44,9 +42,7 @@ def _slope_exponent(h: JitVector, alpha_u: JitFloat, alpha_v: JitFloat) -> JitFl
 
 
 def cos_squared(h: JitVector) -> JitFloat:
-    """Return cos²θ_h, at least 1e-6, so that D and its derivatives, which divide by it, stay
-    finite.
-    """
+    """Return cos²θ_h, at least 1e-6, so that D and its derivatives stay finite."""
     return dr.maximum(h.z * h.z, 1e-6)
 
 

@@ -128,16 +128,12 @@ class Model(Shown, Declaration):
 
     @classmethod
     def determine_parameters(cls, samples: Any) -> dict[str, float]:
-        """Return the shape parameters, by name, that are computed from measured directions, not
-        searched.
-        """
+        """Return shape parameters, by name, that measured directions determine without a search."""
         return {}
 
     @classmethod
     def bind(cls, values: dict[str, Any]) -> Any:
-        """Return the model with values by name of any type, such as arrays, without checking
-        them.
-        """
+        """Return the model with values by name of any type, such as arrays, unchecked."""
         bound = object.__new__(cls)
         bound.__dict__.update(values)
         for name, parameter in cls.parameters.items():
@@ -173,16 +169,13 @@ class Model(Shown, Declaration):
 
     @property
     def arguments(self) -> dict[str, Any]:
-        """The arguments that make an equal model: the `values`, and the wavelengths if there are
-        any.
-        """
+        """The arguments that make an equal model: `values`, and wavelengths if there are any."""
         known = {"wavelengths": self.wavelengths} if self.wavelengths else {}
         return {**known, **self.values}
 
     @property
     def rgb(self) -> Self:
-        """The model with weights in linear sRGB, as RGB pictures show it; itself if they are RGB
-        already.
+        """The model with weights in linear sRGB, as RGB pictures show it.
 
         A colour outside sRGB is clipped to the bounds of the weight. Lobes with squares of weights
         (``oren_nayar``, ``eon``) have the square of the colour, not the colour of the square.
@@ -195,15 +188,11 @@ class Model(Shown, Declaration):
         return self.label()
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
-        """Compute the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3); it is 0 below the
-        surface.
-        """
+        """Compute the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3), 0 below the surface."""
         return evaluate_model(self, wi, wo)
 
     def scene_dict(self) -> dict[str, Any]:
-        """Return the dictionary for `mitsuba.load_dict`, for a spectral model in the current
-        variant.
-        """
+        """Return the dictionary for `mitsuba.load_dict` in the current variant."""
         self.make_known()
         entries = {"type": self.type_name(), **self.changed_options()}
         shown = self if self.wavelengths and _is_spectral() else self.rgb

@@ -50,9 +50,7 @@ class Parameter:
             raise BrdfkitError(f"{self.meaning!r}: the default {problem}.")
 
     def find_problem(self, value: ArrayLike) -> str | None:
-        """Say what is wrong with one number or several; return None if all are within the
-        bounds.
-        """
+        """Say what is wrong with one number or several; None if all are within bounds."""
         low, high = self.bounds
         given = np.asarray(value)
         if np.all(np.isfinite(given) & (given >= low) & (given <= high)):
@@ -112,9 +110,7 @@ class Option:
 
 
 def option(default: Any, choices: tuple[Any, ...] | None, meaning: str) -> Any:
-    """Declare an option with its `choices`, or None if any value of the default's type is
-    allowed.
-    """
+    """Declare an option with its `choices`; None allows any value of the default's type."""
     return Option(default, choices, meaning)
 
 

@@ -20,17 +20,14 @@ from brdfkit.core.files import sha256
 
 @dataclass(frozen=True)
 class UsersClass:
-    """A class in a user's file: its `name` in the module, and the `path` and `checksum` of the
-    file.
-    """
+    """A class in a user's file: its `name`, and the file's `path` and `checksum`."""
 
     name: str
     path: str
     checksum: str
 
     def load(self) -> Any:
-        """Return the class from the loaded file with the name of `path`, or else from the file at
-        `path`.
+        """Return the class from a loaded file with the name of `path`, or from `path` itself.
 
         Warns if the file has changed since, and raises `BrdfkitError` if it is missing.
         """

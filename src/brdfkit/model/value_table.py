@@ -1,6 +1,4 @@
-"""Makes the table of a model's values: a row for each parameter, with its error if that is
-known.
-"""
+"""Makes the table of a model's values, a row for each parameter, with known errors."""
 
 from __future__ import annotations
 

@@ -67,9 +67,7 @@ def to_rgb_values(model: Any) -> dict[str, Any]:
 
 
 def to_mitsuba_entries(model: Any) -> dict[str, Any]:
-    """Return the values of a model by name, as Mitsuba takes them: a colour, a spectrum or a
-    number.
-    """
+    """Return a model's values by name for Mitsuba: a colour, a spectrum or a number."""
     entries = {}
     for name, value in model.free_values.items():
         if isinstance(value, tuple) and model.wavelengths:

@@ -1,4 +1,4 @@
-"""Finds the plugins: one file is one plugin, in the top folder `plugins/` or added by a user.
+"""The plugins: one file is one plugin, in the top folder `plugins/` or added by a user.
 
 The wheel contains a copy of the top folder here; in a checkout this package's path is extended by
 the top folder.

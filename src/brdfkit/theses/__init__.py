@@ -1,10 +1,9 @@
-"""`reproduce`: a thesis as an executable document, its claims run and written as a page.
+"""`reproduce`: runs the claims of a thesis and writes a page of them.
 
-A folder here is a thesis, and is found by its being there. Its `__init__.py` has TITLE,
-INTRODUCTION, NEEDS (the measured files) and PARTS, the names of its files in the order of the page.
-A part, one table or figure, has SECONDS, about how long it takes, and a function
-`run(sources, report)`, which returns a `Section` of `page.py` with its `Claim`s. `report(done,
-total)` is called as it goes on.
+A folder here is a thesis and is found by itself. Its `__init__.py` has TITLE, INTRODUCTION, NEEDS
+(the measured files) and PARTS, the names of its files in the order of the page. A part is one table
+or figure. It has SECONDS, about how long it takes, and a function `run(sources, report)`, which
+returns a `Section` of `page.py` with its `Claim`s and calls `report(done, total)` as it goes on.
 """
 
 from pathlib import Path

@@ -1,18 +1,22 @@
-"""`Claim`: what a thesis says, where, and what comes out when it is run."""
+"""`Claim`: a claim of a thesis, with the printed figures, the figures here and a verdict."""
+
+from __future__ import annotations
 
 import time
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Any
 
 
-def measure_cpu_seconds(function, *arguments):
-    """Seconds of CPU of a call of `function`."""
+def measure_cpu_seconds(function: Callable[..., Any], *arguments: Any) -> float:
+    """Measure the CPU seconds of a call of a function."""
     start = time.process_time()
     function(*arguments)
     return time.process_time() - start
 
 
-def measure_least_seconds(function, *arguments, times=3):
-    """The least seconds of CPU of a few calls."""
+def measure_least_seconds(function: Callable[..., Any], *arguments: Any, times: int = 3) -> float:
+    """Measure the least CPU seconds of a few calls of a function."""
     return min(measure_cpu_seconds(function, *arguments) for _ in range(times))
 
 
@@ -27,16 +31,16 @@ class Claim:
     Attributes
     ----------
     says : str
-        What the thesis says.
+        The claim.
     where : str
-        The table, equation or page that says it.
+        The table, equation or page of the claim.
     printed : str
         The figures printed there.
     ours : str
         The figures that come out here.
     verdict : str
-        "confirmed", "not confirmed", "not stated" (the thesis gives no figure to hold ours
-        against) or "not run" (what it needs is not at hand).
+        "confirmed", "not confirmed", "not stated" (the thesis gives no figure to compare with) or
+        "not run" (the data for it are missing).
     why : str
         Why the figures differ, or how they were compared.
     """
@@ -53,16 +57,16 @@ class Claim:
             raise ValueError(f"{self.verdict!r} is no verdict; there are {', '.join(VERDICTS)}")
 
 
-def verdict(holds):
-    """The verdict on a claim that `holds` or not."""
+def verdict(holds: bool) -> str:
+    """Return the verdict on a claim that `holds` or not."""
     return CONFIRMED if holds else REFUTED
 
 
-def count_verdicts(claims):
-    """How many claims have each verdict, in words, without those that none has.
+def count_verdicts(claims: Iterable[Claim]) -> str:
+    """Count the claims with each verdict, in words, without verdicts that no claim has.
 
     >>> count_verdicts([Claim("", "", "", "", "confirmed")])
     '1 confirmed'
     """
-    found = [c.verdict for c in claims]
-    return ", ".join(f"{found.count(v)} {v}" for v in VERDICTS if v in found)
+    verdicts = [c.verdict for c in claims]
+    return ", ".join(f"{verdicts.count(v)} {v}" for v in VERDICTS if v in verdicts)

@@ -1,18 +1,25 @@
-"""Figures of a page: matplotlib's, without pyplot, in one look."""
+"""Draws the figures of a thesis's page by matplotlib, in one style and without pyplot."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from brdfkit.core.array_types import AnyArray
 
 COLOURS = "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c6d31", "#222222"
 GRID = "#dddddd"
 
 
-def figure(width, height):
-    """An empty figure of a size in inches."""
+def figure(width: float, height: float) -> Any:
+    """Make an empty figure of a size in inches."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def tidy(axes, title, ylabel):
-    """Title, label and a quiet grid."""
+def tidy(axes: Any, title: str, ylabel: str) -> None:
+    """Give axes a title, a label and a faint grid."""
     axes.set_title(title, size=10)
     axes.set_ylabel(ylabel)
     axes.grid(color=GRID, linewidth=0.6)
@@ -20,8 +27,8 @@ def tidy(axes, title, ylabel):
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def draw_curves(axes, curves, title, ylabel):
-    """Curves over the number of the sample, on a logarithmic scale; the last is thick."""
+def draw_curves(axes: Any, curves: Mapping[str, AnyArray], title: str, ylabel: str) -> None:
+    """Draw curves over the number of the sample, on a logarithmic scale; the last one is thick."""
     last = list(curves)[-1]
     colours = {**dict(zip(curves, COLOURS, strict=False)), last: COLOURS[-1]}
     for name, values in curves.items():

@@ -1,5 +1,7 @@
 """Writes sections with claims, tables and figures as one Markdown page, with PNGs beside it."""
 
+from __future__ import annotations
+
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -24,7 +26,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A matplotlib figure; `name`: of its file, without the suffix."""
+    """A matplotlib figure; `name` is that of its file without the suffix."""
 
     name: str
     figure: Any = field(repr=False)
@@ -33,7 +35,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of a page; `text`: paragraphs of Markdown."""
+    """A part of a page; `text` holds paragraphs of Markdown."""
 
     title: str
     text: str = ""
@@ -42,10 +44,16 @@ class Section:
     pictures: Sequence[Picture] = ()
 
 
-def write_page(file, title, introduction, sections, missing=()):
-    """Write a page to `file`, and its pictures into the folder beside it; returns all paths.
+def write_page(
+    file: str | Path,
+    title: str,
+    introduction: str,
+    sections: Sequence[Section],
+    missing: Sequence[str] = (),
+) -> list[Path]:
+    """Write a page, and its pictures into the same folder; return all paths.
 
-    `missing`: titles of parts that were not finished.
+    `missing` are the titles of parts that were not finished.
     """
     file = Path(file)
     pictures = [picture for section in sections for picture in section.pictures]
@@ -60,7 +68,10 @@ def write_page(file, title, introduction, sections, missing=()):
     return [file, *paths.values()]
 
 
-def _format_page(file, title, introduction, sections, missing):
+def _format_page(
+    file: Path, title: str, introduction: str, sections: Sequence[Section], missing: Sequence[str]
+) -> str:
+    """Return the page as Markdown."""
     claims = [claim for section in sections for claim in section.claims]
     blocks = [f"# {title}", introduction.strip()]
     if missing:
@@ -78,35 +89,40 @@ def _format_page(file, title, introduction, sections, missing):
     return "\n\n".join(filter(None, blocks)) + "\n"
 
 
-def _format_claim(claim):
+def _format_claim(claim: Claim) -> tuple[str, ...]:
+    """Return the row of a claim in the table of claims."""
     return claim.says, claim.where, claim.printed, claim.ours, f"**{claim.verdict}**"
 
 
-def _format_reason(claim):
+def _format_reason(claim: Claim) -> str:
+    """Return a list item that says why the figures of a claim differ."""
     return f"- *{claim.says}* **{claim.verdict}.** {claim.why}"
 
 
-def _format_table(columns, rows):
-    lines = [columns, ["---"] * len(columns), *rows]
+def _format_table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a table as Markdown."""
+    lines: list[Sequence[str]] = [columns, ["---"] * len(columns), *rows]
     return "\n".join("| " + " | ".join(_format_cell(c) for c in line) + " |" for line in lines)
 
 
-def _format_cell(text):
+def _format_cell(text: object) -> str:
+    """Return a text for the cell of a Markdown table."""
     return " ".join(str(text).split()).replace("|", "∣")
 
 
-def _picture_path(file, picture):
+def _picture_path(file: Path, picture: Picture) -> Path:
+    """Return the path of a picture of the page `file`."""
     return file.with_name(f"{file.stem}_{picture.name}.png")
 
 
-def _encode_png(figure):
-    """A figure as the bytes of a PNG with a palette: a third of the size."""
+def _encode_png(figure: Any) -> bytes:
+    """Return a figure as a PNG with a palette, which is a third of the size."""
     from PIL import Image
 
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format="png", dpi=RESOLUTION)
+    full_colour = io.BytesIO()
+    figure.savefig(full_colour, format="png", dpi=RESOLUTION)
     image = (
-        Image.open(drawn)
+        Image.open(full_colour)
         .convert("RGB")
         .quantize(256, Image.Quantize.MAXCOVERAGE, kmeans=3, dither=Image.Dither.NONE)
     )

@@ -1,4 +1,4 @@
-"""`reproduce`: runs the claims of a thesis and writes a page of them."""
+"""`reproduce`: runs the claims of a thesis and writes them to a page."""
 
 from __future__ import annotations
 
@@ -21,14 +21,15 @@ from brdfkit.theses.sources import Sources, find_sources
 
 @dataclass(frozen=True, repr=False)
 class Reproduction(Shown):
-    """The claims of a thesis, run; prints as a list of them. Made by `reproduce`.
+    """The claims of a thesis with their results, made by `reproduce`; prints as a list.
 
     Attributes
     ----------
     name : str
         The thesis.
     claims : tuple of Claim
-        What it says, what is printed, what came out and the verdict, in the order of the page.
+        The claims with the printed figures, the figures here and the verdicts, in the order of the
+        page.
     written : tuple of Path
         The page, and its figures.
     unfinished : tuple of str
@@ -41,20 +42,20 @@ class Reproduction(Shown):
     unfinished: tuple[str, ...] = ()
 
     def document(self) -> Document:
-        """The claims, each with its verdict, what is printed and what came out."""
+        """Return a table of the claims: verdict, claim, printed figures, figures here."""
         rows = tuple((c.verdict, f"{c.says} ({c.where})", c.printed, c.ours) for c in self.claims)
         title = f"{self.name}: {len(self.claims)} claims: {count_verdicts(self.claims)}"
         return Document(title, (Table(rows, ("verdict", "claim", "printed", "here")),))
 
 
 def list_theses() -> dict[str, str]:
-    """The theses that can be reproduced: name → title.
+    """Return the titles of the theses that can be reproduced, by name.
 
     >>> list(list_theses())
     ['balint2019', 'ergun2008', 'ergun2015', 'kurt2007', 'lesar2018']
     """
-    found = pkgutil.iter_modules(sys.modules[__package__].__path__)
-    return {f.name: _import_thesis(f.name).TITLE for f in found if f.ispkg}
+    modules = pkgutil.iter_modules(sys.modules[__package__].__path__)
+    return {m.name: _import_thesis(m.name).TITLE for m in modules if m.ispkg}
 
 
 def reproduce(
@@ -74,16 +75,16 @@ def reproduce(
     Parameters
     ----------
     name : str
-        The thesis, as ``"kurt2007"``.
+        The thesis, such as ``"kurt2007"``.
     path : str or Path, optional
         A folder for the page, ``kurt2007.md``, and its figures; by default none is written.
     data : str or Path, optional
-        The folder of measurements, by default that which the variable BRDFKIT_DATA names.
+        The folder of measurements, by default the one that the variable BRDFKIT_DATA names.
     tables : str or Path, optional
         The folder of tables transcribed from theses, by default ``thesis`` beside `data`. Claims
         that need one are not run where it is missing.
     parts : list of str, optional
-        Only these parts, as ``["table_9_1"]``; by default all.
+        Only these parts, such as ``["table_9_1"]``; by default all.
     progress : callable, optional
         Called with (done, total) as the claims are run.
 
@@ -135,7 +136,7 @@ def reproduce(
 
 
 def _require_packages(thesis: ModuleType, sources: Sources) -> None:
-    """Raise `BrdfkitError`, before the work, where a package is missing that reads a file."""
+    """Raise `BrdfkitError`, before the work, where a package is missing that a file needs."""
     for file, package in getattr(thesis, "PACKAGES", {}).items():
         if sources.beside(file) and find_spec(package) is None:
             raise BrdfkitError(
@@ -144,9 +145,13 @@ def _require_packages(thesis: ModuleType, sources: Sources) -> None:
 
 
 def _import_thesis(name: str) -> ModuleType:
+    """Import the package of a thesis."""
     return importlib.import_module(f"{__package__}.{name}")
 
 
-def _scale_progress(report, before, seconds, total):
-    """The progress of a part as that of all: the parts count by how long they take."""
-    return lambda done, of: report(before + seconds * done / of, total)
+def _scale_progress(report: Progress, before: int, seconds: int, total: int) -> Progress:
+    """Return a progress function for one part, which reports the progress of all parts.
+
+    The parts count by the seconds that they take; `before` are the seconds of the parts before.
+    """
+    return lambda done, of: report(before + seconds * done / of, total)  # type: ignore[arg-type]  # a share of seconds

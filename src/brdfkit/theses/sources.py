@@ -1,6 +1,9 @@
-"""Where a thesis's measurements lie: a folder of third-party files, which brdfkit does not ship."""
+"""Finds the measurements for a thesis in a folder of third-party files."""
+
+from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,40 +14,45 @@ VARIABLE = "BRDFKIT_DATA"
 
 @dataclass(frozen=True)
 class Sources:
-    """`folder`: of the measurements; `tables`: of the tables transcribed from theses, if any.
+    """The folder of measurements, and the folder of `tables` transcribed from theses.
 
-    Both are None where no folder is named, which a thesis without NEEDS allows.
+    Both are None where no folder is named; a thesis without NEEDS allows that.
     """
 
     folder: Path | None
     tables: Path | None
 
-    def path(self, name):
-        """The path of a measured file, as of ``curet/abrdf.dat``."""
+    def path(self, name: str) -> Path:
+        """Return the path of a measured file, such as ``curet/abrdf.dat``."""
+        assert self.folder is not None, "a thesis that needs files has a folder"
         return self.folder / name
 
-    def beside(self, name):
-        """The path of a file in a folder beside the measurements, as of ``environments/grace.hdr``;
-        None where it is not at hand."""
+    def beside(self, name: str) -> Path | None:
+        """Return the path of a file beside the folder, such as ``environments/grace.hdr``.
+
+        None where there is no such file.
+        """
         path = self.folder and self.folder.resolve().parent / name
         return path if path and path.is_file() else None
 
-    def table(self, name):
-        """The path of a transcribed table, None where it is not at hand."""
+    def table(self, name: str) -> Path | None:
+        """Return the path of a transcribed table, None where there is no such table."""
         path = self.tables and self.tables / name
         return path if path and path.is_file() else None
 
 
-def find_sources(data, tables, needs):
-    """The `Sources` in the folder `data`, or in that which BRDFKIT_DATA names.
+def find_sources(
+    data: str | Path | None, tables: str | Path | None, needs: Mapping[str, str]
+) -> Sources:
+    """Find the sources in the folder `data`, or in the folder that BRDFKIT_DATA names.
 
-    `tables`: a folder, by default ``thesis`` beside `data`; `needs`: name of a file → where to get
-    it. Raises `BrdfkitError` where no folder is named that should hold any, and for a file that is
-    not there.
+    `tables` is a folder, by default ``thesis`` beside `data`; `needs` says where to get each file,
+    by the file's name. Raises `BrdfkitError` where files are needed and no folder is named, and for
+    a missing file.
     """
     named = data or os.environ.get(VARIABLE)
     if not named and not needs:
-        return Sources(None, tables and Path(tables))
+        return Sources(None, Path(tables) if tables else None)
     if not named:
         raise BrdfkitError(
             f"No folder of measurements is named: set {VARIABLE} to one, or give --data FOLDER; "

@@ -92,8 +92,7 @@ def call_when_added(listener: Callable[[], None]) -> None:
 
 
 def find_python_files(path: str | Path) -> list[Path]:
-    """Return the Python files at `path`: the file itself, or those in a folder without a leading
-    "_".
+    """Return the Python file at `path`, or those in a folder without a leading "_".
 
     Raises `BrdfkitError` where there are none.
     """

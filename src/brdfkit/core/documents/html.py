@@ -105,9 +105,7 @@ def _format_cell(cell: str | Cell, is_number: bool) -> str:
 
 
 def _format_chip(colour: Sequence[float]) -> str:
-    """Return a small square of a linear colour, scaled down to 1 if it is brighter, or "" for
-    none.
-    """
+    """Return a square of a linear colour, scaled down to 1 if it is brighter, or "" for none."""
     if len(colour) != 3:
         return ""
     rgb = np.maximum(colour, 0)

@@ -51,9 +51,7 @@ def _format_table(table: Table) -> list[str]:
 
 
 def _split_long_name(row: list[str]) -> list[list[str]]:
-    """Return a row of texts as one row, or as two if its name is long: the name, and the numbers
-    below.
-    """
+    """Return a row as one row, or as two if its name is long: the name, and the numbers."""
     name, *others = row
     return [[name, *("" for _ in others)], ["", *others]] if len(name) > LONGEST_NAME else [row]
 
@@ -72,7 +70,5 @@ class Shown:
         return str(self)
 
     def _repr_html_(self) -> str:
-        """Return the summary as HTML for notebooks, without scripts and without anything from
-        elsewhere.
-        """
+        """Return the summary as HTML for notebooks, without scripts and outside addresses."""
         return to_html(self.document())

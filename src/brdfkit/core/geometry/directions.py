@@ -24,9 +24,7 @@ def from_angles(theta: ArrayLike, phi: ArrayLike) -> FloatArray:
 
 
 def to_angles(w: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return the polar angles in [0, π] and the azimuths in (-π, π] [rad] of unit vectors (...,
-    3).
-    """
+    """Return polar angles in [0, π] and azimuths in (-π, π] [rad] of unit vectors (..., 3)."""
     w = np.asarray(w, float)
     return np.arctan2(np.hypot(w[..., 0], w[..., 1]), w[..., 2]), np.arctan2(w[..., 1], w[..., 0])
 

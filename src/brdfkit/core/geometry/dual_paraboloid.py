@@ -23,8 +23,7 @@ def to_disc(x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, JitFloat]:
 
 
 def from_disc(s: JitFloat, t: JitFloat, sign: JitFloat) -> tuple[JitFloat, JitFloat, JitFloat]:
-    """Return the unit direction (x, y, z) at (s, t) of the disc of z ≥ 0 (`sign` = 1) or z < 0
-    (-1).
+    """Return the direction (x, y, z) at (s, t) of the disc of z ≥ 0 (`sign` = 1) or z < 0 (-1).
 
     >>> from_disc(0.0, 0.0, -1)
     (0.0, 0.0, -1.0)

@@ -27,8 +27,7 @@ def solid_angles(height: int, width: int, at_poles: bool) -> FloatArray:
 
 
 def projected_solid_angles(height: int, width: int) -> FloatArray:
-    """Return ∫ cosθ dω (height,) [sr] over the upper hemisphere for a pixel of each row of a file's
-    map.
+    """Return ∫ cosθ dω (height,) [sr] over the upper hemisphere for a pixel of each row.
 
     >>> (projected_solid_angles(5, 1).sum() / np.pi).round(9)
     np.float64(1.0)

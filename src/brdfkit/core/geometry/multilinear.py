@@ -1,5 +1,4 @@
-"""Multilinear interpolation: finds the nodes around a point on each axis, and the corners of its
-cell.
+"""Multilinear interpolation: the nodes around a point on each axis, the corners of its cell.
 
 A bracket is (lower node, upper node, share of the upper node) on one axis, whose nodes lie at 0, 1,
 ... n - 1. `find_bracket` and `find_periodic_bracket` take NumPy arrays; the functions of the same
@@ -51,9 +50,7 @@ def list_corners(brackets: Sequence[Bracket]) -> Iterator[tuple[tuple[Any, ...],
 
 
 def to_flat_index(nodes: Sequence[Any], shape: Sequence[int]) -> Any:
-    """Return the index of a corner in a flattened array of `shape`, whose last axis is the
-    fastest.
-    """
+    """Return the index of a corner in a flattened array of `shape`, last axis fastest."""
     index = 0
     for node, n in zip(nodes, shape, strict=True):
         index = index * n + node

@@ -49,8 +49,7 @@ def _integrate(f: Brdf, wi: FloatArray, points: int) -> AnyArray:
 
 
 def make_ring_rule(wi: FloatArray, points: int) -> tuple[FloatArray, FloatArray]:
-    """Return the directions wo (n, 3) of 2 `points` rings of `points` points, and their weights
-    (n,).
+    """Return directions wo (n, 3) on 2 `points` rings of `points` points, and weights (n,).
 
     The rings lie about the mirror direction of `wi` (3,); the weights are solid angles times
     cosθ_o.
@@ -82,9 +81,7 @@ def make_ring_rule(wi: FloatArray, points: int) -> tuple[FloatArray, FloatArray]
 
 @cache
 def _gauss_legendre(points: int, pieces: int = 1) -> tuple[FloatArray, FloatArray]:
-    """Return Gauss-Legendre nodes and weights, each (points,), of the unit interval in equal
-    `pieces`.
-    """
+    """Return Gauss-Legendre nodes and weights (points,) of the unit interval in equal `pieces`."""
     nodes, weights = np.polynomial.legendre.leggauss(points // pieces)
     nodes = np.arange(pieces)[:, None] + (nodes + 1) / 2
     return nodes.ravel() / pieces, np.tile(weights / 2 / pieces, pieces)

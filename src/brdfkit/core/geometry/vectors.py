@@ -1,5 +1,4 @@
-"""Vector functions for the formulas of models; they take any type with x, y and z, in any
-precision.
+"""Vector functions for the formulas of models, for any type with x, y and z.
 
 Directions are unit vectors in the local frame, z along the normal.
 """

@@ -66,9 +66,7 @@ def find_library() -> str | None:
 
 
 def library_version(path: str | Path) -> int:
-    """Return the major version of a libLLVM, by its name or from the library; 0 if it does not
-    load.
-    """
+    """Return the major version of a libLLVM, by its name or from itself; 0 if it does not load."""
     by_name = re.search(r"libLLVM(?:-|\.so\.)(\d+)", os.path.realpath(path))
     if by_name and Path(path).exists():
         return int(by_name[1])
@@ -111,8 +109,7 @@ def require_safe_variant(variant: str | None) -> None:
 
 @in_turn
 def use_variant() -> str:
-    """Return the name of Mitsuba's current variant; where none is set, set the best that works
-    first.
+    """Return Mitsuba's current variant; where none is set, set the best that works first.
 
     A warning is given if that is only `scalar_rgb`, which is many times slower.
     """

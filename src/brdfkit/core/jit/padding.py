@@ -37,9 +37,7 @@ def pad(values: AnyArray) -> AnyArray:
 
 
 def make_padded_rows(count: int, n: int, dtype: Any = float) -> AnyArray:
-    """Return an empty array (count, n) whose rows are aligned and followed by a packet of
-    memory.
-    """
+    """Return an empty array (count, n) of aligned rows, each followed by a packet of memory."""
     itemsize = np.dtype(dtype).itemsize
     step = ALIGNMENT // itemsize  # numbers between aligned addresses
     width = -(-(n + PACKET) // step) * step

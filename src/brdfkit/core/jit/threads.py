@@ -20,9 +20,7 @@ TURN = threading.RLock()  # re-entrant, since a function that holds it may call 
 
 
 def in_turn(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorate a function that runs kernels, so that one thread at a time calls any such
-    function.
-    """
+    """Decorate a function that runs kernels, so that one thread at a time calls any of them."""
 
     @functools.wraps(function)
     def call_in_turn(*args: P.args, **kwargs: P.kwargs) -> R:

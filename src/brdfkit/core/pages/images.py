@@ -1,6 +1,4 @@
-"""Encodes pictures as `data:` addresses, which a page holds within itself, and maps numbers to
-colours.
-"""
+"""Encodes pictures as `data:` addresses, which pages hold, and maps numbers to colours."""
 
 from __future__ import annotations
 
@@ -20,7 +18,7 @@ def encode_jpeg(linear: AnyArray) -> str:
 
 
 def encode_webp(colours: AnyArray, **options: Any) -> str:
-    """Return colours (height, width, 3) in 0..1 as the address of a WebP, half as long as a JPEG's.
+    """Return colours (height, width, 3 or 4) in 0..1 as the address of a PNG, without loss.
 
     `options` are those of Pillow, such as `quality` or `lossless`.
     """
@@ -55,9 +53,7 @@ def apply_colour_map(name: str, shares: ArrayLike) -> AnyArray:
 
 
 def draw_colour_bar(name: str, steps: int = 128) -> str:
-    """Return the address of a picture of a colour map from its low to its high end, one pixel
-    high.
-    """
+    """Return the address of a colour map from its low to its high end, one pixel high."""
     return encode_png(apply_colour_map(name, np.linspace(0, 1, steps))[None, :, :3])
 
 

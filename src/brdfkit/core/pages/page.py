@@ -1,6 +1,4 @@
-"""Fills the template of an HTML page; the page holds its style and its scripts, and no others
-may run.
-"""
+"""Fills the template of an HTML page, which holds its style and scripts; no others may run."""
 
 from __future__ import annotations
 
@@ -50,9 +48,7 @@ def _make_environment() -> Any:
 
 
 def _clean(value: Any) -> Any:
-    """Remove the control characters, which HTML forbids, from a text; markup and other values
-    stay.
-    """
+    """Remove the control characters, which HTML forbids, from a text; other values stay."""
     plain = isinstance(value, str) and not hasattr(value, "__html__")
     return to_printable(value, keep="\n") if plain else value
 

@@ -118,9 +118,7 @@ class Camera:
         return replace(self, near=near, far=far)
 
     def move_back(self, points: ArrayLike) -> Camera:
-        """Move the camera back until its near plane is before all points (n, 3), and open it to see
-        them.
-        """
+        """Move the camera back until all points (n, 3) are before it, and open it to see them."""
         view = self.view.copy()
         view[2, 3] -= max(0, self.near - self.depths(points).min())
         x, y, z, _ = transform(view, *np.asarray(points, float).T)
@@ -128,8 +126,7 @@ class Camera:
         return Camera(view, np.abs(x / z).max(), np.abs(y / z).max(), near, far)
 
     def fit_planes(self, points: ArrayLike) -> Camera:
-        """Return the camera with its planes drawn in to points (n, 3), such as the corners of a
-        scene.
+        """Return the camera with its planes drawn in to points (n, 3), such as a scene's corners.
 
         Raises `Empty` where all of them are behind its near plane or beyond its far plane.
         """

@@ -21,9 +21,9 @@ class Light:
     """A point, spot or directional light.
 
     point : (4,), (x, y, z, 1) of a light at a position; (x, y, z, 0) of one at infinity, with the
-    unit vector to it.
+        unit vector to it.
     axis, cutoff : the direction of a spot, a unit vector (3,), and half the angle of its cone
-    [rad]; None of other lights.
+        [rad]; None for other lights.
     """
 
     point: np.ndarray
@@ -110,9 +110,7 @@ def _read_direction(emitter: MitsubaObject, way: AnyArray) -> FloatArray:
 
 
 def _require_finite(emitter: MitsubaObject, numbers: AnyArray) -> FloatArray:
-    """Return the numbers (3,) of a position or direction; raise `BrdfkitError` unless they are
-    finite.
-    """
+    """Return the numbers (3,) of a position or direction; raise `BrdfkitError` if not finite."""
     if not np.isfinite(numbers).all():
         raise BrdfkitError(
             f"the place or direction of the light {emitter.id() or emitter.class_name()} is not "

@@ -32,9 +32,7 @@ def draw_ball(brdf: Brdf, side: int) -> tuple[AnyArray, AnyArray]:
 
 
 def _place_pixels(side: int) -> tuple[AnyArray, AnyArray, AnyArray]:
-    """Return places x, y of pixels in a disc of radius 1, and how much of each pixel the disc
-    covers.
-    """
+    """Return places x, y of pixels in a disc of radius 1, and its cover of each pixel."""
     at = (np.arange(side) + 0.5) / side * 2 - 1
     x, y = np.meshgrid(at, -at)
     radius = np.hypot(x, y)
@@ -44,9 +42,7 @@ def _place_pixels(side: int) -> tuple[AnyArray, AnyArray, AnyArray]:
 
 
 def _compute_radiance(brdf: Brdf, x: AnyArray, y: AnyArray) -> AnyArray:
-    """Compute the radiance (n, channels) that the ball reflects to the eye at places `x`, `y`
-    (n,).
-    """
+    """Compute the radiance (n, channels) that the ball reflects to the eye at `x`, `y` (n,)."""
     from scipy.stats import qmc
 
     # All pixels use the same points, so that their errors are alike and the picture has no grain
@@ -59,9 +55,7 @@ def _compute_radiance(brdf: Brdf, x: AnyArray, y: AnyArray) -> AnyArray:
 
 @cache
 def _compute_exposure() -> float:
-    """Return the factor of radiances that makes the brightest value of a matt white ball
-    `WHITE`.
-    """
+    """Return the factor of radiances for which a matt white ball has the peak `WHITE`."""
     x, y, cover = _place_pixels(32)
     white = _compute_radiance(
         lambda wi, wo: np.full((len(wi), 1), WHITE / np.pi), x[cover > 0], y[cover > 0]

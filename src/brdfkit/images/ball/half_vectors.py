@@ -55,8 +55,7 @@ class HalfVectors:
         return np.where(cell < CELLS, self.densities[np.minimum(cell, CELLS - 1)], 0.0)
 
     def sample(self, wo: AnyArray, u: AnyArray) -> AnyArray:
-        """Draw directions (n, 3) that are reflected to `wo` (n, 3), for points `u` (n, 3) of the
-        unit cube.
+        """Draw directions (n, 3) that are reflected to `wo` (n, 3), for points `u` of the cube.
 
         They may lie below the surface.
         """

@@ -21,9 +21,7 @@ FLOOR = 0.02
 
 
 def court(w: AnyArray) -> AnyArray:
-    """Return the radiance of a court: bright sky, walls that are darker the higher they are, and
-    ground.
-    """
+    """Return the radiance of a court: bright sky, walls that are darker upwards, and ground."""
     walls = np.where(w[:, 2] < 0, 0.3, 0.5 - 0.25 * w[:, 2])
     return walls + 6 * (w[:, 2] > 0.75)
 
@@ -45,9 +43,7 @@ def hall(w: AnyArray) -> AnyArray:
 
 
 def sky(w: AnyArray) -> AnyArray:
-    """Return the radiance of a clear sky, brightest about a low sun behind the ball to the
-    right.
-    """
+    """Return the radiance of a clear sky with a low sun behind the ball to the right."""
     sun = 56, 27
     glow = 3 * np.exp(6 * (w @ _direction_to(*sun) - 1))
     above = (
@@ -60,9 +56,7 @@ def sky(w: AnyArray) -> AnyArray:
 
 
 def studio(w: AnyArray) -> AnyArray:
-    """Return the radiance of a dim room with a softbox in front at the upper left, and one at the
-    right.
-    """
+    """Return the radiance of a dim room with softboxes at the upper left and at the right."""
     grey = np.where(w[:, 2] < 0, 0.15, 0.05 + 0.25 * w[:, 2])
     softbox, other = (234, 38), (117, 13)
     return grey + 3.3 * _is_in_disc(w, *softbox, radius=22) + 2 * _is_in_disc(w, *other, radius=12)
@@ -72,16 +66,12 @@ LIGHTS = {light.__name__: light for light in (court, hall, sky, studio)}
 
 
 def _direction_to(azimuth: float, elevation: float) -> AnyArray:
-    """Return the unit vector (3,) to an azimuth, from north (+y) to east (+x), and an elevation
-    [degrees].
-    """
+    """Return the unit vector to an azimuth, from north (+y) to east, and elevation [degrees]."""
     return from_angles(np.radians(90 - elevation), np.radians(90 - azimuth))
 
 
 def _is_in_disc(w: AnyArray, azimuth: float, elevation: float, radius: float) -> AnyArray:
-    """Return 1 where a direction is closer than `radius` to the centre of a disc, else 0
-    [degrees].
-    """
+    """Return 1 within the `radius` of a disc about a direction, else 0 [degrees]."""
     return 1.0 * (w @ _direction_to(azimuth, elevation) > np.cos(np.radians(radius)))
 
 

@@ -17,8 +17,7 @@ SOURCES = 256  # directions of a light, by which highlights are found
 def draw_normals(
     count: int, light: LightSampling, half_vectors: HalfVectors, rng: np.random.Generator
 ) -> tuple[AnyArray, AnyArray]:
-    """Draw normals (count, 3) of points of the ball's disc, and weights (count,) that make them
-    even.
+    """Draw normals (count, 3) of points of the ball, and weights (count,) that even them out.
 
     Half of them are drawn evenly over the disc, half in highlights: about the half vectors of the
     eye and the light, by the distribution of the material. So even a narrow highlight of a small
@@ -48,8 +47,7 @@ def _spread_normals(u: AnyArray) -> AnyArray:
 
 
 def find_normals(x: AnyArray, y: AnyArray) -> AnyArray:
-    """Return the normals (n, 3) of the ball at places `x` to the right and `y` upwards (n,) in a
-    picture.
+    """Return the ball's normals (n, 3) at places `x` to the right and `y` upwards (n,).
 
     The places lie within the disc of radius 1 about the middle of the ball.
     """

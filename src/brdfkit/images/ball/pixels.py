@@ -64,8 +64,7 @@ def draw_pixels(
     pixels: int = PIXELS,
     directions: int = DIRECTIONS,
 ) -> Pixels:
-    """Draw pixels of a ball of a BRDF, with one picture for each of the `lights`, names in
-    `LIGHTS`.
+    """Draw pixels of a ball of a BRDF, in one picture for each name of `lights`.
 
     Directions at or beyond `max_angle` [degrees] to the normal do not count. `pixels` is their
     number in all pictures; `directions` is the number of directions of each pixel that the light
@@ -155,16 +154,12 @@ def _find_white(values: AnyArray, weights: AnyArray) -> Any:
 
 
 def sum_pairs(values: AnyArray, shares: AnyArray, pairs: int) -> AnyArray:
-    """Sum the values (n, channels) of pairs, times their shares (n,), to pixels (pixels,
-    channels).
-    """
+    """Sum values (n, channels) of pairs, times shares (n,), to pixels (pixels, channels)."""
     return (shares[:, None] * values).reshape(-1, pairs, values.shape[1]).sum(axis=1)
 
 
 def _stratify(rng: np.random.Generator, pixels: int, count: int) -> AnyArray:
-    """Draw points (pixels, count, 3) of the unit cube; on each axis those of a pixel are
-    stratified.
-    """
+    """Draw points (pixels, count, 3) of the unit cube, stratified on each axis within a pixel."""
     shape = pixels, count, 3
     strata = rng.random(shape).argsort(axis=1)
     return (strata + rng.random(shape)) / count

@@ -1,5 +1,4 @@
-"""HDR-FLIP: the difference that an observer sees who flips between pictures [Andersson et al.
-2021].
+"""HDR-FLIP: the difference that flipping between pictures shows [Andersson et al. 2021].
 
 The package flip-evaluator computes it. By default it takes the exposures from all pixels, and a
 black background makes these too many and too long. Here they come from the masked pixels.

@@ -50,9 +50,7 @@ class ImageErrors(Shown):
     notes: tuple[str, ...] = ()
 
     def exceeds(self, name: str, metric: str) -> bool:
-        """Return whether the picture `name` differs from the reference by more than the noise
-        floor.
-        """
+        """Return whether a picture differs from the reference by more than the noise floor."""
         return METRICS[metric].exceeds(self.by_name[name][metric], self.floor[metric])
 
     @property
@@ -61,9 +59,7 @@ class ImageErrors(Shown):
         return "picture", *(f">{METRICS[m].title}" for m in self.floor)
 
     def table(self) -> list[tuple[str, ...]]:
-        """Return a row of texts for every picture, under `columns`; the last row is the noise
-        floor.
-        """
+        """Return a row of texts for every picture, under `columns`, and the noise floor last."""
         rows = [(n, *(self._text(n, m) for m in row)) for n, row in self.by_name.items()]
         return [*rows, ("noise floor", *(METRICS[m].text(e) for m, e in self.floor.items()))]
 
@@ -128,9 +124,7 @@ def compare_pictures(
 def _compute_error(
     metric: Metric, reference: AnyArray, picture: AnyArray | None, mask: BoolArray
 ) -> float:
-    """Return the error of a picture; nan for no picture, an empty mask, and values that are not
-    finite.
-    """
+    """Return the error of a picture; nan for none, an empty mask, or values not finite."""
     if picture is None or not mask.any() or not np.isfinite([reference[mask], picture[mask]]).all():
         return math.nan
     return metric.function(reference, picture, mask)

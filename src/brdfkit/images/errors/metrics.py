@@ -58,9 +58,7 @@ class Metric:
         return "-" if np.isnan(value) else f"{value:.{self.digits}f}"
 
     def exceeds(self, value: float, floor: float) -> bool:
-        """Return whether an error is worse than the noise floor; also True where either is
-        unknown.
-        """
+        """Return whether an error is worse than the noise floor, or either is unknown."""
         return not (value >= floor if self.more else value <= floor)
 
 

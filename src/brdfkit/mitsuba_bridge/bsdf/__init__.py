@@ -1,1 +1,1 @@
-"""Makes a Mitsuba BSDF of a model or of a measured table."""
+"""BSDF plugins of models and of measurements, with lookups and sampling of tables."""

@@ -1,47 +1,57 @@
 """The one adapter from a model to a Mitsuba BSDF.
 
-Written once for all models: a texture for every parameter, and one component per lobe, drawn in
+It serves all models: it has a texture for every parameter, and one component per lobe, drawn in
 proportion to its weight and energy. Lobes that share a sampling are one component.
 """
 
+from __future__ import annotations
+
 import functools
 import operator
+from collections.abc import Sequence
+from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitColour, JitMask, JitVector, MitsubaModule, MitsubaObject
 from brdfkit.core.geometry.quadrature import spread_by_cosine
 from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate
 from brdfkit.mitsuba_bridge.bsdf.surface_response import Point
 from brdfkit.mitsuba_bridge.bsdf.textures import define_textured_frame
+from brdfkit.model import Model
 from brdfkit.model.lobes import group_components
 
 # Outgoing directions over which `eval_diffuse_reflectance` averages
-FROM_ABOVE = spread_by_cosine(64)
+DIRECTIONS = spread_by_cosine(64)
 
 
-def define_bsdf(mi, model):
-    """The class of `mi.BSDF` that evaluates and samples `model` in the current variant."""
+def define_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
+    """Define the class of `mi.BSDF` that evaluates and samples a model in the current variant."""
     groups = group_components(model().lobes())
     signed = find_signed_components(model, groups)
     kinds = find_component_kinds(mi, model, groups)
     components = find_component_flags(mi, model, kinds, signed)
 
-    class Plugin(define_textured_frame(mi, model)):
-        def __init__(self, props):
+    Base: Any = define_textured_frame(mi, model)
+
+    class Plugin(Base):
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
-            self.tables = {}
+            self.tables: dict[int, Any] = {}
             self.parameters_changed()
             varying = any(t.is_spatially_varying() for t in self.textures.values())
             extra = mi.BSDFFlags.SpatiallyVarying if varying else mi.BSDFFlags.Empty
             self.m_components = [component | extra for component in components]
             self.m_flags = functools.reduce(operator.or_, self.m_components)
 
-        def parameters_changed(self, keys=()):
+        def parameters_changed(self, keys: Sequence[str] = ()) -> None:
             if signed:  # a sum of signed lobes is drawn by a table
                 shapes, weights = self.means()
                 self.tables = {k: tabulate(model(**shapes), weights, groups[k]) for k in signed}
 
-        def at(self, ctx, si, wi, active):
+        def at(
+            self, ctx: MitsubaObject, si: MitsubaObject, wi: JitVector, active: JitMask
+        ) -> Point:
             weights, lobes = self.terms(si, active)
             samplings = [
                 self.tables.get(k, lobes[group[0]].sampling) for k, group in enumerate(groups)
@@ -51,26 +61,28 @@ def define_bsdf(mi, model):
                 mi, wi, weights, lobes, model.has_signed_weights(), groups, samplings, enabled
             )
 
-        def eval_diffuse_reflectance(self, si, active=True):
-            """Albedo of the diffuse lobes at normal incidence, by quadrature."""
+        def eval_diffuse_reflectance(self, si: MitsubaObject, active: JitMask = True) -> JitColour:
+            """Compute the albedo of the diffuse lobes at normal incidence by quadrature."""
             normal = self.at(mi.BSDFContext(), si, mi.Vector3f(0, 0, 1), active)
             diffuse = [i for i, lobe in enumerate(normal.lobes) if lobe.diffuse]
             total = mi.UnpolarizedSpectrum(0)
-            for direction in FROM_ABOVE:
+            for direction in DIRECTIONS:
                 total += dr.pi * normal.evaluate_lobes(diffuse, mi.Vector3f(*map(float, direction)))
-            return mi.Spectrum(dr.select(active, total / len(FROM_ABOVE), 0))
+            return mi.Spectrum(dr.select(active, total / len(DIRECTIONS), 0))
 
     return Plugin
 
 
-def find_signed_components(model, groups):
-    """The components, as indices of `groups`, in which a weight may be negative."""
+def find_signed_components(model: type[Model], groups: list[list[int]]) -> list[int]:
+    """Return the components, as indices of `groups`, in which a weight may be negative."""
     linear = [model.parameters[name] for name in model.weights()]
     return [k for k, group in enumerate(groups) if any(linear[i].bounds[0] < 0 for i in group)]
 
 
-def find_component_kinds(mi, model, groups):
-    """Mitsuba's flag of each component, diffuse or glossy: that of its first lobe."""
+def find_component_kinds(
+    mi: MitsubaModule, model: type[Model], groups: list[list[int]]
+) -> list[Any]:
+    """Return Mitsuba's flag of each component, diffuse or glossy, by its first lobe."""
     flags, lobes = mi.BSDFFlags, model().lobes()
     return [
         flags.DiffuseReflection if lobes[group[0]].diffuse else flags.GlossyReflection
@@ -78,10 +90,12 @@ def find_component_kinds(mi, model, groups):
     ]
 
 
-def find_component_flags(mi, model, kinds, signed):
-    """All flags of each component except for `SpatiallyVarying`.
+def find_component_flags(
+    mi: MitsubaModule, model: type[Model], kinds: list[Any], signed: list[int]
+) -> list[Any]:
+    """Return all flags of each component except for `SpatiallyVarying`.
 
-    Of an anisotropic model, glossy and signed components are anisotropic.
+    In an anisotropic model, glossy and signed components are anisotropic.
     """
     flags = mi.BSDFFlags
     anisotropic = flags.Anisotropic if model.is_anisotropic() else flags.Empty

@@ -6,37 +6,54 @@ own distributions warp the unit square and interpolate between the stored incide
 [Dupuy & Jakob 2018]
 """
 
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
 import drjit as dr
 
+from brdfkit.core.array_types import AnyArray, JitFloat, JitInt, JitVector, MitsubaObject
 from brdfkit.core.geometry import multilinear
 from brdfkit.core.geometry.vectors import cos_theta_d, half_vector, reflect
 from brdfkit.mitsuba_bridge.arrays import Nodes, find_bracket
 
-# The least x of a half vector, 0.02 µrad from the normal: at x = 0 its density is infinite
-INNERMOST = 1e-4
+# The least x of a half vector, 0.02 µrad from the normal, since its density is infinite at x = 0
+LEAST_X = 1e-4
 
 
 class AdaptiveLookup:
     """The places of a BRDF's stored values, and a `Sampling` of the BRDF, in the current variant.
 
     `phi_i` (a,), `theta_i` (b,), `ndf`, `sigma` (y, x), `vndf` (a, b, y, x), `isotropic` and
-    `parts` are those of the BRDF's `Parameterisation`, `density` (a, b, n, n) and `divided` those
-    of its `Adaptive`.
+    `parts` are those of the BRDF's `Parameterisation`; `density` (a, b, n, n) and `divided` are
+    those of its `Adaptive`.
     """
 
-    def __init__(self, phi_i, theta_i, ndf, sigma, vndf, density, isotropic, parts, divided):
+    def __init__(
+        self,
+        phi_i: AnyArray,
+        theta_i: AnyArray,
+        ndf: AnyArray,
+        sigma: AnyArray,
+        vndf: AnyArray,
+        density: AnyArray,
+        isotropic: bool,
+        parts: int,
+        divided: bool,
+    ) -> None:
         import mitsuba as mi
 
         self.isotropic, self.parts, self.divided = isotropic, parts, divided
         self.nodes, self.n = (Nodes(phi_i), Nodes(theta_i)), density.shape[-1]
-        plain = {"normalize": False, "enable_sampling": False}
+        plain: dict[str, Any] = {"normalize": False, "enable_sampling": False}
         self.ndf, self.sigma = (mi.MarginalContinuous2D0(x, **plain) for x in (ndf, sigma))
         angles = [phi_i.tolist(), theta_i.tolist()]
-        self.normals = mi.MarginalContinuous2D2(vndf, angles)
-        self.density = mi.MarginalContinuous2D2(density, angles)
+        self.normals: Any = mi.MarginalContinuous2D2(vndf, angles)
+        self.density: Any = mi.MarginalContinuous2D2(density, angles)
 
-    def incidences(self, wi):
-        """(index, share) of the stored incidences around `wi`; the shares add up to 1."""
+    def incidences(self, wi: JitVector) -> list[tuple[JitInt, JitFloat]]:
+        """Return (index, share) of the stored incidences around `wi`; the shares add up to 1."""
         angles = self._angles(self._fold(wi, wi))
         axes = [(nodes, x) for nodes, x in zip(self.nodes, angles, strict=True) if nodes.count > 1]
         brackets, shape = [nodes.find_bracket(x) for nodes, x in axes], [n.count for n, _ in axes]
@@ -45,8 +62,8 @@ class AdaptiveLookup:
             for at, t in multilinear.list_corners(brackets)
         ]
 
-    def corners(self, wi, wo):
-        """(row, factor) of stored values: the BRDF is the sum of factor times value.
+    def corners(self, wi: JitVector, wo: JitVector) -> Iterator[tuple[JitInt, JitFloat]]:
+        """Yield (row, factor) of stored values; the BRDF is the sum of factor times value.
 
         A row is an index among all stored values (a b n n,).
         """
@@ -67,13 +84,13 @@ class AdaptiveLookup:
                     weight * share * factor,
                 )
 
-    def sample(self, wi, u):
-        """A direction, possibly below the surface, for a point `u`; its x and y are used."""
+    def sample(self, wi: JitVector, u: JitVector) -> JitVector:
+        """Draw a direction, possibly below the surface, for x and y of a point `u`."""
         import mitsuba as mi
 
         folded = self._fold(wi, wi)
         angles = self._angles(folded)
-        # A point on the square of stored values, then on the square of directions: the normal
+        # A point on the square of stored values is warped to the square of directions: the normal
         point, _ = self.density.sample(mi.Point2f(u.x, u.y), angles)
         m, _ = self.normals.sample(point, angles)
         sin_theta, cos_theta = dr.sincos(m.x * m.x * (dr.pi / 2))
@@ -82,8 +99,8 @@ class AdaptiveLookup:
         normal = type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
         return self._fold(reflect(folded, normal), wi)
 
-    def pdf(self, wi, wo):
-        """Density of `wo` per solid angle."""
+    def pdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
+        """Return the density of `wo` per solid angle."""
         wi, wo = self._fold(wi, wi), self._fold(wo, wi)
         m, u, density = self._locate(wi, wo)
         density *= self.density.eval(u, self._angles(wi))
@@ -91,30 +108,32 @@ class AdaptiveLookup:
         solid_angle = 2 * dr.pi**2 * m.x * dr.sin(m.x * m.x * (dr.pi / 2))
         return density / (solid_angle * 4 * cos_theta_d(wi, wo))
 
-    def _locate(self, wi, wo):
-        """(m, u, density) of a folded direction pair.
+    def _locate(
+        self, wi: JitVector, wo: JitVector
+    ) -> tuple[MitsubaObject, MitsubaObject, JitFloat]:
+        """Return (m, u, density) of a folded direction pair.
 
-        m: the half vector on the square of directions; u: the point on the square of stored values
-        that the normals' warp takes to m; density: that of the warp at m.
+        m is the half vector on the square of directions, u the point on the square of stored values
+        that the warp of normals maps to m, and density that of the warp at m.
         """
         import mitsuba as mi
 
         angles, h = self._angles(wi), half_vector(wi, wo)
         phi_m = dr.atan2(h.y, h.x)
         m = _to_square(_theta(h), phi_m - angles[0] if self.isotropic else phi_m)
-        m = mi.Point2f(dr.maximum(m.x, INNERMOST), m.y - dr.floor(m.y))
+        m = mi.Point2f(dr.maximum(m.x, LEAST_X), m.y - dr.floor(m.y))
         return m, *self.normals.invert(m, angles)
 
-    def _angles(self, wi):
-        """[phi_i, theta_i] of a folded direction."""
+    def _angles(self, wi: JitVector) -> list[JitFloat]:
+        """Return [phi_i, theta_i] of a folded direction."""
         phi_i = dr.atan2(wi.y, wi.x)
-        # The nodes of a part of the circle begin at -π: the azimuth π becomes -π
+        # The nodes of a part of the circle begin at -π, so that the azimuth π becomes -π
         return [phi_i if self.parts < 2 else -dr.abs(phi_i), _theta(wi)]
 
-    def _fold(self, w, wi):
-        """`w` after the rotation or reflection that brings `wi` to the part of the circle of phi_i.
+    def _fold(self, w: JitVector, wi: JitVector) -> JitVector:
+        """Rotate or reflect `w` as brings `wi` to the stored part of the circle of phi_i.
 
-        It is its own inverse.
+        The transformation is its own inverse.
         """
         if self.parts < 2:
             return w
@@ -123,13 +142,16 @@ class AdaptiveLookup:
         return type(w)(w.x * sign_x, w.y * sign_y, w.z)
 
 
-def _theta(w):
-    """Polar angle [rad], eight times as exact in single precision as by `dr.atan2`."""
+def _theta(w: JitVector) -> JitFloat:
+    """Return the polar angle [rad], eight times as exact in single precision as by `dr.atan2`."""
     return 2 * dr.safe_asin(0.5 * dr.norm(w - type(w)(0, 0, 1)))
 
 
-def _to_square(theta, phi):
-    """The point (x, y) of a direction on the square of directions: θ = x² π/2, φ = (2y - 1) π."""
+def _to_square(theta: JitFloat, phi: JitFloat) -> MitsubaObject:
+    """Return the point (x, y) of a direction on the square of directions.
+
+    θ = x² π/2 and φ = (2y - 1) π.
+    """
     import mitsuba as mi
 
     return mi.Point2f(dr.sqrt(theta * (2 / dr.pi)), (phi + dr.pi) / (2 * dr.pi))

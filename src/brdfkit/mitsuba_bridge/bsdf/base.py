@@ -1,34 +1,54 @@
-"""The base class of brdfkit's BSDF plugins: the methods of `mi.BSDF`, written once for all.
+"""The base class of brdfkit's BSDF plugins, which has the methods of `mi.BSDF` for all of them.
 
 Directions below the horizon are masked. Directions are drawn without derivatives. A share of the
 samples follows the cosine, so that the weight of a sample is bounded where the BRDF is. Values are
 unpolarised.
 """
 
+from __future__ import annotations
+
+from typing import Any
+
+from brdfkit.core.array_types import (
+    JitColour,
+    JitFloat,
+    JitInt,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.core.geometry.vectors import mask_below_horizon
 from brdfkit.model.lobes import Cosine
 
-# Share of the samples that follow the cosine, whatever the BRDF
+# The share of the samples that follow the cosine for every BRDF
 COSINE_SHARE = 0.1
 COSINE = Cosine()
 
 
-def define_frame(mi):
-    """The base class of brdfkit's BSDFs in the current variant.
+def define_frame(mi: MitsubaModule) -> Any:
+    """Define the base class of brdfkit's BSDFs in the current variant.
 
-    A derived class defines `at(ctx, si, wi, active)`, the BSDF at a point of a surface, seen from
-    `wi`: an object with
+    A derived class defines `at(ctx, si, wi, active)`, which returns the BSDF at a point of a
+    surface for light from `wi`, an object with
 
-    - `draw(sample1, sample2)`: an outgoing direction and the number of its component;
+    - `draw(sample1, sample2)`: returns an outgoing direction and the number of its component;
     - `pdf(wo)`: the density of `draw`, per solid angle;
-    - `value(wo)`: the BRDF of the components that the context asks for.
+    - `value(wo)`: the BRDF of the components that the context enables.
 
     It sets `m_components`, to which the numbers of components refer, and `m_flags`.
     """
     import drjit as dr
 
     class Frame(mi.BSDF):
-        def sample(self, ctx, si, sample1, sample2, active=True):
+        def sample(
+            self,
+            ctx: MitsubaObject,
+            si: MitsubaObject,
+            sample1: JitFloat,
+            sample2: JitVector,
+            active: JitMask = True,
+        ) -> tuple[MitsubaObject, JitColour]:
             wi, active = mask_below_horizon(si.wi, active)
             here = self.at(ctx, si, wi, active)
             wo, component = here.draw(sample1, sample2)
@@ -48,21 +68,27 @@ def define_frame(mi):
             weight = dr.select(active, value / dr.detach(pdf), 0)
             return sample, mi.depolarizer(weight)
 
-        def eval_pdf(self, ctx, si, wo, active=True):
+        def eval_pdf(
+            self, ctx: MitsubaObject, si: MitsubaObject, wo: JitVector, active: JitMask = True
+        ) -> tuple[JitColour, JitFloat]:
             wi, active = mask_below_horizon(si.wi, active)
             wo, active = mask_below_horizon(wo, active)
             here = self.at(ctx, si, wi, active)
             value, pdf = here.value(wo) * wo.z, here.pdf(wo)
             return mi.depolarizer(dr.select(active, value, 0)), dr.select(active, pdf, 0)
 
-        def eval(self, ctx, si, wo, active=True):
+        def eval(
+            self, ctx: MitsubaObject, si: MitsubaObject, wo: JitVector, active: JitMask = True
+        ) -> JitColour:
             return self.eval_pdf(ctx, si, wo, active)[0]
 
-        def pdf(self, ctx, si, wo, active=True):
+        def pdf(
+            self, ctx: MitsubaObject, si: MitsubaObject, wo: JitVector, active: JitMask = True
+        ) -> JitFloat:
             return self.eval_pdf(ctx, si, wo, active)[1]
 
-        def find_kind(self, component):
-            """Mitsuba's kind of reflection of a component: its flag without side and anisotropy."""
+        def find_kind(self, component: JitInt) -> JitInt:
+            """Return Mitsuba's flag of a component, diffuse or glossy, without its other flags."""
             kinds = [int(c) & int(mi.BSDFFlags.Reflection) for c in self.m_components]
             kind = mi.UInt32(kinds[0])
             for k, other in enumerate(kinds[1:], 1):

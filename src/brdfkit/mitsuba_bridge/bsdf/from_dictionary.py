@@ -1,10 +1,13 @@
-"""A BSDF of Mitsuba's, given by its dictionary, as a material that is evaluated like a model."""
+"""A BSDF of Mitsuba, given by its dictionary, as a material that is evaluated like a model."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, ArrayLike, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
@@ -13,7 +16,7 @@ from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
 @dataclass(frozen=True, eq=False)
 class BsdfMaterial:
-    """A BSDF as a material: its `name`, and its dictionary for `mitsuba.load_dict`, `entries`.
+    """A BSDF as a material with a `name`; `entries` is its dictionary for `mitsuba.load_dict`.
 
     >>> BsdfMaterial("grey", {"type": "diffuse"}).eval(up, up)    # doctest: +SKIP
     array([[0.15915494, 0.15915494, 0.15915494]])
@@ -23,8 +26,8 @@ class BsdfMaterial:
     entries: dict[str, Any]
 
     @classmethod
-    def of(cls, entries):
-        """The material of a dictionary; its name is the entry "name", if there is one, else "type".
+    def of(cls, entries: dict[str, Any]) -> BsdfMaterial:
+        """Return the material of a dictionary; its name is the entry "name" or else "type".
 
         Raises `BrdfkitError` for a dictionary without "type".
         """
@@ -33,13 +36,13 @@ class BsdfMaterial:
         bsdf = dict(entries)
         return cls(str(bsdf.pop("name", bsdf["type"])), bsdf)
 
-    def scene_dict(self):
-        """The dictionary for `mitsuba.load_dict`."""
+    def scene_dict(self) -> dict[str, Any]:
+        """Return the dictionary for `mitsuba.load_dict`."""
         return dict(self.entries)
 
     @in_turn
-    def eval(self, wi, wo):
-        """BRDF (n, channels) in sr⁻¹ of direction pairs (n, 3), in Mitsuba's single precision.
+    def eval(self, wi: ArrayLike, wo: ArrayLike) -> AnyArray:
+        """Compute the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3), in single precision.
 
         Raises `BrdfkitError` in a spectral or scalar variant of Mitsuba.
         """
@@ -53,18 +56,22 @@ class BsdfMaterial:
         return eval_bsdf(load_by_mitsuba(mi.load_dict, self.entries, self.name), wi, wo)
 
 
-def eval_bsdf(bsdf, wi, wo, types=None):
-    """BRDF (n, channels) in sr⁻¹ of a `mitsuba.BSDF`, at direction pairs (n, 3).
+def eval_bsdf(bsdf: MitsubaObject, wi: ArrayLike, wo: ArrayLike, types: Any = None) -> AnyArray:
+    """Compute the BRDF (n, channels) in sr⁻¹ of a `mitsuba.BSDF` at direction pairs (n, 3).
 
-    `types`: flags of the components that count, by default all. The channels of a spectral variant
-    are wavelengths in the middle of the visible ones.
+    `types` are flags of the components that count, by default all. The channels of a spectral
+    variant are wavelengths in the middle of the visible range.
     """
     import drjit as dr
     import mitsuba as mi
 
     wi, wo = (np.asarray(w, np.float32) for w in (wi, wo))
     si = dr.zeros(mi.SurfaceInteraction3f, len(wi))
-    si.wi, si.sh_frame, si.n = mi.Vector3f(wi.T), mi.Frame3f([0, 0, 1]), mi.Normal3f(0, 0, 1)
+    si.wi, si.sh_frame, si.n = (
+        mi.Vector3f(wi.T),
+        mi.Frame3f(mi.Vector3f(0, 0, 1)),
+        mi.Normal3f(0, 0, 1),
+    )
     if mi.is_spectral:
         si.wavelengths = type(si.wavelengths)(*np.linspace(450, 650, len(si.wavelengths)).tolist())
     context = mi.BSDFContext()

@@ -1,16 +1,22 @@
-"""Draws the outgoing direction of any BRDF, from a table of its half vectors.
+"""Draws the outgoing direction of any BRDF from a table of its half vectors.
 
 For a few incidences the table holds the density of half vectors in proportion to f cosθ_o, constant
 within a cell; between the incidences the densities are mixed. At grazing angles a cell of half
-vectors shrinks with the highlight; a cell of outgoing directions would not.
+vectors shrinks with the highlight, while a cell of outgoing directions would not.
 
 A density p_h of half vectors is the density p_h / (4 wi·h) of the directions to which they reflect
 wi.
 """
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray, JitFloat, JitInt, JitVector
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.multilinear import list_corners, to_flat_index
 from brdfkit.core.geometry.vectors import angle, azimuth, cos_theta_d, half_vector, reflect
@@ -20,17 +26,24 @@ from brdfkit.mitsuba_bridge.arrays import BELOW_ONE, Rows, find_bracket, find_pe
 class HalfVectorTable:
     """A `Sampling` of a BRDF in the current variant.
 
-    `f(wi, wo)`: the BRDF (n, channels) in sr⁻¹ of NumPy direction pairs (n, 3);
-    `azimuths`, `angles`: the numbers of azimuths (1: isotropic) and of polar angles of the
-    incidences; `cells`: the numbers of cells in theta_h, square-root spaced, and in phi_h, relative
-    to the azimuth of wi; `points`: the number of points along each side of a cell at which f is
-    evaluated.
+    `f(wi, wo)` is the BRDF (n, channels) in sr⁻¹ at NumPy direction pairs (n, 3). `azimuths` and
+    `angles` are the numbers of azimuths (1 for an isotropic BRDF) and of polar angles of the
+    incidences. `cells` are the numbers of cells in theta_h, square-root spaced, and in phi_h,
+    relative to the azimuth of wi. `points` is the number of points along each side of a cell at
+    which f is evaluated.
 
-    A cell in which f is 0 is never drawn: mix the table with cosine samples. `albedo` is the
-    directional albedo (incidences, channels).
+    A cell in which f is 0 is never drawn, so that the table has to be mixed with cosine samples.
+    `albedo` is the directional albedo (incidences, channels).
     """
 
-    def __init__(self, f, azimuths=1, angles=32, cells=(90, 32), points=2):
+    def __init__(
+        self,
+        f: Callable[..., Any],
+        azimuths: int = 1,
+        angles: int = 32,
+        cells: tuple[int, int] = (90, 32),
+        points: int = 2,
+    ) -> None:
         self.azimuths, self.angles, self.cells = azimuths, angles, cells
         theta_i = (np.arange(angles) + 0.5) / angles * np.pi / 2
         phi_i = np.arange(azimuths) / azimuths * 2 * np.pi
@@ -39,30 +52,30 @@ class HalfVectorTable:
 
         # Shares by which a row of cells (theta_h) and a cell in it (phi_h) are drawn
         masses = light.mean(axis=-1)
-        masses[masses.sum(axis=(1, 2)) == 0] = 1  # a black incidence: any direction will do
+        masses[masses.sum(axis=(1, 2)) == 0] = 1  # any direction will do for a black incidence
         rows = _cumulative_shares(masses.sum(axis=2))
         columns = _cumulative_shares(masses)
         self.rows, self.columns = Rows(rows.ravel()), Rows(columns.ravel())
 
-        # Density per solid angle of these shares, which are rounded to single precision
+        # The density per solid angle of these shares, which are rounded to single precision
         shares = _differences(rows)[..., None] * _differences(columns)
         self.density = Rows((shares / _solid_angles(cells)[:, None]).ravel())
         self.edges = Rows(_versines(cells[0]))
 
-    def sample(self, wi, u):
-        """A direction, possibly below the surface, for a point `u` (x, y, z)."""
+    def sample(self, wi: JitVector, u: JitVector) -> JitVector:
+        """Draw a direction, possibly below the surface, for a point `u` (x, y, z)."""
         n_h, n_p = self.cells
         incidence = self._choose_incidence(wi, u.z)
         row, x = _draw_cell(self.rows, incidence * n_h, n_h, u.x)
         column, y = _draw_cell(self.columns, (incidence * n_h + row) * n_p, n_p, u.y)
-        # By 1 - cosθ_h, which keeps its digits near the normal
+        # Computed with 1 - cosθ_h, which keeps its digits near the normal
         versine = dr.lerp(self.edges.at(row), self.edges.at(row + 1), x)
         sine = dr.safe_sqrt(versine * (2 - versine))
         sin_phi, cos_phi = dr.sincos(azimuth(wi) + (column + y) / n_p * (2 * dr.pi))
         return reflect(wi, type(wi)(sine * cos_phi, sine * sin_phi, 1 - versine))
 
-    def pdf(self, wi, wo):
-        """Density of `wo` per solid angle."""
+    def pdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
+        """Return the density of `wo` per solid angle."""
         n_h, n_p = self.cells
         h = half_vector(wi, wo)
         row = _find_cell(dr.sqrt(angle(h) / (dr.pi / 2)), n_h)
@@ -73,38 +86,40 @@ class HalfVectorTable:
             density += share * self.density.at(incidence * (n_h * n_p) + cell)
         return density / (4 * cos_theta_d(wi, wo))
 
-    def incidences(self, wi):
-        """(index, share) of the incidences of the table around `wi`; the shares add up to 1."""
+    def incidences(self, wi: JitVector) -> list[tuple[JitInt, JitFloat]]:
+        """Return (index, share) of the table's incidences around `wi`; the shares add up to 1."""
         brackets = self._brackets(wi)
         shape = (self.azimuths, self.angles)[-len(brackets) :]
         return [(to_flat_index(nodes, shape), share) for nodes, share in list_corners(brackets)]
 
-    def _brackets(self, wi):
-        """The brackets of `wi` among the azimuths, if there are several, and the polar angles."""
+    def _brackets(self, wi: JitVector) -> list[tuple[JitInt, JitInt, JitFloat]]:
+        """Return the brackets of `wi` among azimuths, if there are several, and polar angles."""
         theta = find_bracket(angle(wi) / (dr.pi / 2) * self.angles - 0.5, self.angles)
         if self.azimuths == 1:
             return [theta]
         phi = find_periodic_bracket(azimuth(wi) / (2 * dr.pi) * self.azimuths, self.azimuths)
         return [phi, theta]
 
-    def _choose_incidence(self, wi, z):
-        """The index of one of `incidences`, by its share, for a random number `z`.
+    def _choose_incidence(self, wi: JitVector, z: JitFloat) -> JitInt:
+        """Return the index of one of `incidences`, chosen by its share with a random number `z`.
 
-        It leaves x and y as they are. So equal numbers draw nearly equal half vectors at
-        neighbouring incidences, and a picture that takes the same ones everywhere has no rings.
+        x and y of the point stay as they are. So equal numbers draw nearly equal half vectors at
+        neighbouring incidences, and a picture that uses the same numbers everywhere has no rings.
         """
         incidence = 0
         for lower, upper, t in self._brackets(wi):
             up = z < t
-            # What the choice leaves of z chooses next. One division, by the chosen number: a scalar
-            # variant would raise where the other is 0
+            # The rest of z serves for the next choice. It is divided once, by the chosen number,
+            # since a scalar variant raises an error if the other is 0
             z = dr.select(up, z, z - t) / dr.select(up, t, 1 - t)
             incidence = incidence * self.angles + dr.select(up, upper, lower)
         return incidence
 
 
-def _integrate_cells(f, theta_i, phi_i, cells, points):
-    """The share of the light that each cell of half vectors reflects: f cosθ_o dω_o.
+def _integrate_cells(
+    f: Callable[..., Any], theta_i: FloatArray, phi_i: float, cells: tuple[int, int], points: int
+) -> AnyArray:
+    """Compute the share of the light that each cell of half vectors reflects, f cosθ_o dω_o.
 
     It has the shape (incidences, theta_h, phi_h, channels). The incidences have the polar angles
     `theta_i` (incidences,) and one azimuth `phi_i`.
@@ -131,20 +146,20 @@ def _integrate_cells(f, theta_i, phi_i, cells, points):
     return means * _solid_angles(cells)[:, None, None]
 
 
-def _versines(n):
-    """1 - cosθ_h (n + 1,) at the edges of `n` cells, which are even in √θ_h."""
+def _versines(n: int) -> FloatArray:
+    """Return 1 - cosθ_h (n + 1,) at the edges of `n` cells, which are even in √θ_h."""
     return 2 * np.sin((np.arange(n + 1) / n) ** 2 * np.pi / 4) ** 2
 
 
-def _solid_angles(cells):
-    """Solid angle [sr] of a cell of each row (n_h,)."""
+def _solid_angles(cells: tuple[int, int]) -> FloatArray:
+    """Return the solid angle [sr] of a cell of each row (n_h,)."""
     return np.diff(_versines(cells[0])) * 2 * np.pi / cells[1]
 
 
-def _cumulative_shares(masses):
-    """Cumulative shares of the `masses` along the last axis, in single precision.
+def _cumulative_shares(masses: AnyArray) -> AnyArray:
+    """Return cumulative shares of the `masses` along the last axis, in single precision.
 
-    Where all masses are 0, the shares are even.
+    Where all masses are 0, the shares are equal.
     """
     sums = masses.cumsum(axis=-1)
     even = np.arange(1, masses.shape[-1] + 1) / masses.shape[-1]
@@ -153,18 +168,19 @@ def _cumulative_shares(masses):
         return np.where(total > 0, sums / total, even).astype(np.float32)
 
 
-def _differences(sums):
-    """The shares of which `sums` are the cumulative ones."""
+def _differences(sums: AnyArray) -> AnyArray:
+    """Return the shares whose cumulative sums are `sums`."""
     return np.diff(sums.astype(float), axis=-1, prepend=0)
 
 
-def _draw_cell(sums, start, n, x):
-    """(cell, place in it in [0, 1]) for a random number `x`, by binary search.
+def _draw_cell(sums: Rows, start: JitInt, n: int, x: JitFloat) -> tuple[JitInt, JitFloat]:
+    """Return (cell, place in it in [0, 1]) for a random number `x`, by binary search.
 
-    The cumulative shares of the `n` cells stand in `sums` from `start` on.
+    The cumulative shares of the `n` cells begin at `start` in `sums`.
     """
-    x = dr.minimum(x, BELOW_ONE)  # at 1 it would fall into an empty last cell, 0 wide
-    cell, low, high = 0, 0, 1  # cumulative shares before the cell and including it
+    x = dr.minimum(x, BELOW_ONE)  # 1 would fall into an empty last cell with the width 0
+    cell: Any = 0
+    low, high = 0, 1  # cumulative shares before the cell and including it
     for step in 2 ** np.arange(int(n - 1).bit_length())[::-1]:
         there = dr.minimum(cell + int(step), n)
         share = sums.at(start + there - 1)
@@ -174,8 +190,8 @@ def _draw_cell(sums, start, n, x):
     return cell, dr.clip((x - low) / (high - low), 0, 1)
 
 
-def _find_cell(position, n):
-    """The index of the cell at a `position` in [0, 1] among `n` even ones."""
+def _find_cell(position: JitFloat, n: int) -> JitInt:
+    """Return the index of the cell at a `position` in [0, 1] among `n` equal ones."""
     import mitsuba as mi
 
     return dr.minimum(mi.UInt32(position * n), n - 1)

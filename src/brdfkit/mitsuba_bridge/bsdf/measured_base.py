@@ -1,14 +1,26 @@
-"""The base class of a measurement's BSDF plugin: one component, drawn by one `Sampling`."""
+"""The base class of a measurement's BSDF plugin, which has one component and one `Sampling`."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
 
+from brdfkit.core.array_types import (
+    JitColour,
+    JitFloat,
+    JitInt,
+    JitMask,
+    JitVector,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.core.geometry.vectors import mask_below_horizon
 from brdfkit.mitsuba_bridge.bsdf.base import COSINE, COSINE_SHARE, define_frame
+from brdfkit.model.lobes import Sampling
 
 
-def define_measured_frame(mi):
-    """The base class of a measurement's plugins in the current variant.
+def define_measured_frame(mi: MitsubaModule) -> Any:
+    """Define the base class of a measurement's plugins in the current variant.
 
     A derived class calls `draw_by` in its constructor and defines
 
@@ -20,19 +32,24 @@ def define_measured_frame(mi):
     import drjit as dr
 
     flags = mi.BSDFFlags
+    Base: Any = define_frame(mi)
 
-    class MeasuredFrame(define_frame(mi)):
-        def draw_by(self, sampling, anisotropic, cosine_share=COSINE_SHARE):
-            """Draw by a `brdfkit.model.lobes.Sampling`, a share of the samples by the cosine."""
+    class MeasuredFrame(Base):
+        def draw_by(
+            self, sampling: Sampling, anisotropic: bool, cosine_share: float = COSINE_SHARE
+        ) -> None:
+            """Set the `Sampling` of directions, and the share of samples that follow the cosine."""
             self.sampling, self.cosine_share = sampling, cosine_share
             azimuth = flags.Anisotropic if anisotropic else flags.Empty
             self.m_components = [flags.GlossyReflection | flags.FrontSide | azimuth]
             self.m_flags = self.m_components[0]
 
-        def at(self, ctx, si, wi, active):
+        def at(
+            self, ctx: MitsubaObject, si: MitsubaObject, wi: JitVector, active: JitMask
+        ) -> Point:
             return Point(mi, self, si, wi, ctx.is_enabled(flags.GlossyReflection, 0))
 
-        def eval_diffuse_reflectance(self, si, active=True):
+        def eval_diffuse_reflectance(self, si: MitsubaObject, active: JitMask = True) -> JitColour:
             wi, active = mask_below_horizon(si.wi, active)
             return mi.Spectrum(dr.select(active, self.albedo(wi, si), 0))
 
@@ -41,7 +58,7 @@ def define_measured_frame(mi):
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A measurement at a point, seen from `wi`; `enabled`: whether the context asks for it."""
+    """A measurement at a point for light from `wi`; `enabled` is set by the context."""
 
     mi: Any
     bsdf: Any
@@ -49,27 +66,27 @@ class Point:
     wi: Any
     enabled: bool
 
-    def draw(self, sample1, sample2):
-        """An outgoing direction, and the number of the only component."""
+    def draw(self, sample1: JitFloat, sample2: JitVector) -> tuple[JitVector, JitInt]:
+        """Draw an outgoing direction; return it with the number of the only component."""
         import drjit as dr
 
         share = self.bsdf.cosine_share
-        # What the choice leaves of sample1 is a third random number, as even as sample2
+        # The rest of sample1 is a third random number, as even as sample2
         u = self.mi.Point3f(sample2.x, sample2.y, dr.maximum(sample1 - share, 0) / (1 - share))
         by_cosine, by_itself = COSINE.sample(self.wi, u), self.bsdf.sampling.sample(self.wi, u)
         wo = dr.select(sample1 < share, by_cosine, by_itself)
         return wo, self.mi.UInt32(0)
 
-    def pdf(self, wo):
-        """Density of `draw` per solid angle."""
+    def pdf(self, wo: JitVector) -> JitFloat:
+        """Return the density of `draw` per solid angle."""
         if not self.enabled:
             return self.mi.Float(0)
         share = self.bsdf.cosine_share
         pdf = share * COSINE.pdf(self.wi, wo)
         return pdf + (1 - share) * self.bsdf.sampling.pdf(self.wi, wo)
 
-    def value(self, wo):
-        """BRDF [sr⁻¹], 0 if not enabled."""
+    def value(self, wo: JitVector) -> JitColour:
+        """Return the BRDF [sr⁻¹], 0 if not enabled."""
         if not self.enabled:
             return self.mi.UnpolarizedSpectrum(0)
         return self.bsdf.brdf(self.wi, wo, self.si)

@@ -1,32 +1,38 @@
 """Samples a sum of lobes with signed weights, clamped at 0, by a table of half vectors.
 
-A single lobe cannot be sampled where its weight may be negative. So the sum is tabulated whenever a
+A single lobe cannot be sampled if its weight may be negative. So the sum is tabulated whenever a
 parameter changes, with the mean of each texture.
 """
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, ArrayLike, MitsubaObject
 from brdfkit.mitsuba_bridge.bsdf.half_vector_table import HalfVectorTable
+from brdfkit.model import Model
 from brdfkit.model.evaluation import compute_lobe_values
 
-# Coarse tables: the models with signed weights are smooth polynomials
-ISOTROPIC = {"azimuths": 1, "angles": 32, "cells": (24, 20), "points": 2}
-ANISOTROPIC = {"azimuths": 12, "angles": 16, "cells": (24, 20), "points": 1}
-BATCH = 8192  # directions at once: a model may have a thousand lobes
-# A texture is averaged over as many points along each side, and over these wavelengths [nm]
+# The tables are coarse, since the models with signed weights are smooth polynomials
+ISOTROPIC: dict[str, Any] = {"azimuths": 1, "angles": 32, "cells": (24, 20), "points": 2}
+ANISOTROPIC: dict[str, Any] = {"azimuths": 12, "angles": 16, "cells": (24, 20), "points": 1}
+BATCH = 8192  # directions at once, since a model may have a thousand lobes
+# Points along each side, and wavelengths [nm], over which a texture is averaged
 TEXELS = 8
 WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)
 
 
-def tabulate(model, weights, lobes):
-    """The `HalfVectorTable` of a sum of lobes, clamped at 0.
+def tabulate(model: Model, weights: AnyArray, lobes: list[int]) -> HalfVectorTable:
+    """Tabulate a sum of lobes, clamped at 0.
 
-    `model`: with its shape parameters; `weights`: (all its lobes, channels); `lobes`: the indices
-    of the lobes in the sum.
+    `model` has its shape parameters; `weights` (lobes of the model, channels) are all weights, and
+    `lobes` the indices of the lobes in the sum.
     """
     weights = weights[lobes]
 
-    def f(wi, wo):
+    def f(wi: AnyArray, wo: AnyArray) -> AnyArray:
         values = np.empty((len(wi), weights.shape[1]))
         for start in range(0, len(wi), BATCH):
             rows = slice(start, start + BATCH)
@@ -37,8 +43,8 @@ def tabulate(model, weights, lobes):
     return HalfVectorTable(f, **(ANISOTROPIC if model.is_anisotropic() else ISOTROPIC))
 
 
-def average_texture(texture, default):
-    """The mean (channels,) of a texture over the unit square.
+def average_texture(texture: MitsubaObject, default: ArrayLike) -> AnyArray:
+    """Return the mean (channels,) of a texture over the unit square.
 
     It is `default` for a mesh attribute, whose values only the mesh has.
     """
@@ -49,12 +55,12 @@ def average_texture(texture, default):
         return np.atleast_1d(default)
     n = TEXELS if texture.is_spatially_varying() else 1
     x = (np.arange(n) + 0.5) / n
-    points = [(float(u), float(v)) for u in x for v in x]
-    if not mi.variant().startswith("scalar"):
-        points = [np.float32(points).T]
+    points: list[Any] = [(float(u), float(v)) for u in x for v in x]
+    if not str(mi.variant()).startswith("scalar"):
+        points = [np.array(points, np.float32).T]
     values = []
     for uv in points:
-        si = dr.zeros(mi.SurfaceInteraction3f)
+        si: Any = dr.zeros(mi.SurfaceInteraction3f)
         si.uv = mi.Point2f(*uv)
         if mi.is_spectral:
             si.wavelengths = WAVELENGTHS

@@ -1,4 +1,6 @@
-"""A model's BSDF at a point of a surface, seen from `wi`: its sampling, density and value."""
+"""A model's BSDF at a point of a surface for light from `wi`: its sampling, density and value."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -6,6 +8,7 @@ from typing import Any
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitColour, JitFloat, JitInt, JitVector
 from brdfkit.mitsuba_bridge.arrays import BELOW_ONE
 from brdfkit.mitsuba_bridge.bsdf import base
 from brdfkit.model.lobes import Lobe
@@ -13,11 +16,11 @@ from brdfkit.model.lobes import Lobe
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """The lobes of a model with the values of its parameters at a point, seen from `wi`.
+    """The lobes of a model with the values of its parameters at a point, for light from `wi`.
 
-    `mi`: Mitsuba; `weights`: one for each of the `lobes`; `signed`: whether the sum is clamped at
-    0; `groups`: the indices of each component's lobes; `samplings`: the `Sampling` of each
-    component; `enabled`: whether the context asks for the component.
+    `mi` is Mitsuba. `weights` has one weight for each of the `lobes`; `signed` says whether the sum
+    is clamped at 0. `groups` are the indices of each component's lobes, `samplings` the `Sampling`
+    of each component, and `enabled` says whether the context enables the component.
     """
 
     mi: Any
@@ -30,7 +33,7 @@ class Point:
     enabled: list[bool]
 
     @cached_property
-    def shares(self):
+    def shares(self) -> list[Any]:
         """The probability of drawing each component, by its energy; None if it is not enabled."""
         energies = []
         for group, enabled in zip(self.groups, self.enabled, strict=True):
@@ -39,11 +42,11 @@ class Point:
             )
             energies.append(dr.detach(sum(parts)) + 1e-8 if enabled else None)
         total = sum(e for e in energies if e is not None)
-        rest = 1 - base.COSINE_SHARE
-        return [None if e is None else rest * e / total for e in energies]
+        share = 1 - base.COSINE_SHARE
+        return [None if e is None else share * e / total for e in energies]
 
-    def draw(self, sample1, sample2):
-        """An outgoing direction, drawn by the cosine or a component, and the component's number."""
+    def draw(self, sample1: JitFloat, sample2: JitVector) -> tuple[JitVector, JitInt]:
+        """Draw an outgoing direction by the cosine or a component; return it with its component."""
         wo = base.COSINE.sample(self.wi, sample2)
         first = next((k for k, enabled in enumerate(self.enabled) if enabled), 0)
         component = self.mi.UInt32(first)
@@ -52,8 +55,8 @@ class Point:
             if share is None:
                 continue
             hit = (sample1 >= chosen_up_to) & (sample1 < chosen_up_to + share)
-            # What the choice leaves of sample1 is a third random number, as even as sample2. It is
-            # used where this component was chosen, but must stay in [0, 1) elsewhere, too
+            # The rest of sample1 is a third random number, as even as sample2. It is used where
+            # this component was chosen, but must stay in [0, 1) elsewhere, too
             left = dr.clip((sample1 - chosen_up_to) / share, 0, BELOW_ONE)
             u = self.mi.Point3f(sample2.x, sample2.y, left)
             chosen_up_to += share
@@ -61,8 +64,8 @@ class Point:
             component = dr.select(hit, k, component)
         return wo, component
 
-    def pdf(self, wo):
-        """Density of `draw` per solid angle."""
+    def pdf(self, wo: JitVector) -> JitFloat:
+        """Return the density of `draw` per solid angle."""
         cosine = base.COSINE_SHARE * base.COSINE.pdf(self.wi, wo)
         pdf = self.mi.Float(cosine if any(self.enabled) else 0)
         for share, sampling in zip(self.shares, self.samplings, strict=True):
@@ -70,13 +73,13 @@ class Point:
                 pdf += share * sampling.pdf(self.wi, wo)
         return pdf
 
-    def value(self, wo):
-        """BRDF [sr⁻¹] of the enabled components."""
+    def value(self, wo: JitVector) -> JitColour:
+        """Return the BRDF [sr⁻¹] of the enabled components."""
         groups = zip(self.groups, self.enabled, strict=True)
         return self.evaluate_lobes([i for group, enabled in groups if enabled for i in group], wo)
 
-    def evaluate_lobes(self, chosen, wo):
-        """BRDF [sr⁻¹] of the lobes with the indices `chosen`: the sum of weight times lobe."""
+    def evaluate_lobes(self, chosen: list[int], wo: JitVector) -> JitColour:
+        """Return the BRDF [sr⁻¹] of lobes by their indices, the sum of weight times lobe."""
         value = self.mi.UnpolarizedSpectrum(0)
         for i in chosen:
             weight, lobe = self.weights[i], self.lobes[i]

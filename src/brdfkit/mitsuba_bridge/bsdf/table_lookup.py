@@ -1,14 +1,20 @@
-"""`Table.eval` in the renderer: the cells around a pair of directions, and their shares."""
+"""`Table.eval` in the renderer: finds the cells around a pair of directions, and their shares."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
 
 import drjit as dr
 
+from brdfkit.core.array_types import JitFloat, JitInt, JitVector
 from brdfkit.core.geometry import multilinear
 from brdfkit.core.geometry.vectors import angle, azimuth, half_vector
 from brdfkit.mitsuba_bridge.arrays import find_bracket, find_periodic_bracket
+from brdfkit.model.samples import Table
 
 
-def find_corners(table, wi, wo):
-    """(index, share) of the cells of a `brdfkit.model.samples.Table` around a direction pair."""
+def find_corners(table: Table, wi: JitVector, wo: JitVector) -> Iterator[tuple[JitInt, JitFloat]]:
+    """Yield (index, share) of the cells of a table around a direction pair."""
     theta_h, theta_d, phi_d, phi_h = to_half_difference(wi, wo)
     n_h, n_d, n_p = table.shape[-3:]
     axes = [
@@ -23,11 +29,13 @@ def find_corners(table, wi, wo):
         yield multilinear.to_flat_index(cells, table.shape), share
 
 
-def to_half_difference(wi, wo):
-    """(theta_h, theta_d, phi_d, phi_h) of two directions."""
+def to_half_difference(
+    wi: JitVector, wo: JitVector
+) -> tuple[JitFloat, JitFloat, JitFloat, JitFloat]:
+    """Return (theta_h, theta_d, phi_d, phi_h) [rad] of two directions."""
     h = half_vector(wi, wo)
     sin_h = dr.safe_sqrt(h.x * h.x + h.y * h.y)
-    # The difference vector: wi in the frame of the half vector; where that is the normal, any
+    # The difference vector is wi in the frame of the half vector; where that is the normal, any
     # azimuth phi_h will do
     off = sin_h > 1e-7
     inverse = 1 / dr.select(off, sin_h, 1)

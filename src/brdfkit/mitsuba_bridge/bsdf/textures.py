@@ -1,25 +1,41 @@
-"""The parameters of a model as textures: the base class of the model's BSDF plugin."""
+"""The base class of a model's BSDF plugin, which holds the parameters of the model as textures."""
+
+from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import drjit as dr
 import numpy as np
 
+from brdfkit.core.array_types import (
+    AnyArray,
+    JitColour,
+    JitFloat,
+    JitMask,
+    MitsubaModule,
+    MitsubaObject,
+)
 from brdfkit.mitsuba_bridge.bsdf.base import define_frame
 from brdfkit.mitsuba_bridge.bsdf.signed_sum import average_texture
 from brdfkit.mitsuba_bridge.properties import conversions
+from brdfkit.model import Model, Parameter
+from brdfkit.model.lobes import Lobe
 
 
-def define_textured_frame(mi, model):
-    """The base class of the BSDF of `model` in the current variant.
+def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
+    """Define the base class of the BSDF of a model in the current variant.
 
-    It has a texture for every parameter in `textures`, by name, except for those that follow
+    Its `textures` hold a texture for every parameter, by name, except for parameters that follow
     another one.
     """
     defaults = model()
 
-    class TexturedFrame(define_frame(mi)):
-        def __init__(self, props):
+    Base: Any = define_frame(mi)
+
+    class TexturedFrame(Base):
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             self.textures = {}
             self.scales = {}
@@ -31,19 +47,19 @@ def define_textured_frame(mi, model):
                     self.scales[name] = conversions.normalise_colour(props, model, name)
                 self.textures[name] = props.get_unbounded_texture(name, getattr(defaults, name))
 
-        def traverse(self, callback):
+        def traverse(self, callback: MitsubaObject) -> None:
             for name, texture in self.textures.items():
                 kind = mi.ParamFlags.Differentiable
                 if not model.parameters[name].linear:
                     kind |= mi.ParamFlags.Discontinuous
                 callback.put(name, texture, kind)
 
-        def scale(self, name):
-            """The factor of a texture's values: not 1 where a colour was normalised."""
+        def scale(self, name: str) -> float:
+            """Return the factor of a texture's values, not 1 for a normalised colour."""
             return self.scales.get(name, 1)
 
-        def terms(self, si, active):
-            """Weights and lobes at a surface point."""
+        def terms(self, si: MitsubaObject, active: JitMask) -> tuple[list[Any], tuple[Lobe, ...]]:
+            """Return the weights and the lobes at a point of a surface."""
             values = {}
             for name, texture in self.textures.items():
                 parameter = model.parameters[name]
@@ -51,8 +67,8 @@ def define_textured_frame(mi, model):
                 values[name] = clamp(value * self.scale(name), parameter)
             return [values[name] for name in model.weights()], model.bind(values).lobes()
 
-        def means(self):
-            """Means over the textures: shape parameters by name, and weights (lobes, channels)."""
+        def means(self) -> tuple[dict[str, Any], AnyArray]:
+            """Return the textures' means: shape parameters by name, weights (lobes, channels)."""
             means = {}
             for name, texture in self.textures.items():
                 mean = average_texture(texture, getattr(defaults, name)) * self.scale(name)
@@ -62,20 +78,31 @@ def define_textured_frame(mi, model):
                 np.broadcast_arrays(*weights)
             )
 
-        def has_attribute(self, name, active=True):
+        def has_attribute(self, name: str, active: JitMask = True) -> JitMask:
             return super().has_attribute(self.texture_name(name), active)
 
-        def eval_attribute(self, name, si, active=True):
+        def eval_attribute(self, name: str, si: MitsubaObject, active: JitMask = True) -> JitColour:
             return self.attribute_by("eval", super().eval_attribute, name, si, active)
 
-        def eval_attribute_1(self, name, si, active=True):
+        def eval_attribute_1(
+            self, name: str, si: MitsubaObject, active: JitMask = True
+        ) -> JitFloat:
             return self.attribute_by("eval_1", super().eval_attribute_1, name, si, active)
 
-        def eval_attribute_3(self, name, si, active=True):
+        def eval_attribute_3(
+            self, name: str, si: MitsubaObject, active: JitMask = True
+        ) -> JitColour:
             return self.attribute_by("eval_3", super().eval_attribute_3, name, si, active)
 
-        def attribute_by(self, method, inherited, name, si, active):
-            """The value of an attribute: of a parameter, by the `method` of its texture.
+        def attribute_by(
+            self,
+            method: str,
+            inherited: Callable[..., Any],
+            name: str,
+            si: MitsubaObject,
+            active: JitMask,
+        ) -> Any:
+            """Return the value of an attribute; that of a parameter by the `method` of its texture.
 
             Other attributes go to `inherited`, Mitsuba's own method. Parameters do not, because
             that method calls the plugin's method once more.
@@ -85,12 +112,12 @@ def define_textured_frame(mi, model):
                 return inherited(name, si, active)
             return getattr(self.textures[key], method)(si, active) * self.scale(key)
 
-        def texture_name(self, name):
-            """The name of a parameter's texture: of the parameter that it follows, if it does."""
+        def texture_name(self, name: str) -> str | None:
+            """Return the name of a parameter's texture, or of the parameter that it follows."""
             follows = name in model.parameters and name not in self.textures
             return model.parameters[name].follows if follows else name
 
-        def to_string(self):
+        def to_string(self) -> str:
             lines = [f"  {name} = {texture}" for name, texture in self.textures.items()]
             return "\n".join([f"{model.__name__}[", *lines, "]"])
 
@@ -98,10 +125,10 @@ def define_textured_frame(mi, model):
     return TexturedFrame
 
 
-def clamp(value, parameter):
-    """A texture's value within the bounds of the parameter: a texture may hold anything."""
-    # Not dr.clip: on a bound it has half the derivative
+def clamp(value: Any, parameter: Parameter) -> Any:
+    """Clamp the value of a texture, which may hold anything, to the bounds of the parameter."""
+    # dr.clip would have half the derivative on a bound
     low, high = parameter.bounds
-    held = value if low == -math.inf else dr.select(value < low, low, value)
-    held = held if high == math.inf else dr.select(held > high, high, held)
-    return type(value)(held)  # of a spectrum, select makes a plain array
+    clamped = value if low == -math.inf else dr.select(value < low, low, value)
+    clamped = clamped if high == math.inf else dr.select(clamped > high, high, clamped)
+    return type(value)(clamped)  # select turns a spectrum into a plain array

@@ -1,1 +1,1 @@
-"""Reads and checks the properties that a scene gives to a plugin."""
+"""Declares, reads and checks the parameters that a scene gives to a plugin."""

@@ -1,24 +1,30 @@
 """Checks and converts the properties that a scene gives to a plugin."""
 
+from __future__ import annotations
+
 import os
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.model import Model
 
 
-def require_known(props, plugin, known):
-    """Raise `BrdfkitError` for a property that the `plugin`, which was made, has not asked for.
+def require_known(props: MitsubaObject, plugin: str, known: Iterable[str]) -> None:
+    """Raise `BrdfkitError` for a property that the new `plugin` did not ask for.
 
-    Mitsuba would print all such properties, objects with all that is in them. known : the names of
-    the plugin's own parameters.
+    Mitsuba would print all such properties, objects with all that is in them. `known` are the names
+    of the plugin's own parameters.
     """
     unknown = props.unqueried()
     if unknown:
         raise no_such("parameter", unknown[0], known, plugin)
 
 
-def require_within_bounds(props, model, name):
+def require_within_bounds(props: MitsubaObject, model: type[Model], name: str) -> None:
     """Raise `BrdfkitError` for a constant parameter out of bounds; textures are not checked."""
     value = props.get(name, None)
     if isinstance(value, float | int) or is_colour(value):
@@ -27,8 +33,8 @@ def require_within_bounds(props, model, name):
             raise BrdfkitError(f"{model.type_name()}: {name} = {problem}.")
 
 
-def normalise_colour(props, model, name):
-    """Divide a colour in `props` by a scale that brings it into 0..1; return the scale.
+def normalise_colour(props: MitsubaObject, model: type[Model], name: str) -> float:
+    """Divide a colour in `props` by a scale that brings it into 0..1, and return the scale.
 
     Mitsuba clips the spectrum of a larger colour without a warning. Raises `BrdfkitError` for a
     colour with a value below 0.
@@ -44,21 +50,22 @@ def normalise_colour(props, model, name):
     return scale
 
 
-def is_colour(value):
-    """Whether a property is a colour of Mitsuba's."""
+def is_colour(value: object) -> bool:
+    """Return whether a property is a colour of Mitsuba's."""
     return type(value).__name__.endswith("Color3d")
 
 
-def resolve_file(name):
-    """The path of the file `name`, possibly with ``#SAMPLE``, also if it lies beside the scene's.
+def resolve_file(name: str) -> str:
+    """Return the path of a file, possibly with ``#SAMPLE``, or of one beside the scene's file.
 
-    A name of no file comes back as it is.
+    A name of no file is returned as it is.
     """
     import mitsuba as mi
 
+    file_resolver: Any = mi.file_resolver
     file, hash_sign, sample = name.rpartition("#")
-    for path, rest in ((name, ""), (file, hash_sign + sample)):
-        resolved = str(mi.file_resolver().resolve(path))
+    for path, suffix in ((name, ""), (file, hash_sign + sample)):
+        resolved = str(file_resolver().resolve(path))
         if os.path.isfile(resolved):
-            return resolved + rest
+            return resolved + suffix
     return name

@@ -3,15 +3,18 @@
 PARAMETERS = {"k": number(0.5, (-0.999, 0.999), "asymmetry: above 0 forward, below 0 back")}
 
 def define(mi):
-    class Schlick(declared(mi.PhaseFunction, PARAMETERS)): ...
+    class Schlick(derive_plugin(mi.PhaseFunction, PARAMETERS)): ...
 """
 
+from __future__ import annotations
+
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from brdfkit.core.arguments import describe_range, is_number
+from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.properties.conversions import is_colour
 from brdfkit.mitsuba_bridge.properties.volumes import (
@@ -25,22 +28,22 @@ from brdfkit.mitsuba_bridge.properties.volumes import (
 class Setting:
     """A parameter of a plugin, with its `default`, its `bounds` (low, high) and its `meaning`.
 
-    `bounds` are None for a parameter that is not a number. `read(value)` converts a property to
-    what the plugin uses, or raises a ValueError that says what it should be. `differentiable`:
-    whether an optimiser may change it.
+    `bounds` are None for a parameter that is not a number. `read(value)` converts a property to the
+    value that the plugin uses, or raises a ValueError that says what the property should be.
+    `differentiable` says whether an optimiser may change it.
     """
 
     default: Any
     bounds: tuple[float, float] | None
     meaning: str
-    read: Callable
+    read: Callable[[Any], Any]
     differentiable: bool = False
 
 
-def number(default, bounds, meaning):
-    """A number within `bounds` (low, high), differentiable; opaque: any value has one kernel."""
+def number(default: float, bounds: tuple[float, float], meaning: str) -> Setting:
+    """Declare a differentiable number within `bounds`; any value of it uses the same kernel."""
 
-    def read(value):
+    def read(value: Any) -> Any:
         import drjit as dr
         import mitsuba as mi
 
@@ -51,10 +54,10 @@ def number(default, bounds, meaning):
     return Setting(default, bounds, meaning, read, differentiable=True)
 
 
-def count(default, bounds, meaning):
-    """A whole number within `bounds`, a Python value: each value compiles a kernel of its own."""
+def count(default: int, bounds: tuple[float, float], meaning: str) -> Setting:
+    """Declare a whole number within `bounds`, a Python value with a kernel for each value."""
 
-    def read(value):
+    def read(value: Any) -> int:
         number = _to_number(value, bounds)
         if not number.is_integer():
             raise ValueError("a whole number")
@@ -63,19 +66,19 @@ def count(default, bounds, meaning):
     return Setting(default, bounds, meaning, read)
 
 
-def plain_number(default, bounds, meaning):
-    """A number within `bounds`, a Python value: for what is computed before a render."""
+def plain_number(default: float, bounds: tuple[float, float], meaning: str) -> Setting:
+    """Declare a number within `bounds`, a Python value, for computations before a render."""
 
-    def read(value):
+    def read(value: Any) -> float:
         return _to_number(value, bounds)
 
     return Setting(default, bounds, meaning, read)
 
 
-def text(default, meaning):
-    """A word or the name of a file."""
+def text(default: str, meaning: str) -> Setting:
+    """Declare a word or the name of a file."""
 
-    def read(value):
+    def read(value: Any) -> str:
         if not isinstance(value, str):
             raise ValueError("a text")
         return value
@@ -83,10 +86,12 @@ def text(default, meaning):
     return Setting(default, None, meaning, read)
 
 
-def word(allowed, meaning, default=None):
-    """One of the `allowed` words; the `default` is the first of them unless said."""
+def word(
+    allowed: Sequence[str] | Mapping[str, Any], meaning: str, default: str | None = None
+) -> Setting:
+    """Declare one of the `allowed` words; the `default` is by default the first of them."""
 
-    def read(value):
+    def read(value: Any) -> str:
         if not isinstance(value, str) or value not in allowed:
             raise ValueError("one of " + ", ".join(allowed))
         return value
@@ -95,10 +100,10 @@ def word(allowed, meaning, default=None):
     return Setting(default, None, f"{meaning}: {', '.join(allowed)}", read)
 
 
-def flag(default, meaning):
-    """True or false."""
+def flag(default: bool, meaning: str) -> Setting:
+    """Declare a parameter that is true or false."""
 
-    def read(value):
+    def read(value: Any) -> bool:
         if not isinstance(value, bool):
             raise ValueError("true or false")
         return value
@@ -106,10 +111,10 @@ def flag(default, meaning):
     return Setting(default, None, meaning, read)
 
 
-def picture(meaning):
-    """A `mi.Bitmap`, None where the scene gives none."""
+def picture(meaning: str) -> Setting:
+    """Declare a `mi.Bitmap`, which is None where the scene gives none."""
 
-    def read(value):
+    def read(value: Any) -> Any:
         import mitsuba as mi
 
         if not isinstance(value, mi.Bitmap | None):
@@ -119,10 +124,10 @@ def picture(meaning):
     return Setting(None, None, meaning, read)
 
 
-def bsdf(meaning):
-    """A BSDF, white and matte where the scene gives none."""
+def bsdf(meaning: str) -> Setting:
+    """Declare a BSDF, which is white and matt where the scene gives none."""
 
-    def read(value):
+    def read(value: Any) -> Any:
         import mitsuba as mi
 
         if value is None:
@@ -135,10 +140,10 @@ def bsdf(meaning):
     return Setting(None, None, meaning, read, differentiable=True)
 
 
-def texture(default, meaning):
-    """A texture of numbers; one number makes a constant one."""
+def texture(default: float, meaning: str) -> Setting:
+    """Declare a texture of numbers; one number makes a constant texture."""
 
-    def read(value):
+    def read(value: Any) -> Any:
         import mitsuba as mi
 
         if isinstance(value, mi.Texture):
@@ -150,10 +155,10 @@ def texture(default, meaning):
     return Setting(default, None, meaning, read, differentiable=True)
 
 
-def phase(meaning):
-    """A phase function, by which light goes evenly anywhere where the scene gives none."""
+def phase(meaning: str) -> Setting:
+    """Declare a phase function, which is isotropic where the scene gives none."""
 
-    def read(value):
+    def read(value: Any) -> Any:
         import mitsuba as mi
 
         if value is None:
@@ -165,11 +170,13 @@ def phase(meaning):
     return Setting(None, None, meaning, read, differentiable=True)
 
 
-def volume(default, meaning, coloured=True, least=0.0):
-    """A volume of values from `least` on, such as Mitsuba's gridvolume; a number or a colour makes
-    a constant one. Not `coloured`: of one channel."""
+def volume(default: Any, meaning: str, coloured: bool = True, least: float = 0.0) -> Setting:
+    """Declare a volume of values from `least` on, such as Mitsuba's gridvolume.
 
-    def read(value):
+    A number or a colour makes a constant volume. If not `coloured`, it has one channel.
+    """
+
+    def read(value: Any) -> Any:
         import mitsuba as mi
 
         if isinstance(value, mi.Volume):
@@ -185,49 +192,51 @@ def volume(default, meaning, coloured=True, least=0.0):
     return Setting(default, None, meaning, read, differentiable=True)
 
 
-def read_settings(settings, get, owner):
-    """Name → value of `settings` (name → `Setting`), from `get(name, default)`.
+def read_settings(
+    settings: Mapping[str, Setting], get: Callable[[str, Any], Any], owner: str
+) -> dict[str, Any]:
+    """Read the values of settings by name from `get(name, default)`.
 
-    Raises `BrdfkitError`, which names the `owner`, for a value that is none of the allowed ones.
+    Raises `BrdfkitError`, which names the `owner`, for a value that is not allowed.
     """
-    found = {}
+    values = {}
     for name, setting in settings.items():
         value = get(name, setting.default)
         try:
-            found[name] = setting.read(value)
+            values[name] = setting.read(value)
         except (TypeError, ValueError) as error:
-            said = f"{owner}: {name} = {_shorten(value)} should be {error}."
-            raise BrdfkitError(said) from error
-    return found
+            message = f"{owner}: {name} = {_shorten(value)} should be {error}."
+            raise BrdfkitError(message) from error
+    return values
 
 
-def derive_plugin(base, parameters):
-    """A class derived from `base`, one of Mitsuba's, with the `parameters` (name → `Setting`).
+def derive_plugin(base: Any, parameters: Mapping[str, Setting]) -> Any:
+    """Derive a class from `base`, one of Mitsuba's, with declared `parameters` by name.
 
     Each is an attribute of an instance; the differentiable ones are exposed to optimisers.
     """
 
     class Declared(base):
-        def __init__(self, props):
+        def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             for name, value in read_settings(parameters, props.get, props.plugin_name()).items():
                 setattr(self, name, value)
 
-        def traverse(self, callback):
+        def traverse(self, callback: MitsubaObject) -> None:
             import mitsuba as mi
 
             for name, setting in parameters.items():
                 if setting.differentiable:
                     callback.put(name, getattr(self, name), mi.ParamFlags.Differentiable)
 
-        def to_string(self):
+        def to_string(self) -> str:
             lines = [f"  {name} = {getattr(self, name)}" for name in parameters]
             return "\n".join([f"{type(self).__name__}[", *lines, "]"])
 
     return Declared
 
 
-def _to_number(value, bounds):
+def _to_number(value: Any, bounds: tuple[float, float]) -> float:
     """Return a property as a float; raise a ValueError for what is no number within `bounds`."""
     low, high = bounds
     if not (is_number(value) and low <= value <= high):
@@ -235,6 +244,6 @@ def _to_number(value, bounds):
     return float(value)
 
 
-def _shorten(value):
-    """`value` as text in one line of at most 60 characters."""
+def _shorten(value: object) -> str:
+    """Return a value as text in one line of at most 60 characters."""
     return " ".join(str(value).split())[:60]

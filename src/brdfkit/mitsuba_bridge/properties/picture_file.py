@@ -1,45 +1,51 @@
-"""Reads pictures by Mitsuba, whatever their format: their pixels in linear sRGB."""
+"""Reads pictures of any format by Mitsuba, as pixels in linear sRGB."""
 
+from __future__ import annotations
+
+from collections.abc import Callable
+from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import is_utf8, require_file
 from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.mitsuba_bridge.properties.radiance_rows import require_rows
 
-OURS = "BrdfkitError: "
+OWN_ERROR = "BrdfkitError: "  # in Mitsuba's report of an error in one of brdfkit's plugins
 
 
-def load_by_mitsuba(function, source, name):
-    """The object that a `function` of Mitsuba's, such as `load_dict`, makes of `source`.
+def load_by_mitsuba(function: Callable[..., Any], source: Any, name: object) -> Any:
+    """Load an object from `source` by a function of Mitsuba, such as `load_dict`.
 
-    Raises `BrdfkitError`, which names it `name`, where Mitsuba cannot; a sentence of a plugin of
-    ours stands for itself.
+    Raises `BrdfkitError`, which calls the object `name`, where Mitsuba cannot load it. The message
+    of one of brdfkit's own plugins is kept.
     """
     if isinstance(source, str) and not is_utf8(source):
         raise BrdfkitError(f"{name}: its path is no UTF-8, as Mitsuba needs it; rename the file.")
     try:
         with use_two_threads():
             return function(source, parallel=False)
-    except (MemoryError, IndexError, OverflowError) as error:  # of a size that no file has
+    except (MemoryError, IndexError, OverflowError) as error:  # a damaged file states a huge size
         raise BrdfkitError(
             f"{name}: Mitsuba cannot load it: it states a size for which there is no memory."
         ) from error
     except BrdfkitError:
         raise
     except (RuntimeError, TypeError, ValueError) as error:
-        said = str(error)
+        message = str(error)
         if isinstance(error, UnicodeDecodeError):  # a damaged file's bytes are in the message
-            said = error.object.decode(errors="replace")
-        if "KeyboardInterrupt" in said:  # Ctrl-C in a plugin that is written in Python
+            message = error.object.decode(errors="replace")
+        if "KeyboardInterrupt" in message:  # Ctrl-C in a plugin that is written in Python
             raise KeyboardInterrupt from None
-        lines = [line.strip() for line in said.splitlines() if line.strip()]
-        # a plugin written in Python reports its whole traceback: people need its last line only
+        lines = [line.strip() for line in message.splitlines() if line.strip()]
+        # A plugin in Python reports its whole traceback, of which people need the last line only
         reason = lines[-1] if any("Traceback" in line for line in lines) else " ".join(lines)
-        if OURS in reason:
-            reason = reason.partition(OURS)[2]
+        if OWN_ERROR in reason:
+            reason = reason.partition(OWN_ERROR)[2]
             raise BrdfkitError(f"{name}: {reason.removeprefix(f'{name}: ')}") from error
         raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason.rstrip('.')}).") from error
 
@@ -47,11 +53,11 @@ def load_by_mitsuba(function, source, name):
 LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"  # files without a curve for screens
 
 
-def read_photograph(path, accept_8_bit):
-    """The linear pixels (height, width, 3) of a photograph.
+def read_photograph(path: str | PathLike[str], accept_8_bit: bool) -> AnyArray:
+    """Read the linear pixels (height, width, 3) of a photograph.
 
-    Raises `BrdfkitError` where there is none, for a file that Mitsuba cannot read, and for one of 8
-    bits, unless `accept_8_bit`: then sRGB's curve is inverted.
+    Raises `BrdfkitError` for a missing file, for a file that Mitsuba cannot read, and for a file of
+    8 bits unless `accept_8_bit` is set: then the curve of sRGB is inverted.
     """
     if Path(path).suffix.lower() not in LINEAR and not accept_8_bit:
         raise BrdfkitError(
@@ -61,10 +67,10 @@ def read_photograph(path, accept_8_bit):
     return read_pixels(require_file(path), str(path))
 
 
-def read_pixels(path, name):
-    """The pixels (height, width, 3) of the picture in a file, which errors call `name`.
+def read_pixels(path: str | PathLike[str], name: object) -> AnyArray:
+    """Read the pixels (height, width, 3) of the picture in a file, which errors call `name`.
 
-    Raises `BrdfkitError` for a file that Mitsuba cannot read, because it is cut off, for instance.
+    Raises `BrdfkitError` for a file that Mitsuba cannot read, for instance because it is cut off.
     """
     import mitsuba as mi
 
@@ -73,8 +79,8 @@ def read_pixels(path, name):
     return load_by_mitsuba(lambda file, parallel: to_pixels(mi.Bitmap(file)), str(path), name)
 
 
-def to_pixels(bitmap):
-    """The pixels (height, width, 3) of a `mitsuba.Bitmap`."""
+def to_pixels(bitmap: MitsubaObject) -> AnyArray:
+    """Convert a `mitsuba.Bitmap` to pixels (height, width, 3) in linear sRGB."""
     import mitsuba as mi
 
     kind = mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32

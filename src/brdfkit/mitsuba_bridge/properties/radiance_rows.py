@@ -1,20 +1,25 @@
-"""Checks the packed rows of a Radiance file (.hdr): in wrong ones Mitsuba 3.9 leaves its memory.
+"""Checks the packed rows of a Radiance file (.hdr), which Mitsuba 3.9 does not check.
 
-A row is 2, 2 and its length in two bytes, then for each of R, G, B and the exponent runs: n > 128
-and a byte stand for n - 128 of them, n ≤ 128 and n bytes for these [Ward 1991].
+A row is 2, 2 and its length in two bytes, then runs for each of R, G, B and the exponent: n > 128
+and a byte stand for n - 128 times this byte, n ≤ 128 and n bytes for these bytes [Ward 1991].
 """
 
+from __future__ import annotations
+
 import re
+from os import PathLike
 
 from brdfkit.core.errors import BrdfkitError
 
 SIZE = re.compile(rb"\n\n-Y (\d+) \+X (\d+)\n")
-NARROWEST, WIDEST = 8, 32767  # rows of another length are not packed
+NARROWEST, WIDEST = 8, 32767  # pixels; rows of another length are not packed
 
 
-def require_rows(path, name):
-    """Raise `BrdfkitError`, which calls it `name`, for a Radiance file whose rows are not all
-    packed, or not to their end; of a file of another kind, nothing is said."""
+def require_rows(path: str | PathLike[str], name: object) -> None:
+    """Raise `BrdfkitError`, which calls it `name`, for a Radiance file with damaged rows.
+
+    Files of other kinds, and files without packed rows, are not checked.
+    """
     with open(path, "rb") as stream:
         if stream.read(2) != b"#?":
             return
@@ -22,24 +27,25 @@ def require_rows(path, name):
     size = SIZE.search(data)
     height, width = map(int, size.groups()) if size else (0, 0)
     if not size or not NARROWEST <= width <= WIDEST or not _is_packed(data, size.end(), width):
-        return  # Mitsuba reads such a file pixel by pixel, and tells what is wrong
+        return  # Mitsuba reads such a file pixel by pixel, and reports what is wrong
     at = size.end()
     try:
         for row in range(height):
-            at = _find_row_end(data, at, width)
-            if at is None:
+            end = _find_row_end(data, at, width)
+            if end is None:
                 raise BrdfkitError(f"{name}: its row {row + 1} is damaged.")
+            at = end
     except IndexError:
         raise BrdfkitError(f"{name}: it is cut short, in row {row + 1} of {height}.") from None
 
 
-def _is_packed(data, at, width):
-    """Whether a packed row of this width begins there."""
+def _is_packed(data: bytes, at: int, width: int) -> bool:
+    """Return whether a packed row of this width begins at the position `at`."""
     return data[at : at + 4] == bytes((2, 2, width >> 8, width & 255))
 
 
-def _find_row_end(data, at, width):
-    """Where the row that begins there ends; None for one that is not packed or damaged."""
+def _find_row_end(data: bytes, at: int, width: int) -> int | None:
+    """Return the end of the packed row at the position `at`, None for a damaged row."""
     if not _is_packed(data, at, width):
         data[at + 3]  # raises an IndexError where the file ends
         return None

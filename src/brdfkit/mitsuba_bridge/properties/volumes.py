@@ -1,13 +1,19 @@
-"""Volumes that a scene gives to a plugin: checks them, and makes one of a colour."""
+"""Checks volumes that a scene gives to a plugin, and makes volumes of one value or colour."""
+
+from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import ArrayLike, MitsubaObject
 
-def require_volume(volume, coloured, least=0.0):
+
+def require_volume(volume: MitsubaObject, coloured: bool, least: float = 0.0) -> None:
     """Raise a ValueError, which says what a `mi.Volume` should be, unless its values are usable.
 
-    They are finite and `least` or more; unless `coloured`, there is one of them at a point. Those
-    within a plugin of ours were checked as that was made.
+    The values have to be finite and `least` or more; unless `coloured`, there is one value at a
+    point. Volumes within one of brdfkit's plugins were checked when that was made.
     """
     import mitsuba as mi
 
@@ -26,24 +32,25 @@ def require_volume(volume, coloured, least=0.0):
             raise ValueError(f"a volume of finite values{limit}")
 
 
-def make_constant_volume(value):
-    """A volume of one `value`, a number or a dictionary of Mitsuba's."""
+def make_constant_volume(value: Any) -> MitsubaObject:
+    """Make a volume of one value, a number or a dictionary of Mitsuba's."""
     import mitsuba as mi
 
     return mi.load_dict({"type": "constvolume", "value": value}, parallel=False)
 
 
-def make_coloured_volume(colour):
-    """A volume of one colour, in linear sRGB.
+def make_coloured_volume(colour: ArrayLike) -> MitsubaObject:
+    """Make a volume of one colour in linear sRGB.
 
-    In spectral variants it is a grid: Mitsuba's constvolume clips a colour above 1 there, unsaid.
+    In spectral variants it is a grid, since Mitsuba's constvolume silently clips a colour above 1
+    there.
     """
     import mitsuba as mi
 
-    colour = np.array(colour, np.float32).reshape(3)
-    if not np.isfinite(colour).all() or colour.min() < 0:
+    rgb = np.array(colour, np.float32).reshape(3)
+    if not np.isfinite(rgb).all() or rgb.min() < 0:
         raise ValueError("a colour of finite values, not negative")
     if not mi.is_spectral:
-        return make_constant_volume({"type": "rgb", "value": colour.tolist()})
-    grid = mi.VolumeGrid(np.broadcast_to(colour, (2, 2, 2, 3)).copy())
+        return make_constant_volume({"type": "rgb", "value": rgb.tolist()})
+    grid = mi.VolumeGrid(np.broadcast_to(rgb, (2, 2, 2, 3)).copy())
     return mi.load_dict({"type": "gridvolume", "grid": grid}, parallel=False)

@@ -1,22 +1,29 @@
-"""Makes the plugins known to Mitsuba, whenever and by whomever it is imported.
+"""Registers the plugins in Mitsuba when it is imported, whenever and by whatever code.
 
-`import brdfkit` must stay fast, for the command line's `--help`, and so does not import Mitsuba.
-Yet after it a scene with `<bsdf type="ward">` should load. So one finder on `sys.meta_path` waits
-for the import of Mitsuba, another for that of Dr.Jit, which looks for LLVM.
+`import brdfkit` must stay fast, for the `--help` of the command line, and so does not import
+Mitsuba. Yet afterwards a scene with `<bsdf type="ward">` should load. So one finder on
+`sys.meta_path` waits for the import of Mitsuba, and another one for that of Dr.Jit, which looks for
+LLVM.
 """
+
+from __future__ import annotations
 
 import functools
 import os
 import sys
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import hold_signals
 from brdfkit.core.jit import llvm
 
 
-def install():
-    """Register the plugins now, if Mitsuba is imported already, or when it gets imported."""
+def install() -> None:
+    """Register the plugins now if Mitsuba is imported already, or else when it gets imported."""
     sys.meta_path.insert(0, _After("drjit", lambda: None))
     if "mitsuba" in sys.modules:
         _connect()
@@ -25,19 +32,21 @@ def install():
 
 
 class _After:
-    """A finder that finds `module` by the other finders, and calls `then()` when it is loaded."""
+    """A finder that finds a module by the other finders, and calls `then()` when it is loaded."""
 
-    def __init__(self, module, then):
+    def __init__(self, module: str, then: Callable[[], None]) -> None:
         self.module, self.then = module, then
 
-    def find_spec(self, name, path=None, target=None):
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
         if name != self.module:
             return None
         spec = self._find_by_others(path, target)
         if spec is not None and spec.loader is not None:
             load = spec.loader.exec_module
 
-            def exec_module(module):
+            def exec_module(module: ModuleType) -> None:
                 with hold_signals():
                     with _without_llvm_noise():
                         load(module)
@@ -47,34 +56,36 @@ class _After:
             spec.loader.exec_module = exec_module
         return spec
 
-    def _find_by_others(self, path, target):
-        # sys.meta_path stays as it is: another thread may be looking through it
+    def _find_by_others(self, path: Sequence[str] | None, target: ModuleType | None) -> Any:
+        """Return the specification of the module by the first other finder that has one."""
+        # sys.meta_path is not changed, since another thread may be looking through it
         others = [f for f in sys.meta_path if hasattr(f, "find_spec") and not isinstance(f, _After)]
         specs = (finder.find_spec(self.module, path, target) for finder in others)
         return next((spec for spec in specs if spec is not None), None)
 
 
-def _forward_to_successor(module):
+def _forward_to_successor(module: ModuleType) -> None:
     """Give a module the attributes of the module that its import put into its place, if it did.
 
-    Mitsuba's import does: a thread that imports Mitsuba at the same time gets the first module.
+    Mitsuba's import does so, and a thread that imports Mitsuba at the same time gets the first
+    module.
     """
     if sys.modules[module.__name__] is not module:
-        module.__getattr__ = functools.partial(getattr, sys.modules[module.__name__])
+        vars(module)["__getattr__"] = functools.partial(getattr, sys.modules[module.__name__])
 
 
-def _connect():
+def _connect() -> None:
     """Register the plugins in Mitsuba's current variant, and in each one that is set later."""
     import mitsuba as mi
 
     from brdfkit.core.discovery import plugin_files
     from brdfkit.mitsuba_bridge.registration.registering import register_all
 
-    def on_variant(before=None, variant=None):
+    def on_variant(before: str | None = None, variant: str | None = None) -> None:
         try:
             llvm.require_safe_variant(variant)
         except BrdfkitError:
-            mi.set_variant("scalar_rgb")  # or the refused variant would stay set
+            mi.set_variant("scalar_rgb")  # otherwise the refused variant would stay set
             raise
         register_all()
 
@@ -84,8 +95,8 @@ def _connect():
 
 
 @contextmanager
-def _without_llvm_noise():
-    """Silence Dr.Jit's message that it found no LLVM: brdfkit says so itself, when it matters."""
+def _without_llvm_noise() -> Iterator[None]:
+    """Silence Dr.Jit's message that it found no LLVM, which brdfkit reports when it matters."""
     if os.environ.get(llvm.VARIABLE) != llvm.NO_LIBRARY:
         yield
         return

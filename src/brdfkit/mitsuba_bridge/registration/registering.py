@@ -1,12 +1,17 @@
-"""Registers the plugins in Mitsuba: every kind, in every variant, each built when first used.
+"""Registers the plugins in Mitsuba: every kind, in every variant, each made when first used.
 
 A plugin file holds either a `Model`, or a function ``define(mi)`` that returns a class derived from
 one of Mitsuba's for the current variant. Where Mitsuba allows no derived class, as for shapes,
 ``define`` returns a function that makes an instance from the properties.
 """
 
-from functools import cache
+from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS, MODELS
 from brdfkit.core.errors import BrdfkitError
@@ -15,11 +20,11 @@ from brdfkit.mitsuba_bridge.properties.conversions import require_known
 from brdfkit.model import Model, labels
 
 
-def require_vectorised(plugin):
+def require_vectorised(plugin: str) -> None:
     """Raise `BrdfkitError` in scalar variants, for a `plugin` of this name that needs arrays."""
     import mitsuba as mi
 
-    if mi.variant().startswith("scalar"):
+    if str(mi.variant()).startswith("scalar"):
         raise BrdfkitError(
             f"{plugin} does not run in {mi.variant()}; set llvm_ad_rgb or cuda_ad_rgb."
         )
@@ -28,7 +33,7 @@ def require_vectorised(plugin):
 _registered: set[tuple[str, str, str]] = set()
 
 
-def register_all():
+def register_all() -> None:
     """Register the plugins that are not yet registered in Mitsuba's current variant, if it has one.
 
     Volumes are left out in scalar_rgb. Mitsuba 3.9 takes the kind of a plugin in all variants from
@@ -48,47 +53,47 @@ def register_all():
                 getattr(mi, register)(name, lambda props, k=kind, n=name: _make_plugin(k, n, props))
 
 
-def _make_plugin(kind, name, props):
-    """An instance, in the current variant, of the class that the plugin's file defines now."""
+def _make_plugin(kind: str, name: str, props: MitsubaObject) -> MitsubaObject:
+    """Make an instance, in the current variant, of the class that the plugin's file defines now."""
     import mitsuba as mi
 
     source = plugin_files.find_plugins(kind)[name]
     model = labels.find_model_in(source) if kind == MODELS else None
     if model is None:
         module = plugin_files.import_plugin(source)
-        made, known = (
-            _define_plugin(module, mi.variant())(props),
-            getattr(module, "PARAMETERS", None),
-        )
+        made = _define_plugin(module, mi.variant())(props)
+        known = getattr(module, "PARAMETERS", None)
     else:
         options = {option: props[option] for option in model.options if option in props}
-        made = _define_plugin(model.configured(**options), mi.variant())(props)
+        configured: Any = model.configured(**options)
+        made = _define_plugin(configured, mi.variant())(props)
         known = [*model.parameters, *model.options]
-    if known is not None:  # else the plugin reads its properties by itself
+    if known is not None:  # otherwise the plugin reads its properties by itself
         require_known(props, name, known)
     return made
 
 
 @cache
-def _define_plugin(source, _variant):
-    """Mitsuba's class for a `Model`, or what the ``define(mi)`` of a module returns.
+def _define_plugin(source: Any, _variant: str) -> Callable[[MitsubaObject], MitsubaObject]:
+    """Return Mitsuba's class for a `Model`, or the result of the ``define(mi)`` of a module.
 
-    Raises `BrdfkitError` where a module's ``define`` raises an error or returns nothing to call.
+    Raises `BrdfkitError` where ``define`` raises an error or returns nothing to call.
     """
     import mitsuba as mi
 
     if isinstance(source, type) and issubclass(source, Model):
         return adapter.define_bsdf(mi, source)
     try:
-        found = source.define(mi)
+        plugin_class = source.define(mi)
     except BrdfkitError:
         raise
     except Exception as error:
         raise BrdfkitError(
             f"{source.__file__}: define(mi) raises {type(error).__name__}: {error}."
         ) from error
-    if not callable(found):
+    if not callable(plugin_class):
         raise BrdfkitError(
-            f"{source.__file__}: define(mi) returns {found!r}; it should return the plugin's class."
+            f"{source.__file__}: define(mi) returns {plugin_class!r}; it should return the "
+            "plugin's class."
         )
-    return found
+    return plugin_class

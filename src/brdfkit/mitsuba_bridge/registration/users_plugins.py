@@ -1,4 +1,6 @@
-"""`load_plugins`: makes plugins of a user's own known, BRDF models included."""
+"""`load_plugins`: makes plugins of a user's own known, including BRDF models."""
+
+from __future__ import annotations
 
 from pathlib import Path
 
@@ -49,8 +51,8 @@ def load_plugins(path: str | Path) -> dict[str, str]:
     return {file.stem: kind for file, kind in sorted(files.items())}
 
 
-def _find_files(path):
-    """The plugin files at `path`: a file, a folder of one kind, or a folder of such folders."""
+def _find_files(path: Path) -> list[Path]:
+    """Return the plugin files at `path`, a file or a folder, perhaps of folders of kinds."""
     _refuse_misspelt(path)
     folders = [path / kind for kind in KINDS if (path / kind).is_dir()]
     if not folders:
@@ -58,16 +60,16 @@ def _find_files(path):
     return sorted(file for f in (path, *folders) for file in f.glob("[!_]*.py"))
 
 
-def _refuse_misspelt(path):
-    """Raise `BrdfkitError` for a folder in `path` that is nearly named as a kind."""
+def _refuse_misspelt(path: Path) -> None:
+    """Raise `BrdfkitError` for a folder in `path` whose name is nearly that of a kind."""
     for folder in sorted(path.iterdir()) if path.is_dir() else ():
         kind = nearest(folder.name.lower(), KINDS)
         if folder.is_dir() and folder.name not in KINDS and kind and any(folder.glob("*.py")):
             raise BrdfkitError(f"{folder} is no kind of plugin; rename it {kind}/.")
 
 
-def _find_kind(file):
-    """The kind of a plugin file: its folder's name, but for a file that defines a `Model`.
+def _find_kind(file: Path) -> str:
+    """Return the kind of a plugin file: that of its folder, or "bsdfs" if it defines a model.
 
     Raises `BrdfkitError` for a file that holds no plugin or lies in no folder of a kind.
     """

@@ -14,9 +14,7 @@ from brdfkit.core.jit.padding import make_padded_rows
 
 
 def minimum_cosine(max_angle: float) -> float:
-    """Return the cosine that a direction's z exceeds if its angle is below `max_angle`
-    [degrees].
-    """
+    """Return the cosine that z exceeds for angles below `max_angle` [degrees]."""
     return math.cos(math.radians(max_angle)) * (1 + 1e-12)
 
 
@@ -44,9 +42,7 @@ def find_directions_within(
 
 
 def copy_columns(array: AnyArray, rows: Any = None) -> AnyArray:
-    """Copy an array (n, k), or some of its rows, so that its columns are contiguous, as for
-    Dr.Jit.
-    """
+    """Copy an array (n, k), or some rows of it, to contiguous columns, as for Dr.Jit."""
     taken = [values if rows is None else values[rows] for values in array.T]
     columns = make_padded_rows(len(taken), len(taken[0]))
     for column, values in zip(columns, taken, strict=True):

@@ -154,7 +154,5 @@ def _check_mask(valid: ArrayLike, n: int, name: str) -> BoolArray:
 
 
 def _find_usable(wi: AnyArray, wo: AnyArray, values: AnyArray) -> BoolArray:
-    """Return a mask (n,) of the samples with finite values and both directions above the
-    surface.
-    """
+    """Return a mask (n,) of samples with finite values and directions above the surface."""
     return np.isfinite(values).all(axis=1) & (wi[:, 2] > 0) & (wo[:, 2] > 0)

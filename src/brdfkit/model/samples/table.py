@@ -66,8 +66,7 @@ class Table:
 
     @property
     def extents(self) -> FloatArray:
-        """The shares of both measures of `measures.py` that a cell stands for, (n_theta_h,
-        n_theta_d, 2).
+        """The shares (n_theta_h, n_theta_d, 2) of both measures that a cell stands for.
 
         They do not depend on the azimuths.
         """
@@ -83,9 +82,7 @@ class Table:
         return np.stack([angles, solid], axis=-1) * 2 * np.pi / azimuths
 
     def directions(self) -> tuple[FloatArray, FloatArray]:
-        """Return (wi, wo) at the centre of every cell, each (*shape, 3); z < 0 below the
-        surface.
-        """
+        """Return (wi, wo) at the centre of every cell, each (*shape, 3), also below the surface."""
         *phi_h, theta_h, theta_d, phi_d = np.meshgrid(*self.centres, indexing="ij")
         return from_half_difference(theta_h, theta_d, phi_d, *phi_h)
 
@@ -125,14 +122,11 @@ class Table:
         return self.values[tuple(cells)]
 
     def mix_channels(self, weights: AnyArray) -> Table:
-        """Return a table in new channels: the old channels times the matrix `weights` (old,
-        new).
-        """
+        """Return a table in new channels, the old ones times `weights` (old, new)."""
         return replace(self, values=self.values @ weights)
 
     def scene_dict(self) -> dict[str, Any]:
-        """Return the dictionary for `mitsuba.load_dict`, without wavelengths, which the caller
-        adds.
+        """Return the dictionary for `mitsuba.load_dict`; the caller adds wavelengths.
 
         Raises `BrdfkitError` for values that are too large for single precision.
         """
@@ -152,8 +146,7 @@ class Table:
         }
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> AnyArray:
-        """Compute the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3), multilinear between
-        cells.
+        """Compute the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3), multilinearly.
 
         It is clamped at the ends of theta_h and theta_d, periodic in the azimuths, and 0 below the
         surface.
