@@ -259,7 +259,7 @@ BAD = [
     ({"resolution": 10**6}, "between 1 and 16384"),
     ({"size": 48}, r"size = 48 should be \(width, height\)"),
     ({"size": (0, 8)}, "the width in size = 0 should be"),
-    ({"filters": None}, "filters = None should be names"),
+    ({"filters": 3}, "filters = 3 should be names"),
     ({"projections": []}, "no technique is asked for"),
 ]
 
