@@ -82,7 +82,7 @@ def row(name, ward):
     picture, took = pictured(bsdf)
     _, unit = pictured(ward)  # anew: the machine may be busier than before
     kind = "table" if measured.is_table else "samples"
-    doubts = len(measured.audit().findings())
+    doubts = len(bk.audit(measured).findings())
     cells = measured.name, kind, len(measured.channels), len(measured.values), stds
     cells += (" ".join(f"{a:.2f}" for a in albedos), f"{seconds:.1f}", f"{took / unit:.1f}", doubts)
     return measured.name, "| " + " | ".join(map(str, cells)) + " |", picture

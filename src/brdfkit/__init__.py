@@ -2,7 +2,7 @@
 
 >>> import brdfkit as bk
 >>> paint = bk.load("car_paint")    # a file, or a material that comes along    # doctest: +SKIP
->>> paint.audit()    # what was measured, and what is doubtful    # doctest: +SKIP
+>>> bk.audit(paint)  # what was measured, and what is doubtful    # doctest: +SKIP
 >>> fits = [bk.fit(paint, name) for name in ("ward", "ggx")]    # doctest: +SKIP
 >>> bk.compare(paint, fits)    # errors; bk.rank chooses among all bk.models()    # doctest: +SKIP
 >>> bk.render([paint, *fits]).write("paint.exr")    # doctest: +SKIP

@@ -138,6 +138,16 @@ def test_links_lead_to_files(page):
     assert not missing
 
 
+@pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/architecture.md"])
+def test_the_paths_that_a_page_names_exist(page):
+    named = re.findall(
+        r"`((?:src|plugins|theses|tests|docs|data|benchmarks)/[\w/.]*)`",
+        (ROOT / page).read_text(encoding="utf-8"),
+    )
+    assert len(named) > 10 or page != "CONTRIBUTING.md"
+    assert not [p for p in named if "NAME" not in p and "KIND" not in p and not (ROOT / p).exists()]
+
+
 EXAMPLES = {"evaluate": bk.evaluate, "named": bk.losses.named, "models": bk.models}
 
 

@@ -257,7 +257,7 @@ def test_a_table_of_few_samples_is_extrapolated():
     few = measure(PAINT, step=15.0, largest=45.0)
     table = few.tabulated
     (told,) = describe_extrapolation(few, table)
-    share = few.audit().coverage
+    share = bk.audit(few).coverage
     start = f"{share.beyond:.0%} of the table is extrapolated and {share.between:.0%} interpolated"
     assert told.startswith(start)
     most, now = few.values.max(), np.nanmax(table.table.values)

@@ -155,7 +155,7 @@ def test_marks_of_what_was_not_measured_are_told():
     wi, wo = random_pairs(300, seed=4, max_degrees=70.0)
     values = bk.models()["ggx"]().eval(wi, wo)
     values[::20] = -9999
-    notes = bk.Measured.from_samples(wi, wo, values).audit().findings()
+    notes = bk.audit(bk.Measured.from_samples(wi, wo, values)).findings()
     assert any(" values are exactly -9999: probably a mark" in note for note in notes)
 
 

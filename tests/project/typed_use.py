@@ -46,7 +46,7 @@ def describe(paint: bk.Measured) -> None:
     assert_type(bk.evaluate("ward", UP, UP), Floats)
     assert_type(bk.albedo(paint, [0, 0, 1]), Floats)
     assert_type(bk.audit(paint), bk.Audit)
-    assert_type(paint.audit().findings(), tuple[str, ...])
+    assert_type(bk.audit(paint).findings(), tuple[str, ...])
     assert_type(bk.plot([paint, "ward"], theta_i=(15, 45)), Figure)
     assert_type(bk.check("ward", only=["finite"]), Report)
 

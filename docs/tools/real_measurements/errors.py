@@ -38,7 +38,7 @@ def measure(data):
         "reach": [float(angle) for angle in find_largest_angles(data)],
         "known": data.rgb.albedo.known[: len(ANGLES)].tolist(),
         "negative": float((judge.data.values[judge.data.samples.valid] < 0).mean()),
-        "findings": list(data.audit().findings()),
+        "findings": list(bk.audit(data).findings()),
         "fits": {},
     }
     for model in MODELS:

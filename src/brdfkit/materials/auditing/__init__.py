@@ -126,7 +126,7 @@ class Audit(Shown):
     def picture(self) -> Figure:
         """Draw a slice of the BRDF, its lobes and its albedo, as a matplotlib `Figure`.
 
-        >>> load("paint.astm").audit().picture().savefig("paint.png")    # doctest: +SKIP
+        >>> audit(load("paint.astm")).picture().savefig("paint.png")    # doctest: +SKIP
         """
         from brdfkit.materials.auditing.picture import draw_audit  # only here: matplotlib is slow
 

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-import brdfkit  # for `audit`, of a higher layer, which is imported when it is called
 from brdfkit.core import documents
 from brdfkit.core.array_types import ArrayLike
 from brdfkit.core.colours import RGB
@@ -202,13 +201,6 @@ class Measured(Shown, FromAngles):
         array([[0.5]])
         """
         return mend(self, mirror_azimuth, divide_by_cos)
-
-    def audit(self) -> brdfkit.Audit:
-        """Audit the material: its reach, its noise and what is doubtful, as `brdfkit.audit` does.
-
-        >>> print(load("copper.astm").audit())    # doctest: +SKIP
-        """
-        return brdfkit.audit(self)
 
     @cached_in_turn
     def albedo(self) -> MeasuredAlbedo:
