@@ -135,7 +135,7 @@ def test_fits_whose_light_is_wrong_are_marked_and_counted(here, fitted):
     counts = [sum(row.model == model for row in wrong) for model in ("lambert", "ggx")]
     assert f"! light is wrong {counts[0]} {counts[1]}" in [" ".join(line.split()) for line in lines]
     text = Path("out/index.html").read_text(encoding="utf-8")
-    assert text.count(' bad" style=') == len(wrong)
+    assert text.count(' bad" title=') == len(wrong)
     assert all(row.fit.warnings[0] in text for row in wrong)
     with Path("out/table.csv").open(encoding="utf-8", newline="") as stream:
         for row, read in zip(found.rows, csv.DictReader(stream), strict=True):
