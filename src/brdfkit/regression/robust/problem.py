@@ -106,7 +106,7 @@ class RobustProblem:
         return self.make_point(u, np.maximum(moved, self.problem.least))
 
     def scales(self, point: Point) -> list[float]:
-        """Return the scales at a point, by channel."""
+        """Return the scales of the residuals at a point, by channel."""
         adjusted = [r / lever for r, lever in zip(point.residuals, self.levers, strict=True)]
         return [
             self.tune * residual_scale(r, self.rank, least)
