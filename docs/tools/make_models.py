@@ -13,7 +13,7 @@ from formulas import set_formulas
 from PIL import Image
 
 import brdfkit as bk
-from brdfkit.cli.commands.models import choices, example
+from brdfkit.cli.commands.models import format_choices, make_example_label
 from brdfkit.core.discovery.plugin_pages import read_page as plugin_page
 from brdfkit.model import labels
 
@@ -51,7 +51,7 @@ def pages():
     """File name → text of all pages."""
     rows = []
     for name, model in models().items():
-        options = "<br>".join(f"`{n}`: {choices(o)}" for n, o in model.options.items())
+        options = "<br>".join(f"`{n}`: {format_choices(o)}" for n, o in model.options.items())
         rows.append((f"[{name}]({name}.md)", docstring(model)[1], options, ball(model, SIZE // 2)))
     index = paragraphs("# The models", INDEX, table("model, what it is, options, ball", rows))
     return {"README.md": index} | {f"{name}.md": page(m) for name, m in models().items()}
@@ -69,7 +69,9 @@ def page(model):
     balls = table(", ".join(f"`{f.label()}`" for f in shown), [[ball(f, SIZE) for f in shown]])
     values = ", ".join(f"`{n}` = {v}" for n, v in shown_values(model).items())
     parameters = [parameter(*item) for item in model.parameters.items()]
-    options = [(f"`{n}`", o.default, choices(o), o.meaning) for n, o in model.options.items()]
+    options = [
+        (f"`{n}`", o.default, format_choices(o), o.meaning) for n, o in model.options.items()
+    ]
     return paragraphs(
         *(f"# {title}", sentence, balls, f"The ball has {values or 'the defaults'}.", text),
         table("parameter, default, bounds, meaning, per channel", parameters),
@@ -136,7 +138,7 @@ def picture(form):
 def use(model):
     """Examples, with the first option where there is one."""
     option = next(iter(model.options), None)
-    form = labels.model(example(model, option)) if option else model
+    form = labels.model(make_example_label(model, option)) if option else model
     entries = {"type": form.type_name()} | ({option: getattr(form, option)} if option else {})
     for name in [*form.weights()[:1], *form.shapes()[:1]]:
         entries[name] = form.parameters[name].default

@@ -73,7 +73,7 @@ def test_files_of_others_are_replaced_by_force_only(output, run, tmp_path):
     file.write_bytes(b"precious")
     status, said = run(*words)
     assert status == 2
-    assert f"{output} is there already, and not of this command" in said
+    assert f"{output} exists already, and another command wrote it" in said
     assert file.read_bytes() == b"precious"
     status, said = run(*words, "--force")
     assert status == 0, said
@@ -94,7 +94,7 @@ def test_a_folder_of_fits(run, tmp_path):
     assert run(*words)[0] == 0
     assert run(*words)[0] == 0
     (tmp_path / "fits" / "lambert.json").write_text("{}")
-    assert "is there already" in run(*words)[1]
+    assert "exists already" in run(*words)[1]
     assert (tmp_path / "fits" / "lambert.json").read_text() == "{}"
 
 

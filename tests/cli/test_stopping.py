@@ -14,7 +14,7 @@ from small_files import merl
 
 import brdfkit as bk
 from brdfkit.cli import main
-from brdfkit.cli.errors import Group, say
+from brdfkit.cli.errors import Group, print_message
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import is_stopped
 
@@ -98,7 +98,7 @@ def test_a_name_that_is_too_long_is_a_sentence(words, tmp_path):
 
 @pytest.mark.quick
 def test_sentences_are_short_and_always_printable(capsys):
-    say("caf\udce9: " + "9" * 10_000)
+    print_message("caf\udce9: " + "9" * 10_000)
     told = capsys.readouterr().err
     assert told.startswith("brdfkit: caf?: 99")
     assert len(told) < 3_000

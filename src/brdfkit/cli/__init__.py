@@ -1,4 +1,4 @@
-"""The command line `brdfkit`; its commands are the files of `commands/`."""
+"""The command line `brdfkit`; each file in `commands/` holds one command."""
 
 import importlib
 import pkgutil
@@ -12,7 +12,7 @@ from brdfkit.cli.errors import Group
 
 @click.group("brdfkit", cls=Group, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, "-V", "--version", prog_name="brdfkit")
-def main():
+def main() -> None:
     """Fit BRDF models to measured materials, and path-trace both.
 
     \b

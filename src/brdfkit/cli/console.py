@@ -1,73 +1,84 @@
-"""Prints the results of commands: tables for people, or JSON; and a progress bar."""
+"""Prints the results of commands as tables or as JSON, and shows progress bars."""
+
+from __future__ import annotations
 
 import json
 import os
-from contextlib import nullcontext
+from collections.abc import Iterable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from brdfkit.cli import tables
 from brdfkit.core.json_values import to_json
-from brdfkit.core.progress_bar import progress
+from brdfkit.core.progress_bar import Progress, progress
 
-NARROWEST, WIDEST = 20, 10_000  # characters
+if TYPE_CHECKING:
+    import rich.console
+
+MINIMUM_WIDTH, UNLIMITED_WIDTH = 20, 10_000  # characters
 
 
 @dataclass(frozen=True)
 class Console:
-    """Prints results. `as_json`: as JSON, for programs; `quiet`: no tables and no progress bar."""
+    """Prints results: as JSON if `as_json`; without tables and progress bars if `quiet`."""
 
     as_json: bool = False
     quiet: bool = False
 
     @cached_property
-    def out(self):
-        """Rich's console, which prints on standard output."""
+    def out(self) -> rich.console.Console:
+        """The console of Rich that prints on standard output."""
         from rich.console import Console
 
-        # no markup: names from files may hold brackets
-        found = Console(
-            quiet=self.quiet, highlight=False, markup=False, emoji=False, soft_wrap=True
-        )
-        found.width = max(found.width, NARROWEST)  # a terminal may say that it has 0 columns
-        return found
+        # No markup, because names in files may contain brackets
+        out = Console(quiet=self.quiet, highlight=False, markup=False, emoji=False, soft_wrap=True)
+        out.width = max(out.width, MINIMUM_WIDTH)  # a terminal may report 0 columns
+        return out
 
-    def progress(self, what):
-        """Within the block a bar shows the progress of `what`; gives a function (done, total)."""
+    def progress(self, what: str) -> AbstractContextManager[Progress]:
+        """Show a progress bar for `what` within the block, by a function (steps done, in all)."""
         return nullcontext(lambda done, total: None) if self.quiet else progress(what)
 
-    def json(self, record):
-        """Print a result as JSON; `record`: dictionaries, lists, arrays, paths and dataclasses."""
+    def json(self, record: Any) -> None:
+        """Print a record of dictionaries, lists, arrays, paths and dataclasses as JSON."""
         print(json.dumps(to_json(record), indent=2))
 
-    def table(self, columns, *sections, title=None):
-        """Print a table. `columns`: their names; `sections`: lists of rows of texts.
+    def table(
+        self,
+        columns: Sequence[str],
+        *sections: Sequence[Sequence[str]],
+        title: str | None = None,
+    ) -> None:
+        """Print a table from the columns' names and `sections`, which are lists of rows of texts.
 
-        A column whose name begins with ">" is flush right, for numbers. On a terminal that is too
-        narrow each row becomes a block of lines; a pipe or a file gets lines as long as they are.
+        A column whose name begins with ">" is right-aligned, for numbers. On a terminal that is too
+        narrow, each row becomes a block of lines. In a pipe or a file, lines have any length.
         """
-        found = tables.table(columns, sections, self.out.width, title)
-        if found is None and not self.out.is_terminal and "COLUMNS" not in os.environ:
-            self.out.width = WIDEST
-            found = tables.table(columns, sections, self.out.width, title)
-        if found is not None:
-            self.out.print(found, soft_wrap=False)
+        table = tables.make_table(columns, sections, self.out.width, title)
+        if table is None and not self.out.is_terminal and "COLUMNS" not in os.environ:
+            self.out.width = UNLIMITED_WIDTH
+            table = tables.make_table(columns, sections, self.out.width, title)
+        if table is not None:
+            self.out.print(table, soft_wrap=False)
             return
-        lines = tables.blocks(columns, sections, self.out.width)
+        lines = tables.format_blocks(columns, sections, self.out.width)
         self.out.print(title or "", *lines, "", sep="\n")
 
-    def print_image_errors(self, errors):
-        """Print `ImageErrors` as a table."""
+    def print_image_errors(self, errors: Any) -> None:
+        """Print the `ImageErrors` of a rendering as a table."""
         *rows, floor = errors.table()
         self.table(errors.columns, rows, [floor], title=f"{errors.reference}: errors of pictures")
         self.out.print("\n".join(errors.remarks))
 
-    def list_doubts(self, findings):
+    def print_doubts(self, findings: Iterable[str]) -> None:
         """Print a line for each of the `findings` of an audit."""
         for finding in findings:
             self.out.print(f"The measurement is doubtful: {finding}.")
 
-    def list_written(self, paths):
+    def print_written(self, paths: Iterable[str | Path]) -> None:
         """Print a line for each file that was written."""
         for path in paths:
             self.out.print(f"written: {path}")

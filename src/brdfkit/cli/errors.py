@@ -1,10 +1,14 @@
-"""Prints errors and warnings of the command line: one sentence on standard error."""
+"""Prints each error and warning of the command line as one sentence on standard error."""
+
+from __future__ import annotations
 
 import errno
 import os
 import sys
 import warnings
+from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
+from typing import Any
 
 import click
 
@@ -14,76 +18,82 @@ from brdfkit.core.files import watch_writing
 from brdfkit.core.interrupts import exit_status, is_stopped, stop_on_signals
 from brdfkit.core.names import to_printable
 
-NO_ROOM = errno.ENOSPC, errno.EDQUOT, errno.EIO  # writing to standard output, a file, failed
-OF_FITS = "--fixed", "--bound", "--isotropic", "--anisotropic"
-LONGEST = 2000  # characters of a sentence
+WRITE_ERRORS = errno.ENOSPC, errno.EDQUOT, errno.EIO  # no space, quota exceeded, device failed
+FIT_OPTIONS = "--fixed", "--bound", "--isotropic", "--anisotropic"
+LENGTH_LIMIT = 2000  # characters of a sentence
 
 
 class Group(click.Group):
-    """Prints errors for people as one sentence, and ends with exit status 2."""
+    """A click group that prints an error as one sentence and ends with exit status 2."""
 
-    def make_context(self, info_name, args, *others, **extra):
-        with tell_errors() if args else nullcontext():  # without args click shows the help
+    def make_context(
+        self, info_name: str | None, args: list[str], *others: Any, **extra: Any
+    ) -> Any:
+        with translate_errors() if args else nullcontext():  # without args, click shows the help
             return super().make_context(info_name, args, *others, **extra)
 
-    def invoke(self, ctx):
-        for stream in (sys.stdout, sys.stderr):  # where a terminal does not know θ it shows ?
+    def invoke(self, ctx: click.Context) -> Any:
+        for stream in (sys.stdout, sys.stderr):  # a terminal whose encoding lacks θ shows ?
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="replace")
         guard = watch_writing(refuse_to_replace, remember)
-        with stop_on_signals(), tell_errors(), guard, warnings.catch_warnings():
-            warnings.showwarning = _say_warning
+        with stop_on_signals(), translate_errors(), guard, warnings.catch_warnings():
+            warnings.showwarning = _print_warning
             try:
                 return super().invoke(ctx)
             finally:
                 _flush()
 
 
-class LastWords(click.ClickException):
-    """Ends the program with one sentence and an exit status."""
+class FinalMessage(click.ClickException):
+    """An exception that ends the program with one sentence and an exit status."""
 
-    def __init__(self, message, exit_code=2):
+    def __init__(self, message: str, exit_code: int = 2) -> None:
         super().__init__(message)
-        self.exit_code = exit_code
+        self.exit_code = exit_code  # type: ignore[misc]  # click declares a class variable
 
-    def show(self, file=None):
-        say(self.message)
+    def show(self, file: Any = None) -> None:
+        print_message(self.message)
 
 
 @contextmanager
-def tell_errors():
-    """Within the block, what should end the program with a sentence becomes `LastWords`.
+def translate_errors() -> Iterator[None]:
+    """Turn errors in the block that a user can cause into a `FinalMessage`.
 
-    That is: errors for people, errors of click, a file or an output that fails, too little memory,
-    Ctrl-C and SIGTERM, and any error that one of these two became.
+    They are `BrdfkitError`, click's errors, failures to read a file or write the output, too little
+    memory, Ctrl-C and SIGTERM, and any error that native code made of one of these two signals.
     """
     try:
-        with _stops_as_such():
+        with _restore_interrupts():
             yield
     except BrdfkitError as error:
-        raise LastWords(str(error)) from error
+        raise FinalMessage(str(error)) from error
     except click.UsageError as error:
         command = error.ctx.command_path if error.ctx else "brdfkit"
-        raise LastWords(f"{_describe_misuse(error)}; see {command} --help.") from error
+        raise FinalMessage(f"{_describe_misuse(error)}; see {command} --help.") from error
     except OSError as error:
-        if error.filename is not None:  # a name that is too long, for one
-            raise LastWords(f"{error.filename!s:.200}: {error.strerror}; name another.") from error
-        if error.errno not in NO_ROOM:
+        if error.filename is not None:  # such as a name that is too long
+            raise FinalMessage(
+                f"{error.filename!s:.200}: {error.strerror}; name another."
+            ) from error
+        if error.errno not in WRITE_ERRORS:
             raise
-        _drop_output()
-        raise LastWords(f"the output cannot be written ({error.strerror}); make room.") from error
+        _discard_output()
+        raise FinalMessage(
+            f"the output cannot be written ({error.strerror}); make room."
+        ) from error
     except MemoryError as error:
-        raise LastWords("there is too little memory for this; make it smaller.") from error
+        raise FinalMessage("there is too little memory for this; make it smaller.") from error
     except KeyboardInterrupt as error:
-        raise LastWords("interrupted.", exit_status()) from error
+        raise FinalMessage("interrupted.", exit_status()) from error
 
 
 @contextmanager
-def _stops_as_such():
-    """Within the block, an error after Ctrl-C, which native code made of it, is Ctrl-C again."""
+def _restore_interrupts() -> Iterator[None]:
+    """Raise KeyboardInterrupt instead of any error that native code raises after Ctrl-C."""
     try:
         yield
-    except (click.exceptions.Exit, LastWords):
+    except (click.exceptions.Exit, FinalMessage):
         raise
     except Exception as error:
         if is_stopped():
@@ -91,41 +101,43 @@ def _stops_as_such():
         raise
 
 
-def _describe_misuse(error):
-    """click's message, without its full stop; for unknown names the message of `no_such`."""
+def _describe_misuse(error: click.UsageError) -> str:
+    """Return click's message without its full stop, or that of `no_such` for an unknown name."""
     message = error.format_message()
+    command: Any = error.ctx and error.ctx.command
     if isinstance(error, click.NoSuchCommand):
-        message = str(no_such("command", error.command_name, error.ctx.command.commands))
-    elif isinstance(error, click.NoSuchOption) and error.option_name in OF_FITS:
-        message = (
-            f"{error.option_name} is for brdfkit fit and report, and {error.ctx.info_name} fits "
-            "nothing: name a fit that they saved, or set a model's parameters by --set"
-        )
-    elif isinstance(error, click.NoSuchOption):
-        parameters = error.ctx.command.get_params(error.ctx)
-        options = [p.opts[-1] for p in parameters if isinstance(p, click.Option)]
-        message = str(no_such("option", error.option_name, options))
+        message = str(no_such("command", error.command_name, command.commands))
+    elif isinstance(error, click.NoSuchOption) and error.ctx:
+        if error.option_name in FIT_OPTIONS:
+            message = (
+                f"{error.option_name} is for brdfkit fit and report, and {error.ctx.info_name} "
+                "fits nothing: name a saved fit, or set a model's parameters by --set"
+            )
+        else:
+            parameters = command.get_params(error.ctx)
+            options = [p.opts[-1] for p in parameters if isinstance(p, click.Option)]
+            message = str(no_such("option", error.option_name, options))
     return message.rstrip(".")
 
 
-def _flush():
-    """Write out what was printed: where this fails, it should fail within `tell_errors`."""
+def _flush() -> None:
+    """Flush standard output, so that an error in it is raised within `translate_errors`."""
     if sys.stdout:  # None, where it was closed
         sys.stdout.flush()
 
 
-def _drop_output():
-    """Forget what could not be printed: else Python would try again as it ends."""
+def _discard_output() -> None:
+    """Discard output that could not be printed, which Python would try to print again at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def say(message):
-    """Print one sentence for people on standard error; what a file makes too long is cut."""
+def print_message(message: object) -> None:
+    """Print one sentence on standard error, without its middle where it is very long."""
     text = to_printable(" ".join(str(message).split()))
-    if len(text) > LONGEST:
-        text = f"{text[: LONGEST // 2]} … {text[-LONGEST // 4 :]}"
+    if len(text) > LENGTH_LIMIT:
+        text = f"{text[: LENGTH_LIMIT // 2]} … {text[-LENGTH_LIMIT // 4 :]}"
     click.echo(f"brdfkit: {text}", err=True)
 
 
-def _say_warning(message, *_args, **_kwargs):
-    say(message)
+def _print_warning(message: Warning | str, *_args: Any, **_kwargs: Any) -> None:
+    print_message(message)

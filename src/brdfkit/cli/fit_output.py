@@ -1,73 +1,145 @@
-"""What `brdfkit fit` prints: the fits, a table of their errors, or both as JSON."""
+"""Prints the results of `brdfkit fit`: fits to one material, or a sweep over several materials."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from brdfkit.cli.console import Console
+
+if TYPE_CHECKING:
+    from brdfkit.fitting.compare import Comparison
+    from brdfkit.fitting.ranking import Ranking
+    from brdfkit.fitting.sweeping import Sweep
+    from brdfkit.materials.measured import Measured
+    from brdfkit.regression import Fit
 
 
-def print_fits(material, fits, failed, comparison, pictures, written, ranking, console):
-    """Print `fits` to a `material`, first the notes that all have, then their `comparison` and the
-    errors of their `pictures`, `ImageErrors` or None; as JSON with what `failed` and with the
-    `ranking`, too."""
-    from brdfkit.cli.rank_output import record
+def print_fits(
+    material: Measured,
+    fits: Sequence[Fit],
+    comparison: Comparison,
+    console: Console,
+    *,
+    failed: Mapping[str, Any],
+    errors: Any,
+    written: Sequence[Path],
+    ranking: Ranking | None,
+) -> None:
+    """Print fits to a material, their `comparison` and the files that were written.
+
+    `errors` are the `ImageErrors` of the pictures, or None. Notes that all fits share come first.
+    JSON also contains the errors of models that `failed`, by name, and the `ranking`.
+    """
+    from brdfkit.cli.rank_output import to_record
     from brdfkit.materials.auditing.data_findings import list_data_findings
 
     if console.as_json:
-        psnr = {n: row["psnr"] for n, row in pictures.by_name.items()} if pictures else {}
-        records = [_record(f, comparison, psnr) for f in fits]
-        entries = {"material": material.name, "fits": records, "failed": failed}
+        psnr = {n: row["psnr"] for n, row in errors.by_name.items()} if errors else {}
+        records = [_to_record(fit, comparison, psnr) for fit in fits]
+        entries: dict[str, Any] = {"material": material.name, "fits": records, "failed": failed}
         entries["measured_albedo"] = comparison.measured_albedo
-        entries["ranking"] = record(ranking)
-        console.json({**entries, "pictures": pictures, "written": written})
+        entries["ranking"] = to_record(ranking)
+        console.json({**entries, "pictures": errors, "written": written})
         return
-    shared = _shared_notes(fits, list_data_findings(material))
+    shared = _find_shared_notes(fits, list_data_findings(material))
     for note in shared:
         console.out.print(f"! {note}")
-    own = [tuple(note for note in f.notes if note not in shared) for f in fits]
-    fits = [replace(f, notes=notes) for f, notes in zip(fits, own, strict=True)]
-    for shown in (*fits, comparison):
-        console.out.print(str(shown))
-        console.out.print()
-    if pictures:
-        console.print_image_errors(pictures)
-    console.list_written(written)
+    for fit in fits:
+        own = tuple(note for note in fit.notes if note not in shared)
+        console.out.print(f"{replace(fit, notes=own)}\n")
+    console.out.print(f"{comparison}\n")
+    if errors:
+        console.print_image_errors(errors)
+    console.print_written(written)
     if not written:
         console.out.print("Nothing was saved; -o FOLDER keeps the fits.")
 
 
-def _shared_notes(fits, findings):
-    """The notes that are said once: those on the data, its `findings`, and others that each of
-    several fits has; those on the light of a fit speak of it alone."""
+def _find_shared_notes(fits: Sequence[Fit], findings: Sequence[str]) -> list[str]:
+    """Return the notes on the data, its `findings`, and those that all of several fits have.
+
+    Warnings of the first fit are not shared: they are about this fit's own reflected light.
+    """
     first, *others = fits
     notes = [note for note in first.notes if note not in first.warnings]
     shared = [note for note in notes if others and all(note in f.notes for f in others)]
     return [note for note in notes if note in shared or note in findings]
 
 
-def _record(found, comparison, psnr):
-    """A fit for JSON, with its errors under every loss and the PSNR of its picture."""
+def _to_record(fit: Fit, comparison: Comparison, psnr: Mapping[str, float]) -> dict[str, Any]:
+    """Return the record of a fit for JSON, with its errors under every loss and its PSNR."""
     return {
-        "model": found.name,
-        "parameters": found.values,
-        "wavelengths": found.wavelengths,
-        "standard_errors": found.standard_errors,
-        "intervals": found.intervals,
-        "degrees_of_freedom": found.degrees_of_freedom,
-        "aic": found.aic,
-        "bic": found.bic,
-        "loss": found.loss_name,
-        "loss_label": found.loss_label,
-        "error": found.loss,
-        "errors": comparison.errors[found.name],
-        "albedos": comparison.albedos[found.name],
-        "psnr": psnr.get(found.name),
-        "albedo": found.albedo and vars(found.albedo),
-        "effective_samples": found.effective_samples,
-        "unrepresented": found.unrepresented,
-        "at_bounds": found.at_bounds,
-        "notes": found.notes,
-        "evaluations": found.evaluations,
-        "samples": found.samples,
-        "seconds": found.seconds,
-        "message": found.message,
-        "checksum": found.checksum,
-        "versions": found.versions,
+        "model": fit.name,
+        "parameters": fit.values,
+        "wavelengths": fit.wavelengths,
+        "standard_errors": fit.standard_errors,
+        "intervals": fit.intervals,
+        "degrees_of_freedom": fit.degrees_of_freedom,
+        "aic": fit.aic,
+        "bic": fit.bic,
+        "loss": fit.loss_name,
+        "loss_label": fit.loss_label,
+        "error": fit.loss,
+        "errors": comparison.errors[fit.name],
+        "albedos": comparison.albedos[fit.name],
+        "psnr": psnr.get(fit.name),
+        "albedo": fit.albedo and vars(fit.albedo),
+        "effective_samples": fit.effective_samples,
+        "unrepresented": fit.unrepresented,
+        "at_bounds": fit.at_bounds,
+        "notes": fit.notes,
+        "evaluations": fit.evaluations,
+        "samples": fit.samples,
+        "seconds": fit.seconds,
+        "message": fit.message,
+        "checksum": fit.checksum,
+        "versions": fit.versions,
+    }
+
+
+def print_sweep(sweep: Sweep, folder: Path | None, console: Console) -> None:
+    """Print the tables of errors of a sweep, unless it has no fits, or the sweep as JSON."""
+    from brdfkit.fitting.sweeping.sweeping import PAGE, TABLE
+    from brdfkit.fitting.sweeping.tables import compare, quantities
+
+    pages = [folder / PAGE, folder / TABLE] if folder and sweep.fits else []
+    if console.as_json:
+        fits = [_to_sweep_record(row) for row in sweep.rows if row.fit]
+        failed = [
+            {"material": r.material, "file": r.file, "model": r.model, "message": r.message}
+            for r in sweep.failed
+        ]
+        saved = [row.saved for row in sweep.rows if row.saved]
+        console.json({"fits": fits, "failed": failed, "written": [*pages, *saved]})
+    elif sweep.fits:
+        for quantity in quantities(sweep):
+            columns, *sections = compare(sweep, quantity)
+            unit = "" if quantity.decibels else f" ({sweep.rows[0].loss})"
+            console.table(columns, *sections, title=f"{quantity.title}{unit}")
+        console.out.print(sweep.summary)
+        console.print_written(pages)
+        if pages:
+            console.print_written([f"{folder}/MATERIAL/MODEL.json, {len(sweep.fits)} fits"])
+
+
+def _to_sweep_record(row: Any) -> dict[str, Any]:
+    """Return the record of a row of a sweep for JSON."""
+    return {
+        "material": row.material,
+        "file": row.file,
+        "model": row.model,
+        "parameters": row.fit.values,
+        "loss": row.loss,
+        "error": row.error,
+        "held_out": row.held_out,
+        "psnr": row.psnr,
+        "albedo": row.fit.albedo,
+        "at_bounds": row.at_bounds,
+        "notes": row.fit.notes,
+        "samples": row.samples,
+        "seconds": row.seconds,
+        "message": row.message,
     }

@@ -1,155 +1,55 @@
-"""Options that several commands have."""
+"""Options that several commands share: where results go, scenes, pictures and repairs of data."""
+
+from __future__ import annotations
 
 import functools
 from math import isfinite
 from pathlib import Path
+from typing import Any
 
 import click
 
 import brdfkit
-from brdfkit.cli.settings import parse_settings
+from brdfkit.cli.settings import Command
 from brdfkit.core import catalogue
 from brdfkit.core.errors import BrdfkitError
 
 SPP = 64  # samples per pixel
-MESHES = "a mesh of yours, .obj or .ply"
+MESHES = "your own mesh, .obj or .ply"
 SCENE_FILES = (
-    f"{MESHES}; or FILE.xml#ID, a scene, and in it the BSDF to replace, which need not be named if "
-    "it is 'material'"
+    f"{MESHES}; or FILE.xml#ID, a scene and the id of the BSDF in it to replace; #ID may be left "
+    "out for the id 'material'"
 )
 
 
 class Decibels(click.ParamType):
-    """A number above 0, with or without dB behind it."""
+    """A number above 0, with or without the unit dB."""
 
     name = "dB"
 
-    def convert(self, value, param, ctx):
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
         try:
-            found = float(str(value).lower().removesuffix("db"))
+            decibels = float(str(value).lower().removesuffix("db"))
         except ValueError:
-            found = 0.0
-        if not (found > 0 and isfinite(found)):
+            decibels = 0.0
+        if not (decibels > 0 and isfinite(decibels)):
             self.fail(f"{value!r} is no noise floor; give one like 45dB.", param, ctx)
-        return found
+        return decibels
 
 
-def fit_options(default, others="FILE.py with one, or best"):
-    """Adds -m, --loss and other options to a command that fits; it gets `names`, the models, and
-    `how`, the settings of `fit`.
+def output_option(help: str, **attributes: Any) -> Any:
+    """Return the option -o of a command that writes a file or a folder."""
+    kind = click.Path(path_type=Path)
+    return click.option("-o", "--output", type=kind, help=help, **attributes)
 
-    In words, `default`: which models without -m; `others`: what -m takes beside a model.
+
+def mend_options(command: Command) -> Command:
+    """Add --mirror-azimuth and --divide-by-cos to a command that reads a measured material.
+
+    The command gets those that the user gave as `mends`, arguments of `Measured.mend`.
     """
-
-    def add(command):
-        @functools.wraps(command)
-        def with_settings(
-            *args,
-            loss,
-            robust,
-            solver,
-            albedo_at_most,
-            max_angle,
-            fixed,
-            bounds,
-            anisotropic,
-            **kwargs,
-        ):
-            from brdfkit.regression.solvers import AlbedoAtMost
-
-            _require_one_each(kwargs["names"])
-            how = {"loss": loss, "robust": robust, "solver": solver, "max_angle": max_angle}
-            how |= {"fixed": parse_settings(fixed, "--fixed"), "anisotropic": anisotropic}
-            how["bounds"] = parse_settings(bounds, "--bound", "LOW,HIGH")
-            how["constraints"] = () if albedo_at_most is None else AlbedoAtMost(albedo_at_most)
-            return command(*args, how=how, **kwargs)
-
-        for option in reversed(_fit_options(default, others)):
-            with_settings = option(with_settings)
-        return with_settings
-
-    return add
-
-
-def _require_one_each(names):
-    """Refuse several models in one -m, such as ggx,ward."""
-    from brdfkit.model import labels
-
-    for name in names:
-        parts = name.split(",")
-        if len(parts) > 1 and all(map(labels.is_label, parts)):
-            raise BrdfkitError(f"{name} are several models; repeat -m: -m {' -m '.join(parts)}.")
-
-
-def _fit_options(default, others):
-    """The options of `fit_options`."""
-    return (
-        click.option(
-            "-m",
-            "--model",
-            "names",
-            multiple=True,
-            metavar="MODEL",
-            help=f"A model, {others}; repeat it for more. Default: {default}.",
-        ),
-        click.option(
-            "--loss",
-            default="cbrt",
-            metavar="LOSS",
-            show_default=True,
-            help="What the fit minimises: cosine, log, cbrt, plain, lafortune, relative, kurt "
-            "or picture; print(brdfkit.losses.named) in Python says what each is.",
-        ),
-        click.option(
-            "--robust",
-            metavar="WEIGHTS",
-            help="Give outliers little weight: andrews, bisquare, cauchy, fair, huber, logistic, "
-            "talwar or welsch.",
-        ),
-        click.option(
-            "--solver",
-            metavar="SOLVER",
-            help="What searches: levenberg_marquardt, slsqp, trust_region or "
-            "differential_evolution.",
-        ),
-        click.option(
-            "--albedo-at-most",
-            type=float,
-            metavar="LIMIT",
-            help="Let no model reflect more than this share of the light, at 0°, 30°, 60°, 75°, "
-            "85°, 89°.",
-        ),
-        click.option(
-            "--max-angle",
-            default=80.0,
-            show_default=True,
-            help="Use the samples with both angles below this one [degrees].",
-        ),
-        click.option(
-            "--fixed",
-            multiple=True,
-            metavar="NAME=VALUE",
-            help="Keep a shape parameter at a value, as f0=0.04; repeat it for more.",
-        ),
-        click.option(
-            "--bound",
-            "bounds",
-            multiple=True,
-            metavar="NAME=LOW,HIGH",
-            help="Search a shape parameter between these, as alpha_u=0.01,0.5; repeat it for more.",
-        ),
-        click.option(
-            "--anisotropic/--isotropic",
-            default=None,
-            help="Whether alpha_v and similar parameters are searched, or follow alpha_u. "
-            "Default: as the measurement is.",
-        ),
-    )
-
-
-def mend_options(command):
-    """Adds --mirror-azimuth and --divide-by-cos to a command that reads a material; it gets
-    `mends`, those that were given, as arguments of `Measured.mend`."""
 
     @click.option(
         "--mirror-azimuth",
@@ -162,21 +62,21 @@ def mend_options(command):
         help="Divide the values of FILE, which are BRDF times cos theta_o, by this cosine.",
     )
     @functools.wraps(command)
-    def with_mends(*args, mirror_azimuth, divide_by_cos, **kwargs):
-        given = {"mirror_azimuth": mirror_azimuth, "divide_by_cos": divide_by_cos}
-        mends = {name: True for name, is_given in given.items() if is_given}
+    def with_mends(*args: Any, mirror_azimuth: bool, divide_by_cos: bool, **kwargs: Any) -> Any:
+        options = {"mirror_azimuth": mirror_azimuth, "divide_by_cos": divide_by_cos}
+        mends = {name: True for name, is_given in options.items() if is_given}
         return command(*args, mends=mends, **kwargs)
 
     return with_mends
 
 
-def output_options(command):
-    """Adds --json and --quiet to a command that prints a result; it gets a `Console` instead."""
+def output_options(command: Command) -> Command:
+    """Add --json and --quiet to a command that prints a result; it gets a `console` instead."""
 
     @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-    @click.option("-q", "--quiet", is_flag=True, help="Print errors only, and JSON if asked for.")
+    @click.option("-q", "--quiet", is_flag=True, help="Print only errors, and what --json prints.")
     @functools.wraps(command)
-    def with_output(*args, as_json, quiet, **kwargs):
+    def with_output(*args: Any, as_json: bool, quiet: bool, **kwargs: Any) -> Any:
         from brdfkit.cli.console import Console
 
         return command(*args, console=Console(as_json, quiet), **kwargs)
@@ -184,34 +84,43 @@ def output_options(command):
     return with_output
 
 
-def writing_options(command):
-    """Adds --force, --json and --quiet to a command that writes files; see `outputs.py`."""
+def writing_options(command: Command) -> Command:
+    """Add --force, --json and --quiet to a command that writes files; see `outputs.py`."""
 
-    @click.option("--force", is_flag=True, help="Replace files that another command wrote.")
+    @click.option(
+        "--force", is_flag=True, help="Replace existing files that another command wrote."
+    )
     @output_options
     @functools.wraps(command)
-    def with_force(*args, force, **kwargs):
+    def with_force(*args: Any, force: bool, **kwargs: Any) -> Any:
         return command(*args, **kwargs)
 
     return with_force
 
 
-def render_options(command, spp=SPP, size="512, or what a scene file has"):
-    """Adds --spp, --noise-floor, --size and --seed to a command that renders.
+def render_options(
+    command: Command, spp: int = SPP, size: str = "512, or the size in a scene file"
+) -> Command:
+    """Add --spp, --noise-floor, --size and --seed to a command that renders.
 
-    `spp`, `size`: what they are by default, in words.
+    `spp` and `size` are the defaults that the help states.
     """
-    count = {"type": click.IntRange(min=1), "metavar": "N"}
-    seed = {"type": click.IntRange(min=0), "metavar": "N"}
-    floor = "Noise floor, as a PSNR, to reach by adding samples; 45dB is hardly visible."
+    count: dict[str, Any] = {"type": click.IntRange(min=1), "metavar": "N"}
+    seed: dict[str, Any] = {"type": click.IntRange(min=0), "metavar": "N"}
+    floor = (
+        "Add samples until the noise floor, the PSNR between two renderings with different seeds, "
+        "reaches this value; noise at 45dB is hardly visible."
+    )
     for option in (
-        click.option("--seed", default=0, show_default=True, help="Seed of the samples.", **seed),
+        click.option(
+            "--seed", default=0, show_default=True, help="Seed of random numbers.", **seed
+        ),
         click.option("--size", help=f"Side of a picture [pixels]. Default: {size}.", **count),
         click.option("--noise-floor", type=Decibels(), metavar="DECIBELS", help=floor),
         click.option(
             "--spp",
-            help="Samples per pixel; with --noise-floor the largest number. "
-            f"Default: {spp}, or what it takes.",
+            help="Samples per pixel; with --noise-floor, the largest number of them. "
+            f"Default: {spp}; with --noise-floor, as many as are needed.",
             **count,
         ),
     ):
@@ -219,16 +128,19 @@ def render_options(command, spp=SPP, size="512, or what a scene file has"):
     return command
 
 
-def scene_options(command, files=SCENE_FILES):
-    """Adds --scene, --up and --envmap to a command that renders materials; `files`: in words, which
-    of the user's may be scenes. The command gets `scene`, "FILE.obj#z" of a mesh with --up z."""
-    # by the names of their files: to import the scenes takes a second
+def scene_options(command: Command, files: str = SCENE_FILES) -> Command:
+    """Add --scene, --up and --envmap to a command that renders materials.
+
+    `files` says in the help which of the user's files may be scenes. The command gets `scene`,
+    which is "FILE.obj#z" for a mesh with --up z, and `environment`.
+    """
+    # The files' names are listed because importing the scenes takes a second
     folder = Path(brdfkit.__file__).with_name("rendering") / "scenes"
     names = ", ".join(sorted(file.stem for file in folder.glob("[!_]*.py")))
     maps = ", ".join(catalogue.list_environments())
 
     @functools.wraps(command)
-    def with_scene(*args, scene, up, **kwargs):
+    def with_scene(*args: Any, scene: str, up: str | None, **kwargs: Any) -> Any:
         if up is not None:
             if not scene.lower().endswith((".obj", ".ply")):
                 raise BrdfkitError(f"--up turns a mesh, .obj or .ply; leave it out for {scene}.")
@@ -240,28 +152,29 @@ def scene_options(command, files=SCENE_FILES):
             "--envmap",
             "environment",
             metavar="NAME|FILE",
-            help=f"Light by an environment map, not by the sky: {maps}; or .exr or .hdr.",
+            help=f"Environment map that lights the scene instead of the sky: {maps}; or a file, "
+            ".exr or .hdr.",
         ),
         click.option(
             "--up",
             type=click.Choice("xyz"),
-            help="Which axis of a mesh points up. Default: y, or z where it stands that way only, "
-            "which is then said.",
+            help="The axis of a mesh that points up. Default: y, or z where the mesh stands only "
+            "that way; a message then says so.",
         ),
         click.option(
             "--scene",
             default="ball",
             show_default=True,
             metavar="SCENE",
-            help=f"What shows the material: {names}; {files}.",
+            help=f"The scene that shows the material: {names}; {files}.",
         ),
     ):
         with_scene = option(with_scene)
     return with_scene
 
 
-def tone_options(command):
-    """Adds --tone-mapping, --exposure and --tone-by; the command gets `tone`, a `ToneMapping`."""
+def tone_options(command: Command) -> Command:
+    """Add --tone-mapping, --exposure and --tone-by; the command gets `tone`, a `ToneMapping`."""
 
     @click.option(
         "--tone-mapping",
@@ -269,8 +182,8 @@ def tone_options(command):
         default="range",
         metavar="CURVE",
         show_default=True,
-        help="How the PNG shows radiance: range (1 is white), reinhard, logarithmic or filmic, "
-        "before the curve of sRGB.",
+        help="Curve that maps radiance to the PNG's brightness, before that of sRGB: range (which "
+        "shows 1 as white), reinhard, logarithmic or filmic.",
     )
     @click.option(
         "--exposure",
@@ -278,7 +191,7 @@ def tone_options(command):
         default=1.0,
         metavar="FACTOR",
         show_default=True,
-        help="Multiply radiance by this number before.",
+        help="Factor on the radiance before tone mapping.",
     )
     @click.option(
         "--tone-by",
@@ -286,26 +199,12 @@ def tone_options(command):
         default="channel",
         metavar="MEANS",
         show_default=True,
-        help="What the curve is of: each channel, or luminance, which keeps colours.",
+        help="Apply the curve to each channel, or to the luminance, which keeps colours.",
     )
     @functools.wraps(command)
-    def with_tone(*args, curve, exposure, by, **kwargs):
+    def with_tone(*args: Any, curve: str, exposure: float, by: str, **kwargs: Any) -> Any:
         from brdfkit.images.tone_mapping import ToneMapping
 
         return command(*args, tone=ToneMapping(curve, exposure, by), **kwargs)
 
     return with_tone
-
-
-def values_option(command):
-    """Adds --set, for the parameters of models."""
-    option = click.option(
-        "-p",
-        "--set",
-        "values",
-        multiple=True,
-        metavar="PARAMETER=VALUE",
-        help="Set a parameter of the models, or of the renderer of a volume, to a number or R,G,B; "
-        "repeat it for more.",
-    )
-    return option(command)

@@ -1,64 +1,79 @@
-"""`brdfkit fit -m best`: ranks the models, says which one is recommended, and why."""
+"""Ranks models for `-m best` of `brdfkit fit` and `brdfkit report`, and prints the ranking."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from brdfkit.cli.errors import say
+from brdfkit.cli.console import Console
+from brdfkit.cli.errors import print_message
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import exit_status
 
+if TYPE_CHECKING:
+    from brdfkit.fitting.ranking import Ranking
+    from brdfkit.materials.measured import Measured
+
 BEST = "best"  # stands for the recommended model
-# Options that a ranking leaves out, with the settings that they give
-LATER = {"robust": "robust", "spectral": "spectral", "fix": "fixed", "bound": "bounds"}
+# Options that a ranking ignores, by the names of their settings
+IGNORED_OPTIONS = {"robust": "robust", "spectral": "spectral", "fixed": "fixed", "bounds": "bound"}
 
 
-def recommend(names, material, how, console):
-    """The `names` with the recommended model in place of BEST, and the `Ranking`, None without.
+def recommend(
+    names: list[str], material: Measured, how: Mapping[str, Any], console: Console
+) -> tuple[list[str], Ranking | None]:
+    """Rank all models on a material, and print the ranking, if BEST is among the `names`.
 
-    `how`: loss, angle and seed of the fit. An interrupted ranking is printed, and ends the command.
+    Returns the names with the recommended model instead of BEST, and the ranking or None. `how` are
+    the settings of the fit. An interrupted ranking ends the command.
     """
     from brdfkit.fitting.ranking import rank
     from brdfkit.fitting.settings import require_plain
 
     if BEST not in names:
         return names, None
-    if how["loss"] == "picture":  # what the fit would refuse after the ranking
+    if how["loss"] == "picture":  # the fit would refuse these settings only after the ranking
         require_plain(robust=how.get("robust"), spectral=how.get("spectral"))
-    for option, name in LATER.items():
-        if how.get(name):
-            say(f"models are ranked without --{option}; the fit then uses it.")
-    how = {name: how[name] for name in ("loss", "max_angle", "seed")}
+    for setting, option in IGNORED_OPTIONS.items():
+        if how.get(setting):
+            print_message(f"models are ranked without --{option}; the fit then uses it.")
+    settings = {name: how[name] for name in ("loss", "max_angle", "seed")}
     with console.progress(f"rank models on {material.name}") as progress:
-        ranking = rank(material, **how, progress=progress)
+        ranking = rank(material, **settings, progress=progress)
+    _print_ranking(ranking, console)
     if len(ranking.rows) < ranking.requested:
-        print_ranking(ranking, console)
-        say(f"interrupted; {len(ranking.rows)} of {ranking.requested} models are ranked.")
+        print_message(f"interrupted; {len(ranking.rows)} of {ranking.requested} models are ranked.")
         click.get_current_context().exit(exit_status())
-    chosen = [ranking.best if name == BEST else name for name in names]
-    return list(dict.fromkeys(chosen)), ranking
+    models = [ranking.best if name == BEST else name for name in names]
+    return list(dict.fromkeys(models)), ranking
 
 
-def refuse_best(names):
-    """Raise `BrdfkitError` where `names`, of models for several files, have BEST."""
+def refuse_best(names: Iterable[str]) -> None:
+    """Raise `BrdfkitError` where BEST is among the `names` of models for several files."""
     if BEST in names:
         raise BrdfkitError("-m best ranks models on one material; name one FILE, or a model.")
 
 
-def print_ranking(ranking, console):
-    """Print the table and the sentences of a ranking, but not as JSON; say what failed."""
+def _print_ranking(ranking: Ranking, console: Console) -> None:
+    """Print a ranking as a table and sentences, unless results are JSON, and the models' errors."""
     from brdfkit.fitting.ranking.result import COLUMNS
 
     if not console.as_json:
         title = f"{ranking.material}: errors ({ranking.loss}) at directions that were held out"
         console.table(COLUMNS, ranking.table(), title=title)
-        said = [ranking.reason, *ranking.doubts, ranking.suits, ""]
-        console.out.print("\n".join(filter(None, said)))
+        sentences = [ranking.reason, *ranking.doubts, ranking.suits, ""]
+        console.out.print("\n".join(filter(None, sentences)))
     for problem in ranking.problems:
-        say(problem)
+        print_message(problem)
 
 
-def record(ranking):
-    """A ranking for JSON; None stays so."""
-    return ranking and {
+def to_record(ranking: Ranking | None) -> dict[str, Any] | None:
+    """Return the record of a ranking for JSON; None stays None."""
+    if ranking is None:
+        return None
+    return {
         "best": ranking.best,
         "reason": ranking.reason,
         "models": [

@@ -1,19 +1,29 @@
-"""`brdfkit render` of a volume: its options, and its picture."""
+"""The options of `brdfkit render` for volumes, and the rendering of a volume or its film."""
+
+from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 import brdfkit
-from brdfkit.cli.errors import say
-from brdfkit.cli.settings import parse_settings
+from brdfkit.cli.console import Console
+from brdfkit.cli.errors import print_message
+from brdfkit.cli.settings import Command, parse_settings
 from brdfkit.core.errors import BrdfkitError, nearest, no_such
 
-# by the names of their files: to import them takes a second
+if TYPE_CHECKING:
+    from brdfkit.rendering import Rendering
+    from brdfkit.rendering.film import Film
+    from brdfkit.volumes import Volume
+
+# The files' names are listed because importing the transfer functions takes a second
 PRESETS = (Path(brdfkit.__file__).parent / "volumes" / "transfer" / "presets").glob("*.json")
 NUMBER = {"type": float, "metavar": "NUMBER"}
-OPTIONS = {
+VOLUME_OPTIONS: dict[str, dict[str, Any]] = {
     "--renderer": {
         "metavar": "NAME",
         "help": "single_scattering, emission_absorption, maximum_intensity or isosurface. "
@@ -21,62 +31,64 @@ OPTIONS = {
     },
     "--transfer": {
         "metavar": "NAME|FILE",
-        "help": f"Transfer function: {', '.join(sorted(path.stem for path in PRESETS))}; or .json. "
-        "Default: by the data.",
+        "help": f"transfer function: {', '.join(sorted(path.stem for path in PRESETS))}; or a "
+        ".json file. Default: chosen by the data.",
     },
-    "--density": NUMBER | {"help": "Multiply the transfer function's extinction by this number."},
+    "--density": NUMBER | {"help": "factor on the transfer function's extinction. Default: 1."},
     "--azimuth": NUMBER
-    | {"help": "Where the camera stands [degrees]: 0 is in front. Default: 30."},
-    "--elevation": NUMBER | {"help": "How high the camera stands [degrees]. Default: 20."},
-    "--background": NUMBER | {"help": "Radiance of the background, 0 is black. Default: 0.02."},
-    "--seconds": NUMBER | {"help": "Add samples for so long [s]."},
+    | {"help": "angle of the camera around the volume [degrees]; 0 is in front. Default: 30."},
+    "--elevation": NUMBER | {"help": "angle of the camera above the horizon. Default: 20."},
+    "--background": NUMBER | {"help": "radiance of the background; 0 is black. Default: 0.02."},
+    "--seconds": NUMBER | {"help": "time during which samples are added [s]."},
     "--orbit": {
         "type": click.IntRange(min=2),
         "metavar": "FRAMES",
-        "help": "Make a film once around it, .gif, .png or .webp. Default size: 320.",
+        "help": "make a film of a camera that circles it once, .gif, .png or .webp. Default size: "
+        "320.",
     },
-    "--labels": {"is_flag": True, "help": "The values are labels, not densities."},
+    "--labels": {"is_flag": True, "help": "treat the values as labels, not as densities."},
     "--downsample": {
         "type": click.IntRange(min=1),
         "metavar": "N",
-        "help": "Make one voxel of N×N×N while it is read.",
+        "help": "average blocks of N×N×N voxels while the file is read.",
     },
 }
 
 
-def volume_options(command):
-    """Adds OPTIONS to a command; it gets `of_volume`, the values of those that were given."""
-    names = [option.removeprefix("--") for option in OPTIONS]
+def volume_options(command: Command) -> Command:
+    """Add VOLUME_OPTIONS to a command; it gets `volume_settings`, the values that were given."""
+    names = [option.removeprefix("--") for option in VOLUME_OPTIONS]
 
     @functools.wraps(command)
-    def with_given(*args, **kwargs):
+    def with_settings(*args: Any, **kwargs: Any) -> Any:
         values = {name: kwargs.pop(name) for name in names}
-        given = {name: v for name, v in values.items() if not (v is None or v is False)}
-        return command(*args, of_volume=given, **kwargs)
+        settings = {name: v for name, v in values.items() if not (v is None or v is False)}
+        return command(*args, volume_settings=settings, **kwargs)
 
-    for option, how in reversed(OPTIONS.items()):
-        text = {"help": f"Of a volume: {how['help'][0].lower()}{how['help'][1:]}"}
-        with_given = click.option(option, **how | text)(with_given)
-    return with_given
+    for option, attributes in reversed(VOLUME_OPTIONS.items()):
+        text = {"help": f"For a volume: {attributes['help']}"}
+        with_settings = click.option(option, **attributes | text)(with_settings)
+    return with_settings
 
 
-def the_volume(things, of_volume):
-    """The volume that is the one of `things` to render; None where they are materials."""
+def find_volume(things: Sequence[str], settings: dict[str, Any]) -> str | None:
+    """Return the first of the `things` to render that is a volume, or None.
+
+    Raises `BrdfkitError` for `settings` of volumes without a volume, and for misspelt volumes.
+    """
     from brdfkit.volumes.loading import looks_like_volume
 
-    found = [thing for thing in things if looks_like_volume(thing)]
-    if not found and of_volume:
-        option = f"--{next(iter(of_volume))}"
+    volume = next(filter(looks_like_volume, things), None)
+    if settings and not volume:
+        option = f"--{next(iter(settings))}"
         raise BrdfkitError(f"{option} is for volumes only, and {things[0]} is none: leave it out.")
     for thing in things:
-        _refuse_nearly_made(thing)
-    if found and len(things) > 1:
-        raise BrdfkitError(f"{found[0]} is a volume, which is rendered alone: name nothing else.")
-    return found[0] if found else None
+        _refuse_misspelt_volume(thing)
+    return volume
 
 
-def _refuse_nearly_made(word):
-    """Refuse a word that is no file and more like the name of a made volume than of a material."""
+def _refuse_misspelt_volume(word: str) -> None:
+    """Raise `BrdfkitError` for an unknown word that resembles a made volume most."""
     from brdfkit.core import catalogue
     from brdfkit.model import labels
     from brdfkit.volumes import made
@@ -88,38 +100,44 @@ def _refuse_nearly_made(word):
         raise no_such("file, model, material or volume", word, known)
 
 
-def render_volume(name, of_volume, values, console, **how):
-    """The `Rendering`, or with --orbit the `Film`, of the volume of this name or file.
+def render_volume(
+    name: str, settings: dict[str, Any], values: Sequence[str], console: Console, **how: Any
+) -> Rendering | Film:
+    """Render the volume of a name or a file, or a film of it if `settings` contains "orbit".
 
-    `of_volume`: options of volumes; `values`: of --set; `how`: what `brdfkit.render_volume` takes.
+    `settings` are the values of VOLUME_OPTIONS, `values` those of --set, and `how` are arguments
+    of `brdfkit.render_volume`.
     """
     from brdfkit import volumes
     from brdfkit.rendering import render_orbit, render_volume
     from brdfkit.volumes.summary.summary import may_be_labels
 
-    loading = {key: of_volume.pop(key) for key in ("labels", "downsample") if key in of_volume}
-    settings = parse_settings(values, "--set", free=True)
+    loading = {key: settings[key] for key in ("labels", "downsample") if key in settings}
+    parameters = parse_settings(values, "--set", free=True)
     with console.progress(f"read {name}"):
         volume = volumes.load(name, **loading)
     if may_be_labels(volume) and "labels" not in loading:
-        say(f"{volume.name} may hold labels, not densities: if so, add --labels.")
-    _warn_of_units(volume, of_volume.get("transfer"))
+        print_message(f"{volume.name} may hold labels, not densities: if so, add --labels.")
+    _warn_of_units(volume, settings.get("transfer"))
     with console.progress("render") as progress:
-        given = {key: value for key, value in how.items() if value is not None}
-        given |= of_volume | {"settings": settings, "progress": progress}
-        frames = given.pop("orbit", None)
-        if frames:
-            return render_orbit(volume, frames=frames, **given)
-        return render_volume(volume, **given)
+        how = {key: value for key, value in how.items() if value is not None}
+        how |= {key: value for key, value in settings.items() if key not in loading}
+        how |= {"settings": parameters, "progress": progress}
+        if "orbit" in how:
+            return render_orbit(volume, frames=how.pop("orbit"), **how)
+        return render_volume(volume, **how)
 
 
-def _warn_of_units(volume, transfer):
-    """Say where a transfer function is for HU, in which air is -1000, and no value is below 0."""
+def _warn_of_units(volume: Volume, transfer: str | None) -> None:
+    """Print a warning if a transfer function is for HU and the volume has no value below 0.
+
+    In Hounsfield units (HU) air is -1000, so scans have negative values.
+    """
     from brdfkit.volumes import TransferFunction
 
     low, high = volume.range
     if transfer and low >= 0 and TransferFunction.load(transfer).value_unit == "HU":
-        say(
+        print_message(
             f"{transfer} is for HU, in which air is -1000; {volume.name} has {low:.6g} to "
             f"{high:.6g}: if these are no HU, leave --transfer out."
         )

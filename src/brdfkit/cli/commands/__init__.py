@@ -1,6 +1,6 @@
-"""The commands of the command line: one file is one command; no list names them.
+"""The commands of the command line: each file NAME.py holds the click command NAME.
 
-A file NAME.py holds the click command NAME, and the functions that print its result. It imports
-heavy modules only when the command runs, so that `--help` is instant. What several commands share
-lies beside this folder.
+No list names the commands. A file also holds the functions that print the command's result. It
+imports slow modules only when the command runs, so that `--help` appears at once. Code that several
+commands share lies in the folder above.
 """

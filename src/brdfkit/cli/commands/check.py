@@ -1,36 +1,45 @@
 """`brdfkit check`: checks that materials and plugins do what a renderer and a fit need."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
 import click
 
-from brdfkit.cli.options import output_options, values_option
-from brdfkit.cli.settings import parse_settings
+from brdfkit.cli.console import Console
+from brdfkit.cli.options import output_options
+from brdfkit.cli.settings import parse_settings, values_option
+
+if TYPE_CHECKING:
+    from brdfkit.checks import Report
 
 
 @click.command()
 @click.argument("things", nargs=-1, required=True, metavar="NAME|FILE.py|FIT|FILE...")
 @values_option
 @output_options
-def check(things, values, console):
+def check(things: tuple[str, ...], values: tuple[str, ...], console: Console) -> None:
     """Check materials, models and plugins.
 
-    A material (a model, a fit or a measured file) should sample, conserve energy and
-    differentiate; a plugin of another kind should do what its kind needs: `brdfkit plugins` lists
-    them. The exit status is 1 where a check fails.
+    For a material (a model, a fit or a measured file), the checks are that its sampling agrees with
+    its values, that it conserves energy and that it has derivatives. A plugin of another kind has
+    the checks of its kind; `brdfkit plugins` lists them. The exit status is 1 if a check fails.
     """
-    from brdfkit.checks import check as check_thing
+    from brdfkit.checks import check as run_checks
 
     reports = []
-    for name, thing in [(name, _find_subject(name, values)) for name in things]:
+    for name, subject in [(name, _find_subject(name, values)) for name in things]:
         with console.progress(f"check {name}") as progress:
-            reports.append(check_thing(thing, progress=progress))
+            reports.append(run_checks(subject, progress=progress))
     _print_reports(reports, console)
     click.get_current_context().exit(0 if all(reports) else 1)
 
 
-def _find_subject(name, settings):
-    """The material of a name, or the dictionary of a plugin that is no model, with `settings`."""
+def _find_subject(name: str, settings: Sequence[str]) -> Any:
+    """Return the material, or the dictionary of a plugin that is no model, with `settings`."""
     from brdfkit.checks.plugin_subject import is_no_model, make_example, require_declared
-    from brdfkit.cli.arguments import material
+    from brdfkit.cli.arguments import find_material
     from brdfkit.mitsuba_bridge.registration.users_plugins import load_plugins
 
     if name.endswith(".py"):
@@ -39,19 +48,20 @@ def _find_subject(name, settings):
         values = parse_settings(settings, "--set", "VALUE", "R,G,B")
         require_declared(name, values)
         return make_example(name, **values)
-    return material(name, settings) if settings else name
+    return find_material(name, settings) if settings else name
 
 
-def _print_reports(reports, console):
+def _print_reports(reports: Sequence[Report], console: Console) -> None:
+    """Print the reports of the checks, one after another."""
     if console.as_json:
-        console.json([_record(report) for report in reports])
+        console.json([_to_record(report) for report in reports])
         return
     for report in reports:
         console.out.print(str(report))
 
 
-def _record(report):
-    """A `Report` for JSON."""
+def _to_record(report: Report) -> dict[str, Any]:
+    """Return the record of a report for JSON."""
     findings = [
         {"check": f.check, "passed": bool(f.passed), "figure": f.figure} for f in report.findings
     ]

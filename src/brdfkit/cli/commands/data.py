@@ -1,38 +1,50 @@
-"""`brdfkit data`: lists public measurements and environment maps, and downloads the former."""
+"""`brdfkit data`: lists public measurements and environment maps, and downloads measurements."""
 
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from brdfkit.cli.console import Console
 from brdfkit.cli.options import output_options
+
+if TYPE_CHECKING:
+    from brdfkit.materials.collections.public import Collection
 
 
 @click.group(invoke_without_command=True)
 @output_options
 @click.pass_context
-def data(context, console):
+def data(context: click.Context, console: Console) -> None:
     """List public data, or download measurements.
 
     \b
-    brdfkit data                                the collections, of maps too
-    brdfkit data list merl                      the materials of one
+    brdfkit data                                list the collections
+    brdfkit data list merl                      list the materials of one
     brdfkit data get merl/gold-metallic-paint   download a material
     brdfkit fit merl/gold-metallic-paint        use it by its name
 
-    Downloads are kept in your cache folder. Only `brdfkit data get` downloads anything.
+    Downloaded files are kept in your cache folder. Only `brdfkit data get` uses the network.
     """
-    from brdfkit.core.catalogue import list_map_collections as map_collections
+    from brdfkit.core.catalogue import list_map_collections
     from brdfkit.materials.collections.public import list_collections
 
     if context.invoked_subcommand is None:
-        _print_all(list_collections(), map_collections(), console)
+        _print_all(list_collections(), list_map_collections(), console)
 
 
 @data.command("list")
 @click.argument("collection")
 @output_options
-def data_list(collection, console):
-    """List the materials of a COLLECTION; of one of maps, its page and terms."""
+def data_list(collection: str, console: Console) -> None:
+    """List the materials of a COLLECTION.
+
+    For a collection of environment maps, the command prints its web page and its terms.
+    """
     from brdfkit.core import catalogue
     from brdfkit.materials.collections import public
 
@@ -48,11 +60,11 @@ def data_list(collection, console):
 @data.command("get")
 @click.argument("names", nargs=-1, required=True, metavar="NAME...")
 @output_options
-def data_get(names, console):
+def data_get(names: tuple[str, ...], console: Console) -> None:
     """Download materials.
 
-    A NAME has its collection before it, as in merl/gold-metallic-paint. Checksums are verified. An
-    interrupted download goes on where it stopped, unless the file is part of an archive (merl).
+    A NAME begins with its collection, as in merl/gold-metallic-paint. Checksums are verified. An
+    interrupted download continues where it stopped, unless the file is part of an archive (merl).
     """
     from brdfkit.materials.collections.downloading import download
     from brdfkit.materials.collections.public import find_collection
@@ -60,28 +72,31 @@ def data_get(names, console):
     collections = {c.name: c for c in map(find_collection, names)}
     files = {}
     for name in names:
-        with console.progress(f"download {name}") as progress:
+        with console.progress(f"download {name}") as bar:
+            progress: Any = bar  # shows a total of None, too
             files[name] = download(name, progress)
     _print_files(files, collections.values(), console)
 
 
-def _print_all(collections, map_collections, console):
-    """Print what comes with brdfkit, and the public collections."""
+def _print_all(
+    collections: Mapping[str, Collection], map_collections: Mapping[str, Any], console: Console
+) -> None:
+    """Print the materials and maps that come with brdfkit, and the public collections."""
     from brdfkit.materials.collections.public import cache_folder
 
     if console.as_json:
         maps = {name: asdict(c) for name, c in map_collections.items()}
-        found = {name: _record(c) for name, c in collections.items()}
-        console.json(found | {"environment maps": maps})
+        records = {name: _to_record(c) for name, c in collections.items()}
+        console.json(records | {"environment maps": maps})
         return
     _print_collections(collections, console)
     console.out.print("The materials of a collection: brdfkit data list NAME")
     console.out.print(f"Downloaded files lie in {cache_folder()}")
     _print_map_collections(map_collections, console)
-    console.out.print("Fetch a map from its page, and look at it: brdfkit info MAP.hdr")
+    console.out.print("Download a map from its page, and look at it: brdfkit info MAP.hdr")
 
 
-def _print_collections(collections, console):
+def _print_collections(collections: Mapping[str, Collection], console: Console) -> None:
     """Print the materials that come with brdfkit, and the public collections."""
     from brdfkit.core.catalogue import list_materials
 
@@ -94,8 +109,8 @@ def _print_collections(collections, console):
     console.table(columns, rows)
 
 
-def _print_map_collections(collections, console):
-    """Print the environment maps that come with brdfkit, and where there are others."""
+def _print_map_collections(collections: Mapping[str, Any], console: Console) -> None:
+    """Print the environment maps that come with brdfkit, and collections of others."""
     from brdfkit.core.catalogue import list_environments
 
     licence = next(iter(list_environments().values())).licence
@@ -104,10 +119,10 @@ def _print_map_collections(collections, console):
     console.table(("environment maps", "what they are", "where", "licence"), rows)
 
 
-def _print_collection(collection, console):
+def _print_collection(collection: Collection, console: Console) -> None:
     """Print the materials of a collection."""
     if console.as_json:
-        console.json(_record(collection))
+        console.json(_to_record(collection))
         return
     files, here = collection.files, collection.files_on_disk()
     rows = []
@@ -119,11 +134,13 @@ def _print_collection(collection, console):
         console.table(["material", ">size [MB]", ""], rows)
     console.out.print(str(collection))
     if not any(listed.url for listed in files.values()):
-        console.out.print(f"To use one, {collection.by_hand()}.")
+        console.out.print(f"To use one, {collection.explain_by_hand()}.")
 
 
-def _print_files(files, collections, console):
-    """Print where the downloaded files are, and the terms of their publishers."""
+def _print_files(
+    files: Mapping[str, Path], collections: Iterable[Collection], console: Console
+) -> None:
+    """Print the paths of downloaded files, and the terms of their publishers."""
     if console.as_json:
         console.json({"files": files, "terms": {c.name: c.terms for c in collections}})
         return
@@ -133,10 +150,10 @@ def _print_files(files, collections, console):
         console.out.print(str(collection))
 
 
-def _record(collection):
-    """A collection for JSON, with the place of each file here, or where to get it."""
+def _to_record(collection: Collection) -> dict[str, Any]:
+    """Return the record of a collection for JSON, with the path or the address of each file."""
     here = collection.files_on_disk()
-    files = {
+    files: dict[str, dict[str, Any]] = {
         name: {"file": listed.file, "bytes": listed.bytes or None, "url": listed.url or None}
         for name, listed in collection.files.items()
     }

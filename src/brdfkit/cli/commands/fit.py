@@ -1,33 +1,42 @@
 """`brdfkit fit`: fits models to measured materials, and compares them."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
 
-from brdfkit.cli.commands.render import path_trace
-from brdfkit.cli.errors import say
-from brdfkit.cli.fit_output import print_fits
+from brdfkit.cli.console import Console
+from brdfkit.cli.errors import print_message
+from brdfkit.cli.fit_output import print_fits, print_sweep
 from brdfkit.cli.options import (
-    fit_options,
+    SPP,
     mend_options,
+    output_option,
     render_options,
     scene_options,
     writing_options,
 )
+from brdfkit.cli.picture_output import path_trace, write_picture
+from brdfkit.cli.settings import fit_options
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import Interrupted, exit_status
+
+if TYPE_CHECKING:
+    from brdfkit.materials.measured import Measured
+    from brdfkit.regression import Fit
 
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @fit_options("all")
 @mend_options
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="Folder for the fits. Default: they are not written; with --render, the material's name.",
+@output_option(
+    "Folder for the fits. Default: none, and the fits are not saved; with --render, the "
+    "material's name."
 )
 @click.option(
     "-j",
@@ -39,8 +48,8 @@ from brdfkit.core.interrupts import Interrupted, exit_status
 @click.option(
     "--judge",
     is_flag=True,
-    help="Of several FILEs, tell each fit's error in directions held out and its picture, too; "
-    "takes about as long again.",
+    help="For several FILEs: compute also each fit's error in directions held out and its "
+    "picture's error, which doubles the time.",
 )
 @click.option("--render", "rendered", is_flag=True, help="Path-trace the measurement and the fits.")
 @click.option("--spectral", is_flag=True, help="Fit a weight for each measured wavelength.")
@@ -48,96 +57,148 @@ from brdfkit.core.interrupts import Interrupted, exit_status
 @render_options
 @writing_options
 def fit(
-    files,
-    names,
-    how,
-    mends,
-    output,
-    workers,
-    judge,
-    rendered,
-    spectral,
-    scene,
-    environment,
-    spp,
-    noise_floor,
-    size,
-    seed,
-    console,
-):
+    files: tuple[str, ...],
+    names: tuple[str, ...],
+    how: dict[str, Any],
+    mends: dict[str, bool],
+    output: Path | None,
+    workers: int | None,
+    judge: bool,
+    rendered: bool,
+    spectral: bool,
+    console: Console,
+    **pictures: Any,
+) -> None:
     """Fit models to measured materials.
 
-    FILE is a measured file, or the name of a material that brdfkit knows. The errors of the models
-    are compared. Ctrl-C keeps the finished fits. Where a model cannot be fitted, the others go on;
-    the exit status is then 2.
+    FILE is a measured file, or the name of a material that brdfkit knows. The command prints the
+    fits and compares their errors. After Ctrl-C, the finished fits are kept. If a model cannot be
+    fitted, the command continues with the others, and its exit status is 2.
 
-    -m best ranks all models and two-lobe sums by their error at directions that were held out and
-    by their pictures, says which to take and why, and fits that one.
+    With -m best, the command ranks all models and sums of two lobes by their errors at directions
+    that were held out and by their pictures, recommends one with reasons, and fits it.
 
-    Several FILEs are fitted in several processes, past those that cannot be read. With -o a page
-    and a table are written, too, and the same command goes on where it was stopped.
+    Several FILEs are fitted by several processes; files that cannot be read are skipped. With -o,
+    the command also writes a page and a table; when repeated, it continues where it was stopped.
     """
-    from brdfkit.cli.arguments import measured_material, results_folder
-    from brdfkit.cli.many_files import fit_many
-    from brdfkit.cli.rank_output import BEST, print_ranking, recommend, refuse_best
+    from brdfkit.cli.rank_output import BEST, refuse_best
+    from brdfkit.model import labels
+
+    if not rendered:
+        _refuse_picture_options(pictures)
+    _refuse_models(files)
+    models = list(dict.fromkeys(map(labels.load_files, names or labels.models())))
+    for name in models:
+        if name != BEST:
+            labels.model(name)
+    how |= {"seed": pictures["seed"], "spectral": spectral}
+    if len(files) > 1:
+        refuse_best(models)
+        _refuse_mends(mends)
+        if rendered:
+            raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
+        _fit_many(files, models, how, output, workers, judge, console)
+    elif judge:
+        raise BrdfkitError("--judge is for several FILEs; -m best judges all models of one FILE.")
+    else:
+        _fit_one(files[0], models, how, mends, output, pictures if rendered else None, console)
+
+
+def _fit_one(
+    file: str,
+    names: list[str],
+    how: dict[str, Any],
+    mends: dict[str, bool],
+    output: Path | None,
+    pictures: dict[str, Any] | None,
+    console: Console,
+) -> None:
+    """Fit models to one file, path-trace them unless `pictures` is None, and print the results.
+
+    `pictures` are the arguments of `brdfkit.render`.
+    """
+    from brdfkit.cli.arguments import find_measured, results_folder
+    from brdfkit.cli.rank_output import recommend
     from brdfkit.core.memory import require_memory
     from brdfkit.core.names import to_file_stem, to_fit_path
     from brdfkit.fitting.compare import compare
-    from brdfkit.model import labels
     from brdfkit.rendering.scene_input.loading import SIZE, require_scene
 
-    if not rendered:
-        _refuse_for_pictures("scene", "environment", "spp", "noise_floor", "size")
-    _refuse_models(files)
-    names = list(dict.fromkeys(map(labels.load_files, names or labels.models())))
-    for name in names:
-        if name != BEST:
-            labels.model(name)
-    how |= {"seed": seed, "spectral": spectral}
-    if len(files) > 1:
-        refuse_best(names)
-        _refuse_to_mend(mends)
-        if rendered:
-            raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
-        fit_many(files, names, how, output, workers, judge, console)
-        return
-    if judge:
-        raise BrdfkitError("--judge is for several FILEs; -m best judges all models of one FILE.")
-    (file,) = files
     with console.progress(f"read {file}"):
-        material = measured_material(file, mends)
+        material = find_measured(file, mends)
     names, ranking = recommend(names, material, how, console)
-    if ranking:
-        print_ranking(ranking, console)
-    if rendered:
-        require_scene(scene, environment)
+    if pictures:
+        size = pictures["size"]
+        require_scene(pictures["scene"], pictures["environment"])
         require_memory((size, size) if size else SIZE, 1 + len(names))
         output = output or Path(to_file_stem(material.name))
 
-    errors = None  # of pictures
+    errors = None  # of the pictures
     with results_folder(output):
-        _require_files(output, names, rendered)
+        _check_output(output, names, rendered=pictures is not None)
         fits, failed, interrupted = _fit_each(names, material, how, output, console)
-        files = [to_fit_path(output, f.name) for f in fits] if output else []
-        written = [file for file in files if file.is_file()]
-        if rendered and not interrupted:
-            shown, exr = [material, *fits], output / "render.exr"
-            where = {"size": size, "seed": seed, "scene": scene, "environment": environment}
-            picture = path_trace(shown, exr, console, spp, noise_floor, **where)
-            errors, interrupted = picture.errors(), picture.spp < picture.requested
+        paths = [to_fit_path(output, fit.name) for fit in fits] if output else []
+        written = [path for path in paths if path.is_file()]
+        if pictures and output and not interrupted:
+            exr = output / "render.exr"
+            picture = path_trace([material, *fits], SPP, console, **pictures)
+            write_picture(picture, exr)
+            errors, interrupted = picture.errors(), picture.spp < (picture.requested or 0)
             written += [exr, output / "render.png"]
     with console.progress("compare"):
-        comparison = compare(material, fits, max_angle=how["max_angle"], spectral=spectral)
-    print_fits(material, fits, failed, comparison, errors, written, ranking, console)
+        comparison = compare(material, fits, max_angle=how["max_angle"], spectral=how["spectral"])
+    print_fits(
+        material,
+        fits,
+        comparison,
+        console,
+        failed=failed,
+        errors=errors,
+        written=written,
+        ranking=ranking,
+    )
     for error in failed.values():
-        say(error)
+        print_message(error)
     if interrupted or failed:
         click.get_current_context().exit(exit_status() if interrupted else 2)
 
 
-def _require_files(folder, names, rendered):
-    """Raise `BrdfkitError` where a file cannot be written to `folder`, unless it is None."""
-    from brdfkit.cli.arguments import picture_file
+def _fit_many(
+    files: Sequence[str],
+    names: Sequence[str],
+    settings: dict[str, Any],
+    folder: Path | None,
+    workers: int | None,
+    judge: bool,
+    console: Console,
+) -> None:
+    """Fit models to several files by `brdfkit.sweep`, and print their errors.
+
+    Each failure is printed as one sentence; the exit status is then 2.
+    """
+    from brdfkit.cli.arguments import results_folder
+    from brdfkit.fitting.sweeping import sweep
+
+    options: dict[str, Any] = {"folder": folder, "workers": workers, "judge": judge}
+    what = f"fit {len(names)} models to {len(files)} materials"
+    with results_folder(folder), console.progress(what) as progress:
+        result = sweep(files, names, settings=settings, **options, progress=progress)
+    print_sweep(result, folder, console)
+    for problem in result.problems:
+        print_message(problem)
+    interrupted = len(result.rows) < result.requested
+    if interrupted:
+        more = "; the same command continues from there" if folder else ""
+        print_message(
+            f"interrupted; {len(result.fits)} of {result.requested} fits are finished{more}."
+        )
+    if interrupted or result.failed:
+        click.get_current_context().exit(exit_status() if interrupted else 2)
+
+
+def _check_output(folder: Path | None, names: Sequence[str], rendered: bool) -> None:
+    """Raise `BrdfkitError` where a fit or a picture cannot be written to `folder`."""
+    from brdfkit.cli.arguments import check_picture_path
     from brdfkit.core.files import require_writable
     from brdfkit.core.names import to_fit_path
     from brdfkit.model import labels
@@ -145,12 +206,12 @@ def _require_files(folder, names, rendered):
     if folder is not None:
         for name in names:
             require_writable(to_fit_path(folder, labels.model(name)().name))
-    if rendered:
-        picture_file(folder / "render.exr")
+        if rendered:
+            check_picture_path(folder / "render.exr")
 
 
-def _refuse_models(files):
-    """Raise `BrdfkitError` where a model stands among the files: it belongs to -m."""
+def _refuse_models(files: Sequence[str]) -> None:
+    """Raise `BrdfkitError` where a model stands among the files, since it should follow -m."""
     from brdfkit.model import labels
 
     for file in files:
@@ -158,8 +219,8 @@ def _refuse_models(files):
             raise BrdfkitError(f"{file} is a model, not a file: write -m {file}.")
 
 
-def _refuse_to_mend(mends):
-    """Raise `BrdfkitError` where `mends` were given for several files: each has its own."""
+def _refuse_mends(mends: Mapping[str, bool]) -> None:
+    """Raise `BrdfkitError` where `mends` are given for several files, which may differ in them."""
     for option in ("--" + name.replace("_", "-") for name in mends):
         raise BrdfkitError(
             f"{option} mends one FILE: write each one that needs it by brdfkit convert FILE "
@@ -167,46 +228,58 @@ def _refuse_to_mend(mends):
         )
 
 
-def _refuse_for_pictures(*options):
-    """Refuse these options of pictures where they were given without --render."""
+def _refuse_picture_options(pictures: Mapping[str, Any]) -> None:
+    """Raise `BrdfkitError` where options of pictures are given without --render.
+
+    --seed is no such option, as fits have a seed, too.
+    """
     context = click.get_current_context()
-    names = {parameter.name: parameter.opts[0] for parameter in context.command.params}
-    for name in options:
-        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE:
-            raise BrdfkitError(f"{names[name]} is for pictures; add --render, or leave it out.")
+    options = {parameter.name: parameter.opts[0] for parameter in context.command.params}
+    for name in pictures:
+        given = context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+        if given and name != "seed":
+            raise BrdfkitError(f"{options[name]} is for pictures; add --render, or leave it out.")
 
 
-def _fit_each(names, material, how, output, console):
-    """The fits, best first, by name the errors of the models that cannot be fitted, and whether
-    Ctrl-C ended them.
+def _fit_each(
+    names: Sequence[str],
+    material: Measured,
+    how: Mapping[str, Any],
+    output: Path | None,
+    console: Console,
+) -> tuple[list[Fit], dict[str, BrdfkitError], bool]:
+    """Fit each model, and save each fit to the folder `output` as soon as it is finished.
 
-    Each fit is saved as soon as it is finished. Ctrl-C ends with the fits that are finished and, as
-    the last one, with what another one had come to. Where no model can be fitted, the first error
-    is raised.
+    Returns the fits, best first, the errors of models that cannot be fitted, by name, and whether
+    Ctrl-C ended the fits; the last fit is then unfinished. If all models fail, the first error is
+    raised.
     """
     from brdfkit.core.names import to_fit_path
     from brdfkit.fitting.fit import fit as fit_model
     from brdfkit.materials.loading import save
 
-    fits, failed = [], {}
+    fits: list[Fit] = []
+    failed: dict[str, BrdfkitError] = {}
     try:
         for number, name in enumerate(names, 1):
             try:
                 with console.progress(f"fit {name} ({number} of {len(names)})") as progress:
-                    found = fit_model(material, name, **how, progress=progress)
+                    fitted = fit_model(material, name, **how, progress=progress)
             except BrdfkitError as error:
                 failed[name] = error
                 continue
             if output is not None:
-                save(found, to_fit_path(output, found.name))
-            fits.append(found)
+                save(fitted, to_fit_path(output, fitted.name))
+            fits.append(fitted)
     except Interrupted as stop:
-        say(f"interrupted; {len(fits)} of {len(names)} fits are finished, the last one is not.")
+        print_message(
+            f"interrupted; {len(fits)} of {len(names)} fits are finished, the last one is not."
+        )
         return [*sorted(fits, key=lambda f: f.loss), stop.best], failed, True
     except KeyboardInterrupt:
         if not fits:
             raise
-        say(f"interrupted; {len(fits)} of {len(names)} fits are finished.")
+        print_message(f"interrupted; {len(fits)} of {len(names)} fits are finished.")
         return sorted(fits, key=lambda f: f.loss), failed, True
     if not fits:
         raise next(iter(failed.values()))

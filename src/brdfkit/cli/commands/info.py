@@ -1,129 +1,152 @@
-"""`brdfkit info`: prints and draws what a measured material, a map or a volume holds."""
+"""`brdfkit info`: prints and draws the properties of a measured material, a map or a volume."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
+from typing import Any
 
 import click
 
-from brdfkit.cli.options import mend_options, writing_options
+from brdfkit.cli.console import Console
+from brdfkit.cli.options import mend_options, output_option, writing_options
 from brdfkit.core.errors import BrdfkitError
 
 
 @click.command()
 @click.argument("file", required=False)
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="Picture to write, .png, .pdf or .svg: a slice, the lobes and the albedo; or the map; or "
-    "three slices of a volume and its histograms.",
+@output_option(
+    "Picture to write, .png, .pdf or .svg: for a measurement, a slice, the lobes and the albedo; "
+    "for a map, the map; for a volume, three slices and the histograms."
 )
 @click.option(
     "--downsample",
     type=click.IntRange(min=1),
     metavar="N",
-    help="Make one voxel of N×N×N of a volume while it is read.",
+    help="For a volume: average blocks of N×N×N voxels while the file is read.",
 )
 @click.option(
     "--transfer",
     metavar="NAME|FILE",
-    help="Transfer function to draw over the histograms of a volume.",
+    help="For a volume: transfer function to draw over the histograms.",
 )
-@click.option("--labels", is_flag=True, help="The values of a volume are labels, not densities.")
+@click.option(
+    "--labels", is_flag=True, help="For a volume: treat the values as labels, not as densities."
+)
 @mend_options
 @writing_options
-def info(file, output, downsample, transfer, labels, mends, console):
+def info(
+    file: str | None,
+    output: Path | None,
+    downsample: int | None,
+    transfer: str | None,
+    labels: bool,
+    mends: dict[str, bool],
+    console: Console,
+) -> None:
     """Audit a measurement, an environment map or a volume.
 
-    Prints what FILE holds (angles, coverage, reciprocity, noise, albedo and more; of a map, its
-    brightness and where its light comes from; of a volume, its size, which way it lies and its
-    histograms), and what is doubtful. FILE is a measured file, a map (.exr, .hdr), a volume (.nii,
-    .nrrd, .mha, .vti, .tif, .raw, .vol, a folder of DICOM or TIFF), or the name of one that brdfkit
-    knows. Without FILE, lists what comes with brdfkit; `brdfkit data` lists what is public.
+    The command prints the properties of FILE and what is doubtful in it: for a measured material
+    angles, coverage, reciprocity, noise, albedo and more; for an environment map (.exr, .hdr) its
+    brightness and the directions of its light; for a volume (.nii, .nrrd, .mha, .vti, .tif, .raw,
+    .vol, a folder of DICOM or TIFF) its size, orientation and histograms.
+
+    FILE may also be the name of a material, map or volume that brdfkit knows. Without FILE, the
+    command lists what comes with brdfkit; `brdfkit data` lists public data.
     """
-    from brdfkit.cli.arguments import figure_file, write_figure
+    from brdfkit.cli.arguments import check_figure_path, write_figure
     from brdfkit.core import catalogue
     from brdfkit.volumes import TransferFunction
     from brdfkit.volumes.loading import looks_like_volume
 
-    if file is None and output:
-        raise BrdfkitError("--output draws a measurement, a map or a volume: name a FILE.")
-    if file is None and mends:
-        raise BrdfkitError("--mirror-azimuth and --divide-by-cos mend a measurement: name a FILE.")
     if file is None:
+        if output:
+            raise BrdfkitError("--output draws a measurement, a map or a volume: name a FILE.")
+        if mends:
+            raise BrdfkitError(
+                "--mirror-azimuth and --divide-by-cos mend a measurement: name a FILE."
+            )
         _print_shipped(catalogue.list_materials(), catalogue.list_environments(), console)
         return
     if transfer and not (output and looks_like_volume(file)):
         raise BrdfkitError("--transfer is drawn over a volume: name a VOLUME, and an --output.")
-    function = TransferFunction.load(transfer) if transfer else None
-    output = output and figure_file(output)
-    read, audit = _ways(file, downsample, labels, mends)
+    functions = [TransferFunction.load(transfer)] if transfer else []
+    path = check_figure_path(output) if output else None
+    read, audit = _choose_audit(file, downsample, labels, mends)
     with console.progress(f"read {file}"):
         thing = read(file)
     with console.progress("audit"):
-        found = audit(thing)
-    if output:
+        result = audit(thing)
+    if path:
         with console.progress("draw"):
-            write_figure(found.picture(*([function] if function else [])), output)
-    print_audit(found, [output] if output else [], console)
+            write_figure(result.picture(*functions), path)
+    print_audit(result, [path] if path else [], console)
 
 
-def _ways(file, downsample, labels, mends):
-    """The functions that read and audit what the word `file` means: a map, a volume, a material."""
+def _choose_audit(
+    file: str, downsample: int | None, labels: bool, mends: Mapping[str, bool]
+) -> tuple[Callable[[str], Any], Callable[[Any], Any]]:
+    """Return the functions that read and audit `file`: a map, a volume or a material."""
     from brdfkit import volumes
-    from brdfkit.cli.arguments import measured_material, refuse_mends
+    from brdfkit.cli.arguments import find_measured, refuse_mends
     from brdfkit.lighting import environments
     from brdfkit.lighting.environments.map_files import looks_like_map
     from brdfkit.materials.auditing import audit
     from brdfkit.volumes.loading import looks_like_volume
     from brdfkit.volumes.summary.summary import summarise
 
+    def read_volume(name: str) -> volumes.Volume:
+        return volumes.load(name, downsample=downsample or 1, labels=labels or None)
+
     if looks_like_volume(file):
         refuse_mends(file, "a volume", mends)
-        how = {"downsample": downsample or 1, "labels": labels or None}
-        return lambda volume: volumes.load(volume, **how), summarise
+        return read_volume, summarise
     if downsample or labels:
         raise BrdfkitError(f"{file} is no volume: --downsample and --labels are for volumes only.")
     if looks_like_map(file):
         refuse_mends(file, "an environment map", mends)
         return lambda name: name, environments.audit
-    return lambda name: measured_material(name, mends), audit
+    return lambda name: find_measured(name, mends), audit
 
 
-def print_audit(found, written, console):
-    """Print an audit: what was measured, and what is doubtful; then the files `written`."""
+def print_audit(audit: Any, written: Sequence[Path], console: Console) -> None:
+    """Print the properties and doubts of an audit, and the files that were `written`."""
     if console.as_json:
-        console.json(record(found, written))
+        console.json(to_record(audit, written))
         return
-    notes = [(key.replace("_", " "), str(value)) for key, value in _notes(found).items()]
-    console.out.print(found.name, style="bold")
-    console.table(["", ""], list(found.rows().items()), notes)
-    for finding in found.findings():
+    notes = [(key.replace("_", " "), str(value)) for key, value in _find_notes(audit).items()]
+    console.out.print(audit.name, style="bold")
+    console.table(["", ""], list(audit.rows().items()), notes)
+    for finding in audit.findings():
         console.out.print(f"! {finding}")
-    console.list_written(written)
+    console.print_written(written)
 
 
-def record(found, written):
-    """An audit for JSON, with the files `written`."""
+def to_record(audit: Any, written: Sequence[Path]) -> dict[str, Any]:
+    """Return the record of an audit for JSON, with the files that were `written`."""
     return {
-        **{f.name: getattr(found, f.name) for f in fields(found) if f.name != "data"},
-        "findings": found.findings(),
-        "info": _notes(found),
+        **{f.name: getattr(audit, f.name) for f in fields(audit) if f.name != "data"},
+        "findings": audit.findings(),
+        "info": _find_notes(audit),
         "written": written,
     }
 
 
-def _notes(found):
-    """The notes of a measured file; a map has none."""
-    return getattr(found.data, "info", {})
+def _find_notes(audit: Any) -> Mapping[str, Any]:
+    """Return the notes in a measured file; maps have none."""
+    return getattr(audit.data, "info", {})
 
 
-def _print_shipped(materials, environments, console):
+def _print_shipped(
+    materials: Mapping[str, Any], environments: Mapping[str, Any], console: Console
+) -> None:
+    """Print the materials and environment maps that come with brdfkit."""
     if console.as_json:
-        console.json({name: asdict(m) for name, m in (materials | environments).items()})
+        console.json({name: asdict(m) for name, m in {**materials, **environments}.items()})
         return
     kinds = {"material": materials, "environment map": environments}
     for kind, things in kinds.items():
         rows = [(name, m.title, m.licence) for name, m in things.items()]
         console.table([kind, "what it is", "licence"], rows)
-    console.out.print("Use a name where a file is asked for: brdfkit fit NAME, --envmap NAME")
+    console.out.print("A name may replace a file: brdfkit fit NAME, --envmap NAME")

@@ -1,19 +1,24 @@
 """`brdfkit models`: lists the models, or shows the page of one."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import click
 
+from brdfkit.cli.console import Console
 from brdfkit.cli.options import output_options
 
 
 @click.command()
 @click.argument("name", required=False, metavar="[NAME|FILE.py]")
 @output_options
-def models(name, console):
-    """List the models, or show one's page.
+def models(name: str | None, console: Console) -> None:
+    """List the models, or show the page of one.
 
-    FILE.py is a model of yours.
+    FILE.py is a file with your own model.
     """
     from brdfkit.model import labels
 
@@ -23,23 +28,24 @@ def models(name, console):
         print_model(labels.model(labels.load_files(name)), console)
 
 
-def _print_list(models, console):
+def _print_list(models: Mapping[str, Any], console: Console) -> None:
+    """Print the names of models, what they are, and their parameters."""
     from brdfkit.core.discovery.plugin_pages import read_page
 
     if console.as_json:
-        console.json({name: _parameters(model) for name, model in models.items()})
+        console.json({name: _describe_parameters(model) for name, model in models.items()})
         return
     rows = [(name, read_page(m).sentence, ", ".join(m.parameters)) for name, m in models.items()]
     console.table(["model", "what it is", "parameters"], rows)
     console.out.print("One model's page: brdfkit models NAME")
 
 
-def print_model(model, console):
+def print_model(model: Any, console: Console) -> None:
     """Print the page of a model, with its parameters and options."""
     from brdfkit.core.discovery.plugin_pages import read_page
 
     if console.as_json:
-        console.json({model.type_name(): _parameters(model)})
+        console.json({model.type_name(): _describe_parameters(model)})
         return
     console.out.print(str(read_page(model)))
     rows = []
@@ -50,9 +56,11 @@ def print_model(model, console):
         rows.append((name, default, low, high, p.meaning + per_channel))
     console.table(["parameter", ">default", ">from", ">to", "meaning"], rows)
     if model.options:
-        rows = [(n, str(o.default), choices(o), o.meaning) for n, o in model.options.items()]
-        console.table(["option", "default", "choices", "meaning"], rows)
-        with_another = example(model, next(iter(model.options)))
+        choices = [
+            (n, str(o.default), format_choices(o), o.meaning) for n, o in model.options.items()
+        ]
+        console.table(["option", "default", "choices", "meaning"], choices)
+        with_another = make_example_label(model, next(iter(model.options)))
         console.out.print(f"With another choice: brdfkit fit FILE -m {with_another}")
     console.out.print(
         f'Mitsuba: {{"type": "{model.type_name()}", ...}}; every parameter may be a texture.'
@@ -60,14 +68,14 @@ def print_model(model, console):
     print_references(read_page(model), console)
 
 
-def print_references(page, console):
-    """Print the references of the works that a page cites."""
+def print_references(page: Any, console: Console) -> None:
+    """Print the works that the page of a plugin cites."""
     for n, work in enumerate(page.references):
         console.out.print(f"\n{work}" if n == 0 else str(work))
 
 
-def _parameters(model):
-    """The parameters of a model by name, for JSON."""
+def _describe_parameters(model: Any) -> dict[str, dict[str, Any]]:
+    """Return the parameters of a model by name, for JSON."""
     return {
         name: {
             "default": p.default,
@@ -80,8 +88,8 @@ def _parameters(model):
     }
 
 
-def choices(option):
-    """The choices of an option in words."""
+def format_choices(option: Any) -> str:
+    """Return the choices of a model's option in words."""
     if option.choices is None:
         return "any"
     if isinstance(option.default, int):
@@ -89,11 +97,11 @@ def choices(option):
     return ", ".join(map(str, option.choices))
 
 
-def example(model, option):
-    """A label of a model with another choice than the option's default."""
+def make_example_label(model: Any, option: str) -> str:
+    """Return a label of a model in which an option differs from its default."""
     declared = model.options[option]
     if declared.choices is None:
-        return declared.default
+        return str(declared.default)
     after = declared.choices.index(declared.default) + 1
     other = declared.choices[after % len(declared.choices)]
     return f"{model.type_name()}:{option}={other}"

@@ -1,19 +1,23 @@
 """`brdfkit plugins`: lists the plugins of every kind, or shows the page of one."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Iterable
 
 import click
 
+from brdfkit.cli.console import Console
 from brdfkit.cli.options import output_options
 
 
 @click.command()
 @click.argument("word", required=False, metavar="[KIND|NAME|FILE.py]")
 @output_options
-def plugins(word, console):
-    """List the plugins, or show one's page.
+def plugins(word: str | None, console: Console) -> None:
+    """List the plugins, or show the page of one.
 
-    With a KIND, lists the plugins of that kind. FILE.py is a plugin of yours.
+    With a KIND, the command lists the plugins of that kind. FILE.py is a file with your own plugin.
     """
     from brdfkit.core.discovery.plugin_files import KINDS, find_kind, find_plugins
     from brdfkit.core.errors import no_such
@@ -21,35 +25,39 @@ def plugins(word, console):
 
     if word and word.endswith(".py"):
         (word,) = load_plugins(word)
-    names = [name for kind in KINDS for name in find_plugins(kind)]
-    if word is None or word in KINDS:
-        _print_list([word] if word else KINDS, console)
-    elif word in names:
-        _print_page(find_kind(word), word, console)
+    if word is None:
+        _print_list(KINDS, console)
+    elif word in KINDS:
+        _print_list([word], console)
+    elif kind := find_kind(word):
+        _print_page(kind, word, console)
     else:
+        names = [name for kind in KINDS for name in find_plugins(kind)]
         raise no_such("plugin or kind of plugins", word, [*KINDS, *names])
 
 
-def _print_list(kinds, console):
+def _print_list(kinds: Iterable[str], console: Console) -> None:
+    """Print the plugins of these kinds, and what they are."""
     from brdfkit.core.discovery.plugin_files import find_plugins
     from brdfkit.core.discovery.plugin_pages import read_page
 
-    found = {
+    sentences = {
         kind: {n: read_page(s).sentence for n, s in find_plugins(kind).items()} for kind in kinds
     }
     if console.as_json:
-        console.json(found)
+        console.json(sentences)
         return
     rows = [
         (kind, name, sentence)
-        for kind, named in found.items()
+        for kind, named in sentences.items()
         for name, sentence in named.items() or [("", "none yet")]
     ]
     console.table(["kind", "plugin", "what it is"], rows)
     console.out.print("One plugin's page: brdfkit plugins NAME")
 
 
-def _print_page(kind, name, console):
+def _print_page(kind: str, name: str, console: Console) -> None:
+    """Print the page of a plugin, with its parameters."""
     from brdfkit.cli.commands.models import print_model, print_references
     from brdfkit.core.discovery.plugin_files import MODELS, find_plugins, import_plugin
     from brdfkit.core.discovery.plugin_pages import read_page

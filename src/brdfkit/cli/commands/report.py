@@ -1,39 +1,61 @@
 """`brdfkit report`: one HTML file that shows how well models describe a measured material."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from brdfkit.cli.errors import say
-from brdfkit.cli.options import MESHES, fit_options, render_options, scene_options, writing_options
+from brdfkit.cli.console import Console
+from brdfkit.cli.errors import print_message
+from brdfkit.cli.options import (
+    MESHES,
+    output_option,
+    render_options,
+    scene_options,
+    writing_options,
+)
+from brdfkit.cli.settings import fit_options
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import exit_status
 from brdfkit.reporting.pictures.defaults import LARGEST_SIZE, MODELS, SIZE, SMALLEST_SIZE, SPP
+
+if TYPE_CHECKING:
+    from brdfkit.reporting.contents import Contents
 
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 @fit_options(", ".join(MODELS), others="FILE.py with one, a saved fit, FIT.json, or best")
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="The page, .html; of several FILEs a folder. Default: NAME-report.html, and reports.",
+@output_option(
+    "The page to write, .html, or for several FILEs the folder. Default: NAME-report.html, or the "
+    "folder reports."
 )
 @partial(scene_options, files=f"or {MESHES}")
 @partial(render_options, spp=SPP, size=f"{SIZE}; from {SMALLEST_SIZE} to {LARGEST_SIZE}")
 @writing_options
-def report(files, names, how, output, scene, environment, spp, noise_floor, size, seed, console):
+def report(
+    files: tuple[str, ...],
+    names: tuple[str, ...],
+    how: dict[str, Any],
+    output: Path | None,
+    console: Console,
+    **pictures: Any,
+) -> None:
     """Show how well models fit, in one HTML file.
 
-    Any browser shows it, without a network: a verdict, pictures to wipe and to flicker, errors,
-    lobes, slices, parameters and the audit. Where a model cannot be fitted, the others go on; the
-    exit status is then 2. Ctrl-C during the pictures keeps the samples that all have.
+    The file needs no network. It contains a verdict, pictures to compare with a slider or by
+    flickering, errors, lobes, slices, parameters and the audit. If a model cannot be fitted, the
+    command continues with the others, and its exit status is 2. After Ctrl-C during the pictures,
+    they have the samples that were finished for all of them.
 
-    -m best ranks all models first, and shows the ranking and the one that it recommends.
+    With -m best, the command ranks all models first, and shows the ranking and the model that it
+    recommends.
 
-    Of several FILEs each has a report in a folder, with a page that leads to them: index.html.
+    Of several FILEs, each gets a report in a folder; the page index.html lists them.
     """
     from brdfkit.reporting.pictures.pictures import check_pictures
 
@@ -42,21 +64,26 @@ def report(files, names, how, output, scene, environment, spp, noise_floor, size
             raise BrdfkitError(
                 f"{file}: a saved fit goes behind -m; name the material that it was fitted to."
             )
-    names = list(dict.fromkeys(names or MODELS))
-    how |= {"seed": seed}
-    size = SIZE if size is None else size
-    check_pictures(size, scene, environment)
-    pictures = {"spp": spp, "size": size, "seed": seed, "noise_floor": noise_floor}
-    pictures |= {"scene": scene, "environment": environment}
+    models = list(dict.fromkeys(names or MODELS))
+    how |= {"seed": pictures["seed"]}
+    pictures["size"] = SIZE if pictures["size"] is None else pictures["size"]
+    check_pictures(pictures["size"], pictures["scene"], pictures["environment"])
     if len(files) > 1:
-        _report_many(files, names, how, output or Path("reports"), pictures, console)
+        _report_many(files, models, how, output or Path("reports"), pictures, console)
     else:
-        _report_one(files[0], names, how, output, pictures, console)
+        _report_one(files[0], models, how, output, pictures, console)
 
 
-def _report_one(file, names, how, output, pictures, console):
+def _report_one(
+    file: str,
+    names: list[str],
+    how: dict[str, Any],
+    output: Path | None,
+    pictures: dict[str, Any],
+    console: Console,
+) -> None:
     """Fit the models to one file, and write and print its report."""
-    from brdfkit.cli.rank_output import print_ranking, recommend
+    from brdfkit.cli.rank_output import recommend
     from brdfkit.fitting.settings import FitSettings
     from brdfkit.materials.resolve import to_measured
     from brdfkit.reporting.fits import fit_each
@@ -66,42 +93,55 @@ def _report_one(file, names, how, output, pictures, console):
         material = to_measured(file)
     path = check_page(output or choose_file_name(material))
     names, ranking = recommend(names, material, how, console)
-    if ranking:
-        print_ranking(ranking, console)
     fits, failed = fit_each(names, material, FitSettings(**how), console.progress)
     with console.progress("render") as progress:
-        said = write_report(material, fits, path, file, ranking, **pictures, progress=progress)
+        contents = write_report(material, fits, path, file, ranking, **pictures, progress=progress)
     if console.as_json:
-        console.json({**_record(said), "written": [path]})
+        console.json({**_to_record(contents), "written": [path]})
     else:
-        _print_verdict(said, console)
-        console.list_written([path])
+        _print_verdict(contents, console)
+        console.print_written([path])
     for error in failed:
-        say(error)
-    if said.spp < said.requested:
-        say(f"interrupted; rendered with {said.spp} of {said.requested} samples per pixel.")
+        print_message(error)
+    if contents.spp < contents.requested:
+        print_message(
+            f"interrupted; rendered with {contents.spp} of {contents.requested} samples per pixel."
+        )
         click.get_current_context().exit(exit_status())
     if failed:
         click.get_current_context().exit(2)
 
 
-def _print_verdict(said, console):
-    """Print the sentence at the head of a report's `Contents`, and what is wrong or doubtful."""
-    console.out.print(f"{said.material}: {said.verdict}")
-    for warning in said.warnings:
+def _print_verdict(contents: Contents, console: Console) -> None:
+    """Print the verdict of a report, its warnings, and the doubts about the measurement."""
+    console.out.print(f"{contents.material}: {contents.verdict}")
+    for warning in contents.warnings:
         console.out.print(f"! {warning}")
-    console.list_doubts(said.findings)
+    console.print_doubts(contents.findings)
 
 
-def _record(said):
-    """The `Contents` of a report for JSON."""
-    best = {"best": said.names[0], "loss": said.loss, "error": said.error}
-    found = {"material": said.material, "verdict": said.verdict, **best}
-    return {**found, "warnings": said.warnings, "findings": said.findings}
+def _to_record(contents: Contents) -> dict[str, Any]:
+    """Return the record of a report for JSON."""
+    return {
+        "material": contents.material,
+        "verdict": contents.verdict,
+        "best": contents.names[0],
+        "loss": contents.loss,
+        "error": contents.error,
+        "warnings": contents.warnings,
+        "findings": contents.findings,
+    }
 
 
-def _report_many(files, names, how, folder, pictures, console):
-    """Write a report of each file to `folder`, and the page that leads to them."""
+def _report_many(
+    files: Sequence[str],
+    names: list[str],
+    how: dict[str, Any],
+    folder: Path,
+    pictures: dict[str, Any],
+    console: Console,
+) -> None:
+    """Write a report of each file to `folder`, and a page that lists them."""
     from brdfkit.cli.arguments import results_folder
     from brdfkit.cli.rank_output import refuse_best
     from brdfkit.fitting.settings import FitSettings
@@ -109,26 +149,29 @@ def _report_many(files, names, how, folder, pictures, console):
 
     refuse_best(names)
     if folder.suffix.lower() in (".html", ".htm"):
-        raise BrdfkitError(f"{folder} is one page; of several FILEs name a folder behind -o.")
+        raise BrdfkitError(f"{folder} is one page; for several FILEs, name a folder behind -o.")
     with results_folder(folder), console.progress(f"report on {len(files)} materials") as progress:
-        found = report_many(files, names, folder, FitSettings(**how), **pictures, progress=progress)
+        settings = FitSettings(**how)
+        reports = report_many(files, names, folder, settings, **pictures, progress=progress)
     if console.as_json:
         console.json(
             {
-                "reports": [_record(entry.contents) for entry in found.entries],
-                "failed": found.problems,
-                "written": found.written,
+                "reports": [_to_record(entry.contents) for entry in reports.entries],
+                "failed": reports.problems,
+                "written": reports.written,
             }
         )
-    elif found.entries:
-        for entry in found.entries:
+    elif reports.entries:
+        for entry in reports.entries:
             _print_verdict(entry.contents, console)
-        console.list_written(found.written)
-    for problem in found.problems:
-        say(problem)
-    if found.interrupted:
-        fewer = len(found.entries) - found.finished
+        console.print_written(reports.written)
+    for problem in reports.problems:
+        print_message(problem)
+    if reports.interrupted:
+        fewer = len(reports.entries) - reports.finished
         noisy = ", and one with fewer samples per pixel is kept" if fewer else ""
-        say(f"interrupted; {found.finished} of {len(files)} reports are finished{noisy}.")
-    if found.interrupted or found.problems:
-        click.get_current_context().exit(exit_status() if found.interrupted else 2)
+        print_message(
+            f"interrupted; {reports.finished} of {len(files)} reports are finished{noisy}."
+        )
+    if reports.interrupted or reports.problems:
+        click.get_current_context().exit(exit_status() if reports.interrupted else 2)

@@ -1,59 +1,73 @@
-"""`brdfkit reproduce`: runs the claims of a thesis and writes a page of them."""
+"""`brdfkit reproduce`: checks the claims of a thesis, and writes a page about them."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from brdfkit.cli.errors import say
-from brdfkit.cli.options import writing_options
+from brdfkit.cli.console import Console
+from brdfkit.cli.errors import print_message
+from brdfkit.cli.options import output_option, writing_options
 from brdfkit.core.interrupts import exit_status
+
+if TYPE_CHECKING:
+    from brdfkit.theses import Reproduction
 
 
 @click.command()
 @click.argument("name", required=False)
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
+@output_option(
+    "Folder for the page, NAME.md, and its figures. Default: the current folder.",
     default=Path("."),
-    help="Folder for the page, NAME.md, and its figures. Default: this one.",
 )
 @click.option(
     "--data",
     type=click.Path(path_type=Path),
     metavar="FOLDER",
-    help="Folder of the measurements. Default: that which BRDFKIT_DATA names.",
+    help="Folder of the measurements. Default: the variable BRDFKIT_DATA.",
 )
 @click.option(
     "--tables",
     type=click.Path(path_type=Path),
     metavar="FOLDER",
-    help="Folder of tables transcribed from theses. Default: thesis, beside the measurements.",
+    help="Folder of tables that were transcribed from theses. Default: the folder thesis beside "
+    "that of the measurements.",
 )
 @click.option(
     "--part",
     "parts",
     multiple=True,
     metavar="PART",
-    help="Run only this part, as table_9_1; repeat it for more.",
+    help="Check only this part, such as table_9_1; repeat it for more.",
 )
 @writing_options
-def reproduce(name, output, data, tables, parts, console):
-    """Run the claims of a thesis again.
+def reproduce(
+    name: str | None,
+    output: Path,
+    data: Path | None,
+    tables: Path | None,
+    parts: tuple[str, ...],
+    console: Console,
+) -> None:
+    """Check the claims of a thesis by repeating its experiments.
 
-    Writes a page that says of each claim whether it is confirmed, with the printed figures beside
-    ours. Without NAME, lists the theses. The measurements are third-party files: where one is
-    missing, its source is named. Ctrl-C keeps the parts that are finished.
+    The command writes a page that says for each claim whether it is confirmed, with the printed
+    figures beside the repeated ones. Without NAME, it lists the theses. The measurements are
+    third-party files; if one is missing, the command names its source. After Ctrl-C, the parts that
+    are finished are kept.
     """
     from brdfkit.cli.arguments import results_folder
     from brdfkit.theses import list_theses
-    from brdfkit.theses import reproduce as run
+    from brdfkit.theses import reproduce as reproduce_thesis
 
     if name is None:
         _print_theses(list_theses(), console)
         return
     with results_folder(output), console.progress(f"reproduce {name}") as progress:
-        found = run(
+        result = reproduce_thesis(
             name,
             path=output,
             data=data,
@@ -61,26 +75,28 @@ def reproduce(name, output, data, tables, parts, console):
             parts=list(parts) or None,
             progress=progress,
         )
-    _print(found, console)
-    if found.unfinished:
-        say(f"interrupted; not finished: {', '.join(found.unfinished)}.")
+    _print_claims(result, console)
+    if result.unfinished:
+        print_message(f"interrupted; not finished: {', '.join(result.unfinished)}.")
         click.get_current_context().exit(exit_status())
 
 
-def _print_theses(found, console):
+def _print_theses(titles: Mapping[str, str], console: Console) -> None:
+    """Print the names and titles of the theses."""
     if console.as_json:
-        console.json(found)
+        console.json(titles)
         return
-    console.table(["thesis", "title"], list(found.items()))
+    console.table(["thesis", "title"], list(titles.items()))
 
 
-def _print(found, console):
+def _print_claims(result: Reproduction, console: Console) -> None:
+    """Print the verdicts on the claims, and the files that were written."""
     from brdfkit.theses.claims import count_verdicts
 
     if console.as_json:
-        console.json(found)
+        console.json(result)
         return
-    rows = [(c.verdict, c.says, c.where, c.printed, c.ours) for c in found.claims]
-    title = f"{found.name}: {len(rows)} claims: {count_verdicts(found.claims)}"
+    rows = [(c.verdict, c.says, c.where, c.printed, c.ours) for c in result.claims]
+    title = f"{result.name}: {len(rows)} claims: {count_verdicts(result.claims)}"
     console.table(["verdict", "claim", "where", "printed", "ours"], rows, title=title)
-    console.list_written(found.written)
+    console.print_written(result.written)

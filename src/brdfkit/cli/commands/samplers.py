@@ -1,8 +1,11 @@
-"""`brdfkit samplers`: which sampler of an environment map suits it, on a material and a mesh."""
+"""`brdfkit samplers`: finds the best sampler of an environment map for a material and a scene."""
+
+from __future__ import annotations
 
 import click
 
-from brdfkit.cli.errors import say
+from brdfkit.cli.console import Console
+from brdfkit.cli.errors import print_message
 from brdfkit.cli.options import MESHES, output_options
 from brdfkit.core.interrupts import exit_status
 
@@ -14,14 +17,14 @@ from brdfkit.core.interrupts import exit_status
     default="plaster",
     show_default=True,
     metavar="NAME|FILE",
-    help="What is lit: a material, a fit or a model.",
+    help="The material that is lit: a measured one, a fit or a model.",
 )
 @click.option(
     "--scene",
     default="ball",
     show_default=True,
     metavar="SCENE",
-    help=f"A scene under the sky, as of render; or {MESHES}, FILE.obj#z where its axis z is up.",
+    help=f"The scene that is lit, as for render; or {MESHES}, or FILE.obj#z if z points up.",
 )
 @click.option(
     "--rounds",
@@ -29,38 +32,50 @@ from brdfkit.core.interrupts import exit_status
     default=10,
     show_default=True,
     metavar="N",
-    help="Repeats; more of them tell smaller differences from chance.",
+    help="Number of repeats; more of them detect smaller differences.",
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, metavar="N")
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=0,
+    show_default=True,
+    metavar="N",
+    help="Seed of random numbers.",
+)
 @output_options
-def samplers(environment, material, scene, rounds, seed, console):
+def samplers(
+    environment: str, material: str, scene: str, rounds: int, seed: int, console: Console
+) -> None:
     """Find the sampler that suits an environment map.
 
-    Each sampler path-traces the same pictures; what counts is noise × time: what an equally good
-    picture costs. The table says whether a difference to the best is more than chance (Tukey's
-    test, 5 % for all samplers together). Times are of the processor, and a busy machine still
-    blurs them: other work should rest. Compensated samplers suit path tracing only, which samples
-    surfaces as well. Ctrl-C keeps the finished rounds.
+    Each sampler path-traces the same pictures. Its cost is noise × time, which is proportional to
+    the time for a picture of given noise. The table says whether a difference from the best sampler
+    is significant (Tukey's test, 5 % for all samplers together). Times are processor times, but
+    other work on the machine still disturbs them. Compensated samplers suit only path tracing,
+    which also samples BSDFs. After Ctrl-C, the finished rounds are kept.
     """
     from brdfkit.rendering.map_sampling import COLUMNS, compare_samplers
 
     with console.progress("compare samplers") as progress:
-        found = compare_samplers(
+        comparison = compare_samplers(
             environment, material, scene=scene, rounds=rounds, seed=seed, progress=progress
         )
     if console.as_json:
         console.json(
             {
-                "best": found.best,
-                "costs": found.costs,
-                "p_values": found.p_values,
-                "noise": found.noise,
-                "seconds": found.seconds,
+                "best": comparison.best,
+                "costs": comparison.costs,
+                "p_values": comparison.p_values,
+                "noise": comparison.noise,
+                "seconds": comparison.seconds,
             }
         )
     else:
-        console.table(COLUMNS, found.table(), title=found.head)
-        console.out.print(found.verdict)
-    if found.rounds < found.rounds_requested:
-        say(f"interrupted; {found.rounds} of {found.rounds_requested} rounds are finished.")
+        console.table(COLUMNS, comparison.table(), title=comparison.head)
+        console.out.print(comparison.verdict)
+    if comparison.rounds < comparison.rounds_requested:
+        print_message(
+            f"interrupted; {comparison.rounds} of {comparison.rounds_requested} rounds are "
+            "finished."
+        )
         click.get_current_context().exit(exit_status())

@@ -1,44 +1,51 @@
-"""`brdfkit shadows`: techniques of shadow maps on a user's scene, against exact shadows."""
+"""`brdfkit shadows`: compares shadow techniques on a scene with exact shadows."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import click
 
 import brdfkit
-from brdfkit.cli.errors import say
-from brdfkit.cli.options import writing_options
+from brdfkit.cli.console import Console
+from brdfkit.cli.errors import print_message
+from brdfkit.cli.options import output_option, writing_options
 from brdfkit.core.interrupts import exit_status
 
-# by the names of their files: to import them takes a second
+# The files' names are listed because importing the techniques takes a second
 FOLDER = Path(brdfkit.__file__).with_name("shadows") / "maps"
 
 
-def technique(kind, default, help):
-    """An option that chooses files of a folder of `shadow_maps`, by their names."""
+def technique_option(kind: str, default: Sequence[str], help: str) -> Any:
+    """Return an option that chooses files, by name, in the folder `kind`s of `shadows/maps`."""
     names = ", ".join(sorted(file.stem for file in (FOLDER / f"{kind}s").glob("[!_]*.py")))
-    usual = ", ".join(default) or "all"
+    default_names = ", ".join(default) or "all"
     return click.option(
         f"--{kind}",
         f"{kind}s",
         multiple=True,
         default=default,
         metavar="NAME",
-        help=f"{help}: {names}; may be repeated. Default: {usual}.",
+        help=f"{help}: {names}; repeat it for more. Default: {default_names}.",
     )
 
 
 @click.command()
 @click.argument("scene")
-@technique("projection", (), "How a map sees the scene")
-@technique("filter", ("depth", "percentage_closer", "variance", "moment"), "How a map is read")
-@technique("partition", ("whole",), "How maps share the scene")
+@technique_option("projection", (), "Projection of the scene to a shadow map")
+@technique_option(
+    "filter", ("depth", "percentage_closer", "variance", "moment"), "Filter of a shadow map"
+)
+@technique_option("partition", ("whole",), "Partition of the scene among shadow maps")
 @click.option(
     "--other",
     "others",
     multiple=True,
     metavar="NAME",
-    help="A technique without maps to look up: shadow_volume or hybrid_shadow; may be repeated.",
+    help="Another technique: shadow_volume or hybrid_shadow; repeat it for more.",
 )
 @click.option(
     "--resolution",
@@ -56,20 +63,24 @@ def technique(kind, default, help):
     metavar="N",
     help="Side of the pictures [pixels].",
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="A page, .html, with the table, to sort, and the pictures of all techniques.",
-)
+@output_option("Page to write, .html, with a sortable table and the pictures of all techniques.")
 @writing_options
-def shadows(scene, projections, filters, partitions, others, resolution, size, output, console):
+def shadows(
+    scene: str,
+    projections: tuple[str, ...],
+    filters: tuple[str, ...],
+    partitions: tuple[str, ...],
+    others: tuple[str, ...],
+    resolution: int,
+    size: int,
+    output: Path | None,
+    console: Console,
+) -> None:
     """Score shadow techniques on a scene.
 
-    Every combination of the techniques is held to exact shadows, by rays, in all views (sensors)
-    and lights of the scene, which are point, spot or directional ones. SCENE is a scene file of
-    Mitsuba's (.xml) or the name of a scene with four views and two suns: street, foliage or
-    objects_on_a_ground.
+    Every combination of techniques is compared with exact, ray-traced shadows, for all sensors and
+    all point, spot and directional lights of the scene. SCENE is a scene file of Mitsuba (.xml) or
+    the name of a scene with four views and two suns: street, foliage or objects_on_a_ground.
     """
     from brdfkit.shadows.comparison import compare
     from brdfkit.shadows.comparison.comparing import PROJECTIONS
@@ -78,7 +89,7 @@ def shadows(scene, projections, filters, partitions, others, resolution, size, o
     if output is not None:
         require_page(output)
     with console.progress("compare shadows") as progress:
-        found = compare(
+        comparison = compare(
             scene,
             projections or PROJECTIONS,
             filters=filters,
@@ -89,17 +100,21 @@ def shadows(scene, projections, filters, partitions, others, resolution, size, o
             progress=progress,
         )
     if not console.as_json:
-        console.table(found.columns, found.table())
-        console.out.print(found.meaning)
+        console.table(comparison.columns, comparison.table())
+        console.out.print(comparison.meaning)
     written = [] if output is None else [output]
     for path in written:
         with console.progress("draw pictures") as progress:
-            found.write(path, progress)
+            comparison.write(path, progress)
     if console.as_json:
-        each = {label: [asdict(one) for one in all_of] for label, all_of in found.scores.items()}
-        console.json({"scores": each, "lights": found.lights, "written": written})
+        each = {
+            label: [asdict(one) for one in all_of] for label, all_of in comparison.scores.items()
+        }
+        console.json({"scores": each, "lights": comparison.lights, "written": written})
     else:
-        console.list_written(written)
-    if found.interrupted:
-        say(f"interrupted; {found.finished} of {found.requested} scores are finished.")
+        console.print_written(written)
+    if comparison.interrupted:
+        print_message(
+            f"interrupted; {comparison.finished} of {comparison.requested} scores are finished."
+        )
         click.get_current_context().exit(exit_status())

@@ -1,11 +1,14 @@
-"""`brdfkit svbrdf`: maps of a flat sample, from photographs under known lights."""
+"""`brdfkit svbrdf`: fits a model's parameter maps to photographs of a flat sample."""
+
+from __future__ import annotations
 
 from pathlib import Path
 
 import click
 
-from brdfkit.cli.errors import say
-from brdfkit.cli.options import writing_options
+from brdfkit.cli.console import Console
+from brdfkit.cli.errors import print_message
+from brdfkit.cli.options import output_option, writing_options
 from brdfkit.cli.settings import parse_settings
 from brdfkit.core.interrupts import Interrupted, exit_status
 
@@ -18,47 +21,54 @@ from brdfkit.core.interrupts import Interrupted, exit_status
     default="ggx",
     show_default=True,
     metavar="NAME",
-    help="The model whose parameters have maps.",
+    help="The model whose parameters are fitted as maps.",
 )
 @click.option(
     "--resolution",
     type=click.IntRange(4, 8192),
     metavar="N",
-    help="Texels along the longer side. Default: as many as pixels, at most 512.",
+    help="Texels along the longer side of a map. Default: as many as a photograph "
+    "has pixels, at most 512.",
 )
 @click.option(
-    "--anisotropic", is_flag=True, help="Widths along two directions, and which these are."
+    "--anisotropic", is_flag=True, help="Fit two roughnesses and their directions at each texel."
 )
 @click.option(
     "--fixed",
     multiple=True,
     metavar="NAME=VALUE",
-    help="A parameter that is alike everywhere, as f0=0.04; may be repeated.",
+    help="Keep a parameter at one value everywhere, as in f0=0.04; repeat it for more.",
 )
 @click.option(
     "--smoothness",
-    type=float,  # its bound is that of the library
+    type=float,  # `svbrdf` checks its range
     metavar="X",
-    help="How much neighbours may differ: less is smoother. Default: by lights held out.",
+    help="Allowed difference between neighbouring texels; smaller values give smoother maps. "
+    "Default: chosen by photographs that are held out.",
 )
 @click.option(
-    "--accept-8-bit", is_flag=True, help="Accept pictures of 8 bits, and invert the sRGB curve."
+    "--accept-8-bit",
+    is_flag=True,
+    help="Accept photographs with 8 bits, and invert their sRGB curve.",
 )
-@click.option(
-    "-o",
-    "--output",
-    type=click.Path(path_type=Path),
-    help="The folder of the maps, a scene and a report. Default: FOLDER/maps.",
-)
+@output_option("Folder for the maps, a scene and a report. Default: FOLDER/maps.")
 @writing_options
 def svbrdf(
-    folder, model, resolution, anisotropic, fixed, smoothness, accept_8_bit, output, console
-):
+    folder: Path,
+    model: str,
+    resolution: int | None,
+    anisotropic: bool,
+    fixed: tuple[str, ...],
+    smoothness: float | None,
+    accept_8_bit: bool,
+    output: Path | None,
+    console: Console,
+) -> None:
     """Fit maps to the photographs in FOLDER.
 
-    FOLDER holds linear photographs of a flat sample, OpenEXR, each under one point light or flash,
-    and the file capture.toml, which says where the camera and the lights were; the camera may move,
-    as a phone does with its flash. See docs/how_to/photographs.md.
+    FOLDER holds linear photographs of a flat sample (OpenEXR), each lit by one point light or
+    flash, and the file capture.toml with the positions of the camera and the lights. The camera may
+    move, like a phone with its flash. See docs/how_to/photographs.md.
     """
     from brdfkit.cli.arguments import results_folder
     from brdfkit.inverse.photographs import svbrdf as fit_maps
@@ -70,7 +80,7 @@ def svbrdf(
     with results_folder(output), console.progress("fit maps") as progress:
         check_folder(labels.model(labels.load_files(model)), output)
         try:
-            found = fit_maps(
+            maps = fit_maps(
                 folder,
                 model,
                 resolution=resolution,
@@ -81,15 +91,15 @@ def svbrdf(
                 progress=progress,
             )
         except Interrupted as stop:
-            found, interrupted = stop.best, True
-        written = found.write(output)
+            maps, interrupted = stop.best, True
+        written = maps.write(output)
     if not console.as_json:
-        console.out.print(str(found), markup=False, highlight=False)
+        console.out.print(str(maps), markup=False, highlight=False)
     if console.as_json:
-        said = ("smoothness", "residual", "held_out", "predicted", "notes", "seconds")
-        console.json({**{name: getattr(found, name) for name in said}, "written": written})
+        names = ("smoothness", "residual", "held_out", "predicted", "notes", "seconds")
+        console.json({**{name: getattr(maps, name) for name in names}, "written": written})
     else:
-        console.list_written(written)
+        console.print_written(written)
     if interrupted:
-        say("interrupted; these are the maps so far, without standard errors.")
+        print_message("interrupted; these are the maps so far, without standard errors.")
         click.get_current_context().exit(exit_status())
