@@ -513,7 +513,7 @@ TRAPS = [
     (["render", "missing.xml"], ["missing.xml"]),
     (["render", "nothing"], ["nothing", "ward", "car_paint"]),
     (["render", "bounds.xml", "ward"], ["alone"]),
-    (["render", "bounds.xml", "--scene", "vase"], ["bounds.xml", "leave --scene"]),
+    (["render", "bounds.xml", "--scene", "vase"], ["bounds.xml", "leave --set, --scene"]),
     (["render", "bounds.xml", "--size", "9"], ["bounds.xml", "leave", "--size"]),
     (["render", "bounds.xml#wall"], ["bounds.xml#wall is a place", "as --scene bounds.xml#wall"]),
     ([*WARD, "--envmap", ""], ["environment map = '' should be the path of a file"]),

@@ -499,7 +499,7 @@ def test_ctrl_c_ends_the_processes_and_keeps_what_is_finished(here):
             raise
     assert process.returncode == 130
     assert told == (
-        "brdfkit: interrupted; 2 of 4 fits are finished; the same command goes on from there.\n"
+        "brdfkit: interrupted; 2 of 4 fits are finished; the same command continues from there.\n"
     )
     assert "2 of 4 fits; " in printed
     assert "out/index.html" in printed

@@ -514,7 +514,7 @@ def stop_after_two_passes(self, what):
         (["bad.npz"], "bad.npz: "),
         (["paint.npz", "--size", 2000], "size = 2000: pictures of a page have at most 1024"),
         (["paint.npz", "paint.npz", "-m", "best"], "-m best ranks models on one material"),
-        (["paint.npz", "paint.npz", "-o", "x.html"], "x.html is one page; of several FILEs name"),
+        (["paint.npz", "paint.npz", "-o", "x.html"], "x.html is one page; for several FILEs, name"),
         (["paint.npz", "ward.json"], "ward.json: a saved fit goes behind -m"),
         (["paint.npz", "--scene", "vaes"], "did you mean vase?"),
         (["paint.npz", "--scene", "room.xml#it"], "room.xml#it: a report shows materials in"),

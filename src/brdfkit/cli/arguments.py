@@ -66,7 +66,7 @@ def results_folder(path: Path | None) -> Iterator[None]:
 
 
 def check_picture_path(name: str | Path) -> Path:
-    """Return the path of a picture, once it is known, before a long rendering, to be writable."""
+    """Check, before a long rendering, that a picture can be written; return its path."""
     path = Path(name)
     picture_suffix(path)
     require_writable(path)
@@ -75,7 +75,7 @@ def check_picture_path(name: str | Path) -> Path:
 
 
 def check_film_path(name: str | Path) -> Path:
-    """Return the path of a film, once it is known, before a long rendering, to be writable."""
+    """Check, before a long rendering, that a film can be written; return its path."""
     path = Path(name)
     film_suffix(path)
     require_writable(path)
@@ -83,7 +83,7 @@ def check_film_path(name: str | Path) -> Path:
 
 
 def check_figure_path(name: str | Path) -> Path:
-    """Return the path of a matplotlib figure, once it is known to be writable."""
+    """Check that a matplotlib figure can be written; return its path."""
     path = Path(name)
     if path.suffix.lower() not in FIGURES:
         raise BrdfkitError(f"{path}: this picture is written as {', '.join(FIGURES)}; choose one.")

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from brdfkit.cli import tables
-from brdfkit.core.json_values import to_json
 from brdfkit.core.progress_bar import Progress, progress
 
 if TYPE_CHECKING:
@@ -39,11 +38,13 @@ class Console:
         return out
 
     def progress(self, what: str) -> AbstractContextManager[Progress]:
-        """Show a progress bar for `what` within the block, by a function (steps done, in all)."""
+        """Show a progress bar within the block; the block gets a function (steps done, in all)."""
         return nullcontext(lambda done, total: None) if self.quiet else progress(what)
 
     def json(self, record: Any) -> None:
         """Print a record of dictionaries, lists, arrays, paths and dataclasses as JSON."""
+        from brdfkit.core.json_values import to_json  # here, because it loads NumPy
+
         print(json.dumps(to_json(record), indent=2))
 
     def table(

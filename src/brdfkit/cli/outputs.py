@@ -80,7 +80,7 @@ def _is_cached(target: Path) -> bool:
 
 
 def _is_own(target: Path, context: click.Context) -> bool:
-    """Return whether this command wrote the file, in this run or, unchanged since, in the last."""
+    """Return whether this command wrote the file, and no other program changed it since."""
     if target in context.meta.get(WRITTEN, ()):
         return True
     try:
@@ -130,7 +130,7 @@ def _list_inputs(words: Any) -> Iterator[Path]:
 
 
 def _find_texts(value: Any) -> Iterator[str]:
-    """Yield the texts in click's values of arguments, and their parts before # and behind =."""
+    """Yield the texts in values of arguments, and their parts before # and after =."""
     if isinstance(value, str | Path):
         text = str(value)
         yield text

@@ -95,7 +95,7 @@ def parse_settings(
 
 
 def values_option(command: Command) -> Command:
-    """Add --set, for the parameters of models or renderers, to a command as `values`."""
+    """Add --set, which sets parameters of models or renderers; the command gets `values`."""
     return click.option(
         "-p",
         "--set",

@@ -88,7 +88,7 @@ def find_volume(things: Sequence[str], settings: dict[str, Any]) -> str | None:
 
 
 def _refuse_misspelt_volume(word: str) -> None:
-    """Raise `BrdfkitError` for an unknown word that resembles a made volume most."""
+    """Raise `BrdfkitError` for an unknown word that is probably a misspelt made volume."""
     from brdfkit.core import catalogue
     from brdfkit.model import labels
     from brdfkit.volumes import made

@@ -37,7 +37,7 @@ def check(things: tuple[str, ...], values: tuple[str, ...], console: Console) ->
 
 
 def _find_subject(name: str, settings: Sequence[str]) -> Any:
-    """Return the material, or the dictionary of a plugin that is no model, with `settings`."""
+    """Return the material or, for a plugin that is no model, its dictionary, with `settings`."""
     from brdfkit.checks.plugin_subject import is_no_model, make_example, require_declared
     from brdfkit.cli.arguments import find_material
     from brdfkit.mitsuba_bridge.registration.users_plugins import load_plugins

@@ -32,7 +32,7 @@ KINDS = {"Measured": "measured", "Fit": "fitted", "BsdfMaterial": "Mitsuba's"}
 )
 @writing_options
 def gallery(things: tuple[str, ...], output: Path, size: int, console: Console) -> None:
-    """Show a ball of each material in one picture, above its name.
+    """Show a ball of each material, with its name, in one picture.
 
     From a FOLDER, each file that holds a measured material or a saved fit is shown; the command
     lists files that it skips. If a FILE or a NAME itself cannot be read, the exit status is 2. The

@@ -164,7 +164,7 @@ def _format_command(parameters: Mapping[str, Any]) -> str:
 
 
 def _check_path(path: Path) -> Path:
-    """Return `path`, if it can be written and its format holds standard errors."""
+    """Check that `path` can be written and that its format holds standard errors; return it."""
     if path.suffix.lower() != ".npz":
         raise BrdfkitError(
             f"{path}: a measurement is written as .npz; name such a file, and convert it later."

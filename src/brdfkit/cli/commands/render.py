@@ -249,7 +249,7 @@ KINDS: tuple[
 
 
 def _choose_path(request: Request, name: str) -> Path:
-    """Return the path of the picture, by default with the thing's name, if it can be written."""
+    """Check that the picture can be written; return its path, by default `name` with .png."""
     from brdfkit.cli.arguments import check_picture_path
 
     return check_picture_path(request.output or Path(f"{Path(name).stem}.png"))
