@@ -157,7 +157,9 @@ def test_what_has_no_spectrum_is_refused(llvm_variant):
         lambert(wavelengths=(400, 500), diffuse_reflectance=(0.1, 0.2, 0.3))
     with pytest.raises(BrdfkitError, match=r"wavelengths = \(400, 400\) should be different"):
         lambert(wavelengths=(400, 400))
-    with pytest.raises(BrdfkitError, match="3 channels and samples 10; compare what has the same"):
+    with pytest.raises(
+        BrdfkitError, match="3 channels and samples 10; compare materials with equal"
+    ):
         bk.compare(
             measured(spectral("lambert")),
             lambert(diffuse_reflectance=(1, 1, 1)),

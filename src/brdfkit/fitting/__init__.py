@@ -1,6 +1,6 @@
-"""The verbs of fitting: `fit`, `compare`, and what ranks, repeats and doubts fits.
+"""The verbs of fitting: `fit`, `compare`, `rank` and `sweep`, and the uncertainty of fits.
 
-The numbers behind them, which know no `Measured`, are in `brdfkit.regression`.
+The numerics behind them, which do not know `Measured`, are in `brdfkit.regression`.
 """
 
 import lazy_loader

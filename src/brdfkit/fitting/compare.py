@@ -5,32 +5,35 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.documents import Cell, Document, Shown, Table
 from brdfkit.core.documents.parts import STRONG
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import make_unique
 from brdfkit.fitting.settings import require_material_first
+from brdfkit.images.ball.pixels import Pixels
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import ANGLES
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.resolve import MaterialLike, to_materials, to_measured
-from brdfkit.regression import Fit, losses
+from brdfkit.model.samples.samples import Samples
+from brdfkit.regression import Fit, Loss, losses
 from brdfkit.regression.albedo_cells import make_albedo_cell
 from brdfkit.regression.light import ANISOTROPIC_AZIMUTHS, ISOTROPIC_AZIMUTHS, make_albedo_pixels
 from brdfkit.regression.losses.loss import squared_differences
 from brdfkit.regression.losses.named_losses import DEFAULT
 
-# The losses by which errors are told, beside those that were minimised
-USUAL = "cosine", "log", "cbrt", "plain"
+# The losses that every table shows, besides those that fits minimised
+USUAL_LOSSES = "cosine", "log", "cbrt", "plain"
 
 
 @dataclass(frozen=True, repr=False)
 class Comparison(Shown):
-    """Errors of several BRDFs against one measured material, under every loss, and the light that
-    they reflect; prints as a table.
+    """Errors and albedos of several BRDFs beside one measured material; prints as a table.
 
     Attributes
     ----------
@@ -42,9 +45,10 @@ class Comparison(Shown):
     albedos : dict
         Name → the directional albedo at 5°, 45° and 75° of incidence, the mean over the channels.
     measured_albedo : tuple of float
-        That of the measured material; nan where its samples do not tell it.
+        The albedo of the measured material at the same angles; nan where its samples do not
+        determine it.
     shown : tuple of str
-        The losses of the table: the usual ones, and those that the compared fits made small.
+        The losses of the table: the usual ones, and those that the compared fits minimised.
     """
 
     material: str
@@ -55,12 +59,14 @@ class Comparison(Shown):
 
     @property
     def best(self) -> str:
-        """Name of the BRDF with the least cbrt loss."""
+        """The name of the BRDF with the least cbrt loss."""
         return next(iter(self.errors))
 
     def document(self) -> Document:
-        """The errors and albedos, the measurement's first, and a row for each BRDF; the least error
-        by each loss is strong, and an albedo that is wrong is marked."""
+        """Return the table: a row for the measurement and for each BRDF, its errors and albedos.
+
+        The least error under each loss is bold, and albedos that are wrong are marked.
+        """
         table = np.array([[row[loss] for loss in self.shown] for row in self.errors.values()])
         is_least = table == np.nanmin(np.vstack([table, np.full(len(self.shown), np.inf)]), axis=0)
         kinds = np.where(is_least, STRONG, "").tolist()
@@ -80,17 +86,17 @@ class Comparison(Shown):
         return Document(title, (Table((measured, *rows), columns),))
 
 
-def told(*minimised):
-    """The names of the losses by which the errors of fits are told, in the order of `losses`.
+def choose_losses_to_show(*minimised: str) -> list[str]:
+    """Return the usual losses and those that fits `minimised`, in the order of `losses.named`.
 
-    >>> told("relative")
+    >>> choose_losses_to_show("relative")
     ['cosine', 'log', 'cbrt', 'plain', 'relative']
     """
-    return [name for name in losses.named.by_sample if name in {*USUAL, *minimised}]
+    return [name for name in losses.named.by_sample if name in {*USUAL_LOSSES, *minimised}]
 
 
-def format_error(error):
-    """An error as text; a dash for nan."""
+def format_error(error: float) -> str:
+    """Return an error as text, or a dash for nan."""
     return "-" if math.isnan(error) else f"{error:.5f}"
 
 
@@ -144,40 +150,45 @@ def compare(
         name, brdf = make_unique(thing.name, errors), thing if spectral else _in_rgb(thing)
         values = _evaluate(brdf, data, samples)
         errors[name] = {
-            loss: _error(losses.named[loss], values, samples) for loss in losses.named.by_sample
+            loss: _compute_error(losses.named.by_sample[loss], values, samples)
+            for loss in losses.named.by_sample
         }
-        albedos[name] = _reflect(brdf, pixels)
+        albedos[name] = _compute_albedos(brdf, pixels)
     errors = dict(sorted(errors.items(), key=lambda item: item[1][DEFAULT]))
-    shown = told(*(thing.loss_name for thing in materials if isinstance(thing, Fit)))
+    shown = choose_losses_to_show(
+        *(thing.loss_name for thing in materials if isinstance(thing, Fit))
+    )
     return Comparison(data.name, errors, albedos, light.means, tuple(shown))
 
 
-def _in_rgb(thing):
-    """A material in linear sRGB, or as it is where it has no other channels."""
-    return getattr(thing, "rgb", thing)
+def _in_rgb(brdf: Any) -> Any:
+    """Return a material in linear sRGB, or itself if it has no other channels."""
+    return getattr(brdf, "rgb", brdf)
 
 
-def _reflect(brdf, pixels):
-    """The mean albedos at `ANGLES` of a BRDF, by the quadrature of `pixels`."""
+def _compute_albedos(brdf: Any, pixels: Pixels) -> tuple[float, ...]:
+    """Return the mean albedos of a BRDF at `ANGLES`, by the quadrature of `pixels`."""
     if isinstance(brdf, Measured):
         return brdf.albedo.means
     return tuple(pixels.look(brdf.eval).mean(axis=1).tolist())
 
 
-def _evaluate(brdf, data, samples):
-    """The values (n, channels) of a BRDF at `Samples` of a `Measured`."""
-    values = brdf.eval(samples.wi, samples.wo)
+def _evaluate(brdf: Any, data: Measured, samples: Samples) -> FloatArray:
+    """Return the values (n, channels) of a BRDF at samples of a measured material."""
+    values: FloatArray = brdf.eval(samples.wi, samples.wo)
     if values.shape[1] not in (1, samples.values.shape[1]):
         raise BrdfkitError(
             f"{brdf.name} has {values.shape[1]} channels and {data.name} "
-            f"{samples.values.shape[1]}; compare what has the same ones."
+            f"{samples.values.shape[1]}; compare materials with equal channels."
         )
     return np.broadcast_to(values, samples.values.shape)
 
 
-def _error(loss, values, samples):
-    """E of a `Loss` for `values` (n, channels) at `Samples`; nan where it weighs none of them."""
+def _compute_error(loss: Loss, values: FloatArray, samples: Samples) -> float:
+    """Return the error E of `values` (n, channels) at samples; nan if the loss weighs none."""
     importance = loss.importance(samples)
-    if not importance.any():
-        return math.nan
-    return math.sqrt(importance @ squared_differences(loss, values, samples))
+    return (
+        math.sqrt(importance @ squared_differences(loss, values, samples))
+        if importance.any()
+        else math.nan
+    )

@@ -1,32 +1,44 @@
-"""What a model misses that is the same at every azimuth, of a material that is not."""
+"""The least error that any isotropic model can reach on an anisotropic material.
+
+The notes of a fit tell it where a model without anisotropy was fitted to such a material.
+"""
+
+from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, JitFloat
 from brdfkit.core.geometry.directions import rotate_z
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.double_precision import differentiate
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.regression import Picture
+from brdfkit.materials.measured import Measured
+from brdfkit.model import Model
+from brdfkit.model.samples.samples import Samples
+from brdfkit.regression import Loss, Picture
 
-# Direction pairs and turns of the surface, by which azimuths are compared
-PAIRS, TURNS = 2_000, 8
+PAIRS = 2_000  # direction pairs at which azimuths are compared
+TURNS = 8  # angles by which the surface is turned at each of them
 
 
-def is_isotropic(model, wi, wo):
-    """Whether a model with values stays the same as the surface turns, at pairs (n, 3)."""
+def is_isotropic(model: Model, wi: FloatArray, wo: FloatArray) -> bool:
+    """Return whether a model has equal values after turns of the surface, at pairs (n, 3)."""
     values = model.eval(wi, wo)
     turned = [model.eval(rotate_z(wi, angle), rotate_z(wo, angle)) for angle in (0.7, 1.9)]
-    apart = max(abs(other - values).max() for other in turned)
-    return bool(apart <= 1e-9 * abs(values).max())
+    largest_change = max(abs(other - values).max() for other in turned)
+    return bool(largest_change <= 1e-9 * abs(values).max())
 
 
-def note_on_azimuth(data, samples, loss, fitted):
-    """The note on the fit of a model to `Samples` of an anisotropic `Measured`, or None.
+def note_on_azimuth(
+    data: Measured, samples: Samples, loss: Loss | Picture, fitted: Model
+) -> str | None:
+    """Return the note on an isotropic fit to an anisotropic material, or None for another fit.
 
-    Of a table, or where the format has values between its samples, it tells the least error of any
-    isotropic model: the spread over the azimuths.
+    For a table, and for a format with values between its samples, the note tells the least error
+    that any isotropic model can reach, which follows from the spread over the azimuths.
     """
     rows = np.linspace(0, len(samples.wi) - 1, min(PAIRS, len(samples.wi))).astype(int)
     part = samples.at(rows)
@@ -35,30 +47,32 @@ def note_on_azimuth(data, samples, loss, fitted):
     note = "the material changes as the surface turns, and the model as fitted does not"
     if isinstance(loss, Picture) or not (data.is_table or data.has_lookup):
         return note  # pixels have no error at one azimuth
-    least = _least_error(data if fitted.wavelengths else data.rgb, part, loss)
+    least = _compute_least_error(data if fitted.wavelengths else data.rgb, part, loss)
     return f"{note}: no isotropic one has an error below about {least:.2g}"
 
 
 @in_turn
-def _least_error(data, part, loss):
-    """The least E of any isotropic model at `Samples` and their turns.
+def _compute_least_error(data: Measured, samples: Samples, loss: Loss) -> float:
+    """Return the least E of any isotropic model at samples and their turns.
 
-    At each pair it is the best single value for all azimuths, one step of Gauss and Newton from
-    their mean: exact where the difference is linear in the model's value, or one of functions of
-    the two values.
+    An isotropic model has one value for all azimuths of a pair. Its best value is found by one
+    Gauss-Newton step from the mean, which is exact if the loss's difference is linear in the
+    model's value or is a difference of one function of the two values.
     """
     angles = np.arange(TURNS) * 2 * np.pi / TURNS
-    measured = np.stack([data.eval(rotate_z(part.wi, a), rotate_z(part.wo, a)) for a in angles])
-    cosines = [double_precision.to_array(np.tile(w[:, 2], TURNS)) for w in (part.wi, part.wo)]
-    squares = 0.0
-    for own in np.moveaxis(measured, 2, 0):
-        given = double_precision.to_array(own.ravel())
+    measured = np.stack(
+        [data.eval(rotate_z(samples.wi, a), rotate_z(samples.wo, a)) for a in angles]
+    )
+    cosines = [double_precision.to_array(np.tile(w[:, 2], TURNS)) for w in (samples.wi, samples.wo)]
+    squares: Any = 0.0
+    for channel in np.moveaxis(measured, 2, 0):
+        values = double_precision.to_array(channel.ravel())
 
-        def difference(value, given=given):
-            return loss.difference(value, given, *cosines)
+        def difference(value: JitFloat, values: JitFloat = values) -> JitFloat:
+            return loss.difference(value, values, *cosines)
 
-        start = double_precision.to_array(np.tile(own.mean(axis=0), TURNS))
-        d, slope = (np.array(x).reshape(own.shape) for x in differentiate(difference, start))
+        start = double_precision.to_array(np.tile(channel.mean(axis=0), TURNS))
+        d, slope = (np.array(x).reshape(channel.shape) for x in differentiate(difference, start))
         gain = (d * slope).sum(axis=0) ** 2 / np.maximum((slope**2).sum(axis=0), 1e-300)
         squares = squares + ((d**2).sum(axis=0) - gain) / TURNS
-    return math.sqrt(loss.importance(part) @ squares)
+    return math.sqrt(loss.importance(samples) @ squares)

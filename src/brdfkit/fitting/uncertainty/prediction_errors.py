@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.fitting.settings import find_fitted_samples
 from brdfkit.materials.resolve import MaterialLike, to_material
 from brdfkit.model.evaluation import compute_lobe_values
+from brdfkit.model.samples.samples import Samples
 from brdfkit.regression import Fit
 from brdfkit.regression.losses.loss import squared_differences
 from brdfkit.regression.losses.named_losses import to_loss
@@ -20,14 +23,16 @@ from brdfkit.regression.refitting import Refit
 
 @dataclass(frozen=True, eq=False)
 class PredictionError:
-    """The expected error of a linear model's prediction at each fitted sample [Kurt 2007, eq. 7.8].
+    """Expected errors of a linear model's prediction at each fitted sample [Kurt 2007, eq. 7.8].
 
     Attributes
     ----------
     variance : ndarray, shape (n, channels)
-        What noise brings, the variance z (Z'Z)⁻¹ z' σ² of the prediction [sr⁻²].
+        Variance of the prediction by noise, z (Z'Z)⁻¹ z' σ² [sr⁻²]: z are the lobes of the model
+        at the sample, Z those at all samples, σ is the standard deviation of the noise.
     bias : ndarray, shape (n, channels)
-        What no repetition lessens, z (Z'Z)⁻¹ Z'η - η(z): the model lacks it [sr⁻¹].
+        Error that repeated measurements would not reduce, z (Z'Z)⁻¹ Z'η - η(z) [sr⁻¹], because
+        the model cannot represent the true BRDF η.
     """
 
     variance: NDArray[np.float64]
@@ -35,12 +40,12 @@ class PredictionError:
 
     @property
     def mean_square(self) -> NDArray[np.float64]:
-        """The mean squared error (n, channels) in sr⁻²: variance + bias²."""
+        """The mean squared errors (n, channels), variance + bias² [sr⁻²]."""
         return self.variance + self.bias**2
 
     @property
     def largest(self) -> NDArray[np.float64]:
-        """δ_max, the largest squared bias of each channel [Kurt 2007, eq. 7.10] in sr⁻²."""
+        """The largest squared bias δ_max of each channel [sr⁻²] [Kurt 2007, eq. 7.10]."""
         return (self.bias**2).max(axis=0)
 
     def __str__(self) -> str:
@@ -94,11 +99,11 @@ def prediction_error(
     """
     samples = find_fitted_samples(fit, material)
     _require_linear(fit, samples)
-    # raises for weights, constraints and standard errors, not known here
+    # Raises for fits with weights, constraints or standard errors, which are not known here
     Refit(fit, samples).require_least_loss()
     Z = compute_lobe_values(fit.model, samples.wi, samples.wo)[0]
-    # (Z'WZ)⁻¹ Z'W, of the weights W of the loss
-    root = _root_weights(to_loss(fit.loss_name), samples)
+    # (Z'WZ)⁻¹ Z'W with the weights W of the loss
+    root = _compute_root_weights(to_loss(fit.loss_name), samples)
     solve = np.linalg.pinv(root[:, None] * Z) * root
     values = samples.values if truth is None else to_material(truth).eval(samples.wi, samples.wo)
     if values.shape != samples.values.shape:
@@ -108,15 +113,15 @@ def prediction_error(
         )
     bias = Z @ (solve @ values) - values
     if sigma is None:
-        left = Z @ (solve @ samples.values) - samples.values
-        sigma = np.sqrt((left**2).sum(axis=0) / max(len(Z) - Z.shape[1], 1))
+        residuals = Z @ (solve @ samples.values) - samples.values
+        sigma = np.sqrt((residuals**2).sum(axis=0) / max(len(Z) - Z.shape[1], 1))
     sigma = _to_numbers(sigma, values.shape[1])
     spread = ((Z @ (solve @ solve.T)) * Z).sum(axis=1, keepdims=True)
     return PredictionError(spread * np.broadcast_to(sigma, values.shape[1:]) ** 2, bias)
 
 
-def _to_numbers(sigma, channels):
-    """`sigma` as an array, of one number or one for each channel."""
+def _to_numbers(sigma: ArrayLike, channels: int) -> FloatArray:
+    """Return `sigma` as an array of one number, or of one for each channel."""
     try:
         numbers = np.asarray(sigma, float)
     except (TypeError, ValueError):
@@ -128,14 +133,16 @@ def _to_numbers(sigma, channels):
     return numbers
 
 
-def _require_linear(fit, samples):
+def _require_linear(fit: Fit, samples: Samples) -> None:
     """Raise `BrdfkitError` unless the values of a fit are linear in the measured ones."""
     model, settings = type(fit.model), fit.settings
-    given = {*model.determine_parameters(samples), *settings.get("fixed", ())}
-    sought = [name for name in model.shapes(settings.get("anisotropic")) if name not in given]
+    known = {*model.determine_parameters(samples), *settings.get("fixed", ())}
+    searched = [
+        name for name in model.shapes(bool(settings.get("anisotropic"))) if name not in known
+    ]
     reason = None
-    if sought:
-        reason = f"it was searched for {', '.join(sought)}"
+    if searched:
+        reason = f"it was searched for {', '.join(searched)}"
     elif any(lobe.quadratic for lobe in fit.model.lobes()):
         reason = "it holds squares of weights"
     elif not to_loss(fit.loss_name).linear:
@@ -149,8 +156,8 @@ def _require_linear(fit, samples):
         )
 
 
-def _root_weights(loss, samples):
-    """√W (n,) of a linear loss, whose squared differences are W (model - measured)²."""
+def _compute_root_weights(loss: Any, samples: Samples) -> FloatArray:
+    """Return √W (n,) of a linear loss, whose squared differences are W (model - measured)²."""
     ones = np.ones((len(samples.wi), 1))
     black = replace(samples, values=0 * ones)
     return np.sqrt(loss.importance(samples) * squared_differences(loss, ones, black))

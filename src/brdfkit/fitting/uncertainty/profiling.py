@@ -122,7 +122,9 @@ def profile(fit: Fit, material: MaterialLike, *, parameter: str, points: int = 2
     freedom = fit.degrees_of_freedom or 0
     if fit.settings.get("robust") or freedom < 1:
         why = "is robust, and minimises no loss" if freedom >= 1 else "has no number to spare"
-        raise BrdfkitError(f"{fit.name}: the fit {why}, so it has no profile; try bootstrap.")
+        raise BrdfkitError(
+            f"{fit.name}: the fit {why}, so it has no profile; try uncertainty.bootstrap."
+        )
     middle: Any = fit.values[parameter]
     k = space.names.index(parameter)
     rise = profile_curvature(again, parameter, float(space.low[k]), float(space.high[k]))

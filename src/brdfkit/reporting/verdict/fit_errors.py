@@ -9,7 +9,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import to_angles
-from brdfkit.fitting.compare import compare, format_error, told
+from brdfkit.fitting.compare import choose_losses_to_show, compare, format_error
 from brdfkit.fitting.ranking.held_out import number_blocks
 from brdfkit.fitting.ranking.result import TAKE
 from brdfkit.fitting.ranking.ties import beside, is_tied
@@ -86,7 +86,7 @@ def compute_fit_errors(material: Measured, fits: Sequence[Fit], loss: str) -> li
     shares = np.bincount(blocks, weight)
     return [
         FitErrors(
-            {name: one.errors[one.best][name] for name in told(loss)},
+            {name: one.errors[one.best][name] for name in choose_losses_to_show(loss)},
             one.albedos[one.best],
             *own_factors,
             _count_numbers(fit),
