@@ -54,7 +54,7 @@ def define(mi: MitsubaModule) -> type:
             return self.values.mean(find_corners(self.table, wi, wo), si)
 
         def albedo(self, wi: JitVector, si: MitsubaObject) -> JitColour:
-            return self.albedos.mean(self.sampling.incidences(wi), si)
+            return self.albedos.mean(self.sampling.find_incidences(wi), si)
 
         def to_string(self) -> str:
             return f"MeasuredTable[shape = {self.table.shape}]"

@@ -18,7 +18,7 @@ SHIPPED = "studio", "sky", "room"
 def find_probes(sources):
     """Name → file of the thesis's probes where all are at hand, else name → name of the maps that
     brdfkit brings."""
-    files = {name: sources.beside(f"environments/{name}.hdr") for name in PROBES}
+    files = {name: sources.find_beside(f"environments/{name}.hdr") for name in PROBES}
     return files if all(files.values()) else {name: name for name in SHIPPED}
 
 

@@ -42,7 +42,7 @@ class Shape:
 
 def find_meshes(sources, names=MESHES):
     """Name → `Shape` of the meshes, models/NAME.obj.xz; where one is missing, a torus for all."""
-    files = {name: sources.beside(file_of(name)) for name in names}
+    files = {name: sources.find_beside(file_of(name)) for name in names}
     if not all(files.values()):
         return {"torus": ring()}
     return {name: unpacked(file) for name, file in files.items()}

@@ -46,10 +46,10 @@ class Scan:
 def scans(sources, fewer=1):
     """Those scans that are at hand, and the phantom; `fewer`: times along each edge."""
     found = []
-    if sources.beside(MRI):
-        found.append(mri(sources.beside(MRI), fewer))
-    if sources.beside(FROG):
-        found.append(frog(sources.beside(FROG), 2 * fewer))
+    if sources.find_beside(MRI):
+        found.append(mri(sources.find_beside(MRI), fewer))
+    if sources.find_beside(FROG):
+        found.append(frog(sources.find_beside(FROG), 2 * fewer))
     return [*found, phantom(fewer)]
 
 

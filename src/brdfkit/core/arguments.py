@@ -4,8 +4,6 @@ Each `to_…` function takes `what`, the argument's name in the error, and the v
 it returns the value in the type that the caller works with.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import fields
@@ -108,7 +106,7 @@ def to_dictionary(what: str, value: Any) -> dict[str, Any]:
 def to_array(what: str, value: Any, shape: tuple[int, ...] | None = None) -> FloatArray:
     """Return numbers, such as nested lists, as an array of floats.
 
-    An array of floats is returned itself, without a copy. Where a `shape` is given, the array must
+    An array of floats is returned without a copy. Where a `shape` is given, the array must
     have it, and all of its numbers must be finite.
     """
     try:

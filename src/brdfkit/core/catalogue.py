@@ -4,8 +4,6 @@ Each folder, `data/measured` and `data/environments`, has an `index.toml` of its
 The wheel copies both folders into the package; a checkout has them at its top.
 """
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Converts between spectra, linear sRGB, as in Mitsuba and in pictures, and sRGB for screens."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

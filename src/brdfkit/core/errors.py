@@ -1,7 +1,5 @@
 """The error that brdfkit raises for people to read, and proposals for misspelt names."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

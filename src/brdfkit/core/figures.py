@@ -1,7 +1,5 @@
 """Figures of matplotlib that notebooks can show on light and on dark backgrounds."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager

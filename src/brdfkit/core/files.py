@@ -1,6 +1,4 @@
-"""Reads and writes files safely: whole or not at all, up to a limit, unpacked if needed."""
-
-from __future__ import annotations
+"""Writes files whole or not at all, and reads them up to a size limit, unpacked if needed."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -52,7 +50,7 @@ def write_safely(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 @contextmanager
 def _utf8_folder(folder: Path) -> Iterator[Path]:
-    """Yield a path of the folder in UTF-8 for native libraries, that of a link if necessary."""
+    """Yield a path of the folder in UTF-8 for native libraries; if necessary, a link's path."""
     if is_utf8(folder):
         yield folder
         return

@@ -5,8 +5,6 @@ signals into KeyboardInterrupt by `stop_on_signals`; `hold_signals` delays them 
 runs that could not bear them.
 """
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections.abc import Iterator
@@ -19,7 +17,7 @@ _received: int | None = None  # the signal that ended the command
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C ended a search; a notebook finds its best result in ``sys.last_value.best``.
+    """The error that Ctrl-C raises in a search, with its best result, for ``sys.last_value.best``.
 
     Loops and programs end by it, as by any KeyboardInterrupt.
 
@@ -71,6 +69,7 @@ def exit_status() -> int:
 
 
 def _stop(number: int, _frame: FrameType | None) -> None:
+    """Remember a signal and raise KeyboardInterrupt."""
     global _received
     _received = number
     raise KeyboardInterrupt

@@ -1,7 +1,5 @@
 """Converts results to the types that JSON has."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import fields, is_dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Finds what a user's text means: a file, or one of the names that brdfkit knows."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable
 from pathlib import Path
@@ -38,7 +36,7 @@ def find_file_or_name(
 
 
 def looks_like_name(text: str) -> bool:
-    """Return whether a text is one word without folder and suffix, and no file is called so."""
+    """Return whether a text is one word, without folder and suffix, and names no file."""
     path = Path(text)
     return len(path.parts) == 1 and not path.suffix and not os.path.exists(path)
 

@@ -1,7 +1,5 @@
 """Checks, before a rendering starts, that its pictures fit into the available memory."""
 
-from __future__ import annotations
-
 import psutil
 
 from brdfkit.core.errors import BrdfkitError

@@ -1,7 +1,5 @@
 """Formats names and lists of words: unique, printable, or fit for the name of a file."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from pathlib import Path
 

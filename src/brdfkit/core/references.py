@@ -5,8 +5,6 @@ A text cites a work by its key in brackets:
 [Ward 1992]    [Kurt 2007, eqs. 3.6, 3.7]    [Cook & Torrance 1982]
 """
 
-from __future__ import annotations
-
 import re
 import tomllib
 from dataclasses import dataclass
@@ -38,7 +36,7 @@ class Reference:
 def read_references() -> dict[str, Reference]:
     """Return all works by key, in alphabetical order."""
     entries = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
-    keys = sorted(entries, key=lambda key: normalize("NFKD", key))  # Ö beside O
+    keys = sorted(entries, key=lambda key: normalize("NFKD", key))  # sorts Ö beside O
     return {key: Reference(key, **entries[key]) for key in keys}
 
 

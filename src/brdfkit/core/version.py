@@ -1,7 +1,5 @@
 """The version of brdfkit, which the package's metadata reads here, and of its libraries."""
 
-from __future__ import annotations
-
 from functools import cache
 
 __version__ = "0.1.0"

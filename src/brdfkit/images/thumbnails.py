@@ -1,7 +1,5 @@
 """Small pictures of any BRDF, which notebooks show beside its figures: a ball, and its lobes."""
 
-from __future__ import annotations
-
 import io
 import math
 from functools import partial

@@ -1,6 +1,4 @@
-"""Constant arrays that a plugin reads by index, and brackets, in every variant of Mitsuba."""
-
-from __future__ import annotations
+"""Constant arrays that a plugin reads by index, and brackets of nodes around a coordinate."""
 
 from typing import Any
 
@@ -67,7 +65,7 @@ def find_cell(x: JitFloat, n: int) -> JitInt:
 
 
 def find_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
-    """Return the bracket around `x` on an axis of `n` nodes; see `core/geometry/multilinear.py`."""
+    """Return (lower node, upper node, share of the upper) around `x` on an axis of `n` nodes."""
     import drjit as dr
     import mitsuba as mi
 
@@ -77,7 +75,7 @@ def find_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
 
 
 def find_periodic_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
-    """Return the bracket around `x` on a periodic axis, where node n is node 0."""
+    """Return the nodes and share as `find_bracket`, on a periodic axis whose node n is node 0."""
     import drjit as dr
     import mitsuba as mi
 

@@ -124,7 +124,7 @@ class Wavelengths:
         return spectrum
 
     def _mean(self, corners: Iterable[tuple[JitInt, JitFloat]], node: JitInt) -> JitFloat:
-        """Return the mean at the measured wavelength of index `node`."""
+        """Return the mean of the stored values at one of the measured wavelengths, by its index."""
         import drjit as dr
 
         values = (share * self.values.at(row * self.count + node) for row, share in corners)

@@ -1,7 +1,5 @@
 """Makes the small scenes with known radiance that check integrators."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Direct light from lights with one position or direction, with shadows by any method."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from typing import Any
 

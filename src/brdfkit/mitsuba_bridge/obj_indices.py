@@ -1,7 +1,5 @@
 """Rewrites OBJ meshes with relative indices, -1 for the last vertex, for Mitsuba."""
 
-from __future__ import annotations
-
 import re
 import tempfile
 from collections.abc import Iterable, Iterator

@@ -1,7 +1,5 @@
 """Base classes of phase functions that depend only on the scattering angle."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import drjit as dr

@@ -1,7 +1,5 @@
 """Loads scene files of Mitsuba, as they are or with a material put in."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from html import unescape

@@ -8,10 +8,8 @@ world, and a tenth and more of the shadows are wrong. Here the distance is
 
 since both the point and the distance were rounded. Half of Mitsuba's ε is as far as in scenes of
 usual size. With twice or a quarter of it, single pixels of leaves or of a street differ between
-rays and shadow volumes. As much of t would be half a house for a distant eye.
+rays and shadow volumes. A share ε/2 of t would be too long for a distant eye: half of a house.
 """
-
-from __future__ import annotations
 
 import drjit as dr
 

@@ -1,7 +1,5 @@
 """The parts of a model that belong to its class: parameters, options and name."""
 
-from __future__ import annotations
-
 import re
 from functools import cache
 from pathlib import Path

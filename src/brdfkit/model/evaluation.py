@@ -1,7 +1,5 @@
 """Evaluates a model in double precision: the values of its lobes times its weights."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import drjit as dr

@@ -5,8 +5,6 @@ grazing incidence. So both can be weights, one for each channel, in place of the
 F₀. Otherwise F₀ is a shape parameter and F₉₀ is 1.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

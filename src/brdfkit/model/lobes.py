@@ -1,7 +1,5 @@
 """Lobes, the terms of a model, and the ways to draw their outgoing directions."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol

@@ -6,8 +6,6 @@ vectors with x, y, z in the local frame, z along the normal; `u` is a point (x, 
 cube; cos_d = wi·h, as `cos_theta_d` computes it.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

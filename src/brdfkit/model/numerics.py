@@ -1,7 +1,5 @@
 """Functions that stay accurate in single precision, where lobes are narrow."""
 
-from __future__ import annotations
-
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat

@@ -1,7 +1,5 @@
 """The declarations of a model: parameters, which are linear or not, and options."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -50,7 +48,7 @@ class Parameter:
             raise BrdfkitError(f"{self.meaning!r}: the default {problem}.")
 
     def find_problem(self, value: ArrayLike) -> str | None:
-        """Say what is wrong with one number or several; None if all are within bounds."""
+        """Describe what is wrong with one number or several; None if all are within bounds."""
         low, high = self.bounds
         given = np.asarray(value)
         if np.all(np.isfinite(given) & (given >= low) & (given <= high)):

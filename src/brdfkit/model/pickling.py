@@ -5,8 +5,6 @@ the checksum of the file, which is loaded together with the pickle. Pickles refe
 `UsersClass` by these names, which therefore stay.
 """
 
-from __future__ import annotations
-
 import sys
 import warnings
 from dataclasses import dataclass
@@ -49,7 +47,7 @@ class UsersClass:
 
 
 def reduce_model(model: Any) -> tuple[Any, ...]:
-    """Return what `pickle` stores of a model, as `object.__reduce__` does."""
+    """Return the parts of a model that `pickle` stores, in the form of `object.__reduce__`."""
     classes = tuple(map(_make_portable, model.made_of()))
     return restored, (classes, model.changed_options(), model.arguments)
 

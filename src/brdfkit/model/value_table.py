@@ -1,7 +1,5 @@
 """Makes the table of a model's values, a row for each parameter, with known errors."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any

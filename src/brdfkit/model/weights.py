@@ -1,7 +1,5 @@
 """Reads and converts the values of weights: one number, linear R, G, B, or one per wavelength."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""`reproduce`: runs the claims of a thesis and writes a page of them.
+"""`reproduce` runs the claims of a thesis and writes a page of them.
 
 A folder here is a thesis and is found by itself. Its `__init__.py` has TITLE, INTRODUCTION, NEEDS
 (the measured files) and PARTS, the names of its files in the order of the page. A part is one table

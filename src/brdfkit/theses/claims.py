@@ -1,7 +1,5 @@
 """`Claim`: a claim of a thesis, with the printed figures, the figures here and a verdict."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass

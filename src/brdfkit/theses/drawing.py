@@ -1,7 +1,5 @@
 """Draws the figures of a thesis's page by matplotlib, in one style and without pyplot."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Writes sections with claims, tables and figures as one Markdown page, with PNGs beside it."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass, field

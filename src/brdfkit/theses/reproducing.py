@@ -138,7 +138,7 @@ def reproduce(
 def _require_packages(thesis: ModuleType, sources: Sources) -> None:
     """Raise `BrdfkitError`, before the work, where a package is missing that a file needs."""
     for file, package in getattr(thesis, "PACKAGES", {}).items():
-        if sources.beside(file) and find_spec(package) is None:
+        if sources.find_beside(file) and find_spec(package) is None:
             raise BrdfkitError(
                 f'{file}: needs the package {package}; pip install "brdfkit[volumes]" brings it.'
             )

@@ -1,7 +1,5 @@
 """Finds the measurements for a thesis in a folder of third-party files."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -27,7 +25,7 @@ class Sources:
         assert self.folder is not None, "a thesis that needs files has a folder"
         return self.folder / name
 
-    def beside(self, name: str) -> Path | None:
+    def find_beside(self, name: str) -> Path | None:
         """Return the path of a file beside the folder, such as ``environments/grace.hdr``.
 
         None where there is no such file.

@@ -4,8 +4,6 @@ There is no list of plugins: brdfkit finds its own files in their folders, and a
 The code that uses a kind decides what its files contain.
 """
 
-from __future__ import annotations
-
 import importlib
 import importlib.util
 import pkgutil

@@ -3,8 +3,6 @@
 The first line is ``Title: one sentence.``; then follow the formula, if there is one, and prose.
 """
 
-from __future__ import annotations
-
 import inspect
 import re
 import sys
@@ -31,8 +29,8 @@ class Page:
     @property
     def shows(self) -> str:
         """The sentence that says which materials a model shows and which it does not, or ""."""
-        found = SHOWS.search(" ".join(self.lines))
-        return f"S{found.group(1)}" if found else ""
+        match = SHOWS.search(" ".join(self.lines))
+        return f"S{match.group(1)}" if match else ""
 
     @property
     def references(self) -> list[Reference]:

@@ -4,8 +4,6 @@ Its colours derive from the colour of the text, so that they are right in light 
 Where a viewer removes the style sheet, plain tables remain.
 """
 
-from __future__ import annotations
-
 import base64
 from collections.abc import Callable, Sequence
 from html import escape

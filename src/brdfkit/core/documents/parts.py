@@ -1,7 +1,5 @@
 """The parts of a document: paragraphs, tables, pictures and folded lines."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias

@@ -1,7 +1,5 @@
 """Turns a document into text: the title, and below it, indented, its paragraphs and tables."""
 
-from __future__ import annotations
-
 from brdfkit.core.documents.html import to_html
 from brdfkit.core.documents.parts import BAD, Cell, Document, Paragraph, Table
 from brdfkit.core.names import to_printable

@@ -5,8 +5,6 @@ Directions are unit vectors (..., 3) of NumPy, float64, in the local frame with 
 Half/difference coordinates are those of [Rusinkiewicz 1998].
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray

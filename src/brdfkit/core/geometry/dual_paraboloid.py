@@ -7,8 +7,6 @@ functions use arithmetic alone, so they take NumPy's and Dr.Jit's arrays.
 [Heidrich & Seidel 1998], [Ergun 2015, chapter 7]
 """
 
-from __future__ import annotations
-
 from brdfkit.core.array_types import JitFloat
 
 

@@ -5,8 +5,6 @@ linear between rows, as Mitsuba's `envmap` reads them; maps that brdfkit makes f
 constant pixels and no row at a pole. In both the columns are evenly spaced.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -27,7 +25,7 @@ def solid_angles(height: int, width: int, at_poles: bool) -> FloatArray:
 
 
 def projected_solid_angles(height: int, width: int) -> FloatArray:
-    """Return ∫ cosθ dω (height,) [sr] over the upper hemisphere for a pixel of each row.
+    """Return ∫ cosθ dω (height,) [sr] over the upper hemisphere for the pixels of a file's rows.
 
     >>> (projected_solid_angles(5, 1).sum() / np.pi).round(9)
     np.float64(1.0)

@@ -6,8 +6,6 @@ kind in `mitsuba_bridge/arrays.py` take Dr.Jit's arrays. `list_corners` takes br
 kind.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator, Sequence
 from typing import Any, TypeAlias

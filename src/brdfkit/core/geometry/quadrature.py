@@ -1,7 +1,5 @@
 """Integrates BRDFs over the hemisphere with the precision that narrow lobes need."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from typing import Any, TypeAlias

@@ -3,8 +3,6 @@
 Directions are unit vectors in the local frame, z along the normal.
 """
 
-from __future__ import annotations
-
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitMask, JitVector

@@ -10,8 +10,6 @@ chooses the library, through the environment variable DRJIT_LIBLLVM_PATH:
 4. none: Mitsuba's scalar variants remain.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import site

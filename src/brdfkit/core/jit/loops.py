@@ -5,8 +5,6 @@ differentiates backwards only through loops with known `max_iterations`. Then ea
 becomes a kernel of its own, a thousand for a picture, and the picture takes about 10 times as long.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps

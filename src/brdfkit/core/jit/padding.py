@@ -6,8 +6,6 @@ Dr.Jit compiles another kernel for each pattern of aligned and unaligned argumen
 places arrays anywhere, equal computations would be compiled again and again.
 """
 
-from __future__ import annotations
-
 import mmap
 from typing import Any
 

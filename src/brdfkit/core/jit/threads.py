@@ -5,8 +5,6 @@ sometimes on one that is already freed, which crashes the process. So all functi
 take turns by one lock, and brdfkit can be used from any thread. A kernel runs on all cores anyway.
 """
 
-from __future__ import annotations
-
 import functools
 import threading
 from collections.abc import Callable, Iterator

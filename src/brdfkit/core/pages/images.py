@@ -1,7 +1,5 @@
 """Encodes pictures as `data:` addresses, which pages hold, and maps numbers to colours."""
 
-from __future__ import annotations
-
 import io
 from base64 import b64encode
 from typing import Any

@@ -1,7 +1,5 @@
 """Fills the template of an HTML page, which holds its style and scripts; no others may run."""
 
-from __future__ import annotations
-
 from base64 import b64encode
 from functools import cache
 from hashlib import sha256

@@ -118,11 +118,14 @@ class Camera:
         return replace(self, near=near, far=far)
 
     def move_back(self, points: ArrayLike) -> Camera:
-        """Move the camera back until all points (n, 3) are before it, and open it to see them."""
+        """Return the camera moved back behind all points (n, 3), and opened to see them."""
         view = self.view.copy()
         view[2, 3] -= max(0, self.near - self.depths(points).min())
         x, y, z, _ = transform(view, *np.asarray(points, float).T)
-        near, far = -z.max(), max(-z.min(), -1.001 * z.max())  # with room for points in a plane
+        near, far = (
+            -z.max(),
+            max(-z.min(), -1.001 * z.max()),
+        )  # a thicker range for points in one plane
         return Camera(view, np.abs(x / z).max(), np.abs(y / z).max(), near, far)
 
     def fit_planes(self, points: ArrayLike) -> Camera:

@@ -4,8 +4,6 @@ The components of points are arguments and results of their own: floats, NumPy a
 arrays. A `matrix` is an array (4, 4) or a `mi.Matrix4f`.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Draws a small picture of a ball under direct light, with all of its pixels."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

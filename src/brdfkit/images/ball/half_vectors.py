@@ -3,8 +3,6 @@
 A density p_h of half vectors h is the density p_h / (4 wo·h) of the directions that they reflect.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, TypeAlias
 

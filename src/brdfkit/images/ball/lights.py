@@ -4,8 +4,6 @@ In the world z points up, and the camera looks at the ball from the south (-y). 
 own exposure, so that only ratios within a light matter.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Draws points of the ball for pictures, by their normals: everywhere, and more in highlights."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray

@@ -1,7 +1,5 @@
 """Differences in colour, pixel by pixel: ΔE2000 and, for colours brighter than white, ΔE ITP."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

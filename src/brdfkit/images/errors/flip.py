@@ -4,8 +4,6 @@ The package flip-evaluator computes it. By default it takes the exposures from a
 black background makes these too many and too long. Here they come from the masked pixels.
 """
 
-from __future__ import annotations
-
 from math import ceil
 
 import numpy as np
@@ -18,7 +16,7 @@ from brdfkit.images.errors.psnr import PEAK
 # The shortest exposure lifts the brightest pixel to this value, the longest one the median pixel.
 # There the tone curve of ACES reaches 0.85 of its range
 EXPOSED_VALUE = 2.1188
-# The largest range of exposures [stops], since half of the pixels may be black
+# The largest range of exposures [stops]; a median of 0 would make it infinite
 LARGEST_RANGE = 8
 
 

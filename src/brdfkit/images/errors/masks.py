@@ -1,7 +1,5 @@
 """Masks that say which pixels count, and pictures cropped to them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

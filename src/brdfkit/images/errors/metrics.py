@@ -1,7 +1,5 @@
 """The metrics of pictures: their titles, functions and directions."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

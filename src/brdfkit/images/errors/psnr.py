@@ -1,7 +1,5 @@
 """Computes the peak signal-to-noise ratio (PSNR) of a picture."""
 
-from __future__ import annotations
-
 from math import inf, nan
 
 import numpy as np

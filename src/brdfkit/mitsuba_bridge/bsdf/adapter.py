@@ -4,8 +4,6 @@ It serves all models: it has a texture for every parameter, and one component pe
 proportion to its weight and energy. Lobes that share a sampling are one component.
 """
 
-from __future__ import annotations
-
 import functools
 import operator
 from collections.abc import Sequence

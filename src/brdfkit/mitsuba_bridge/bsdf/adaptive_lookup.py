@@ -6,8 +6,6 @@ own distributions warp the unit square and interpolate between the stored incide
 [Dupuy & Jakob 2018]
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -52,7 +50,7 @@ class AdaptiveLookup:
         self.normals: Any = mi.MarginalContinuous2D2(vndf, angles)
         self.density: Any = mi.MarginalContinuous2D2(density, angles)
 
-    def incidences(self, wi: JitVector) -> list[tuple[JitInt, JitFloat]]:
+    def find_incidences(self, wi: JitVector) -> list[tuple[JitInt, JitFloat]]:
         """Return (index, share) of the stored incidences around `wi`; the shares add up to 1."""
         angles = self._angles(self._fold(wi, wi))
         axes = [(nodes, x) for nodes, x in zip(self.nodes, angles, strict=True) if nodes.count > 1]
@@ -62,12 +60,12 @@ class AdaptiveLookup:
             for at, t in multilinear.list_corners(brackets)
         ]
 
-    def corners(self, wi: JitVector, wo: JitVector) -> Iterator[tuple[JitInt, JitFloat]]:
+    def find_corners(self, wi: JitVector, wo: JitVector) -> Iterator[tuple[JitInt, JitFloat]]:
         """Yield (row, factor) of stored values; the BRDF is the sum of factor times value.
 
         A row is an index among all stored values (a b n n,).
         """
-        incidences = self.incidences(wi)
+        incidences = self.find_incidences(wi)
         wi, wo = self._fold(wi, wi), self._fold(wo, wi)
         m, u, _ = self._locate(wi, wo)
         factor = 1 / wo.z

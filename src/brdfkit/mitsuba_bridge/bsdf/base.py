@@ -5,8 +5,6 @@ samples follows the cosine, so that the weight of a sample is bounded where the 
 unpolarised.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 from brdfkit.core.array_types import (

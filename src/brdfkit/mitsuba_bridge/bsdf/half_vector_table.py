@@ -8,8 +8,6 @@ A density p_h of half vectors is the density p_h / (4 wi·h) of the directions t
 wi.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -82,17 +80,17 @@ class HalfVectorTable:
         turn = (azimuth(h) - azimuth(wi)) / (2 * dr.pi)
         cell = row * n_p + _find_cell(turn - dr.floor(turn), n_p)
         density = 0
-        for incidence, share in self.incidences(wi):
+        for incidence, share in self.find_incidences(wi):
             density += share * self.density.at(incidence * (n_h * n_p) + cell)
         return density / (4 * cos_theta_d(wi, wo))
 
-    def incidences(self, wi: JitVector) -> list[tuple[JitInt, JitFloat]]:
+    def find_incidences(self, wi: JitVector) -> list[tuple[JitInt, JitFloat]]:
         """Return (index, share) of the table's incidences around `wi`; the shares add up to 1."""
-        brackets = self._brackets(wi)
+        brackets = self._find_brackets(wi)
         shape = (self.azimuths, self.angles)[-len(brackets) :]
         return [(to_flat_index(nodes, shape), share) for nodes, share in list_corners(brackets)]
 
-    def _brackets(self, wi: JitVector) -> list[tuple[JitInt, JitInt, JitFloat]]:
+    def _find_brackets(self, wi: JitVector) -> list[tuple[JitInt, JitInt, JitFloat]]:
         """Return the brackets of `wi` among azimuths, if there are several, and polar angles."""
         theta = find_bracket(angle(wi) / (dr.pi / 2) * self.angles - 0.5, self.angles)
         if self.azimuths == 1:
@@ -101,13 +99,13 @@ class HalfVectorTable:
         return [phi, theta]
 
     def _choose_incidence(self, wi: JitVector, z: JitFloat) -> JitInt:
-        """Return the index of one of `incidences`, chosen by its share with a random number `z`.
+        """Return the index of an incidence, chosen by its share with a random number `z`.
 
         x and y of the point stay as they are. So equal numbers draw nearly equal half vectors at
         neighbouring incidences, and a picture that uses the same numbers everywhere has no rings.
         """
         incidence = 0
-        for lower, upper, t in self._brackets(wi):
+        for lower, upper, t in self._find_brackets(wi):
             up = z < t
             # The rest of z serves for the next choice. It is divided once, by the chosen number,
             # since a scalar variant raises an error if the other is 0

@@ -4,8 +4,6 @@ A single lobe cannot be sampled if its weight may be negative. So the sum is tab
 parameter changes, with the mean of each texture.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A model's BSDF at a point of a surface for light from `wi`: its sampling, density and value."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any

@@ -1,7 +1,5 @@
 """`Table.eval` in the renderer: finds the cells around a pair of directions, and their shares."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import drjit as dr

@@ -1,7 +1,5 @@
 """The base class of a model's BSDF plugin, which holds the parameters of the model as textures."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any
@@ -82,19 +80,19 @@ def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
             return super().has_attribute(self.texture_name(name), active)
 
         def eval_attribute(self, name: str, si: MitsubaObject, active: JitMask = True) -> JitColour:
-            return self.attribute_by("eval", super().eval_attribute, name, si, active)
+            return self.eval_attribute_by("eval", super().eval_attribute, name, si, active)
 
         def eval_attribute_1(
             self, name: str, si: MitsubaObject, active: JitMask = True
         ) -> JitFloat:
-            return self.attribute_by("eval_1", super().eval_attribute_1, name, si, active)
+            return self.eval_attribute_by("eval_1", super().eval_attribute_1, name, si, active)
 
         def eval_attribute_3(
             self, name: str, si: MitsubaObject, active: JitMask = True
         ) -> JitColour:
-            return self.attribute_by("eval_3", super().eval_attribute_3, name, si, active)
+            return self.eval_attribute_by("eval_3", super().eval_attribute_3, name, si, active)
 
-        def attribute_by(
+        def eval_attribute_by(
             self,
             method: str,
             inherited: Callable[..., Any],
@@ -102,7 +100,7 @@ def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
             si: MitsubaObject,
             active: JitMask,
         ) -> Any:
-            """Return the value of an attribute; that of a parameter by the `method` of its texture.
+            """Return the value of an attribute, for a parameter by the `method` of its texture.
 
             Other attributes go to `inherited`, Mitsuba's own method. Parameters do not, because
             that method calls the plugin's method once more.

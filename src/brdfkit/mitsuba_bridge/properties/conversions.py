@@ -1,7 +1,5 @@
 """Checks and converts the properties that a scene gives to a plugin."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable
 from typing import Any

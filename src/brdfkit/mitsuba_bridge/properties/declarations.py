@@ -6,8 +6,6 @@ def define(mi):
     class Schlick(derive_plugin(mi.PhaseFunction, PARAMETERS)): ...
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -237,7 +235,7 @@ def derive_plugin(base: Any, parameters: Mapping[str, Setting]) -> Any:
 
 
 def _to_number(value: Any, bounds: tuple[float, float]) -> float:
-    """Return a property as a float; raise a ValueError for what is no number within `bounds`."""
+    """Return a property as a float; raise a ValueError if it is no number within `bounds`."""
     low, high = bounds
     if not (is_number(value) and low <= value <= high):
         raise ValueError(describe_range("a number", low, high))

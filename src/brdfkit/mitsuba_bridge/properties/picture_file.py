@@ -1,7 +1,5 @@
 """Reads pictures of any format by Mitsuba, as pixels in linear sRGB."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from os import PathLike
 from pathlib import Path

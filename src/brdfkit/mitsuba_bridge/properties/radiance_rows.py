@@ -4,8 +4,6 @@ A row is 2, 2 and its length in two bytes, then runs for each of R, G, B and the
 and a byte stand for n - 128 times this byte, n ≤ 128 and n bytes for these bytes [Ward 1991].
 """
 
-from __future__ import annotations
-
 import re
 from os import PathLike
 

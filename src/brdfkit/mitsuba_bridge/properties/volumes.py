@@ -1,7 +1,5 @@
 """Checks volumes that a scene gives to a plugin, and makes volumes of one value or colour."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -6,8 +6,6 @@ Mitsuba. Yet afterwards a scene with `<bsdf type="ward">` should load. So one fi
 LLVM.
 """
 
-from __future__ import annotations
-
 import functools
 import os
 import sys
@@ -57,7 +55,7 @@ class _After:
         return spec
 
     def _find_by_others(self, path: Sequence[str] | None, target: ModuleType | None) -> Any:
-        """Return the specification of the module by the first other finder that has one."""
+        """Return the module's import specification from the first other finder that has one."""
         # sys.meta_path is not changed, since another thread may be looking through it
         others = [f for f in sys.meta_path if hasattr(f, "find_spec") and not isinstance(f, _After)]
         specs = (finder.find_spec(self.module, path, target) for finder in others)

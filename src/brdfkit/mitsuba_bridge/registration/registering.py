@@ -5,8 +5,6 @@ one of Mitsuba's for the current variant. Where Mitsuba allows no derived class,
 ``define`` returns a function that makes an instance from the properties.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from typing import Any

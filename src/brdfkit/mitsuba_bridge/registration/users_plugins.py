@@ -1,7 +1,5 @@
 """`load_plugins`: makes plugins of a user's own known, including BRDF models."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from brdfkit.core.discovery import plugin_files
@@ -61,7 +59,7 @@ def _find_files(path: Path) -> list[Path]:
 
 
 def _refuse_misspelt(path: Path) -> None:
-    """Raise `BrdfkitError` for a folder in `path` whose name is nearly that of a kind."""
+    """Raise `BrdfkitError` for a folder in `path` whose name is nearly a kind."""
     for folder in sorted(path.iterdir()) if path.is_dir() else ():
         kind = nearest(folder.name.lower(), KINDS)
         if folder.is_dir() and folder.name not in KINDS and kind and any(folder.glob("*.py")):
@@ -69,7 +67,7 @@ def _refuse_misspelt(path: Path) -> None:
 
 
 def _find_kind(file: Path) -> str:
-    """Return the kind of a plugin file: that of its folder, or "bsdfs" if it defines a model.
+    """Return the kind of a plugin file: its folder's name, or "bsdfs" if it defines a model.
 
     Raises `BrdfkitError` for a file that holds no plugin or lies in no folder of a kind.
     """

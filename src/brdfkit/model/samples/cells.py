@@ -1,7 +1,5 @@
 """Computes the directions of a table's cells, once for all tables of one size."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 from typing import Any

@@ -5,8 +5,6 @@ are equivalent by reciprocity and mirror symmetry are one point. An anisotropic 
 half vector and the difference vector: a pair and its reciprocal pair are two points.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, ArrayLike

@@ -15,8 +15,6 @@ each point belongs to the nearest sample, if one is near. Formats and tables wit
 their extents.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np
@@ -134,7 +132,7 @@ def _spread_points(
     turn = (2 * np.pi * u[:, 3],) if anisotropic else ()
     pairs = from_half_difference(theta_h, theta_d, phi_d, *turn)
     least = minimum_cosine(max_angle)
-    kept = (pairs[0][:, 2] > least) & (pairs[1][:, 2] > least)
+    is_inside = (pairs[0][:, 2] > least) & (pairs[1][:, 2] > least)
     angles = (np.pi / 2) ** 2 * 2 * np.pi / len(u) * (np.diff(edges) / shares)[bins]
     volumes = np.stack([angles, angles * density(theta_h, theta_d)], axis=1)
-    return pairs[0][kept], pairs[1][kept], volumes[kept]
+    return pairs[0][is_inside], pairs[1][is_inside], volumes[is_inside]

@@ -29,9 +29,10 @@ LARGEST = 1e30  # [sr⁻¹] that is rendered; single precision ends at 3e38
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """BRDF values ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN where unknown.
+    """A table of BRDF values ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹.
 
-    `phi_d_period` is π for a reciprocal table, which needs half of the azimuths phi_d, else 2π.
+    Unknown cells are NaN. `phi_d_period` is π for a reciprocal table, which needs half of the
+    azimuths phi_d, else 2π.
 
     >>> Table(np.full((9, 9, 18, 1), 1 / np.pi)).eval([[0, 0, 1.0]], [[0, 0, 1.0]])
     array([[0.31830989]])
