@@ -1,4 +1,4 @@
-"""Formats names and lists of words: unique, printable, or fit for the name of a file."""
+"""Makes names unique, printable or fit for files, and joins words to lists."""
 
 from collections.abc import Collection, Sequence
 from pathlib import Path

@@ -25,7 +25,7 @@ def use_absolute_indices(path: Path) -> Iterator[Path]:
 
 
 def _make_lines_absolute(lines: Iterable[bytes]) -> Iterator[bytes]:
-    """Yield the lines of an OBJ with indices from 1; -1 is the last element before a face."""
+    """Yield the lines of an OBJ with indices that count from 1, instead of backwards from -1."""
     count = dict.fromkeys(ELEMENTS, 0)
     for line in lines:
         first, *corners = line.split() or [b""]

@@ -46,7 +46,7 @@ def cos_squared(h: JitVector) -> JitFloat:
 
 @dataclass(frozen=True)
 class Beckmann:
-    """Gaussian slopes of width `alpha_u` along x and `alpha_v` along y.
+    """Normals with Gaussian slopes, of width `alpha_u` along x and `alpha_v` along y.
 
     [Beckmann & Spizzichino 1963]; sampling: [Kurt 2007, eqs. 4.23-4.25].
     """
@@ -75,7 +75,7 @@ class Beckmann:
 
 @dataclass(frozen=True)
 class TrowbridgeReitz:
-    """GGX: slopes with long tails, of width `alpha_u` along x and `alpha_v` along y.
+    """GGX, normals with long-tailed slopes, of width `alpha_u` along x and `alpha_v` along y.
 
     [Walter et al. 2007]; [Heitz 2014]
     """
@@ -120,7 +120,7 @@ class TrowbridgeReitz:
 
 @dataclass(frozen=True)
 class CosinePower:
-    """Normals in proportion to (N·H)^(n_u cos²φ_h + n_v sin²φ_h).
+    """A distribution of normals in proportion to (N·H)^(n_u cos²φ_h + n_v sin²φ_h).
 
     [Blinn 1977]; [Ashikhmin & Shirley 2000]
     """

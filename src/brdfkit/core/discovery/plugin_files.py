@@ -125,7 +125,7 @@ def _find_own_plugins(kind: str) -> dict[str, Path]:
 
 @cache
 def _import_file(file: Path, _modified: int) -> ModuleType:
-    """Import a user's file; the time of its last change makes the cache import it anew."""
+    """Import a user's file; another time of its last change makes the cache import it anew."""
     name = f"{USERS}.{file.stem}"
     if file.suffix != ".py":
         raise BrdfkitError(f"{file} is not a Python file.")

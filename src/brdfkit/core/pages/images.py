@@ -16,7 +16,7 @@ def encode_jpeg(linear: AnyArray) -> str:
 
 
 def encode_webp(colours: AnyArray, **options: Any) -> str:
-    """Return colours (height, width, 3 or 4) in 0..1 as the address of a PNG, without loss.
+    """Return colours (height, width, 3) in 0..1 as the address of a WebP, half as long as a JPEG.
 
     `options` are those of Pillow, such as `quality` or `lossless`.
     """
@@ -37,9 +37,7 @@ def shrink(picture: AnyArray, longest: int) -> AnyArray:
 
 
 def encode_png(colours: AnyArray) -> str:
-    """Return colours (height, width, 3 or 4) in 0..1 as the address of a PNG, which keeps every
-    pixel.
-    """
+    """Return colours (height, width, 3 or 4) in 0..1 as the address of a PNG, without loss."""
     return _encode(_to_bytes(colours), "PNG", optimize=True)
 
 

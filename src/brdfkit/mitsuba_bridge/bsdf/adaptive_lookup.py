@@ -123,7 +123,7 @@ class AdaptiveLookup:
         return m, *self.normals.invert(m, angles)
 
     def _angles(self, wi: JitVector) -> list[JitFloat]:
-        """Return [phi_i, theta_i] of a folded direction."""
+        """Return [phi_i, theta_i] of a direction in the stored part of the circle."""
         phi_i = dr.atan2(wi.y, wi.x)
         # The nodes of a part of the circle begin at -π, so that the azimuth π becomes -π
         return [phi_i if self.parts < 2 else -dr.abs(phi_i), _theta(wi)]
