@@ -42,7 +42,7 @@ def to_srgb(linear: ArrayLike) -> FloatArray:
 def from_srgb(values: ArrayLike) -> FloatArray:
     """Invert the curve of sRGB [IEC 1999]: return linear values from 0 to 1.
 
-    >>> from_srgb(np.array([0.0, 0.735, 1.0])).round(3)
+    >>> from_srgb(np.array([0.0, 0.7354, 1.0])).round(3)
     array([0. , 0.5, 1. ])
     """
     y = np.clip(values, 0, 1)

@@ -16,8 +16,8 @@ def transform(
 ) -> tuple[Any, ...]:
     """Return the homogeneous coordinates (x, y, z, w) of a point after a transformation.
 
-    >>> transform(np.diag([2, 1, 1, 1]), 1.0, 2.0, 3.0)
-    (2.0, 2.0, 3.0, 1.0)
+    >>> np.array(transform(np.diag([2, 1, 1, 1]), 1.0, 2.0, 3.0))
+    array([2., 2., 3., 1.])
     """
     return tuple(
         matrix[row, 0] * x + matrix[row, 1] * y + matrix[row, 2] * z + matrix[row, 3] * w
@@ -55,8 +55,8 @@ def make_rigid(rotation: ArrayLike, origin: ArrayLike) -> FloatArray:
 def to_unit_cube(low: ArrayLike, high: ArrayLike) -> FloatArray:
     """Return the matrix (4, 4) that maps the box from `low` (3,) to `high` (3,) onto [-1, 1]³.
 
-    >>> project(to_unit_cube([0, 0, 0], [1, 2, 4]), 1.0, 1.0, 0.0)
-    (1.0, 0.0, -1.0)
+    >>> np.array(project(to_unit_cube([0, 0, 0], [1, 2, 4]), 1.0, 1.0, 0.0))
+    array([ 1.,  0., -1.])
     """
     low, high = np.asarray(low, float), np.asarray(high, float)
     size = high - low

@@ -109,7 +109,7 @@ def estimate_samples(decibels: float, floor: float, spp: float) -> float:
     The squared error of the noise is inversely proportional to their number, so that twice as many
     gain 3 dB.
 
-    >>> estimate_samples(46, 40, 100)
-    398.1071705534973
+    >>> round(estimate_samples(46, 40, 100), 6)
+    398.107171
     """
     return spp * 10 ** min((decibels - floor) / 10, 100.0)
