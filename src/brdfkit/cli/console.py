@@ -48,10 +48,7 @@ class Console:
         print(json.dumps(to_json(record), indent=2))
 
     def table(
-        self,
-        columns: Sequence[str],
-        *sections: Sequence[Sequence[str]],
-        title: str | None = None,
+        self, columns: Sequence[str], *sections: Sequence[Sequence[str]], title: str | None = None
     ) -> None:
         """Print a table from the columns' names and `sections`, which are lists of rows of texts.
 

@@ -8,7 +8,7 @@ import sys
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
-from typing import Any
+from typing import Any, NoReturn
 
 import click
 
@@ -137,6 +137,12 @@ def print_message(message: object) -> None:
     if len(text) > LENGTH_LIMIT:
         text = f"{text[: LENGTH_LIMIT // 2]} … {text[-LENGTH_LIMIT // 4 :]}"
     click.echo(f"brdfkit: {text}", err=True)
+
+
+def exit_interrupted(message: str) -> NoReturn:
+    """Print what was finished before Ctrl-C or SIGTERM, and end the command with its status."""
+    print_message(f"interrupted; {message}.")
+    click.get_current_context().exit(exit_status())
 
 
 def _print_warning(message: Warning | str, *_args: Any, **_kwargs: Any) -> None:

@@ -1,4 +1,4 @@
-"""Prints the results of `brdfkit fit`: fits to one material, or a sweep over several materials."""
+"""Prints the results of `brdfkit fit`: the fits to one material."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from brdfkit.cli.console import Console
 if TYPE_CHECKING:
     from brdfkit.fitting.compare import Comparison
     from brdfkit.fitting.ranking import Ranking
-    from brdfkit.fitting.sweeping import Sweep
     from brdfkit.materials.measured import Measured
     from brdfkit.regression import Fit
 
@@ -97,49 +96,4 @@ def _to_record(fit: Fit, comparison: Comparison, psnr: Mapping[str, float]) -> d
         "message": fit.message,
         "checksum": fit.checksum,
         "versions": fit.versions,
-    }
-
-
-def print_sweep(sweep: Sweep, folder: Path | None, console: Console) -> None:
-    """Print the tables of errors of a sweep, unless it has no fits, or the sweep as JSON."""
-    from brdfkit.fitting.sweeping.sweeping import PAGE, TABLE
-    from brdfkit.fitting.sweeping.tables import compare, quantities
-
-    pages = [folder / PAGE, folder / TABLE] if folder and sweep.fits else []
-    if console.as_json:
-        fits = [_to_sweep_record(row) for row in sweep.rows if row.fit]
-        failed = [
-            {"material": r.material, "file": r.file, "model": r.model, "message": r.message}
-            for r in sweep.failed
-        ]
-        saved = [row.saved for row in sweep.rows if row.saved]
-        console.json({"fits": fits, "failed": failed, "written": [*pages, *saved]})
-    elif sweep.fits:
-        for quantity in quantities(sweep):
-            columns, *sections = compare(sweep, quantity)
-            unit = "" if quantity.decibels else f" ({sweep.rows[0].loss})"
-            console.table(columns, *sections, title=f"{quantity.title}{unit}")
-        console.out.print(sweep.summary)
-        console.print_written(pages)
-        if pages:
-            console.print_written([f"{folder}/MATERIAL/MODEL.json, {len(sweep.fits)} fits"])
-
-
-def _to_sweep_record(row: Any) -> dict[str, Any]:
-    """Return the record of a row of a sweep for JSON."""
-    return {
-        "material": row.material,
-        "file": row.file,
-        "model": row.model,
-        "parameters": row.fit.values,
-        "loss": row.loss,
-        "error": row.error,
-        "held_out": row.held_out,
-        "psnr": row.psnr,
-        "albedo": row.fit.albedo,
-        "at_bounds": row.at_bounds,
-        "notes": row.fit.notes,
-        "samples": row.samples,
-        "seconds": row.seconds,
-        "message": row.message,
     }

@@ -42,8 +42,22 @@ def write_picture(picture: Rendering, path: Path, tone: ToneMapping | str = "ran
         print_message(picture.shortfall)
 
 
-def print_picture(picture: Rendering, path: Path, console: Console) -> None:
-    """Print a rendering's noise and errors and its files; exit if it was interrupted."""
+def write_result(result: Rendering | Film, path: Path, tone: ToneMapping, console: Console) -> None:
+    """Write and print a picture or a film, and exit with a status if it was interrupted."""
+    from brdfkit.rendering.film import Film
+
+    if isinstance(result, Film):
+        done = _write_film(result, path, tone, console)
+    else:
+        write_picture(result, path, tone)
+        _print_picture(result, path, console)
+        done = result.spp
+    if done < (result.requested or 0):
+        click.get_current_context().exit(exit_status())
+
+
+def _print_picture(picture: Rendering, path: Path, console: Console) -> None:
+    """Print a rendering's noise and errors, and its files."""
     written = [path]
     if path.suffix.lower() == ".exr":
         written += [path.with_suffix(".png")]
@@ -65,12 +79,10 @@ def print_picture(picture: Rendering, path: Path, console: Console) -> None:
         else:  # without the noise floor, of which `write_picture` informed
             console.out.print(str(replace(picture, requested_noise_floor=None)))
         console.print_written(written)
-    if picture.spp < (picture.requested or 0):
-        click.get_current_context().exit(exit_status())
 
 
-def write_film(film: Film, path: Path, tone: ToneMapping, console: Console) -> None:
-    """Write a film, and print its frames and its file; exit if it was interrupted."""
+def _write_film(film: Film, path: Path, tone: ToneMapping, console: Console) -> int:
+    """Write a film, print its frames and its file, and return the number of frames."""
     replace(film, tone_mapping=tone).write(path)
     count, requested = len(film.frames), film.requested
     if count < requested:
@@ -81,5 +93,4 @@ def write_film(film: Film, path: Path, tone: ToneMapping, console: Console) -> N
     else:
         console.out.print(str(film))
         console.print_written([path])
-    if count < requested:
-        click.get_current_context().exit(exit_status())
+    return count

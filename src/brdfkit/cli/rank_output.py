@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from brdfkit.cli.console import Console
-from brdfkit.cli.errors import print_message
+from brdfkit.cli.errors import exit_interrupted, print_message
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.interrupts import exit_status
 
 if TYPE_CHECKING:
     from brdfkit.fitting.ranking import Ranking
@@ -44,8 +41,7 @@ def recommend(
         ranking = rank(material, **settings, progress=progress)
     _print_ranking(ranking, console)
     if len(ranking.rows) < ranking.requested:
-        print_message(f"interrupted; {len(ranking.rows)} of {ranking.requested} models are ranked.")
-        click.get_current_context().exit(exit_status())
+        exit_interrupted(f"{len(ranking.rows)} of {ranking.requested} models are ranked")
     models = [ranking.best if name == BEST else name for name in names]
     return list(dict.fromkeys(models)), ranking
 

@@ -37,7 +37,8 @@ VOLUME_OPTIONS: dict[str, dict[str, Any]] = {
     "--density": NUMBER | {"help": "factor on the transfer function's extinction. Default: 1."},
     "--azimuth": NUMBER
     | {"help": "angle of the camera around the volume [degrees]; 0 is in front. Default: 30."},
-    "--elevation": NUMBER | {"help": "angle of the camera above the horizon. Default: 20."},
+    "--elevation": NUMBER
+    | {"help": "angle of the camera above the horizon [degrees]. Default: 20."},
     "--background": NUMBER | {"help": "radiance of the background; 0 is black. Default: 0.02."},
     "--seconds": NUMBER | {"help": "time during which samples are added [s]."},
     "--orbit": {
@@ -50,7 +51,7 @@ VOLUME_OPTIONS: dict[str, dict[str, Any]] = {
     "--downsample": {
         "type": click.IntRange(min=1),
         "metavar": "N",
-        "help": "average blocks of N×N×N voxels while the file is read.",
+        "help": "combine N×N×N voxels into one while the file is read.",
     },
 }
 

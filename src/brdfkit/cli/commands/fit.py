@@ -11,7 +11,7 @@ from click.core import ParameterSource
 
 from brdfkit.cli.console import Console
 from brdfkit.cli.errors import print_message
-from brdfkit.cli.fit_output import print_fits, print_sweep
+from brdfkit.cli.fit_output import print_fits
 from brdfkit.cli.options import (
     SPP,
     mend_options,
@@ -81,6 +81,7 @@ def fit(
     Several FILEs are fitted by several processes; files that cannot be read are skipped. With -o,
     the command also writes a page and a table; when repeated, it continues where it was stopped.
     """
+    from brdfkit.cli.many_files import fit_many
     from brdfkit.cli.rank_output import BEST, refuse_best
     from brdfkit.model import labels
 
@@ -97,7 +98,7 @@ def fit(
         _refuse_mends(mends)
         if rendered:
             raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
-        _fit_many(files, models, how, output, workers, judge, console)
+        fit_many(files, models, how, output, workers, judge, console)
     elif judge:
         raise BrdfkitError("--judge is for several FILEs; -m best judges all models of one FILE.")
     else:
@@ -160,39 +161,6 @@ def _fit_one(
     for error in failed.values():
         print_message(error)
     if interrupted or failed:
-        click.get_current_context().exit(exit_status() if interrupted else 2)
-
-
-def _fit_many(
-    files: Sequence[str],
-    names: Sequence[str],
-    settings: dict[str, Any],
-    folder: Path | None,
-    workers: int | None,
-    judge: bool,
-    console: Console,
-) -> None:
-    """Fit models to several files by `brdfkit.sweep`, and print their errors.
-
-    Each failure is printed as one sentence; the exit status is then 2.
-    """
-    from brdfkit.cli.arguments import results_folder
-    from brdfkit.fitting.sweeping import sweep
-
-    options: dict[str, Any] = {"folder": folder, "workers": workers, "judge": judge}
-    what = f"fit {len(names)} models to {len(files)} materials"
-    with results_folder(folder), console.progress(what) as progress:
-        result = sweep(files, names, settings=settings, **options, progress=progress)
-    print_sweep(result, folder, console)
-    for problem in result.problems:
-        print_message(problem)
-    interrupted = len(result.rows) < result.requested
-    if interrupted:
-        more = "; the same command continues from there" if folder else ""
-        print_message(
-            f"interrupted; {len(result.fits)} of {result.requested} fits are finished{more}."
-        )
-    if interrupted or result.failed:
         click.get_current_context().exit(exit_status() if interrupted else 2)
 
 

@@ -9,10 +9,9 @@ from typing import Any
 import click
 
 from brdfkit.cli.console import Console
-from brdfkit.cli.errors import print_message
+from brdfkit.cli.errors import exit_interrupted, print_message
 from brdfkit.cli.options import output_option, writing_options
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.interrupts import exit_status
 
 SIZE = 160  # pixels of a ball's picture
 # What the picture says below a name, by the class of the material
@@ -61,8 +60,7 @@ def gallery(things: tuple[str, ...], output: Path, size: int, console: Console) 
     for name, reason in skipped.items():
         print_message(f"skipped {reason}" if name in reason else f"skipped {name}: {reason}")
     if interrupted:
-        print_message(f"interrupted; {len(balls)} of {len(names)} balls are finished.")
-        click.get_current_context().exit(exit_status())
+        exit_interrupted(f"{len(balls)} of {len(names)} balls are finished")
     if not balls or set(skipped) & set(things):
         click.get_current_context().exit(2)
 

@@ -24,7 +24,7 @@ from brdfkit.core.errors import BrdfkitError
     "--downsample",
     type=click.IntRange(min=1),
     metavar="N",
-    help="For a volume: average blocks of N×N×N voxels while the file is read.",
+    help="For a volume: combine N×N×N voxels into one while the file is read.",
 )
 @click.option(
     "--transfer",

@@ -11,11 +11,10 @@ import click
 
 from brdfkit.cli.commands.info import print_audit
 from brdfkit.cli.console import Console
-from brdfkit.cli.errors import print_message
+from brdfkit.cli.errors import exit_interrupted
 from brdfkit.cli.options import output_option, writing_options
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_writable
-from brdfkit.core.interrupts import exit_status
 
 
 @click.command()
@@ -106,8 +105,7 @@ def measure(
         result = audit(measured)
     print_audit(result, [path], console)
     if "interrupted" in measured.info:
-        print_message(f"interrupted; measured with {measured.info['interrupted']}.")
-        context.exit(exit_status())
+        exit_interrupted(f"measured with {measured.info['interrupted']}")
 
 
 def _to_bsdfs(words: Sequence[str], alpha: float) -> list[dict[str, Any]]:

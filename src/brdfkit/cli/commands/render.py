@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import click
 
@@ -23,7 +23,7 @@ from brdfkit.cli.options import (
     tone_options,
     writing_options,
 )
-from brdfkit.cli.picture_output import path_trace, print_picture, write_film, write_picture
+from brdfkit.cli.picture_output import path_trace, write_result
 from brdfkit.cli.settings import values_option
 from brdfkit.cli.volume_render import find_volume, render_volume, volume_options
 from brdfkit.core.errors import BrdfkitError
@@ -32,6 +32,9 @@ from brdfkit.core.names import join_words, to_file_stem
 if TYPE_CHECKING:
     from brdfkit.images.tone_mapping import ToneMapping
     from brdfkit.rendering import Rendering
+    from brdfkit.rendering.film import Film
+
+    Rendered: TypeAlias = tuple[Rendering | Film, Path]  # with the path to write
 
 
 @dataclass(frozen=True)
@@ -123,9 +126,9 @@ def render(folders: Sequence[str], console: Console, **options: Any) -> None:
     _check_words(request)
     for find, render_kind in KINDS:
         if name := find(request):
-            render_kind(name, request, console)
+            result, path = render_kind(name, request, console)
+            write_result(result, path, request.tone, console)
             return
-    _render_materials(request, console)
 
 
 def _check_words(request: Request) -> None:
@@ -157,15 +160,14 @@ def _find_field(request: Request) -> str | None:
     return next(filter(is_field_file, request.things), None)
 
 
-def _render_field(name: str, request: Request, console: Console) -> None:
+def _render_field(name: str, request: Request, console: Console) -> Rendered:
     """Render the distance field in the file `name`."""
     from brdfkit.distance_fields import load
 
     options = "--set", "--scene", "--envmap", "--preview"
     request.require_alone(name, "a distance field", *options)
     path = _choose_path(request, name)
-    picture = path_trace(load(name), None, console, **request.pick("size"))
-    _finish(picture, path, request, console)
+    return path_trace(load(name), None, console, **request.pick("size")), path
 
 
 def _find_scene(request: Request) -> str | None:
@@ -173,13 +175,12 @@ def _find_scene(request: Request) -> str | None:
     return next((word for word in request.things if word.lower().endswith(".xml")), None)
 
 
-def _render_scene(name: str, request: Request, console: Console) -> None:
+def _render_scene(name: str, request: Request, console: Console) -> Rendered:
     """Render the scene file `name` with its own camera, size and number of samples."""
     options = "--set", "--scene", "--envmap", "--size", "--preview"
     request.require_alone(name, "a scene", *options)
     path = _choose_path(request, name)
-    picture = path_trace(name, None, console, **request.pick())
-    _finish(picture, path, request, console)
+    return path_trace(name, None, console, **request.pick()), path
 
 
 def _find_volume(request: Request) -> str | None:
@@ -187,10 +188,9 @@ def _find_volume(request: Request) -> str | None:
     return find_volume(request.things, request.volume_settings)
 
 
-def _render_volume(name: str, request: Request, console: Console) -> None:
+def _render_volume(name: str, request: Request, console: Console) -> Rendered:
     """Render the volume `name`, or a film of it with --orbit."""
     from brdfkit.cli.arguments import check_film_path
-    from brdfkit.rendering.film import Film
 
     request.require_alone(name, "a volume", "--scene", "--preview")
     stem = to_file_stem(Path(name).name.partition(".")[0])
@@ -199,14 +199,15 @@ def _render_volume(name: str, request: Request, console: Console) -> None:
     else:
         path = _choose_path(request, stem)
     how = request.pick("size", "environment")
-    result = render_volume(name, request.volume_settings, request.values, console, **how)
-    if isinstance(result, Film):
-        write_film(result, path, request.tone, console)
-    else:
-        _finish(result, path, request, console)
+    return render_volume(name, request.volume_settings, request.values, console, **how), path
 
 
-def _render_materials(request: Request, console: Console) -> None:
+def _find_first(request: Request) -> str | None:
+    """Return the first thing, which is a material since it is nothing else."""
+    return request.things[0]
+
+
+def _render_materials(name: str, request: Request, console: Console) -> Rendered:
     """Render materials side by side: path-traced, or quickly with --preview."""
     from brdfkit.cli.arguments import check_picture_path, find_material
 
@@ -215,11 +216,9 @@ def _render_materials(request: Request, console: Console) -> None:
         _warn_of_gains(materials)
     path = check_picture_path(request.output or f"{to_file_stem(materials[0].name)}.png")
     if request.preview:
-        picture = _preview(materials, request)
-    else:
-        how = request.pick("size", "scene", "environment")
-        picture = path_trace(materials, SPP, console, **how)
-    _finish(picture, path, request, console)
+        return _preview(materials, request), path
+    how = request.pick("size", "scene", "environment")
+    return path_trace(materials, SPP, console, **how), path
 
 
 def _preview(materials: Sequence[Any], request: Request) -> Rendering:
@@ -238,13 +237,12 @@ def _preview(materials: Sequence[Any], request: Request) -> Rendering:
     )
 
 
-# How to find a kind of thing among the words, and to render it; other words are materials
-KINDS: tuple[
-    tuple[Callable[[Request], str | None], Callable[[str, Request, Console], None]], ...
-] = (
+# How to find each kind of thing among the words, and to render it
+KINDS: tuple[tuple[Callable[[Request], str | None], Callable[..., Rendered]], ...] = (
     (_find_field, _render_field),
     (_find_scene, _render_scene),
     (_find_volume, _render_volume),
+    (_find_first, _render_materials),
 )
 
 
@@ -253,12 +251,6 @@ def _choose_path(request: Request, name: str) -> Path:
     from brdfkit.cli.arguments import check_picture_path
 
     return check_picture_path(request.output or Path(f"{Path(name).stem}.png"))
-
-
-def _finish(picture: Rendering, path: Path, request: Request, console: Console) -> None:
-    """Write and print a picture, and exit with a status if it was interrupted."""
-    write_picture(picture, path, request.tone)
-    print_picture(picture, path, console)
 
 
 def _warn_of_gains(models: Sequence[Any]) -> None:

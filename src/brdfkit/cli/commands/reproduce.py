@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from brdfkit.cli.console import Console
-from brdfkit.cli.errors import print_message
+from brdfkit.cli.errors import exit_interrupted
 from brdfkit.cli.options import output_option, writing_options
-from brdfkit.core.interrupts import exit_status
 
 if TYPE_CHECKING:
     from brdfkit.theses import Reproduction
@@ -20,8 +19,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("name", required=False)
 @output_option(
-    "Folder for the page, NAME.md, and its figures. Default: the current folder.",
-    default=Path("."),
+    "Folder for the page, NAME.md, and its figures. Default: the current folder.", default=Path(".")
 )
 @click.option(
     "--data",
@@ -77,8 +75,7 @@ def reproduce(
         )
     _print_claims(result, console)
     if result.unfinished:
-        print_message(f"interrupted; not finished: {', '.join(result.unfinished)}.")
-        click.get_current_context().exit(exit_status())
+        exit_interrupted(f"not finished: {', '.join(result.unfinished)}")
 
 
 def _print_theses(titles: Mapping[str, str], console: Console) -> None:

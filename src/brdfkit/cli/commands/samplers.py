@@ -5,9 +5,8 @@ from __future__ import annotations
 import click
 
 from brdfkit.cli.console import Console
-from brdfkit.cli.errors import print_message
+from brdfkit.cli.errors import exit_interrupted
 from brdfkit.cli.options import MESHES, output_options
-from brdfkit.core.interrupts import exit_status
 
 
 @click.command()
@@ -74,8 +73,6 @@ def samplers(
         console.table(COLUMNS, comparison.table(), title=comparison.head)
         console.out.print(comparison.verdict)
     if comparison.rounds < comparison.rounds_requested:
-        print_message(
-            f"interrupted; {comparison.rounds} of {comparison.rounds_requested} rounds are "
-            "finished."
+        exit_interrupted(
+            f"{comparison.rounds} of {comparison.rounds_requested} rounds are finished"
         )
-        click.get_current_context().exit(exit_status())

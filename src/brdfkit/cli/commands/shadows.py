@@ -11,9 +11,8 @@ import click
 
 import brdfkit
 from brdfkit.cli.console import Console
-from brdfkit.cli.errors import print_message
+from brdfkit.cli.errors import exit_interrupted
 from brdfkit.cli.options import output_option, writing_options
-from brdfkit.core.interrupts import exit_status
 
 # The files' names are listed because importing the techniques takes a second
 FOLDER = Path(brdfkit.__file__).with_name("shadows") / "maps"
@@ -114,7 +113,4 @@ def shadows(
     else:
         console.print_written(written)
     if comparison.interrupted:
-        print_message(
-            f"interrupted; {comparison.finished} of {comparison.requested} scores are finished."
-        )
-        click.get_current_context().exit(exit_status())
+        exit_interrupted(f"{comparison.finished} of {comparison.requested} scores are finished")

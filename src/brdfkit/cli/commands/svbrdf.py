@@ -7,10 +7,10 @@ from pathlib import Path
 import click
 
 from brdfkit.cli.console import Console
-from brdfkit.cli.errors import print_message
+from brdfkit.cli.errors import exit_interrupted
 from brdfkit.cli.options import output_option, writing_options
 from brdfkit.cli.settings import parse_settings
-from brdfkit.core.interrupts import Interrupted, exit_status
+from brdfkit.core.interrupts import Interrupted
 
 
 @click.command()
@@ -101,5 +101,4 @@ def svbrdf(
     else:
         console.print_written(written)
     if interrupted:
-        print_message("interrupted; these are the maps so far, without standard errors.")
-        click.get_current_context().exit(exit_status())
+        exit_interrupted("these are the maps so far, without standard errors")
