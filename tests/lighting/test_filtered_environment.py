@@ -21,10 +21,10 @@ from brdfkit.lighting.filtering.lobe_light import LobeLight
 from brdfkit.lighting.filtering.scene_bsdfs import has_matte_part, is_isotropic, is_same_everywhere
 from brdfkit.lighting.filtering.sphere_filter import azimuths, convolve, row_angles
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import log_density
-from brdfkit.rendering.previewing.cache import _measured_bsdf
-from brdfkit.rendering.previewing.staging import stage
-from brdfkit.rendering.scene_input.environment import environment
-from brdfkit.rendering.scene_input.shown_material import load_material
+from brdfkit.rendering.previewing.cache import _load_measured_bsdf
+from brdfkit.rendering.previewing.scene import describe_preview
+from brdfkit.rendering.scene_input.environment import describe_environment
+from brdfkit.rendering.scene_input.material import load_material
 from brdfkit.rendering.scenes.ball import ball
 
 SIDE = 128
@@ -358,7 +358,9 @@ def test_shadows_of_convex_parts_are_those_of_path_tracing(llvm_variant):
         ("without", ours(), 4),
         ("with", ours(shadows="convex"), 4),
     ):
-        loaded = scene(mi, integrator, WARD, environment("studio"), ball=box, ground=ground)
+        loaded = scene(
+            mi, integrator, WARD, describe_environment("studio"), ball=box, ground=ground
+        )
         parameters = mi.traverse(loaded)
         parameters["sensor.to_world"], parameters["sensor.x_fov"] = camera, 35.0
         parameters.update()
@@ -385,12 +387,12 @@ def test_a_preview_is_the_same_each_time_and_has_no_shadows(llvm_variant, tmp_pa
 def show_by(monkeypatch, mi, **settings):
     """Let previews use an integrator of other settings, which is quicker."""
     module = import_module("brdfkit.rendering.previewing.preview")
-    monkeypatch.setattr(module, "_integrator", lambda *_: mi.load_dict(ours(**settings)))
+    monkeypatch.setattr(module, "_load_integrator", lambda *_: mi.load_dict(ours(**settings)))
 
 
 def test_a_file_is_read_and_prepared_again_when_it_changes(llvm_variant, monkeypatch, tmp_path):
     show_by(monkeypatch, llvm_variant, resolution=32)
-    file, prepared = tmp_path / "paint.npz", _measured_bsdf.cache_info
+    file, prepared = tmp_path / "paint.npz", _load_measured_bsdf.cache_info
     before, pictures = prepared().misses, []
     for value in (0.1, 0.1, 0.2):
         if not pictures or value != 0.1:
@@ -408,8 +410,11 @@ def test_a_ball_stands_in_the_shadow_and_the_light_of_its_ground(llvm_variant, m
     shaded = bk.preview("ggx", size=size, shadows=True)
     assert "approximate shadows" in str(shaded)
 
-    light, material = mi.load_dict(environment("studio")), load_material({"type": "ggx"}, "ggx")
-    staged = stage(ball(material, size), light, mi.load_dict(ours()), 4, ground=True)
+    light, material = (
+        mi.load_dict(describe_environment("studio")),
+        load_material({"type": "ggx"}, "ggx"),
+    )
+    staged = describe_preview(ball(material, size), light, mi.load_dict(ours()), 4, ground=True)
     plain = shown(mi.load_dict(staged), 4)
     staged["integrator"] = {"type": "path", "max_depth": 6}
     staged["sensor"]["sampler"] = {"type": "independent"}

@@ -7,7 +7,7 @@ import pytest
 
 from brdfkit.images.errors.noise import Accumulated
 from brdfkit.rendering.progressive import Progressive
-from brdfkit.rendering.volumes.scene import scene as volume_scene
+from brdfkit.rendering.volumes.scene import describe_scene
 from brdfkit.volumes import TransferFunction, Volume
 
 RNG = np.random.default_rng(3)
@@ -89,7 +89,7 @@ def test_a_changed_volume_shows_after_a_reset(llvm_variant):
 
     def scene_of(function):
         view = (8, 8), (30, 20), ("studio", 0.02), {}
-        return llvm_variant.load_dict(volume_scene(volume, function, "single_scattering", *view))
+        return llvm_variant.load_dict(describe_scene(volume, function, "single_scattering", *view))
 
     growing = Progressive({"volume": scene_of(white)})
     growing.integrate({"volume": growing.generate("volume", 4)}, 4)

@@ -7,8 +7,8 @@ import pytest
 
 from brdfkit import BrdfkitError, render, render_volume, volumes
 from brdfkit.rendering.tracing import _passes_within
-from brdfkit.rendering.volumes import looks
-from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, integrator
+from brdfkit.rendering.volumes import defaults
+from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, describe_integrator
 from brdfkit.volumes import TransferFunction, Volume
 
 pytestmark = pytest.mark.usefixtures("module_in_llvm")
@@ -110,7 +110,7 @@ def test_a_volume_of_any_unit_is_as_dense():
         np.testing.assert_allclose(picture, pictures[0], rtol=1e-3, atol=1e-3)
 
 
-# What it looks like if nobody says
+# The look that is chosen for a volume
 
 
 @pytest.mark.parametrize(
@@ -122,14 +122,14 @@ def test_a_volume_of_any_unit_is_as_dense():
         ([0, 1, 29], {"labels": True, "axes": "RAS"}, "a colour for each label"),
     ],
 )
-def test_looks_go_by_the_data(values, settings, name):
+def test_the_default_look_depends_on_the_data(values, settings, name):
     volume = Volume(np.reshape(values, (1, 1, 3)), **settings)
-    assert looks.transfer_function(volume, "single_scattering").name == name
+    assert defaults.default_transfer_function(volume, "single_scattering").name == name
 
 
 def test_labels_have_colours_and_0_has_none():
     labels = Volume(np.arange(30).reshape(2, 3, 5), labels=True)
-    rgba = looks.transfer_function(labels, "single_scattering")(np.arange(30))
+    rgba = defaults.default_transfer_function(labels, "single_scattering")(np.arange(30))
     assert rgba[0, 3] == 0
     assert (rgba[1:, 3] == 1).all()
     assert all((rgba[i, :3] != rgba[i + 1, :3]).any() for i in range(1, 29))
@@ -160,7 +160,7 @@ def test_the_level_parts_the_values_best():
         return len(low) * len(high) * (low.mean() - high.mean()) ** 2
 
     best = max(np.linspace(values.min() + 0.01, values.max() - 0.01, 500), key=between)
-    found = looks.level(Volume(values.reshape(10, 10, 10)))
+    found = defaults.default_level(Volume(values.reshape(10, 10, 10)))
     assert between(found) == pytest.approx(between(best), rel=1e-3)
 
 
@@ -168,7 +168,9 @@ def test_a_surface_is_of_any_material():
     coal = {"bsdf": {"type": "diffuse", "reflectance": 0.0}}
     black = seen("sphere", "isosurface", 4, settings=coal)
     assert black[16, 16].max() < 1e-6
-    by_name = integrator(volumes.load("sphere", size=4), None, "isosurface", {"bsdf": "lambert"})
+    by_name = describe_integrator(
+        volumes.load("sphere", size=4), None, "isosurface", {"bsdf": "lambert"}
+    )
     assert by_name["bsdf"]["type"] == "lambert"
 
 

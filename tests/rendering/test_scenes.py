@@ -175,7 +175,7 @@ def files(tmp_path, monkeypatch):
 
 def test_a_mesh_stands_in_the_place_of_the_ball(files):
     """A box twice as high as wide, y up and without normals: 2 high, with sharp edges."""
-    build = mesh_file.mesh_scene("cube.obj")
+    build = mesh_file.make_mesh_scene("cube.obj")
     made = build({"type": "diffuse"})["mesh"]
     low, high = (np.array(corner).ravel() for corner in (made.bbox().min, made.bbox().max))
     np.testing.assert_allclose(low, [-0.5, -0.5, 0], atol=1e-6)
@@ -226,8 +226,8 @@ def test_the_axis_that_points_up_is_given_or_guessed_where_it_is_obvious(tmp_pat
     file.write_text(text)
     guessed = pytest.warns(UserWarning, match="its axis z is taken to point up.*--up y")
     with guessed if (given, up) == ("", "z") else nullcontext():
-        points, *_ = mesh_file.read(file, given[1:])
-    expected = mesh_file.read(file, up)[0]
+        points, *_ = mesh_file.read_mesh(file, given[1:])
+    expected = mesh_file.read_mesh(file, up)[0]
     np.testing.assert_array_equal(points, expected)
     if up == "x" or given == "#z":
         foot = points[points[:, 2] < 0.01]
@@ -243,10 +243,10 @@ def test_a_mesh_is_the_same_in_every_unit_and_way_to_write_it(files, unit):
     vertices = [f"v {x!r} {y!r} {z!r}" for x, y, z in points]
     relative = [f"f {' '.join(str(int(i) - 9) for i in f.split()[1:])}" for f in lines[8:]]
     far = f"v {unit * 1e3!r} 0 0"
-    expected = mesh_file.mesh_scene("cube.obj")({"type": "diffuse"})["mesh"]
+    expected = mesh_file.make_mesh_scene("cube.obj")({"type": "diffuse"})["mesh"]
     for text in ([*vertices, far, *lines[8:]], [far, *vertices, *relative, far]):
         Path("same.obj").write_text("\n".join(text))
-        found = mesh_file.mesh_scene("same.obj")({"type": "diffuse"})["mesh"]
+        found = mesh_file.make_mesh_scene("same.obj")({"type": "diffuse"})["mesh"]
         for name in ("vertex_positions_buffer", "vertex_normals_buffer", "faces_buffer"):
             there, here = (np.array(getattr(m, name)()) for m in (expected, found))
             np.testing.assert_allclose(here, there, atol=1e-5)
@@ -259,7 +259,7 @@ def test_the_light_of_a_map_is_its_irradiance(files, rows):
 
     with use_two_threads():
         mi.Bitmap(np.ones((rows, 2 * rows, 3), np.float32)).write("white.exr")
-    scale = environment.environment("white.exr")["scale"]
+    scale = environment.describe_environment("white.exr")["scale"]
     assert environment.ILLUMINANCE / scale == pytest.approx(np.pi, rel=1e-6)
 
 
@@ -280,7 +280,11 @@ def test_an_environment_map_lights_the_ground_as_the_sky_does(files, file):
 
     def empty(bsdf, size):
         found = _studio.make_studio(size)
-        found = environment.light_by(environment.environment(file), found) if file else found
+        found = (
+            environment.replace_light(environment.describe_environment(file), found)
+            if file
+            else found
+        )
         return found | {"integrator": {"type": "direct"}}
 
     picture = luminance(bk.render(WHITE, spp=256, size=9, scene=empty).pictures["white"])

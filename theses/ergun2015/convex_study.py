@@ -15,7 +15,7 @@ from brdfkit.core.colours import to_srgb
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.visibility.decomposition import decompose
 from brdfkit.lighting.visibility.occluders import Occluders
-from brdfkit.rendering.scene_input.environment import environment, light_by
+from brdfkit.rendering.scene_input.environment import describe_environment, replace_light
 from brdfkit.theses.claims import measure_least_seconds
 
 SIZE, SPP = 96, 64
@@ -54,8 +54,8 @@ class Study:
 
         self.points, self.faces = shape.points, shape.faces
         made = shape.build(GREY, (SIZE, SIZE))
-        light = environment("studio") | {"type": "kdtree_envmap"}
-        entries = light_by(light, made) | {"integrator": {"type": "convex_direct"}}
+        light = describe_environment("studio") | {"type": "kdtree_envmap"}
+        entries = replace_light(light, made) | {"integrator": {"type": "convex_direct"}}
         self.scene = mi.load_dict(entries, parallel=False)
         self.ground = mi.load_dict({"type": "scene", "ground": made["ground"]}, parallel=False)
 

@@ -8,8 +8,8 @@ from brdfkit.theses.ergun2015.unshadowed import unshadowed
 from brdfkit.core.colours import to_srgb
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.environments.map_files import load_map
-from brdfkit.rendering.previewing.staging import stage
-from brdfkit.rendering.scene_input.shown_material import load_material
+from brdfkit.rendering.previewing.scene import describe_preview
+from brdfkit.rendering.scene_input.material import load_material
 
 PROBES = "grace", "uffizi", "pisa", "ennis"
 SHIPPED = "studio", "sky", "room"
@@ -59,7 +59,7 @@ def render(made, light, integrator):
     pixel."""
     import mitsuba as mi
 
-    scene = mi.load_dict(stage(made, light, integrator, 1), parallel=False)
+    scene = mi.load_dict(describe_preview(made, light, integrator, 1), parallel=False)
     start = time.process_time()
     picture = np.array(integrator.render(scene, seed=0, spp=1), float)[..., :3]
     return picture, time.process_time() - start, scene

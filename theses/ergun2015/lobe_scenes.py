@@ -19,9 +19,9 @@ from brdfkit.theses.ergun2015.shapes import find_meshes, torus
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.rendering.scene_input.environment import environment
+from brdfkit.rendering.scene_input.environment import describe_environment
 from brdfkit.rendering.scene_input.loading import find_scene
-from brdfkit.rendering.scene_input.shown_material import mask
+from brdfkit.rendering.scene_input.material import find_mask
 from brdfkit.theses.claims import UNSTATED, Claim, verdict
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 from brdfkit.theses.page import Picture, Section, Table
@@ -76,14 +76,14 @@ def light_of(file):
     """The emitter of a map."""
     import mitsuba as mi
 
-    return mi.load_dict(environment(file), parallel=False)
+    return mi.load_dict(describe_environment(file), parallel=False)
 
 
 def pictures_of(made, light, bsdf, methods):
     """(halves of the truth, (method, filter) → picture, pixels where the BSDF is seen)."""
     halves, scene = truth(made, light)
     pictures = {kind: render(made, light, by)[0] for kind, by in methods.items()}
-    return halves, pictures, mask(scene, bsdf)
+    return halves, pictures, find_mask(scene, bsdf)
 
 
 def over(by_kind, method, filter_="mips"):

@@ -4,7 +4,7 @@ from brdfkit.theses.ergun2015.lit_balls import find_probes, integrators, materia
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.rendering.scene_input.environment import environment
+from brdfkit.rendering.scene_input.environment import describe_environment
 from brdfkit.rendering.scene_input.loading import find_scene
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section, Table
@@ -25,7 +25,9 @@ def run(sources, report):
     import mitsuba as mi
 
     use_variant()
-    light = mi.load_dict(environment(next(iter(find_probes(sources).values()))), parallel=False)
+    light = mi.load_dict(
+        describe_environment(next(iter(find_probes(sources).values()))), parallel=False
+    )
     made = find_scene("ball")(material(ALPHA), (SIZE, SIZE))
     methods, seconds = integrators(), {}
     for done, (kind, integrator) in enumerate(methods.items()):

@@ -6,9 +6,9 @@ from brdfkit.theses.ergun2015.lit_balls import decibels, find_probes, material, 
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.rendering.scene_input.environment import environment
+from brdfkit.rendering.scene_input.environment import describe_environment
 from brdfkit.rendering.scene_input.loading import find_scene
-from brdfkit.rendering.scene_input.shown_material import mask
+from brdfkit.rendering.scene_input.material import find_mask
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.drawing import figure
 from brdfkit.theses.page import Picture, Section
@@ -29,12 +29,12 @@ def run(sources, report):
 
     use_variant()
     name, file = next(iter(find_probes(sources).items()))
-    light = mi.load_dict(environment(file), parallel=False)
+    light = mi.load_dict(describe_environment(file), parallel=False)
     bsdf = material(ALPHA)
     made = find_scene("ball")(bsdf, (SIZE, SIZE))
     halves, scene = truth(made, light)
     report(1, 2)
-    reference, seen = np.mean(halves, axis=0), mask(scene, bsdf)
+    reference, seen = np.mean(halves, axis=0), find_mask(scene, bsdf)
     pictures, views = {}, None
     for kind, method in KINDS.items():
         integrator = mi.load_dict({"type": "filtered_environment", "method": method})

@@ -58,7 +58,7 @@ def unpacked(file):
     with TemporaryDirectory() as folder:
         plain = Path(folder) / file.stem
         plain.write_bytes(read_bytes(file))
-        buffers = mesh_file.read(plain)
+        buffers = mesh_file.read_mesh(plain)
     points, _, _, faces = buffers
     return Shape(
         lambda bsdf, size: make_studio(size) | {"mesh": make_mesh(*buffers, bsdf)}, points, faces

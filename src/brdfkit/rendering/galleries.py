@@ -15,7 +15,7 @@ from brdfkit.core.names import make_unique, to_printable
 from brdfkit.core.progress_bar import Progress
 from brdfkit.rendering.render_materials import SceneLike, render
 from brdfkit.rendering.result import Rendering
-from brdfkit.rendering.scene_input.arguments import Renderable, as_list, identify
+from brdfkit.rendering.scene_input.arguments import Renderable, to_list, to_named_material
 
 HEAD, SIDE, BELOW, GAP = 26, 26, 22, 6  # of the grid: names above, at the left, captions [pixels]
 DPI = 100
@@ -127,10 +127,10 @@ def gallery(
             f"materials = {materials!r:.60} should be rows of materials, as in "
             "[[material, fit, fit]]."
         )
-    listed = [as_list(row) for row in materials]
+    listed = [to_list(row) for row in materials]
     if not listed:
         raise BrdfkitError("There is nothing to render; give at least one row.")
-    columns = [[identify(thing)[0] for thing in row[1:]] for row in listed]
+    columns = [[to_named_material(thing)[0] for thing in row[1:]] for row in listed]
     for names in columns:
         if names != columns[0]:
             raise BrdfkitError(

@@ -19,11 +19,10 @@ from brdfkit.core.progress_bar import Progress
 from brdfkit.materials import resolve
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.progressive import rgb
-from brdfkit.rendering.scene_input.arguments import mitsuba
-from brdfkit.rendering.scene_input.environment import environment as load_environment
-from brdfkit.rendering.scene_input.environment import light_by
-from brdfkit.rendering.scene_input.loading import find_scene, suffix_of
-from brdfkit.rendering.scene_input.shown_material import load_material
+from brdfkit.rendering.scene_input.arguments import load_mitsuba
+from brdfkit.rendering.scene_input.environment import describe_environment, replace_light
+from brdfkit.rendering.scene_input.loading import find_scene, find_suffix
+from brdfkit.rendering.scene_input.material import load_material
 
 SAMPLERS: dict[str, dict[str, Any]] = {
     "envmap": {"type": "envmap"},
@@ -210,7 +209,7 @@ def compare_samplers(
     seed = to_whole_number("seed", seed, least=0)
     if not isinstance(scene, str | Path):
         raise BrdfkitError(f"scene = {scene!r:.60} should be a scene's name or a mesh's file.")
-    mitsuba()
+    load_mitsuba()
     found = resolve.to_material(material)
     noise, seconds = _measure(environment, found, scene, rounds, spp, size, seed, progress)
     where = str(Path(str(environment)).name), found.name, Path(str(scene)).name
@@ -256,11 +255,11 @@ def _scenes(environment, found, scene, size):
     """The `mitsuba.Scene` by each sampler's name."""
     import mitsuba as mi
 
-    light, is_mesh = load_environment(environment), bool(suffix_of(scene))
+    light, is_mesh = describe_environment(environment), bool(find_suffix(scene))
     shown = load_material(found.scene_dict(), found.name, both_sides=is_mesh)
     made, scenes = find_scene(scene)(shown, (size, size)), {}
     for name, sampler in SAMPLERS.items():
-        scenes[name] = load_by_mitsuba(mi.load_dict, light_by(light | sampler, made), name)
+        scenes[name] = load_by_mitsuba(mi.load_dict, replace_light(light | sampler, made), name)
     return scenes
 
 

@@ -21,7 +21,12 @@ from brdfkit.distance_fields import Node, from_function
 from brdfkit.mitsuba_bridge.scene_file import load_scene_file
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input import field
-from brdfkit.rendering.scene_input.arguments import Renderable, as_list, describe_all, mitsuba
+from brdfkit.rendering.scene_input.arguments import (
+    Renderable,
+    describe_materials,
+    load_mitsuba,
+    to_list,
+)
 from brdfkit.rendering.scene_input.loading import SIZE, load_scenes
 from brdfkit.rendering.tracing import trace
 
@@ -118,10 +123,10 @@ def render(
     size = None if size is None else to_size(size)
     if isinstance(materials, Node):
         return _render_field(materials, spp, size or field.SIZE, seed, progress, noise_floor)
-    subjects = as_list(materials)
+    subjects = to_list(materials)
     require_memory(size or SIZE, len(subjects))
-    mitsuba()  # sets a variant, on which the dictionaries depend
-    described, parameters = describe_all(subjects)
+    load_mitsuba()  # sets a variant, on which the dictionaries depend
+    described, parameters = describe_materials(subjects)
     where = scene, size, environment
     traced, mask = _load_and_trace(described, where, spp, seed, progress, noise_floor)
     return rendering_of(traced, seed, noise_floor, parameters, mask)
@@ -143,7 +148,7 @@ def _find_scene_file(materials: object) -> Path | None:
 @in_turn
 def _render_scene_file(path, spp, seed, progress, noise_floor):
     """Return the `Rendering` of a scene file of Mitsuba's."""
-    mitsuba()
+    load_mitsuba()
     scene = load_scene_file(path)
     require_memory(scene.sensors()[0].film().size(), 1, path)
     spp = _to_samples(spp, scene.sensors()[0].sampler().sample_count(), noise_floor)
@@ -190,8 +195,8 @@ def rendering_of(traced, seed, noise_floor, parameters=None, mask=None):
 def _render_field(node, spp, size, seed, progress, noise_floor):
     """The `Rendering` of a distance field, freed in its turn as in `_load_and_trace`."""
     require_memory(size, 1)
-    mitsuba()
-    traced = trace({"field": field.field_scene(node, size)}, spp, seed, progress, noise_floor)
+    load_mitsuba()
+    traced = trace({"field": field.load_field_scene(node, size)}, spp, seed, progress, noise_floor)
     return rendering_of(traced, seed, noise_floor)
 
 

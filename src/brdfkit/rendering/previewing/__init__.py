@@ -1,1 +1,1 @@
-"""Pictures without paths and without noise: `preview`."""
+"""Renders previews: pictures of materials without noise, and without light between surfaces."""

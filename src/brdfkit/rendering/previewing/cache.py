@@ -1,45 +1,53 @@
-"""Measured materials that are kept between previews: what their files hold, and their BSDFs."""
+"""Keeps measured materials and their BSDFs in memory, so that the next preview starts sooner."""
 
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
+from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.loading import locate
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.resolve import to_material
-from brdfkit.rendering.scene_input.shown_material import load_material
+from brdfkit.materials.resolve import Material, to_material
+from brdfkit.rendering.scene_input.material import load_material
 
-MOST = 8  # materials; a table of MERL's size takes some 50 MB
+MATERIALS = 8  # kept at most; a table of MERL's size takes some 50 MB
 
 
-def keep(thing):
-    """`thing`, a thing to render; in the place of a file, what it holds, read when it changes."""
-    if isinstance(thing, tuple):
-        return *thing[:-1], keep(thing[-1])
-    if not isinstance(thing, str | Path):
-        return thing
+def read_cached(renderable: Any) -> Any:
+    """Replace the name or path of a material file by the material, read again if the file changed.
+
+    Anything else that `render` takes is returned as it is.
+    """
+    if isinstance(renderable, tuple):
+        return *renderable[:-1], read_cached(renderable[-1])
+    if not isinstance(renderable, str | Path):
+        return renderable
     try:
-        path, _ = locate(thing)
-        found = path.stat()
+        path, _ = locate(renderable)
+        status = path.stat()
     except (BrdfkitError, OSError, ValueError):
-        return thing  # a model's name; or whoever reads it will say what is wrong
-    return _read(str(thing), path.absolute(), found.st_mtime_ns, found.st_size)
+        return renderable  # the name of a model, or an error that its reader explains better
+    return _read(str(renderable), path.absolute(), status.st_mtime_ns, status.st_size)
 
 
-@lru_cache(MOST)
-def _read(name, path, changed, size):
-    """The material that a name stands for, whose file `path` was `changed` at a time."""
+@lru_cache(MATERIALS)
+def _read(name: str, path: Path, changed: int, size: int) -> Material:
+    """Read the material `name`; the file's path, time of change and size only key the cache."""
     return to_material(name)
 
 
-def bsdf_of(found, name, variant, both_sides):
-    """The BSDF of a material in the current `variant`, see `load_material`; kept of a `Measured`,
-    whose table takes long to prepare."""
-    if isinstance(found, Measured):
-        return _measured_bsdf(found, variant, both_sides)
-    return load_material(found.scene_dict(), name, both_sides)
+def load_bsdf(material: Material, name: str, variant: str, both_sides: bool) -> MitsubaObject:
+    """Load the BSDF of a material in the current `variant`, see `load_material`.
+
+    The BSDF of a `Measured` is kept, because its table takes long to prepare.
+    """
+    if isinstance(material, Measured):
+        return _load_measured_bsdf(material, variant, both_sides)
+    return load_material(material.scene_dict(), name, both_sides)
 
 
-@lru_cache(MOST)
-def _measured_bsdf(measured, variant, both_sides):
+@lru_cache(MATERIALS)
+def _load_measured_bsdf(measured: Measured, variant: str, both_sides: bool) -> MitsubaObject:
+    """Load the BSDF of a measured material; the `variant` only keys the cache."""
     return load_material(measured.scene_dict(), measured.name, both_sides)

@@ -1,8 +1,8 @@
 """`preview`: pictures of materials under an environment, without noise.
 
-The integrator `filtered_environment` sees every pixel with the same directions. What takes long is
-kept between calls: the filtered light, materials, the shape and what casts its shadows. So the
-first picture takes seconds, and the next ones about a tenth of a second.
+The integrator `filtered_environment` uses the same directions in every pixel. Whatever takes long
+to prepare is kept between calls: the filtered light, the materials, the shape and its shadow
+casters. So the first picture takes seconds, and the next ones about a tenth of a second.
 """
 
 from __future__ import annotations
@@ -16,29 +16,30 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.array_types import FloatArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
 from brdfkit.lighting.environments.map_files import find_map
+from brdfkit.materials.resolve import Material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
-from brdfkit.rendering.previewing.cache import bsdf_of, keep
-from brdfkit.rendering.previewing.staging import Shape, stage
+from brdfkit.rendering.previewing.cache import load_bsdf, read_cached
+from brdfkit.rendering.previewing.scene import Shape, describe_preview
 from brdfkit.rendering.progressive import rgb
 from brdfkit.rendering.render_materials import to_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input import mesh_file
 from brdfkit.rendering.scene_input.arguments import (
     Renderable,
-    as_list,
-    mitsuba,
-    name_all,
-    parameters_of,
+    collect_parameters,
+    load_mitsuba,
+    name_materials,
+    to_list,
 )
-from brdfkit.rendering.scene_input.environment import environment as light_of
-from brdfkit.rendering.scene_input.environment import on_ground
-from brdfkit.rendering.scene_input.loading import suffix_of
-from brdfkit.rendering.scene_input.shown_material import mask
+from brdfkit.rendering.scene_input.environment import describe_environment, replace_lower_half
+from brdfkit.rendering.scene_input.loading import find_suffix
+from brdfkit.rendering.scene_input.material import find_mask
 from brdfkit.rendering.scenes._studio import GROUND
 
 STUDIO, SIZE, SPP = "studio", 256, 4
@@ -58,9 +59,9 @@ def preview(
     """Show one or several materials under an environment, without noise.
 
     A preview contains the light that a material reflects directly from the environment, but no
-    light between surfaces. Equal calls give equal pictures. The first call in a process takes
-    seconds, because it filters the light, compiles, and evaluates a measured material at many
-    directions; later ones take about a tenth of a second at 256 pixels, without shadows.
+    light that surfaces reflect to each other. Equal calls give equal pictures. The first call in a
+    process takes seconds, because it filters the light, compiles, and evaluates a measured material
+    at many directions; later ones take about a tenth of a second at 256 pixels, without shadows.
 
     Parameters
     ----------
@@ -93,29 +94,29 @@ def preview(
     Raises
     ------
     BrdfkitError
-        For what cannot be shown, for an environment or a method that is unknown, and for another
-        number of rays.
+        For a material or scene that cannot be shown, for an unknown environment or method, and for
+        a number of rays that is not a square.
 
     Examples
     --------
     >>> preview(["car_paint", "ggx"]).write("paint.png")    # doctest: +SKIP
     >>> preview("ward", environment="probe.exr", scene="teapot.obj", size=512)    # doctest: +SKIP
     """
-    size, subjects = to_size(size), [keep(thing) for thing in as_list(materials)]
+    size, subjects = to_size(size), [read_cached(subject) for subject in to_list(materials)]
     spp = to_whole_number("spp", spp, least=1)
     require_memory(size, len(subjects))
-    mitsuba()  # sets a variant, on which the dictionaries depend
+    load_mitsuba()  # sets a variant, on which the dictionaries depend
     _require_rays(spp)
     if not isinstance(scene, str | Path):
         raise BrdfkitError(f"scene = {scene!r:.60} should be a scene's name or a mesh's file.")
-    return _show(name_all(subjects), environment, size, scene, method, spp, bool(shadows))
+    return _render(name_materials(subjects), environment, size, scene, method, spp, bool(shadows))
 
 
-def _require_rays(spp):
-    """Raise `BrdfkitError` for rays per pixel that make no even grid, or too few wavelengths.
+def _require_rays(spp: int) -> None:
+    """Raise `BrdfkitError` for rays per pixel that make no square grid, or too few wavelengths.
 
-    A ray has four wavelengths, a quarter of the range apart. An even grid of an even number of rays
-    repeats them.
+    In spectral variants a ray has four wavelengths, a quarter of the range apart. A grid with an
+    even number of rays repeats the same wavelengths.
     """
     import mitsuba as mi
 
@@ -128,51 +129,66 @@ def _require_rays(spp):
 
 
 @in_turn
-def _show(materials, environment, size, scene, method, spp, shadows):
-    """The `Rendering` of materials by name."""
+def _render(
+    materials: dict[str, Material],
+    environment: str | Path,
+    size: tuple[int, int],
+    scene: str | Path,
+    method: str,
+    spp: int,
+    shadows: bool,
+) -> Rendering:
+    """Render the preview of materials, which are given by name."""
     import mitsuba as mi
 
-    start, variant = time.perf_counter(), mi.variant()
-    shape = _shape(variant, scene, _changed(str(scene).partition("#")[0]))
-    light = _light(variant, environment, _changed(find_map(environment)), shadows)
-    integrator = _integrator(variant, method, shadows)
-    both_sides = suffix_of(scene) in mesh_file.SUFFIXES
-    pictures, seen = {}, None
-    for name, found in materials.items():
-        material = bsdf_of(found, name, variant, both_sides)
-        staged = stage(shape.build(material, size), light, integrator, spp, ground=shadows)
-        loaded = load_by_mitsuba(mi.load_dict, staged, name)
+    start, variant = time.perf_counter(), str(mi.variant())
+    shape = _load_shape(variant, scene, _time_of_change(str(scene).partition("#")[0]))
+    changed = _time_of_change(find_map(environment))
+    light = _load_light(variant, environment, changed, shadows)
+    integrator = _load_integrator(variant, method, shadows)
+    both_sides = find_suffix(scene) in mesh_file.SUFFIXES
+    pictures: dict[str, FloatArray] = {}
+    mask = None
+    for name, subject in materials.items():
+        material = load_bsdf(subject, name, variant, both_sides)
+        built = shape.build(material, size)
+        described = describe_preview(built, light, integrator, spp, ground=shadows)
+        loaded = load_by_mitsuba(mi.load_dict, described, name)
         if shadows:
             integrator.casters.set(loaded, None, shape.casters)
-        seen = mask(loaded, material) if seen is None else seen
+        mask = find_mask(loaded, material) if mask is None else mask
         with raise_first_cause():
             pictures[name] = rgb(integrator.render(loaded, seed=0, spp=spp)).astype(np.float32)
     first, seconds = next(iter(pictures.values())), time.perf_counter() - start
-    parameters = parameters_of(materials)
+    parameters = collect_parameters(materials)
     return Rendering(
-        pictures, spp, seconds, 0, parameters, seen, spp, first, shadows=SHADOWS[shadows]
+        pictures, spp, seconds, 0, parameters, mask, spp, first, shadows=SHADOWS[shadows]
     )
 
 
-def _changed(path):
-    """When a file was changed; None for a name."""
+def _time_of_change(path: str | Path) -> int | None:
+    """Return when a file was changed [ns]; None for the name of a scene or a map."""
     return Path(path).stat().st_mtime_ns if Path(path).is_file() else None
 
 
 @lru_cache(maxsize=4)
-def _light(variant, environment, changed, ground):
-    """The emitter of an environment map, whose file was `changed` at a time; its lower half is the
-    `ground` in its light, or its own."""
+def _load_light(
+    variant: str, environment: str | Path, changed: int | None, ground: bool
+) -> MitsubaObject:
+    """Load the emitter of an environment map; with `ground` its lower half shows lit ground.
+
+    `variant` and `changed`, the time when the map's file was changed, only key the cache.
+    """
     import mitsuba as mi
 
-    light = light_of(environment)
-    light = on_ground(light, GROUND) if ground else light
+    light = describe_environment(environment)
+    light = replace_lower_half(light, GROUND) if ground else light
     return load_by_mitsuba(mi.load_dict, light, environment)
 
 
 @lru_cache(maxsize=4)
-def _integrator(variant, method, shadows):
-    """The integrator, which keeps the light that it has filtered."""
+def _load_integrator(variant: str, method: str, shadows: bool) -> MitsubaObject:
+    """Load the integrator, which keeps the light that it has filtered."""
     import mitsuba as mi
 
     entries = {"type": "filtered_environment", "method": method}
@@ -181,6 +197,6 @@ def _integrator(variant, method, shadows):
 
 
 @lru_cache(maxsize=4)
-def _shape(variant, scene, changed):
-    """The `Shape` of a scene, whose file was `changed` at a time."""
+def _load_shape(variant: str, scene: str | Path, changed: int | None) -> Shape:
+    """Read the `Shape` of a scene or mesh; `variant` and the time of change only key the cache."""
     return Shape(scene)

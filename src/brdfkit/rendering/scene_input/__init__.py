@@ -1,1 +1,1 @@
-"""What a user gives to be rendered: scenes, meshes, fields and maps."""
+"""Reads what a user gives to `render`: materials, scenes, meshes, fields and environment maps."""

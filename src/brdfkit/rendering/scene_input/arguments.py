@@ -1,7 +1,8 @@
-"""Turns what `render` is given into names, BSDF dictionaries and scenes of Mitsuba's."""
+"""Turns the materials that `render` receives into names, BSDF dictionaries and parameters."""
 
 from typing import Any, TypeAlias
 
+from brdfkit.core.array_types import MitsubaModule
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.names import make_unique
@@ -13,54 +14,68 @@ from brdfkit.volumes import Volume
 Renderable: TypeAlias = MaterialLike | tuple[str, MaterialLike]
 
 
-def mitsuba():
-    """The module `mitsuba`, with a variant set."""
+def load_mitsuba() -> MitsubaModule:
+    """Import `mitsuba`, set a variant unless one is set, and return the module."""
     import mitsuba as mi
 
     use_variant()
     return mi
 
 
-def as_list(things: Any) -> list[Renderable]:
-    """One thing to render or several, as a list; at least one."""
-    alone = _is_pair(things) or isinstance(things, dict | str) or not hasattr(things, "__iter__")
-    found = [things] if alone else list(things)
-    if not found:
+def to_list(materials: Any) -> list[Renderable]:
+    """Return one material or several as a list; raise `BrdfkitError` if there is none."""
+    is_single = (
+        _is_pair(materials)
+        or isinstance(materials, dict | str)
+        or not hasattr(materials, "__iter__")
+    )
+    listed = [materials] if is_single else list(materials)
+    if not listed:
         raise BrdfkitError("There is nothing to render; give at least one material.")
-    return found
+    return listed
 
 
-def _is_pair(thing):
-    """Whether `thing` is a pair of a name and a material."""
-    return isinstance(thing, tuple) and len(thing) == 2 and isinstance(thing[0], str)
+def _is_pair(material: Any) -> bool:
+    """Tell whether `material` is a pair of a name and a material."""
+    return isinstance(material, tuple) and len(material) == 2 and isinstance(material[0], str)
 
 
-def describe_all(things):
-    """(BSDF dictionaries, parameters' values) of things to render, each by a name of its own."""
-    materials = name_all(things)
-    entries = {name: found.scene_dict() for name, found in materials.items()}
-    return entries, parameters_of(materials)
+def describe_materials(
+    renderables: list[Renderable],
+) -> tuple[dict[str, dict[str, Any]], dict[str, dict[str, Any]]]:
+    """Return the BSDF dictionaries and the parameter values of materials, each by unique name."""
+    materials = name_materials(renderables)
+    bsdfs = {name: material.scene_dict() for name, material in materials.items()}
+    return bsdfs, collect_parameters(materials)
 
 
-def name_all(things: list[Renderable]) -> dict[str, Material]:
-    """The materials that things to render are, each by a name of its own."""
+def name_materials(renderables: list[Renderable]) -> dict[str, Material]:
+    """Load the materials and give each a unique name; the result is by that name."""
     materials: dict[str, Material] = {}
-    for name, found in map(identify, things):
-        materials[make_unique(name, materials)] = found
+    for name, material in map(to_named_material, renderables):
+        materials[make_unique(name, materials)] = material
     return materials
 
 
-def parameters_of(materials: dict[str, Material]) -> dict[str, dict[str, Any]]:
-    """The parameters' values of the `materials` that have any, by their names."""
-    models = {name: found for name, found in materials.items() if isinstance(found, Model | Fit)}
-    return {name: dict(found.values) for name, found in models.items() if found.values}
+def collect_parameters(materials: dict[str, Material]) -> dict[str, dict[str, Any]]:
+    """Return the parameter values of all models and fits among the `materials`, by name.
+
+    Materials without parameters are left out.
+    """
+    models = {
+        name: material for name, material in materials.items() if isinstance(material, Model | Fit)
+    }
+    return {name: dict(model.values) for name, model in models.items() if model.values}
 
 
-def identify(thing: Any) -> tuple[str, Material]:
-    """(name, material) of a thing to render."""
-    if isinstance(thing, Volume):
-        raise BrdfkitError(f"{thing.name} is a volume, not a material: call render_volume.")
-    if _is_pair(thing):
-        return thing[0], identify(thing[1])[1]
-    found = to_material(thing)
-    return str(found.name), found
+def to_named_material(renderable: Any) -> tuple[str, Material]:
+    """Return the name and the material of anything that `render` takes as a material.
+
+    Raises `BrdfkitError` for a volume, and for what is no material.
+    """
+    if isinstance(renderable, Volume):
+        raise BrdfkitError(f"{renderable.name} is a volume, not a material: call render_volume.")
+    if _is_pair(renderable):
+        return renderable[0], to_named_material(renderable[1])[1]
+    material = to_material(renderable)
+    return str(material.name), material

@@ -1,55 +1,63 @@
-"""An environment map, by its name or file, in the place of the sky and the softbox of a scene."""
+"""Lights a scene with an environment map, in place of the scene's sky and softbox."""
+
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, MitsubaObject
 from brdfkit.core.colours import luminance
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.latitude_rows import projected_solid_angles
 from brdfkit.lighting.environments.map_files import load_radiance
 
-ILLUMINANCE = 1.0  # of the ground, as from sky and softbox
+ILLUMINANCE = 1.0  # of the ground; the scenes' own sky and softbox give the same
 
 
-def environment(given):
-    """The dictionary of the light of a map by latitude and longitude: a name, or an HDR file.
+def describe_environment(environment: str | Path) -> dict[str, Any]:
+    """Return the emitter dictionary of an environment map by latitude and longitude.
 
-    It is scaled to the illuminance of the ground that the scenes have, so that pictures are exposed
-    alike. Raises `BrdfkitError` for a file that is missing, that Mitsuba cannot read, that is not
-    twice as wide as high, or whose upper half, which lights the ground, is black; and for radiance
-    that is negative or not finite.
+    `environment` is the name of a map or an HDR file. The map is scaled so that the ground receives
+    the same illuminance as in the scenes, and pictures need no other exposure. Raises
+    `BrdfkitError` for a file that is missing, that Mitsuba cannot read, or that is not twice as
+    wide as high, for radiance that is negative or not finite, and for a map whose upper half, which
+    lights the ground, is black.
     """
     import mitsuba as mi
 
-    name, rgb = load_radiance(given)
-    received = luminance(_received(rgb))
-    if not received > 0:
+    name, rgb = load_radiance(environment)
+    illuminance = luminance(_ground_irradiance(rgb))
+    if not illuminance > 0:
         raise BrdfkitError(f"{name}: the map gives no light from above; choose another.")
     return {
         "type": "envmap",
         "bitmap": mi.Bitmap(rgb),
-        "scale": ILLUMINANCE / received,
-        "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], 90),  # the map has y up
+        "scale": ILLUMINANCE / illuminance,
+        "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], 90),  # y points up in the map
     }
 
 
-def on_ground(light, reflectance):
-    """The dictionary of a `light`, see `environment`, whose lower half is matte ground in it."""
+def replace_lower_half(light: dict[str, Any], reflectance: float) -> dict[str, Any]:
+    """Return an emitter whose lower half shows matte ground, lit by the map's upper half.
+
+    `light` is a dictionary that `describe_environment` returns.
+    """
     import mitsuba as mi
 
     rgb = np.array(light["bitmap"])
-    rgb[len(rgb) // 2 :] = reflectance / np.pi * _received(rgb)
+    rgb[len(rgb) // 2 :] = reflectance / np.pi * _ground_irradiance(rgb)
     return light | {"bitmap": mi.Bitmap(rgb)}
 
 
-def _received(rgb):
-    """The irradiance (3,) of the ground by a map (height, width, 3)."""
+def _ground_irradiance(rgb: FloatArray) -> FloatArray:
+    """Return the irradiance (3,) of the ground under a map (height, width, 3) of radiance."""
     return projected_solid_angles(*rgb.shape[:2]) @ rgb.astype(float).sum(axis=1)
 
 
-def light_by(light, scene):
-    """The dictionary of a scene with another `light` for its sky and its softbox.
+def replace_light(light: dict[str, Any] | MitsubaObject, scene: dict[str, Any]) -> dict[str, Any]:
+    """Return the dictionary of a `scene` whose sky and softbox are replaced by one `light`.
 
-    Raises `BrdfkitError` for a scene with lamps of its own.
+    Raises `BrdfkitError` for a scene without a sky, which has lamps of its own.
     """
     if not isinstance(scene, dict) or "sky" not in scene:
         raise BrdfkitError("The scene has lamps of its own: leave envmap out, or choose another.")

@@ -1,64 +1,69 @@
-"""A look at a distance field: from the front, the right and above, by two round lamps.
+"""Makes the scene that shows a distance field: a camera and two round lamps around it.
 
-It fills the picture whatever its size: all lengths are in radii of a sphere about it, in which what
-is endless, as a plane, does not count. Parts whose names (`made_of`) are those of materials are of
-these materials, all others are grey.
+The camera looks from the front, the right and above. All lengths are multiples of the radius of the
+field's bounding sphere, so the field fills the picture whatever its size; endless parts, such as
+planes, do not count for the sphere. A part that is named after a material (`made_of`) consists of
+that material; all other parts are grey.
 """
+
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.distance_fields import Node
 from brdfkit.distance_fields.materials import material_names
 from brdfkit.distance_fields.shadows.field import bounding_sphere
 from brdfkit.materials.resolve import to_material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
 SIZE = 400, 300  # pixels
-SPP = 4  # there is no noise: they smooth edges
-OPENING = 30.0  # the angle of view [degrees]
-CAMERA = (0.35, -0.85, 0.45)  # in which direction it is
-LAMPS = {  # centre, radius and radiance
+SPP = 4  # samples per pixel; they only smooth edges, because there is no noise
+FIELD_OF_VIEW = 30.0  # [degrees]
+CAMERA = (0.35, -0.85, 0.45)  # direction from the field to the camera
+LAMPS = {  # name: (centre and radius [radii of the bounding sphere], radiance)
     "key": ((-3.0, -2.5, 4.5), 0.7, 70.0),
     "fill": ((7.0, -5.0, 5.0), 3.0, 2.5),
 }
 
 
-def field_scene(field, size):
-    """The `mitsuba.Scene` of a field, in a picture of this `size`."""
+def load_field_scene(field: Node, size: tuple[int, int]) -> MitsubaObject:
+    """Load the `mitsuba.Scene` that shows a field; `size` is (width, height) [pixels]."""
     import mitsuba as mi
 
     middle, radius = bounding_sphere(field)
-    away = np.array(CAMERA) / np.linalg.norm(CAMERA) / np.sin(np.radians(OPENING / 2))
+    to_camera = np.array(CAMERA) / np.linalg.norm(CAMERA) / np.sin(np.radians(FIELD_OF_VIEW / 2))
     look_at = mi.ScalarTransform4f().look_at
     scene = {
         "type": "scene",
         "integrator": {
             "type": "distance_field",
             "field": field.to_json(),
-            **{name: bsdf(name) for name in material_names(field)},
+            **{name: _describe_material(name) for name in material_names(field)},
         },
         "sensor": {
             "type": "perspective",
-            "fov": OPENING,
+            "fov": FIELD_OF_VIEW,
             "fov_axis": "smaller",
             "near_clip": 1e-2 * radius,
             "far_clip": 1e3 * radius,
-            "to_world": look_at((middle + radius * away).tolist(), middle.tolist(), [0, 0, 1]),
+            "to_world": look_at((middle + radius * to_camera).tolist(), middle.tolist(), [0, 0, 1]),
             "film": {"type": "hdrfilm", "width": size[0], "height": size[1]},
         },
     }
-    for name, (centre, wide, radiance) in LAMPS.items():
+    for name, (centre, lamp_radius, radiance) in LAMPS.items():
         scene[name] = {
             "type": "sphere",
             "center": (middle + radius * np.array(centre)).tolist(),
-            "radius": radius * wide,
+            "radius": radius * lamp_radius,
             "emitter": {"type": "area", "radiance": radiance},
         }
     return load_by_mitsuba(mi.load_dict, scene, "field")
 
 
-def bsdf(name):
-    """The dictionary of the material called so, or of a grey one."""
+def _describe_material(name: str) -> dict[str, Any]:
+    """Return the BSDF dictionary of the material `name`, or of a grey one if there is none."""
     try:
         return to_material(name).scene_dict()
     except BrdfkitError:

@@ -1,87 +1,95 @@
-"""Loads the scene that `render` is given, a name, a file or a function, for each material."""
+"""Loads the scene of a rendering, from a name, a file or a function, once for each material."""
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
+from brdfkit.core.array_types import BoolArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.locate import find_file_or_name, split_part
 from brdfkit.lighting.environments.map_files import find_map
 from brdfkit.mitsuba_bridge import scene_file
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.scene_input import mesh_file
-from brdfkit.rendering.scene_input.environment import environment, light_by
-from brdfkit.rendering.scene_input.shown_material import load_material, mask
+from brdfkit.rendering.scene_input.environment import describe_environment, replace_light
+from brdfkit.rendering.scene_input.material import find_mask, load_material
 from brdfkit.rendering.scenes import find_scene as find_scene_by_name
 from brdfkit.rendering.scenes import scene_names
 
 SIZE = 512, 512  # of a picture [pixels]
 
 
-def load_scenes(materials, given, size=None, envmap=None):
-    """(scenes by name, mask): a `mitsuba.Scene` for each of `materials`, the dictionaries of BSDFs
-    by name, and True (height, width) where the material shows.
+def load_scenes(
+    materials: Mapping[str, dict[str, Any]],
+    scene: Any,
+    size: tuple[int, int] | None = None,
+    environment: str | Path | None = None,
+) -> tuple[dict[str, MitsubaObject], BoolArray | None]:
+    """Load a `mitsuba.Scene` for each material, and the mask of the pixels that show the material.
 
-    `given`: see `find_scene`; `size`: (width, height) [pixels], by default 512, or a scene file's
-    own; `envmap`: name or file of an environment map, for the light. The mask is None for a
-    function of the user's, which gets the dictionary itself. Raises `BrdfkitError` for what cannot
-    be loaded.
+    `materials` are BSDF dictionaries by name, and the scenes are by the same names. `scene` is what
+    `find_scene` takes. `size` is (width, height) [pixels], by default 512 × 512, or the size in a
+    scene file. `environment` is the name or file of an environment map. The mask is (height,
+    width); it is None for a user's function, which receives the BSDF dictionary itself. Raises
+    `BrdfkitError` for what cannot be loaded.
     """
     import mitsuba as mi
 
-    build, suffix = find_scene(given), "" if callable(given) else suffix_of(given)
+    build, suffix = find_scene(scene), "" if callable(scene) else find_suffix(scene)
     if suffix != scene_file.SUFFIX:
         size = size or SIZE
-    light = None if envmap is None else environment(envmap)
-    scenes, seen, sky = {}, None, None
+    light = None if environment is None else describe_environment(environment)
+    scenes: dict[str, MitsubaObject] = {}
+    mask, sky = None, None
     for name, bsdf in materials.items():
-        material = None if callable(given) else load_material(bsdf, name, both_sides=bool(suffix))
-        made = build(material or bsdf, size)
-        made = light_by(light, made) if light else made
-        if material and isinstance(made, dict) and "sky" in made:
-            # one object in all scenes, of which the kernels have the number: so they are the same
-            sky = sky or load_by_mitsuba(mi.load_dict, made["sky"], name)
-            made["sky"] = sky
-        loaded = load_by_mitsuba(mi.load_dict, made, name) if isinstance(made, dict) else made
-        _require_scene(loaded)
+        material = None if callable(scene) else load_material(bsdf, name, both_sides=bool(suffix))
+        built = build(material or bsdf, size)
+        built = replace_light(light, built) if light else built
+        if material and isinstance(built, dict) and "sky" in built:
+            # All scenes share one emitter. Kernels contain its number, so one kernel serves all
+            sky = sky or load_by_mitsuba(mi.load_dict, built["sky"], name)
+            built["sky"] = sky
+        loaded = load_by_mitsuba(mi.load_dict, built, name) if isinstance(built, dict) else built
+        _require_mitsuba_scene(loaded)
         if material and not scenes:
-            seen = mask(loaded, material)
+            mask = find_mask(loaded, material)
         scenes[name] = loaded
-    return scenes, seen
+    return scenes, mask
 
 
-def require_scene(given, envmap=None):
-    """Raise `BrdfkitError` for a scene or an environment map that is not there, before anything
-    long begins."""
-    find_scene(given)
-    if envmap is not None:
-        find_map(envmap)
+def require_scene(scene: Any, environment: str | Path | None = None) -> None:
+    """Raise `BrdfkitError` for a missing scene or environment map, before long work begins."""
+    find_scene(scene)
+    if environment is not None:
+        find_map(environment)
 
 
-def find_scene(given):
-    """The function that makes the scene, of (BSDF, size).
+def find_scene(scene: Any) -> Callable[..., Any]:
+    """Return the function that makes a scene's dictionary from a BSDF and (width, height).
 
-    `given`: such a function; the name of a scene; a mesh, OBJ or PLY; or a scene file, "FILE.xml"
-    or "FILE.xml#ID", as "FILE.obj#z" of a mesh whose axis z points up. Raises
-    `BrdfkitError` for anything else.
+    `scene` is such a function, the name of a scene, a mesh ("FILE.obj", "FILE.ply", or "FILE.obj#z"
+    if its z axis points up), or a scene file ("FILE.xml", or "FILE.xml#ID" with the id of the BSDF
+    to replace). Raises `BrdfkitError` for anything else.
     """
-    if callable(given):
-        return given
-    file = split_part(given)[0] if isinstance(given, str | Path) and str(given) else given
+    if callable(scene):
+        return scene
+    file = split_part(scene)[0] if isinstance(scene, str | Path) and str(scene) else scene
     place = find_file_or_name(file, "scene", scene_names())
     if isinstance(place, str):
         return find_scene_by_name(place)
-    suffix = suffix_of(given)
+    suffix = find_suffix(scene)
     if suffix == scene_file.SUFFIX:
-        return scene_file.make_scene_builder(given)
+        return scene_file.make_scene_builder(scene)
     if suffix in mesh_file.SUFFIXES:
-        return mesh_file.mesh_scene(given)
+        return mesh_file.make_mesh_scene(scene)
     raise BrdfkitError(
-        f"{given}: a scene is a mesh (.obj, .ply), a scene file (.xml), or one of "
+        f"{scene}: a scene is a mesh (.obj, .ply), a scene file (.xml), or one of "
         f"{', '.join(scene_names())}."
     )
 
 
-def _require_scene(loaded):
-    """Raise `BrdfkitError` unless what was loaded is a scene that can be rendered."""
+def _require_mitsuba_scene(loaded: Any) -> None:
+    """Raise `BrdfkitError` unless `loaded` is a `mitsuba.Scene` that can be rendered."""
     import mitsuba as mi
 
     if not isinstance(loaded, mi.Scene):
@@ -93,6 +101,6 @@ def _require_scene(loaded):
         raise BrdfkitError("The scene has no sensor or no integrator; add them to its dictionary.")
 
 
-def suffix_of(given):
-    """The suffix of a scene's file, "" for the name of a scene."""
-    return Path(str(given).partition("#")[0]).suffix.lower()
+def find_suffix(scene: str | Path) -> str:
+    """Return the suffix of a scene's file, such as ".obj"; "" for the name of a scene."""
+    return Path(str(scene).partition("#")[0]).suffix.lower()

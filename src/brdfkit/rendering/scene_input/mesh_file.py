@@ -1,138 +1,201 @@
-"""A mesh of the user's, OBJ or PLY, as a scene: it stands in the place of the ball."""
+"""Makes a scene from a mesh file, OBJ or PLY; the mesh takes the place of the ball.
+
+Mesh files do not say which of their axes points up, so this file also guesses it.
+"""
 
 import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray, IntArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_file
 from brdfkit.mitsuba_bridge.obj_indices import use_absolute_indices
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
-from brdfkit.rendering.scene_input.upright import guess_up
 from brdfkit.rendering.scenes._meshes import make_mesh
 from brdfkit.rendering.scenes._studio import make_studio
 
 SUFFIXES = ".obj", ".ply"
-SIZE = 2.0  # of the longest side of its bounding box, as of the ball's
-SHARP = np.radians(35)  # between a normal at a corner of a face and the face's own
-LEAST = 1e-12  # area of a face, for a mesh of extent 1
+SIZE = 2.0  # longest side of the mesh's bounding box in the scene, as large as the ball's
+SHARP_ANGLE = np.radians(35)  # between the normal at a corner of a face and the face's own
+SMALLEST_AREA = 1e-12  # of a face, for a mesh whose longest side is 1
+FOOT_HEIGHT = 0.02  # share of the height: vertices below it touch the ground
+FOOT_SHARE = 0.1  # smallest share of the outline from above that a foot covers
+
+# Rotations (axis, degrees) from the file's axes, by the one that points up, to z up
+TURNS: dict[str, tuple[list[int], int]] = {
+    "x": ([0, 1, 0], -90),
+    "y": ([1, 0, 0], 90),
+    "z": ([0, 0, 1], 0),
+}
 
 
-# Turns of the file's axes (axis, degrees) to those of the scenes, where z is up
-TURNS = {"x": ([0, 1, 0], -90), "y": ([1, 0, 0], 90), "z": ([0, 0, 1], 0)}
+def make_mesh_scene(source: str | Path) -> Callable[..., dict[str, Any]]:
+    """Return a function like those of `brdfkit.rendering.scenes`, which shows the mesh in a file.
 
-
-def mesh_scene(given):
-    """A function like those of `brdfkit.rendering.scenes`, which shows the mesh in a file.
-
-    `given`: the file, "FILE.obj"; or with the axis that points up, "FILE.obj#z", which is else
-    guessed (`upright.py`). With y up, z points to the camera. The mesh, by the vertices of its
-    faces, is made as large as the ball and stands on the ground. Normals are made where it has
-    none. An anisotropic material is brushed along the u of its texture coordinates, or around its
-    vertical axis where it has none. Raises `BrdfkitError` for a file that is missing or not such a
-    mesh, for one whose faces lack vertices or an area, and for an axis that there is not.
+    `source` is the file, "FILE.obj", or the file with the axis that points up, "FILE.obj#z".
+    Without an axis it is guessed (`guess_up`). With y up, z points to the camera. The mesh is
+    scaled to the size of the ball and stands on the ground. Missing normals are computed. An
+    anisotropic material is brushed along the texture coordinate u, or around the vertical axis
+    if the mesh has no texture coordinates. Raises `BrdfkitError` for a missing file, for one that
+    is no such mesh, for faces without vertices or without an area, and for an unknown axis.
     """
-    name, _, up = str(given).partition("#")
+    name, _, up = str(source).partition("#")
     if up and up not in TURNS:
-        raise BrdfkitError(f"{given}: the axis that points up, behind the #, is x, y or z.")
+        raise BrdfkitError(f"{source}: the axis that points up, behind the #, is x, y or z.")
     path = require_file(name)
-    made = []  # the same mesh serves every material, and is read once
+    meshes: list[
+        tuple[FloatArray, FloatArray, FloatArray, IntArray]
+    ] = []  # read once, because every material has the same mesh
 
-    def build(bsdf, size=(512, 512)):
-        made[:] = made or [read(path, up)]
-        return make_studio(size) | {"mesh": make_mesh(*made[0], bsdf)}
+    def build(
+        bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512)
+    ) -> dict[str, Any]:
+        meshes[:] = meshes or [read_mesh(path, up)]
+        return make_studio(size) | {"mesh": make_mesh(*meshes[0], bsdf=bsdf)}
 
     return build
 
 
-def read(path, up=""):
-    """(points, normals, uv, faces) of the mesh in a file, in the ball's place.
+def read_mesh(path: Path, up: str = "") -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
+    """Read a mesh file and move the mesh to the ball's place.
 
-    `up`: the axis of the file that points up; it is guessed where none is given.
+    `up` is the axis of the file that points up, by default a guess. Returns the points (n, 3),
+    their normals (n, 3), texture coordinates (n, 2), and the faces (m, 3), indices of points.
     """
     import mitsuba as mi
 
     with use_absolute_indices(path) as file:
 
-        def load(**how):
+        def load(**settings: Any) -> MitsubaObject:
             plugin = {"type": path.suffix.lower()[1:], "filename": str(file)}
-            return mi.traverse(load_by_mitsuba(mi.load_dict, plugin | how, path))
+            return mi.traverse(load_by_mitsuba(mi.load_dict, plugin | settings, path))
 
-        # without normals at first: Mitsuba makes none of faces that are none, or very small
+        # First without normals: Mitsuba computes none for faces that are empty or very small
         points, faces = _points_and_faces(load(face_normals=True), path)
         middle, extent = _box(points, faces, path)
-        to_world = mi.ScalarTransform4f().rotate(*TURNS[up or _guess(path, points, faces)])
+        to_world = mi.ScalarTransform4f().rotate(
+            *TURNS[up or _guess_up_and_warn(path, points, faces)]
+        )
         to_world = to_world.scale([SIZE / extent] * 3).translate((-middle).tolist())
         buffers = load(to_world=to_world)
 
-    # (faces, corners, 3), in the axes of the scenes; a face has its corners to itself
+    # From here on arrays are (faces, corners, 3) in scene axes: faces share no vertices
     points, faces = _points_and_faces(buffers, path)
-    faces = faces[_areas(points, faces) > LEAST * SIZE**2]
+    faces = faces[_areas(points, faces) > SMALLEST_AREA * SIZE**2]
     normals, uv = (
         np.array(buffers[name]).reshape(-1, width)
         for name, width in (("vertex_normals", 3), ("vertex_texcoords", 2))
     )
     points, normals = points[faces], normals[faces]
     points[..., 2] -= points[..., 2].min()
-    uv = uv[faces] if len(uv) else _around(points)
-    corners = (x.reshape(-1, x.shape[-1]) for x in (points, _sharpen(normals, points), uv))
-    return *corners, np.arange(faces.size).reshape(-1, 3)
+    uv = uv[faces] if len(uv) else _uv_around_axis(points)
+    normals = _sharpen(normals, points)
+    points, normals, uv = (x.reshape(-1, x.shape[-1]) for x in (points, normals, uv))
+    return points, normals, uv, np.arange(faces.size).reshape(-1, 3)
 
 
-def _guess(path, points, faces):
-    """The axis that points up, y or z; a warning says where that is not y."""
+def _guess_up_and_warn(path: Path, points: FloatArray, faces: IntArray) -> str:
+    """Return the axis that points up, "y" or "z", as a guess; warn if it is z."""
     up = guess_up(points[np.unique(faces)])
     if up != "y":
         warnings.warn(
-            f"{path}: its axis {up} is taken to point up, for the mesh stands on its foot that "
-            f"way, and would fall over with y up. If not, give --up y, in Python '{path}#y'.",
+            f"{path}: its axis {up} is taken to point up, because the mesh then stands on its "
+            f"foot, and would fall over with y up. If not, give --up y, in Python '{path}#y'.",
             stacklevel=2,
         )
     return up
 
 
-def _points_and_faces(buffers, path):
-    """The points (n, 3) of a mesh and its faces (m, 3), their numbers, which should exist."""
+def _points_and_faces(buffers: MitsubaObject, path: Path) -> tuple[FloatArray, IntArray]:
+    """Return the points (n, 3) of a mesh and its faces (m, 3), indices of points.
+
+    Raises `BrdfkitError` for an index without a point. `buffers` are Mitsuba's mesh parameters.
+    """
     points = np.array(buffers["vertex_positions"], float).reshape(-1, 3)
     faces = np.array(buffers["faces"]).reshape(-1, 3)
     if faces.size and faces.max() >= len(points):
         raise BrdfkitError(
             f"{path}: a face has a vertex that the mesh lacks, beyond its {len(points)}; export it "
-            "anew."
+            "again."
         )
     return points, faces
 
 
-def _box(points, faces, path):
-    """The middle of the bounding box of the `faces`, and its longest side."""
+def _box(points: FloatArray, faces: IntArray, path: Path) -> tuple[FloatArray, float]:
+    """Return the middle (3,) and the longest side of the bounding box of the `faces`.
+
+    Raises `BrdfkitError` if no face has an area.
+    """
     used = points[faces] if faces.size else np.zeros((1, 3, 3))
     low, high = used.min(axis=(0, 1)), used.max(axis=(0, 1))
-    extent = np.max(high - low)
-    if not (0 < extent < np.inf and np.any(_areas(points, faces) > LEAST * extent**2)):
-        raise BrdfkitError(f"{path}: the mesh has no faces, or none with an area; export it anew.")
+    extent = float(np.max(high - low))
+    if not (0 < extent < np.inf and np.any(_areas(points, faces) > SMALLEST_AREA * extent**2)):
+        raise BrdfkitError(f"{path}: the mesh has no faces, or none with an area; export it again.")
     return (low + high) / 2, extent
 
 
-def _areas(points, faces):
+def _areas(points: FloatArray, faces: IntArray) -> FloatArray:
+    """Return the areas (m,) of triangles."""
     a, b, c = np.moveaxis(points[faces], 1, 0)
     return np.linalg.norm(np.cross(b - a, c - a), axis=-1) / 2
 
 
-def _sharpen(normals, points):
-    """The normals at the corners of faces; those of the faces where the two differ much, at edges
-    which the mesh means to be sharp."""
+def _sharpen(normals: FloatArray, points: FloatArray) -> FloatArray:
+    """Return normals (m, 3, 3) at the corners of faces, with the sharp edges of the mesh kept.
+
+    Where the normal at a corner differs much from the face's own normal, the edge is meant to be
+    sharp, and the face's normal replaces it.
+    """
     flat = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
     flat /= np.maximum(np.linalg.norm(flat, axis=-1, keepdims=True), 1e-30)
     flat = np.broadcast_to(flat[:, None], normals.shape)
     cos = np.einsum("fci,fci->fc", flat, normals)
-    # below 0: the face is turned, and its corners are right
-    sharp = np.abs(cos) < np.cos(SHARP)
+    # A negative cosine means that the order of the vertices is reversed; the normals are right
+    sharp = np.abs(cos) < np.cos(SHARP_ANGLE)
     return np.where(sharp[..., None], np.where(cos < 0, -1, 1)[..., None] * flat, normals)
 
 
-def _around(points):
-    """(u, v) at the corners of faces: the angle around the vertical axis, which does not jump
-    within a face, and the angle from that axis."""
+def _uv_around_axis(points: FloatArray) -> FloatArray:
+    """Return texture coordinates (m, 3, 2) at the corners of faces, for a mesh without its own.
+
+    u is the angle around the vertical axis, which does not jump within a face; v is the angle from
+    that axis. Both are in radians.
+    """
     x, y, z = np.moveaxis(points, -1, 0)
     u = np.unwrap(np.arctan2(y, x), axis=1)
     return np.stack([u, np.arctan2(np.hypot(x, y), z - z.max() / 2)], axis=-1)
+
+
+def guess_up(points: FloatArray) -> str:
+    """Guess which axis of a mesh points up, "y" or "z", from its vertices (n, 3).
+
+    A solid stands if the centroid of its convex hull is above its foot, which is the convex polygon
+    around the vertices that touch the ground, and if that foot is not a mere tip. The guess is "z"
+    if the mesh stands with z up and not with y up. Otherwise it is "y", the custom of OBJ files: a
+    cube stands both ways, and a sheet neither way.
+    """
+    return "z" if _stands(points, 2) and not _stands(points, 1) else "y"
+
+
+def _stands(points: FloatArray, axis: int) -> bool:
+    """Tell whether a solid with the vertices `points` (n, 3) stands when `axis` points up."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    level = [k for k in range(3) if k != axis]
+    height = points[:, axis] - points[:, axis].min()
+    try:
+        hull = ConvexHull(points)
+        foot = ConvexHull(points[height < FOOT_HEIGHT * height.max()][:, level])
+        outline = ConvexHull(points[:, level])
+    except (QhullError, ValueError):  # the mesh is flat, or touches the ground at too few points
+        return False
+    corners = points[hull.simplices] - points[hull.vertices].mean(axis=0)
+    volumes = np.abs(np.linalg.det(corners))
+    middle = points[hull.vertices].mean(axis=0) + volumes @ corners.sum(axis=1) / 4 / volumes.sum()
+    inside = np.all(foot.equations @ np.append(middle[level], 1) < 0)
+    # SciPy calls the area of a polygon its volume
+    return bool(inside and foot.volume > FOOT_SHARE * outline.volume)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.array_types import MitsubaObject
+from brdfkit.core.array_types import FloatArray, MitsubaObject
 
 CAMERA = (0.0, -8.0, 3.2)
 TARGET = (0.0, 0.0, 0.96)
@@ -48,8 +48,8 @@ def make_studio(size: tuple[int, int] = (512, 512), spp: int = 64) -> dict[str, 
 
 
 def make_camera(
-    origin: tuple[float, float, float],
-    target: tuple[float, float, float],
+    origin: tuple[float, float, float] | FloatArray,
+    target: tuple[float, float, float] | FloatArray,
     fov: float,
     size: tuple[int, int] = (512, 512),
     spp: int = 64,

@@ -1,6 +1,6 @@
 """`render_volume` and `render_orbit`: pictures and films of volumes.
 
-`looks.py` is what a volume looks like if nobody says, `framing.py` where it is seen from,
-`light.py` what lights it and is behind it, `scene.py` puts them together, `render_volume.py` and
-`orbit.py` are the verbs.
+`render_volume.py` and `orbit.py` contain the two functions. `scene.py` makes the scene for Mitsuba,
+`camera.py` places the camera, `light.py` describes the light and the background, and `defaults.py`
+chooses the transfer function, the surface level and the material for a user who chooses none.
 """

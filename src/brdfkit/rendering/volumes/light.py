@@ -1,29 +1,43 @@
-"""What lights a volume, and what is seen behind it."""
+"""Describes the light on a volume, and the background behind it, as emitters for Mitsuba."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.lighting.environments.light_distribution import pixel_directions
-from brdfkit.rendering.scene_input.environment import environment
-from brdfkit.rendering.volumes.framing import FOV
+from brdfkit.rendering.scene_input.environment import describe_environment
+from brdfkit.rendering.volumes.camera import FOV
 
-EDGE = 2.0  # about what the camera sees of an environment [degrees]: its pixels are interpolated
-
-
-def background_light(background):
-    """The dictionary of an emitter of one radiance all around: a number or R, G, B."""
-    return {"type": "constant", "radiance": _colour(background)}
+EDGE = 2.0  # width of a border around the background [degrees]: the map is interpolated
 
 
-def environment_light(envmap, illuminance, background, towards, aspect):
-    """The dictionary of an environment map, whose part behind the volume is the `background`.
+def background_light(background: ArrayLike) -> dict[str, Any]:
+    """Return an emitter with the same radiance in all directions: a number, or R, G, B."""
+    rgb = np.broadcast_to(background, 3).tolist()
+    return {"type": "constant", "radiance": {"type": "rgb", "value": rgb}}
 
-    So the camera sees a plain background, and all other light is that of the environment. None
-    leaves the map as it is. `illuminance`: of level ground, by the whole map; `towards`: the unit
-    vector to the camera; `aspect`: width over height of the picture.
+
+def environment_light(
+    environment: str | Path,
+    illuminance: float,
+    background: ArrayLike | None,
+    towards: FloatArray,
+    aspect: float,
+) -> dict[str, Any]:
+    """Return the emitter of an environment map that is plain `background` behind the volume.
+
+    The camera sees this background, and the light from all other directions is the environment's.
+    With None the map stays as it is. The whole map gives level ground this `illuminance`. `towards`
+    is the unit vector to the camera, and `aspect` the picture's width over its height.
     """
     import mitsuba as mi
 
-    light = environment(envmap)
+    light = describe_environment(environment)
     light["scale"] *= illuminance
     if background is None:
         return light
@@ -31,11 +45,7 @@ def environment_light(envmap, illuminance, background, towards, aspect):
     corner = np.degrees(np.arctan(half * np.hypot(max(aspect, 1), max(1 / aspect, 1))))
     rgb = np.array(light["bitmap"])
     x, y, z = -towards
-    cosine = pixel_directions(*rgb.shape[:2]) @ [x, z, -y]  # the map has y up
+    cosine = pixel_directions(*rgb.shape[:2]) @ [x, z, -y]  # y points up in the map
     behind = cosine > np.cos(np.radians(corner + EDGE))
     rgb[behind] = np.broadcast_to(background, 3) / light["scale"]
     return light | {"bitmap": mi.Bitmap(rgb)}
-
-
-def _colour(background):
-    return {"type": "rgb", "value": np.broadcast_to(background, 3).tolist()}

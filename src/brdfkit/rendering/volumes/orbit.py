@@ -101,39 +101,44 @@ def render_orbit(
     """
     frames = to_whole_number("frames", frames, least=2)
     azimuth = to_number("azimuth", azimuth)
-    each = None if seconds is None else to_positive("seconds", seconds) / frames
+    frame_seconds = None if seconds is None else to_positive("seconds", seconds) / frames
     volume = volume if isinstance(volume, Volume) else volumes.load(volume)
     start, frame_spp = time.perf_counter(), 0
     pictures: list[NDArray[np.float32]] = []
-    told = _Told(progress, frames)
-    look: dict[str, Any] = {"renderer": renderer, "settings": settings, "density": density}
-    look |= {"environment": environment, "background": background, "elevation": elevation}
-    look |= {"spp": spp, "size": size, "noise_floor": noise_floor, "seconds": each, "seed": seed}
-    while len(pictures) < frames and not told.stopped:
-        turned = azimuth + 360 * len(pictures) / frames
+    reporter = _FrameProgress(progress, frames)
+    options: dict[str, Any] = {"renderer": renderer, "settings": settings, "density": density}
+    options |= {"environment": environment, "background": background, "elevation": elevation}
+    options |= {"spp": spp, "size": size, "seed": seed, "all_around": True}
+    options |= {"noise_floor": noise_floor, "seconds": frame_seconds}
+    while len(pictures) < frames and not reporter.stopped:
+        frame_azimuth = azimuth + 360 * len(pictures) / frames
         try:
-            shown = render_volume(
-                volume, transfer, azimuth=turned, all_around=True, progress=told, **look
+            rendering = render_volume(
+                volume, transfer, azimuth=frame_azimuth, progress=reporter, **options
             )
         except KeyboardInterrupt:
             if not pictures:
                 raise
             break
-        unfinished = shown.spp < (shown.requested or 0)
-        told.stopped |= unfinished
+        unfinished = rendering.spp < (rendering.requested or 0)
+        reporter.stopped |= unfinished
         if not (unfinished and pictures):
-            pictures.append(shown.pictures[shown.reference])
-            frame_spp, told.frame = shown.spp, len(pictures)
+            pictures.append(rendering.pictures[rendering.reference])
+            frame_spp, reporter.frame = rendering.spp, len(pictures)
     return Film(pictures, frames, frame_spp, time.perf_counter() - start)
 
 
-class _Told:
-    """A callback for one frame after the other, which remembers that it was interrupted."""
+class _FrameProgress:
+    """Reports the progress of one frame after the other as that of the whole film.
 
-    def __init__(self, progress, frames):
+    It remembers whether the user interrupted a frame with Ctrl-C.
+    """
+
+    def __init__(self, progress: Progress | None, frames: int) -> None:
         self.progress, self.frames, self.frame, self.stopped = progress, frames, 0, False
 
-    def __call__(self, done, total):
+    def __call__(self, done: int, total: int) -> None:
+        """Report that `done` of `total` passes of the current frame are finished."""
         try:
             if self.progress:
                 self.progress(self.frame * total + done, self.frames * total)

@@ -17,19 +17,18 @@ from brdfkit.core.memory import require_memory
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.render_materials import PictureProgress, rendering_of, to_size
 from brdfkit.rendering.result import Rendering
-from brdfkit.rendering.scene_input.arguments import mitsuba
-from brdfkit.rendering.tracing import trace
-from brdfkit.rendering.volumes import looks
-from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, scene
+from brdfkit.rendering.scene_input.arguments import load_mitsuba
+from brdfkit.rendering.tracing import Traced, trace
+from brdfkit.rendering.volumes import defaults
+from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, describe_scene
 from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.transfer_function import TransferLike
 from brdfkit.volumes.transfer.windows import scale_to_values
 
 SPP, UNLIT_SPP = 64, 8  # samples per pixel
 MOST_SPP = 16_384  # samples per pixel, where a noise floor or a time is requested
-PASS = 4  # of them, so that the first picture is there soon
-BACKGROUND = 0.02
-
+PASS_SPP = 4  # samples per pixel in a pass: few, so that the first picture appears soon
+BACKGROUND = 0.02  # radiance behind the volume
 
 VolumeLike: TypeAlias = Volume | str | Path
 Radiance: TypeAlias = float | tuple[float, float, float]
@@ -138,50 +137,63 @@ def render_volume(
         raise no_such("renderer", renderer, RENDERERS)
     volume = volume if isinstance(volume, Volume) else volumes.load(volume)
     require_memory(size, 1)
-    mi = mitsuba()  # sets a variant, on which the dictionaries depend
+    mi = load_mitsuba()  # sets a variant, on which the dictionaries depend
     if mi.variant().startswith("scalar"):
         raise BrdfkitError(f"Volumes do not render in {mi.variant()}; set llvm_ad_rgb.")
-    function = _function(volume, transfer, renderer, to_positive("density", density))
+    function = _choose_function(volume, transfer, renderer, to_positive("density", density))
     if function is None and "level" in settings:
         _require_surface(volume, to_number("level", settings["level"]))
     described = volume, function, renderer, size, view, light, settings, all_around
-    how = {"progress": progress, "noise_floor": noise_floor, "limit": limit, "most": PASS}
-    traced = _load_and_trace(described, spp=spp, seed=seed, **how)
-    words = {name: value if _is_plain(value) else str(value) for name, value in settings.items()}
-    shown = {"renderer": renderer, "transfer": getattr(function, "name", None), **words}
-    return rendering_of(traced, seed, noise_floor, {volume.name: shown})
+    limits = {"progress": progress, "noise_floor": noise_floor, "limit": limit, "most": PASS_SPP}
+    traced = _load_and_trace(described, spp=spp, seed=seed, **limits)
+    plain = {name: value if _is_plain(value) else str(value) for name, value in settings.items()}
+    parameters = {
+        "renderer": renderer,
+        "transfer": getattr(function, "name", None),
+        **plain,
+    }
+    return rendering_of(traced, seed, noise_floor, {volume.name: parameters})
 
 
 @in_turn
-def _load_and_trace(described, **how):
-    """The result of `trace` for a scene; it is freed as this function returns, in its turn."""
+def _load_and_trace(described: tuple[Any, ...], **settings: Any) -> Traced:
+    """Trace the scene that `describe_scene` makes from `described`, with `settings` of `trace`.
+
+    The scene is freed when this function returns, before another thread renders.
+    """
     import mitsuba as mi
 
     volume, *_ = described
-    loaded = load_by_mitsuba(mi.load_dict, scene(*described), volume.name)
-    return trace({volume.name: loaded}, **how)
+    loaded = load_by_mitsuba(mi.load_dict, describe_scene(*described), volume.name)
+    return trace({volume.name: loaded}, **settings)
 
 
-def _is_plain(value):
+def _is_plain(value: object) -> bool:
+    """Tell whether a setting is a truth value, a number or a text, which files can hold."""
     return isinstance(value, bool | int | float | str)
 
 
-def _function(volume, transfer, renderer, density):
-    """The `TransferFunction` to show; None for the surface of a level."""
+def _choose_function(
+    volume: Volume, transfer: TransferLike | None, renderer: str, density: float
+) -> TransferFunction | None:
+    """Return the transfer function to show, in the volume's unit; None for the surface of a level.
+
+    `density` is a factor of its extinction.
+    """
     if transfer is None and renderer == "isosurface":
         return None
     if transfer is None:
-        transfer = looks.transfer_function(volume, renderer)
+        transfer = defaults.default_transfer_function(volume, renderer)
     elif not isinstance(transfer, TransferFunction):
         transfer = TransferFunction.load(transfer)
-    transfer = scale_to_values(transfer, volume.values)  # the camera wants to know what shows
+    transfer = scale_to_values(transfer, volume.values)  # the camera is placed by its visible parts
     if volume.unit and transfer.length_unit:
         transfer = transfer.per(volume.unit)
     return replace(transfer, extinction=density * transfer.extinction)
 
 
-def _require_surface(volume, level):
-    """Raise `BrdfkitError` where no surface of a volume has this value."""
+def _require_surface(volume: Volume, level: float) -> None:
+    """Raise `BrdfkitError` if the level is outside the values of the volume."""
     low, high = volume.range
     if not low <= level <= high:
         raise BrdfkitError(
@@ -190,16 +202,16 @@ def _require_surface(volume, level):
         )
 
 
-def _to_background(background):
-    """Radiance as a float or three; None stays."""
+def _to_background(background: Radiance | None) -> list[float] | None:
+    """Return the background's radiance as R, G, B, or None for None."""
     if background is None:
         return None
     try:
-        found = np.broadcast_to(np.array(background, float), 3)
+        rgb = np.broadcast_to(np.array(background, float), 3)
     except (TypeError, ValueError):
-        found = np.full(3, -1.0)
-    if not (np.isfinite(found).all() and (found >= 0).all()):
+        rgb = np.full(3, -1.0)  # reported below
+    if not (np.isfinite(rgb).all() and (rgb >= 0).all()):
         raise BrdfkitError(
             f"background = {background!r} should be one radiance, or R, G, B, at least 0."
         )
-    return found.tolist()
+    return [float(value) for value in rgb]

@@ -1,80 +1,108 @@
-"""The scene of a volume: its voxels, transfer function, renderer, light and camera for Mitsuba."""
+"""Describes the scene of a volume for Mitsuba: voxels, transfer function, light and camera."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import no_such
 from brdfkit.materials.resolve import to_material
 from brdfkit.rendering.scenes._studio import make_camera
-from brdfkit.rendering.volumes import looks
-from brdfkit.rendering.volumes.framing import FOV, direction, origin_and_target
+from brdfkit.rendering.volumes import defaults
+from brdfkit.rendering.volumes.camera import FOV, camera_direction, place_camera
 from brdfkit.rendering.volumes.light import background_light, environment_light
+from brdfkit.volumes import TransferFunction, Volume
 
-# The renderers, plugins of their names, and the parameter that is the volume
+# The renderers are plugins; here is the parameter of each that takes the volume
 RENDERERS = {
     "single_scattering": "extinction",
     "emission_absorption": "extinction",
     "maximum_intensity": "volume",
     "isosurface": "volume",
 }
-UNLIT = "emission_absorption", "maximum_intensity"  # by themselves alone
-# Illuminance of level ground. Single scattering by a dense volume reflects much less of it than a
-# surface, and should look as bright
-LIGHT = {"single_scattering": 10.0, "isosurface": 3.0}
-LEAST_STEPS = 64  # of a ray
-AROUND = range(0, 360, 15)  # azimuths from which a camera that turns should see all
+UNLIT = "emission_absorption", "maximum_intensity"  # renderers without light from outside
+# Illuminance of level ground by renderer. A dense volume that scatters once reflects much less of
+# the light than a surface does, and should look as bright
+ILLUMINANCES = {"single_scattering": 10.0, "isosurface": 3.0}
+LEAST_STEPS = 64  # along a ray
+TURN_AZIMUTHS = range(0, 360, 15)  # [degrees]; a turning camera should see all from each
 
 
-def scene(volume, transfer, renderer, size, view, light, settings, all_around=False):
-    """The dictionary of the scene.
+def describe_scene(
+    volume: Volume,
+    transfer: TransferFunction | None,
+    renderer: str,
+    size: tuple[int, int],
+    view: tuple[float, float],
+    light: tuple[str | Path, ArrayLike | None],
+    settings: Mapping[str, Any],
+    all_around: bool = False,
+) -> dict[str, Any]:
+    """Return the dictionary of the scene that shows a volume.
 
-    transfer : a `TransferFunction`, or None for the surface of a level
-    view : (azimuth, elevation) [degrees]; all_around : see `render_volume`
-    light : (envmap, background)
-    settings : further parameters of the integrator
+    Without a transfer function the scene shows the surface of one level. `size` is (width, height)
+    [pixels], `view` (azimuth, elevation) [degrees], and `light` (environment, background radiance).
+    `settings` are further parameters of the integrator; `all_around` is as in `render_volume`.
     """
-    towards, (width, height) = direction(volume, *view), size
-    envmap, background = light
-    entries = integrator(volume, transfer, renderer, settings)
-    shows = looks.shows(transfer, entries.get("level", 0))
-    others = AROUND if all_around else ()
-    sides = [towards, *(direction(volume, azimuth, view[1]) for azimuth in others)]
-    origin, target = origin_and_target(volume, shows, sides, width / height)
+    towards, (width, height) = camera_direction(volume, *view), size
+    environment, background = light
+    entries = describe_integrator(volume, transfer, renderer, settings)
+    is_visible = defaults.make_visibility_test(transfer, entries.get("level", 0))
+    others = TURN_AZIMUTHS if all_around else ()
+    sides = [towards, *(camera_direction(volume, azimuth, view[1]) for azimuth in others)]
+    origin, target = place_camera(volume, is_visible, sides, width / height)
     if renderer in UNLIT:
         emitter = background_light(0.0 if background is None else background)
     else:
         aspect = width / height
-        emitter = environment_light(envmap, LIGHT[renderer], background, towards, aspect)
+        emitter = environment_light(
+            environment, ILLUMINANCES[renderer], background, towards, aspect
+        )
     return {
         "type": "scene",
         "integrator": entries,
-        "sensor": make_camera(origin, target, FOV, size) | _clips(origin, target),
+        "sensor": make_camera(origin, target, FOV, size) | _clip_distances(origin, target),
         "sky": emitter,
     }
 
 
-def _clips(origin, target):
-    """From where to where the camera sees: volumes are of any unit of length."""
+def _clip_distances(origin: FloatArray, target: FloatArray) -> dict[str, float]:
+    """Return the camera's near and far clipping distances, which suit any unit of length."""
     distance = float(np.linalg.norm(origin - target))
     return {"near_clip": 1e-3 * distance, "far_clip": 1e3 * distance}
 
 
-def integrator(volume, transfer, renderer, settings):
-    """The dictionary of the integrator, which has the volume in it."""
+def describe_integrator(
+    volume: Volume,
+    transfer: TransferFunction | None,
+    renderer: str,
+    settings: Mapping[str, Any],
+) -> dict[str, Any]:
+    """Return the dictionary of the integrator, which contains the volume.
+
+    Raises `BrdfkitError` for an unknown renderer.
+    """
     if renderer not in RENDERERS:
         raise no_such("renderer", renderer, RENDERERS)
-    entries = {"type": renderer, RENDERERS[renderer]: volume.scene_dict(transfer)}
+    entries: dict[str, Any] = {"type": renderer}
+    entries[RENDERERS[renderer]] = volume.scene_dict(transfer)
     if renderer != "single_scattering":
         entries["steps"] = max(LEAST_STEPS, *volume.size)
     if renderer == "emission_absorption":
         entries["jitter"] = True
     if renderer == "isosurface":
-        entries |= {"bsdf": looks.CLAY, "shadows": True}
-        entries["level"] = looks.level(volume) if transfer is None else 0.5
-    return entries | {name: _plugin(name, value) for name, value in settings.items()}
+        entries |= {"bsdf": defaults.CLAY, "shadows": True}
+        entries["level"] = defaults.default_level(volume) if transfer is None else 0.5
+    return entries | {name: _to_plugin_value(name, value) for name, value in settings.items()}
 
 
-def _plugin(name, value):
-    """The value of an integrator's parameter, in which a name may stand for a plugin."""
+def _to_plugin_value(name: str, value: Any) -> Any:
+    """Return an integrator's parameter; the names of a BSDF and of a phase become dictionaries."""
     if name == "bsdf":
         return to_material(value).scene_dict()
     return {"type": value} if name == "phase" and isinstance(value, str) else value

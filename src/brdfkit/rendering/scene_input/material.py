@@ -1,0 +1,47 @@
+"""Loads the material that a scene shows, and finds the pixels that show it."""
+
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.array_types import BoolArray, MitsubaObject
+from brdfkit.core.jit.padding import pad
+from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
+
+
+def load_material(bsdf: dict[str, Any], name: str, both_sides: bool = False) -> MitsubaObject:
+    """Load the BSDF that a dictionary describes; error messages call it `name`.
+
+    With `both_sides` the material also reflects at the back of a surface, which a mesh may show. A
+    material that transmits light needs no such change, because it describes both sides itself.
+    """
+    import mitsuba as mi
+
+    material = load_by_mitsuba(mi.load_dict, bsdf, name)
+    if not both_sides or mi.has_flag(material.flags(), mi.BSDFFlags.Transmission):
+        return material
+    return mi.load_dict({"type": "twosided", "bsdf": material}, parallel=False)
+
+
+def find_mask(scene: MitsubaObject, material: MitsubaObject) -> BoolArray:
+    """Return a mask (height, width): True where the ray through a pixel's centre hits the material.
+
+    `scene` is a `mitsuba.Scene`, and `material` the BSDF object in it.
+    """
+    import mitsuba as mi
+
+    sensor = scene.sensors()[0]
+    width, height = map(int, sensor.film().crop_size())
+    x, y = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
+
+    def find_shape(place: Any) -> MitsubaObject:
+        ray, _ = sensor.sample_ray(0.0, 0.5, place, mi.Point2f(0.5))
+        return scene.ray_intersect_preliminary(ray).shape
+
+    if str(mi.variant()).startswith("scalar"):  # one ray at a time
+        shapes = (find_shape(mi.Point2f(*p)) for p in zip(x.flat, y.flat, strict=True))
+        mask = np.array([s is not None and s.bsdf() is material for s in shapes])
+    else:
+        shape = find_shape(mi.Point2f(*(pad(a.ravel().astype(np.float32)) for a in (x, y))))
+        mask = np.array(shape.bsdf() == mi.BSDFPtr(material))
+    return mask.reshape(height, width)

@@ -1,0 +1,149 @@
+"""Chooses a volume's transfer function, surface level and material for a user who gives none."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.array_types import BoolArray
+from brdfkit.core.colours import from_srgb
+from brdfkit.rendering.volumes.camera import VisibilityTest
+from brdfkit.volumes import Volume
+from brdfkit.volumes.transfer import windows
+from brdfkit.volumes.transfer.transfer_function import TransferFunction
+
+AIR, TISSUE = -900, 200  # [HU]; values of computed tomography reach below and above these two
+BODY, BONE = -500, 250  # [HU]; values of the body and of bone are above
+BONE_SHARE = 0.002  # smallest share of bone in a body that is shown with its bones
+# Mean free paths across the visible parts, at the largest extinction
+GLOWING, DENSE, OPAQUE = 10, 50, 400
+RAMP = [(0, 0), (1, 1)]  # (share of the window, opacity)
+# Percentiles of the largest values along rays, where maximum intensity changes its slope. The grey
+# at each is halfway between even steps of value and even shares of rays: all parts have contrast
+NODES = (2, 10, 30, 50, 70, 90, 99.8)
+DARKEST = 0.1  # share of the colour map, at the first node
+LEVELS = 256  # of the histogram that finds a surface, and of the function for maximum intensity
+CLAY: dict[str, Any] = {
+    "type": "roughplastic",
+    "alpha": 0.25,
+    "diffuse_reflectance": {"type": "rgb", "value": [0.72, 0.6, 0.5]},
+}
+
+
+def default_transfer_function(volume: Volume, renderer: str) -> TransferFunction:
+    """Choose the transfer function of a volume for a renderer.
+
+    A volume of labels gets a colour for each label. Renderers without light get a colour map that
+    glows. Scans in HU (Hounsfield units) get the preset ct_bone, or ct_skin without bone; other
+    scans of patients get mri_head, and all other volumes a colour map of light colours. Except in
+    HU, the function spans the volume's window, and the extinction suits the volume's size.
+    """
+    from_colormap = TransferFunction.from_colormap
+    if volume.labels:
+        return _label_function(volume, OPAQUE / float(np.ptp(volume.bounds, axis=0).max()))
+    if renderer == "maximum_intensity":
+        return _maximum_intensity_function(volume, "gray" if volume.axes else "inferno")
+    if renderer == "emission_absorption":
+        return from_colormap(
+            "magma", volume.window, opacity=RAMP, extinction=GLOWING / _longest_edge(volume)
+        )
+    low, high = volume.range
+    if volume.axes and low < AIR and high > TISSUE:
+        values = windows.sample_values(volume.values)
+        bony = (values > BONE).sum() > BONE_SHARE * (values > BODY).sum()
+        return TransferFunction.load("ct_bone" if bony else "ct_skin")
+    if volume.axes:
+        preset = TransferFunction.load("mri_head").scaled_to(*volume.window)
+        return replace(preset, extinction=DENSE / _longest_edge(volume), length_unit="")
+    density = DENSE / _longest_edge(volume)
+    return from_colormap(
+        "RdYlBu_r", volume.window, opacity=RAMP, extinction=density, colour="albedo"
+    )
+
+
+def _longest_edge(volume: Volume) -> float:
+    """Return the longest edge of the box around all voxels whose values are above the window's low.
+
+    The box is along the axes of the grid, and the edge is in the volume's unit of length.
+    """
+    longest = 0.0
+    for axis, (n, step) in enumerate(zip(volume.values.shape, volume.spacing[::-1], strict=True)):
+        others = tuple(k for k in range(3) if k != axis)
+        there = np.flatnonzero(volume.values.max(axis=others) > volume.window[0])
+        longest = max(longest, step * (np.ptp(there) + 1 if len(there) else n))
+    return longest
+
+
+def _maximum_intensity_function(volume: Volume, colours: str) -> TransferFunction:
+    """Make the transfer function for maximum intensity, from a colour map of Matplotlib.
+
+    The contrast follows the largest values along rays, here along the three axes of the grid.
+    """
+    import matplotlib as mpl
+
+    rays = [volume.values.max(axis=axis).ravel() for axis in range(3)]
+    end, largest = windows.split_background(np.concatenate(rays).astype(float))
+    nodes = np.percentile(largest, NODES)
+    if not end < nodes[0] < nodes[-1]:
+        return TransferFunction.from_colormap(
+            colours, volume.window, opacity=[(0, 0), (0.25, 1), (1, 1)]
+        )
+    even = np.linspace(DARKEST, 1, len(nodes))
+    by_value = DARKEST + (1 - DARKEST) * (nodes - nodes[0]) / (nodes[-1] - nodes[0])
+    values = np.linspace(end, nodes[-1], LEVELS)
+    shades = np.interp(values, [end, *nodes], [0, *(even + by_value) / 2])
+    rgb = from_srgb(mpl.colormaps[colours](shades)[:, :3])
+    a = np.clip((values - end) / (nodes[0] - end), 0, 1)
+    return TransferFunction(values, np.column_stack([rgb, a]), colour="emission", name=colours)
+
+
+def _label_function(volume: Volume, extinction: float) -> TransferFunction:
+    """Make a transfer function with a colour of Matplotlib's tab20 for each label.
+
+    Label 0 means empty space, which is transparent.
+    """
+    import matplotlib as mpl
+
+    labels = np.union1d(np.unique(volume.values), [0, 1])
+    colours = np.array(mpl.color_sequences["tab20"])
+    rgba = np.column_stack([from_srgb(colours[(labels - 1) % len(colours)]), labels > 0])
+    return TransferFunction(labels, rgba, extinction, name="a colour for each label")
+
+
+def make_visibility_test(transfer: TransferFunction | None, level: float) -> VisibilityTest:
+    """Return a function that tells which of every k-th voxel along each axis are visible.
+
+    Its arguments are the volume and k. A voxel is visible if its opacity by the transfer function,
+    or without one its value, is above `level`.
+    """
+
+    def is_visible(volume: Volume, k: int) -> BoolArray:
+        sampled = np.s_[::k, ::k, ::k]
+        if transfer is None:
+            return volume.values[sampled] > level
+        places = [volume.values[sampled]]
+        if transfer.gradients is not None:
+            places.append(volume.gradient_magnitude[sampled])
+        return transfer(*places)[..., 3] > level
+
+    return is_visible
+
+
+def default_level(volume: Volume) -> float:
+    """Choose the value of the surface to show; the surface of labels encloses all but label 0.
+
+    It divides the values into two classes with the largest variance between them [Otsu 1979].
+    """
+    low, high = volume.range
+    if volume.labels or low == high:
+        return 0.5 * (1 if volume.labels else high)
+    values = windows.sample_values(volume.values)
+    # Without outliers, which would leave only a few bins of the histogram to all other values
+    values = values[
+        (values >= np.percentile(values, 0.1)) & (values <= np.percentile(values, 99.9))
+    ]
+    counts, edges = np.histogram(values, LEVELS)
+    below = np.cumsum(counts)[:-1]
+    sums = np.cumsum(counts * (edges[1:] + edges[:-1]) / 2)
+    difference = sums[-1] / values.size * below - sums[:-1]  # of the two means, times both counts
+    return float(edges[1:-1][np.argmax(difference**2 / (below * (values.size - below)))])
