@@ -12,7 +12,7 @@ def test_the_bar_of_a_notebook_moves_and_goes():
 from time import sleep
 import brdfkit as bk
 from brdfkit.core import progress_bar
-progress_bar.PATIENCE = progress_bar.INTERVAL = 0
+progress_bar.DELAY = progress_bar.INTERVAL = 0
 with bk.progress("a < b") as bar:
     for done in range(3):
         bar(done, 3)
