@@ -14,10 +14,10 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields import plane, sphere
 from brdfkit.images.errors.metrics import METRICS
 from brdfkit.rendering import Rendering, render
-from brdfkit.rendering.montage import montage
+from brdfkit.rendering.montage import draw_montage
 from brdfkit.rendering.scene_input.loading import load_scenes
 from brdfkit.rendering.scenes.ball import ball
-from brdfkit.rendering.tracing import passes_of
+from brdfkit.rendering.tracing import divide_into_passes
 
 pytestmark = pytest.mark.usefixtures("module_in_llvm")
 
@@ -103,7 +103,7 @@ def test_a_white_furnace_returns_the_sky():
 @pytest.mark.quick
 @pytest.mark.parametrize("spp", [1, 2, 7, 32, 64, 100])
 def test_passes_add_up(spp):
-    passes = list(passes_of(spp, 32))
+    passes = list(divide_into_passes(spp, 32))
     assert sum(passes) == spp
     assert max(passes) <= 32
 
@@ -290,12 +290,12 @@ def test_a_montage_holds_every_picture(pair, tmp_path):
 
     pair.write(tmp_path / "pair.png")
     with Image.open(tmp_path / "pair.png") as image:
-        assert image.size == montage(pair).size
+        assert image.size == draw_montage(pair).size
         assert image.width > 2 * 320  # small pictures are enlarged so that captions fit
     five = {f"a very long name of the material number {i}": np.ones((8, 8, 3)) for i in range(5)}
     broken = five | {"not finite": np.full((8, 8, 3), np.nan)}
     for pictures, rows in ((dict(list(five.items())[:4]), 1), (broken, 2)):
-        page = montage(Rendering(pictures, spp=1, seconds=0.0))
+        page = draw_montage(Rendering(pictures, spp=1, seconds=0.0))
         assert page.width < 5 * 400
         assert 600 * rows < page.height < 900 * rows
 
@@ -307,7 +307,7 @@ def test_pictures_by_a_curve():
     linear = Rendering(pictures, spp=1, seconds=0.0)
     shown = linear.tone_mapped(bk.ToneMapping("logarithmic", exposure=2))
     assert "logarithmic × 2" in shown.captions["a"]
-    before, after = (np.asarray(montage(r)) for r in (linear, shown))
+    before, after = (np.asarray(draw_montage(r)) for r in (linear, shown))
     middle = [(200, 200), (200, 540)]
     assert [before[p].tolist() for p in middle] == [[255] * 3] * 2
     assert after[middle[0]].tolist() == [255] * 3
@@ -318,7 +318,9 @@ def test_pictures_by_a_curve():
 def test_what_is_as_light_and_red_is_not_green():
     red = np.broadcast_to([0.4, 0.0, 0.0], (8, 8, 3))
     green = np.broadcast_to([0.0, 0.4 * 0.2126 / 0.7152, 0.0], (8, 8, 3))
-    page = np.asarray(montage(Rendering({"red": red, "green": green, "too": red}, 1, 0.0)), int)
+    page = np.asarray(
+        draw_montage(Rendering({"red": red, "green": green, "too": red}, 1, 0.0)), int
+    )
     below = page[-100]  # the last pictures are the differences
     third = page.shape[1] // 3
     assert below[third + third // 2].sum() > 600  # of 765: as bright as they get

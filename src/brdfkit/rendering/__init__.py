@@ -1,4 +1,4 @@
-"""Pictures of materials, `render` and `preview`, and of volumes: scenes, passes and files."""
+"""Renders pictures of materials (`render`, `preview`) and of volumes (`render_volume`)."""
 
 import lazy_loader
 

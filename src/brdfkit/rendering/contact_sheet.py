@@ -1,19 +1,36 @@
-"""The picture of a folder of materials: a ball of each under its name."""
+"""Draws the contact sheet of a folder of materials: a ball of each material under its name."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
 from math import ceil
+from typing import TYPE_CHECKING
 
-from brdfkit.rendering.montage import COLUMNS, GAP, WHITE_GROUND, displayed, draw_caption, tile
+from brdfkit.core.array_types import FloatArray
+from brdfkit.rendering.montage import (
+    COLUMNS,
+    GAP,
+    WHITE_GROUND,
+    draw_caption,
+    to_displayed,
+    to_tile,
+)
 
-ACROSS = 6  # balls in a row; COLUMNS where there are fewer materials than two such rows
+if TYPE_CHECKING:
+    from PIL.Image import Image as PillowImage
+
+BALLS_IN_ROW = 6  # or COLUMNS, where few materials would leave the rows too wide
 
 
-def contact_sheet(balls):
-    """A `PIL.Image` of pictures (side, side, 3), linear, by name, and a line on each:
-    ``{name: (picture, line)}``."""
+def draw_contact_sheet(balls: Mapping[str, tuple[FloatArray, str]]) -> PillowImage:
+    """Draw pictures in a grid, each under its name and a line of text.
+
+    `balls` is ``{name: (picture, line)}``; the pictures are (side, side, 3), linear sRGB.
+    """
     from PIL import Image, ImageDraw
 
     mode, paper, *inks = WHITE_GROUND
-    across = min(ACROSS if len(balls) > 2 * COLUMNS else COLUMNS, len(balls))
+    across = min(BALLS_IN_ROW if len(balls) > 2 * COLUMNS else COLUMNS, len(balls))
     height, width = next(iter(balls.values()))[0].shape[:2]
     text = max(11, width // 15)
     caption = round(3.2 * text)
@@ -25,5 +42,5 @@ def contact_sheet(balls):
     for place, (name, (picture, line)) in enumerate(balls.items()):
         x, y = GAP + place % across * (width + GAP), GAP + place // across * row
         draw_caption(draw, (x, y), name, line, width, text, inks)
-        page.paste(tile(displayed(picture), 1), (x, y + caption))
+        page.paste(to_tile(to_displayed(picture), 1), (x, y + caption))
     return page

@@ -1,9 +1,10 @@
-"""`Film`: pictures one after the other that end where they begin, as a file to look at."""
+"""`Film`: the frames of a camera that goes once around, and the files that show them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,15 +14,18 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import write_safely
 from brdfkit.images.tone_mapping import ToneMapping
 
-SUFFIXES = {".gif": "GIF", ".png": "PNG", ".webp": "WEBP"}  # and what Pillow calls them
-TURN = 4.0  # seconds of a whole film
-SHORTEST = 20  # ms a frame: browsers slow down what is faster
-TILES = 16  # frames from which the palette of a GIF is made
+if TYPE_CHECKING:
+    from PIL.Image import Image as PillowImage
+
+SUFFIXES = {".gif": "GIF", ".png": "PNG", ".webp": "WEBP"}  # and the formats' names in Pillow
+TURN = 4.0  # duration of a whole film [s]
+SHORTEST_FRAME = 20  # [ms]; browsers slow down films with shorter frames
+PALETTE_FRAMES = 16  # about the number of frames that choose the palette of a GIF
 
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """Pictures of a camera that goes around, made by `render_orbit`.
+    """The pictures of a camera that goes once around a volume, made by `render_orbit`.
 
     Attributes
     ----------
@@ -30,11 +34,11 @@ class Film:
     requested : int
         Frames of a whole turn.
     spp : int
-        Samples per pixel of each.
+        Samples per pixel of each frame.
     seconds : float
         Wall-clock time.
     tone_mapping : ToneMapping
-        How they are shown: by one exposure, that of the brightest of them all.
+        The curve that shows the pictures, with the exposure of the brightest frame for all.
     """
 
     frames: list[NDArray[np.float32]] = field(repr=False)
@@ -49,7 +53,7 @@ class Film:
         return f"{count}, {self.spp} spp, {self.seconds:.1f} s"
 
     def write(self, path: str | Path) -> None:
-        """Write the film, which repeats without an end.
+        """Write the film as an animation that repeats endlessly.
 
         A GIF has one palette for all frames, with dithering, so that colours neither band nor jump;
         an animated PNG or WebP has all colours.
@@ -57,23 +61,23 @@ class Film:
         Parameters
         ----------
         path : str or Path
-            `.gif`, `.png` or `.webp`.
+            The file, `.gif`, `.png` or `.webp`.
 
         Raises
         ------
         BrdfkitError
-            For another suffix, or where it cannot write; no file is half-written.
+            For another suffix, or a file that cannot be written; no file is half-written.
 
         Examples
         --------
         >>> render_orbit("smoke", frames=24).write("smoke.gif")    # doctest: +SKIP
         """
         kind = SUFFIXES[film_suffix(path)]
-        images = self._images()
+        images = self._to_images()
         if kind == "GIF":
             images = _with_one_palette(images)
-        duration = max(SHORTEST, 10 * round(100 * TURN / self.requested))
-        more = {"quality": 90} if kind == "WEBP" else {}
+        duration = max(SHORTEST_FRAME, 10 * round(100 * TURN / self.requested))
+        options: dict[str, Any] = {"quality": 90} if kind == "WEBP" else {}
         with write_safely(Path(path)) as beside:
             images[0].save(
                 beside,
@@ -82,10 +86,11 @@ class Film:
                 append_images=images[1:],
                 duration=duration,
                 loop=0,
-                **more,
+                **options,
             )
 
-    def _images(self):
+    def _to_images(self) -> list[PillowImage]:
+        """Return the frames as 8-bit sRGB images, tone-mapped with one exposure."""
         from PIL import Image
 
         brightest = max(map(self.tone_mapping.brightest_of, self.frames))
@@ -94,18 +99,18 @@ class Film:
 
 
 def film_suffix(path: str | Path) -> str:
-    """The suffix of a film; `BrdfkitError` for any other."""
+    """Return the suffix of a film's path; raise `BrdfkitError` for one that no film has."""
     suffix = Path(path).suffix.lower()
     if suffix not in SUFFIXES:
         raise BrdfkitError(f"{path}: films are written as {', '.join(SUFFIXES)}; choose one.")
     return suffix
 
 
-def _with_one_palette(images):
-    """The images in the 256 colours that are best for all of them."""
+def _with_one_palette(images: list[PillowImage]) -> list[PillowImage]:
+    """Reduce the images to the 256 colours that suit all of them best."""
     from PIL import Image
 
-    chosen = images[:: -(-len(images) // TILES)]
+    chosen = images[:: -(-len(images) // PALETTE_FRAMES)]
     width, height = images[0].size
     sheet = Image.new("RGB", (width, height * len(chosen)))
     for row, image in enumerate(chosen):

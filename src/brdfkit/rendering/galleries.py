@@ -1,10 +1,11 @@
-"""`gallery`: materials by models in one picture, as a grid to look at."""
+"""`gallery`: a grid of pictures, with a row for each material and a column for each model."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
@@ -17,20 +18,24 @@ from brdfkit.rendering.render_materials import SceneLike, render
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input.arguments import Renderable, to_list, to_named_material
 
-HEAD, SIDE, BELOW, GAP = 26, 26, 22, 6  # of the grid: names above, at the left, captions [pixels]
-DPI = 100
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# Space in the grid for names above and at the left, captions below, and between columns [pixels]
+HEAD, SIDE, BELOW, GAP = 26, 26, 22, 6
+DPI = 100  # pixels of the grid per inch of the figure
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Gallery(Shown):
-    """Pictures of materials, a row each, by models, a column each; prints as a table of PSNR.
+    """Pictures of materials (rows) by models (columns), which print as a table of PSNR.
 
     Made by `gallery`.
 
     Attributes
     ----------
     rows : dict of str to Rendering
-        The pictures of a row by its material's name; the first picture is the material's.
+        The rows by the material's name; the first picture in a row is the material itself.
     """
 
     rows: dict[str, Rendering] = field(repr=False)
@@ -46,7 +51,7 @@ class Gallery(Shown):
         Raises
         ------
         BrdfkitError
-            For another suffix, or where it cannot write; nothing is half-written.
+            For another suffix, or a file that cannot be written; nothing is half-written.
 
         Examples
         --------
@@ -59,7 +64,7 @@ class Gallery(Shown):
             draw_grid(self.rows).savefig(beside, format="png", dpi=DPI)
 
     def document(self) -> Document:
-        """The grid, and how far each picture is from that of its material."""
+        """Return the grid, and a table of the PSNR of each picture to its material's picture."""
         first = next(iter(self.rows.values()))
         height, width = first.pictures[first.reference].shape[:2]
         columns = ("material", *(f">{name}" for name in first.differences))
@@ -67,14 +72,14 @@ class Gallery(Shown):
             (name, *(f"{value:.1f}" for value in rendering.psnr().values()))
             for name, rendering in self.rows.items()
         ]
-        across, _ = _extent(self.rows)
-        picture = Picture(self._draw, f"pictures of {', '.join(self.rows)}", across)
+        width_of_grid, _ = _extent(self.rows)
+        picture = Picture(self._to_png, f"pictures of {', '.join(self.rows)}", width_of_grid)
         peak = (Paragraph("PSNR to the material [dB].", SOFT),) if first.differences else ()
         title = f"{len(rows)} × {len(columns)} pictures, {width}×{height} pixels, {first.spp} spp"
         return Document(title, (picture, Table(tuple(rows), columns), *peak))
 
-    def _draw(self):
-        """The grid as a PNG for notebooks."""
+    def _to_png(self) -> bytes:
+        """Draw the grid as a PNG for notebooks."""
         from brdfkit.core.figures import to_png  # only here: it imports matplotlib
 
         return to_png(draw_grid(self.rows), DPI)
@@ -115,7 +120,7 @@ def gallery(
     Raises
     ------
     BrdfkitError
-        For rows of different models, and for what `render` refuses.
+        For rows with different models, and for materials or scenes that `render` rejects.
 
     Examples
     --------
@@ -130,31 +135,31 @@ def gallery(
     listed = [to_list(row) for row in materials]
     if not listed:
         raise BrdfkitError("There is nothing to render; give at least one row.")
-    columns = [[to_named_material(thing)[0] for thing in row[1:]] for row in listed]
+    columns = [[to_named_material(fit)[0] for fit in row[1:]] for row in listed]
     for names in columns:
         if names != columns[0]:
             raise BrdfkitError(
                 f"The rows of a gallery should show the same models: here are {', '.join(names)}, "
                 f"in the first row {', '.join(columns[0])}."
             )
-    found: dict[str, Rendering] = {}
+    renderings: dict[str, Rendering] = {}
     for done, row in enumerate(listed, 1):
         rendering = render(row, spp=spp, size=size, seed=seed, scene=scene)
-        found[make_unique(rendering.reference, found)] = rendering
+        renderings[make_unique(rendering.reference, renderings)] = rendering
         if progress:
             progress(done, len(listed))
-    return Gallery(found)
+    return Gallery(renderings)
 
 
-def draw_grid(rows):
-    """A matplotlib `Figure` of renderings by name: a row each, a pixel for a pixel."""
+def draw_grid(rows: Mapping[str, Rendering]) -> Figure:
+    """Draw renderings, given by name, as the rows of a matplotlib `Figure`, at their own pixels."""
     from matplotlib.figure import Figure
 
     first = next(iter(rows.values()))
     height, width = first.pictures[first.reference].shape[:2]
     total = _extent(rows)
 
-    figure = Figure(figsize=[side / DPI for side in total], dpi=DPI)
+    figure = Figure(figsize=(total[0] / DPI, total[1] / DPI), dpi=DPI)
     for i, (material, rendering) in enumerate(rows.items()):
         psnr = rendering.psnr()
         for j, (name, picture) in enumerate(rendering.pictures.items()):
@@ -164,7 +169,10 @@ def draw_grid(rows):
             axes.imshow(to_srgb(picture), interpolation="none")
             axes.set(xticks=[], yticks=[], frame_on=False)
             axes.set_xlabel(f"{psnr[name]:.1f} dB" if name in psnr else "", fontsize=8, labelpad=3)
-            plain = {"fontsize": 9, "parse_math": False}  # names may have dollar signs
+            plain: dict[str, Any] = {
+                "fontsize": 9,
+                "parse_math": False,
+            }  # names may contain dollar signs
             if i == 0:
                 axes.set_title(to_printable(name) if j else "reference", pad=4, **plain)
             if j == 0:
@@ -172,8 +180,8 @@ def draw_grid(rows):
     return figure
 
 
-def _extent(rows):
-    """(width, height) of the grid [pixels]."""
+def _extent(rows: Mapping[str, Rendering]) -> tuple[int, int]:
+    """Return (width, height) of the grid [pixels]."""
     first = next(iter(rows.values()))
     height, width = first.pictures[first.reference].shape[:2]
     columns = max(len(r.pictures) for r in rows.values())

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.array_types import FloatArray, MitsubaObject
 from brdfkit.core.colours import luminance
 from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.errors import BrdfkitError
@@ -18,7 +19,7 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress
 from brdfkit.materials import resolve
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
-from brdfkit.rendering.progressive import rgb
+from brdfkit.rendering.progressive import to_rgb
 from brdfkit.rendering.scene_input.arguments import load_mitsuba
 from brdfkit.rendering.scene_input.environment import describe_environment, replace_light
 from brdfkit.rendering.scene_input.loading import find_scene, find_suffix
@@ -32,9 +33,9 @@ SAMPLERS: dict[str, dict[str, Any]] = {
     "alias": {"type": "sampled_envmap", "sampler": "alias"},
     "alias, compensated": {"type": "sampled_envmap", "sampler": "alias", "compensated": True},
 }
-SPP, SIZE, ROUNDS, FEWEST = 16, 96, 10, 3
+SPP, SIZE, ROUNDS, FEWEST_ROUNDS = 16, 96, 10, 3
 LEVEL = 0.05  # of significance, for all pairs of samplers together
-DARK = 0.01  # of the mean brightness: darker pixels do not count for more
+DARK = 0.01  # share of the mean brightness; darker pixels weigh no more than one this dark
 COLUMNS = "sampler", ">noise", ">time [ms]", ">cost", ">± [%]", "beside the best"
 
 
@@ -90,23 +91,25 @@ class SamplerComparison(Shown):
 
         logs = {name: np.log(self.noise[name] * self.seconds[name]) for name in self.noise}
         freedom = (len(logs) - 1) * (self.rounds - 1)
-        found = {}
+        p_values = {}
         for name, costs in logs.items():
             apart = abs(costs.mean() - logs[self.best].mean()) / max(self._spread, 1e-12)
-            found[name] = float(studentized_range.sf(apart, len(logs), freedom)) if apart else 1.0
-        return found
+            p_values[name] = (
+                float(studentized_range.sf(apart, len(logs), freedom)) if apart else 1.0
+            )
+        return p_values
 
     def significant(self, name: str) -> bool:
         """Whether a sampler costs more than the best, beyond chance at 5 %."""
         return self.p_values[name] < LEVEL
 
     @property
-    def _spread(self):
+    def _spread(self) -> float:
         """The standard error of the mean logarithm of a cost, pooled over samplers."""
         x = np.log([self.noise[name] * self.seconds[name] for name in self.noise])
-        rest = x - x.mean(axis=0) - x.mean(axis=1, keepdims=True) + x.mean()
+        residuals = x - x.mean(axis=0) - x.mean(axis=1, keepdims=True) + x.mean()
         freedom = (x.shape[0] - 1) * (x.shape[1] - 1)
-        return float(np.sqrt((rest**2).sum() / freedom / x.shape[1]))
+        return float(np.sqrt((residuals**2).sum() / freedom / x.shape[1]))
 
     @property
     def verdict(self) -> str:
@@ -204,7 +207,7 @@ def compare_samplers(
     --------
     >>> print(compare_samplers("probe.exr", "car_paint", scene="teapot.obj"))    # doctest: +SKIP
     """
-    rounds = to_whole_number("rounds", rounds, least=FEWEST)
+    rounds = to_whole_number("rounds", rounds, least=FEWEST_ROUNDS)
     spp, size = to_whole_number("spp", spp, least=1), to_whole_number("size", size, least=1)
     seed = to_whole_number("seed", seed, least=0)
     if not isinstance(scene, str | Path):
@@ -217,29 +220,40 @@ def compare_samplers(
 
 
 @in_turn
-def _measure(environment, found, scene, rounds, spp, size, seed, progress):
-    """(noise, seconds) by sampler, arrays (rounds,)."""
-    lights = _scenes(environment, found, scene, size)
+def _measure(
+    environment: str | Path,
+    material: resolve.Material,
+    scene: str | Path,
+    rounds: int,
+    spp: int,
+    size: int,
+    seed: int,
+    progress: Progress | None,
+) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
+    """Return the noise and the seconds of the rounds by sampler; the arrays are (rounds,)."""
+    lights = _load_scenes(environment, material, scene, size)
     names = list(lights)
-    for loaded in lights.values():  # kernels are compiled
+    for loaded in lights.values():  # compile the kernels before anything is timed
         _render(loaded, spp, seed)
-    pairs, seconds = [], []
+    pairs: list[dict[str, Any]] = []
+    seconds: list[dict[str, float]] = []
     try:
         for r in range(rounds):
-            pair, took = {}, {}
+            pair: dict[str, Any] = {}
+            took: dict[str, float] = {}
             for name in names[r % len(names) :] + names[: r % len(names)]:
                 pair[name], each = [], []
                 for k in (0, 1):
                     start = time.process_time()
                     pair[name].append(_render(lights[name], spp, seed + 2 * r + k))
                     each.append(time.process_time() - start)
-                took[name] = min(each)  # the other may have been disturbed
+                took[name] = min(each)  # other programs may have slowed the other one
             pairs.append(pair)
             seconds.append(took)
             if progress:
                 progress(r + 1, rounds)
     except KeyboardInterrupt:
-        if len(seconds) < FEWEST:
+        if len(seconds) < FEWEST_ROUNDS:
             raise
     pairs = pairs[: len(seconds)]
     mean = np.mean([pictures for pair in pairs for pictures in pair.values()], axis=(0, 1))
@@ -251,20 +265,22 @@ def _measure(environment, found, scene, rounds, spp, size, seed, progress):
     return noise, {n: np.array([took[n] for took in seconds]) for n in names}
 
 
-def _scenes(environment, found, scene, size):
-    """The `mitsuba.Scene` by each sampler's name."""
+def _load_scenes(
+    environment: str | Path, material: resolve.Material, scene: str | Path, size: int
+) -> dict[str, MitsubaObject]:
+    """Load a `mitsuba.Scene` for each sampler, by the sampler's name."""
     import mitsuba as mi
 
     light, is_mesh = describe_environment(environment), bool(find_suffix(scene))
-    shown = load_material(found.scene_dict(), found.name, both_sides=is_mesh)
+    shown = load_material(material.scene_dict(), str(material.name), both_sides=is_mesh)
     made, scenes = find_scene(scene)(shown, (size, size)), {}
     for name, sampler in SAMPLERS.items():
         scenes[name] = load_by_mitsuba(mi.load_dict, replace_light(light | sampler, made), name)
     return scenes
 
 
-def _render(loaded, spp, seed):
-    """The luminance (height, width) of a picture."""
+def _render(loaded: MitsubaObject, spp: int, seed: int) -> FloatArray:
+    """Render a picture, and return its luminance (height, width)."""
     import mitsuba as mi
 
-    return luminance(rgb(mi.render(loaded, spp=spp, seed=seed)).astype(float))
+    return luminance(to_rgb(mi.render(loaded, spp=spp, seed=seed)).astype(float))

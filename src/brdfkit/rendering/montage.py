@@ -1,11 +1,15 @@
-"""The files of a rendering: a multi-part OpenEXR with everything, and a montage to look at."""
+"""Writes the files of a rendering: an OpenEXR with all its data, and a montage to look at."""
+
+from __future__ import annotations
 
 import json
 from math import ceil, isfinite
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.json_values import to_json
@@ -13,25 +17,28 @@ from brdfkit.core.names import to_printable
 from brdfkit.core.version import __version__
 from brdfkit.images.errors.colour_difference import ciede2000
 
-COLUMNS = 4
+if TYPE_CHECKING:
+    from PIL.Image import Image as PillowImage
+
+COLUMNS = 4  # pictures in a row of a montage
 TILE = 320  # narrower pictures are enlarged to this width [pixels], so that captions fit
 GAP = 20
-# The mode of a page, the colour of its paper, and those of names and of what is said of them
+# The mode of a page, and the colours of its paper, of names, and of the lines below them
 WHITE_GROUND = "RGB", (255, 255, 255), (26, 26, 26), (105, 105, 105)
 # In notebooks, light or dark: a middle grey, on a ground that is transparent
 ANY_GROUND = "RGBA", (125, 125, 125, 0), (125, 125, 125, 255), (125, 125, 125, 255)
-MOST = 20  # ΔE of the brightest false colour; fixed, so that montages can be compared
+LARGEST_DIFFERENCE = 20  # ΔE of the brightest false colour; fixed, so that montages can be compared
 
 
-def picture_suffix(path):
-    """The suffix of the `Path`, .exr or .png; an error for any other."""
+def picture_suffix(path: Path) -> str:
+    """Return the suffix of a path, ".exr" or ".png"; raise `BrdfkitError` for any other."""
     suffix = path.suffix.lower()
     if suffix not in (".exr", ".png"):
         raise BrdfkitError(f"{path}: pictures are written as .exr or .png; choose one of them.")
     return suffix
 
 
-def write_exr(rendering, path):
+def write_exr(rendering: Any, path: Path) -> None:
     """Write every picture, difference and error as a named part; see `Rendering.write`."""
     import OpenEXR
 
@@ -61,13 +68,11 @@ def write_exr(rendering, path):
         raise OSError(str(error)) from error
 
 
-def montage(rendering, on_any_ground=False):
-    """A `PIL.Image` of the pictures with captions, up to four in a row.
+def draw_montage(rendering: Any, on_any_ground: bool = False) -> PillowImage:
+    """Draw the pictures of a `Rendering` with captions, up to four in a row.
 
-    On white; or `on_any_ground`, for notebooks, with transparency.
-
-    Below each picture is its colour difference to the reference (CIEDE2000), in false colours that
-    a legend explains.
+    The page is white or, with `on_any_ground`, transparent for notebooks. Below each picture is its
+    colour difference to the reference (CIEDE2000), in false colours that a legend explains.
     """
     from PIL import Image, ImageDraw
 
@@ -92,46 +97,50 @@ def montage(rendering, on_any_ground=False):
         x, y = GAP + i % COLUMNS * (width + GAP), GAP + i // COLUMNS * row
         draw_caption(draw, (x, y), name, captions[name], width, text, inks)
         shown = tone(rendering.pictures[name], brightest)
-        page.paste(tile(displayed(shown), zoom), (x, y + caption))
+        page.paste(to_tile(to_displayed(shown), zoom), (x, y + caption))
         y += caption + height + GAP
         if name in differences:
-            page.paste(tile(_false_colour(differences[name]), zoom), (x, y))
+            page.paste(to_tile(_false_colour(differences[name]), zoom), (x, y))
             draw.rectangle((x, y, x + width - 1, y + height - 1), outline=(200, 200, 200))
         elif differences:
             _draw_legend(page, draw, (x, y, width, height), text, inks)
     return page
 
 
-def tile(rgb, zoom):
-    """A `PIL.Image` of values (height, width, 3) in 0..1, each pixel `zoom` × `zoom` large."""
+def to_tile(rgb: FloatArray, zoom: int) -> PillowImage:
+    """Return an image of sRGB values (height, width, 3) in 0..1, enlarged by the factor `zoom`."""
     from PIL import Image
 
     image = Image.fromarray((np.clip(rgb, 0, 1) * 255 + 0.5).astype(np.uint8))
     return image.resize((image.width * zoom, image.height * zoom), Image.Resampling.NEAREST)
 
 
-def displayed(linear):
-    """sRGB in 0..1 of linear values; magenta, which stands out, where they are not finite."""
+def to_displayed(linear: FloatArray) -> FloatArray:
+    """Convert linear values (height, width, 3) to sRGB in 0..1.
+
+    Pixels that are not finite become magenta, which stands out.
+    """
     finite = np.isfinite(linear).all(axis=-1, keepdims=True)
     return np.where(finite, to_srgb(linear), (1, 0, 1))
 
 
-def colour_differences(rendering):
-    """ΔE2000 to the reference (height, width), by the name of every other picture."""
+def colour_differences(rendering: Any) -> dict[str, FloatArray]:
+    """Return ΔE2000 to the reference (height, width), by the name of every other picture."""
     pictures = rendering.pictures
     reference = pictures[rendering.reference]
     return {n: ciede2000(reference, pictures[n]) for n in rendering.differences}
 
 
-def _false_colour(difference):
-    """sRGB (height, width, 3) in 0..1 of differences ΔE (height, width)."""
+def _false_colour(difference: FloatArray) -> AnyArray:
+    """Return false colours (height, width, 3), sRGB in 0..1, of differences ΔE (height, width)."""
     import matplotlib as mpl
 
-    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # not finite: as in `displayed`
-    return colours(difference / MOST)[..., :3]
+    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # for values that are not finite
+    return colours(difference / LARGEST_DIFFERENCE)[..., :3]
 
 
-def _font(size, bold=False):
+def _load_font(size: int, bold: bool = False) -> Any:
+    """Load the font DejaVu Sans of a `size` [pixels]."""
     import matplotlib as mpl
     from PIL import ImageFont
 
@@ -139,33 +148,50 @@ def _font(size, bold=False):
     return ImageFont.truetype(str(Path(mpl.get_data_path(), file)), size)
 
 
-def draw_caption(draw, corner, name, below, width, size, inks):
-    """Draw the name, shortened in its middle where it is too long, and the line `below` it."""
+def draw_caption(
+    draw: Any,
+    corner: tuple[int, int],
+    name: str,
+    below: str,
+    width: int,
+    size: int,
+    inks: list[Any],
+) -> None:
+    """Draw a picture's name, and the line of text `below` it.
+
+    A name wider than `width` [pixels] is shortened in its middle. `size` is that of the font, and
+    `inks` are the colours of the name and of the line.
+    """
     x, y = corner
-    bold = _font(size, bold=True)
+    bold = _load_font(size, bold=True)
     shown = name = to_printable(name)  # Pillow cannot measure several lines
     keep = len(name)
     while bold.getlength(shown) > width and keep > 2:
         keep -= 1
         shown = f"{name[: ceil(keep / 2)]}…{name[-(keep // 2) :]}"
     draw.text((x, y), shown, inks[0], bold)
-    draw.text((x, y + round(1.4 * size)), below, inks[1], _font(size))
+    draw.text((x, y + round(1.4 * size)), below, inks[1], _load_font(size))
 
 
-def _draw_legend(page, draw, box, size, inks):
-    """Draw the scale of the false colours, in the empty place below the reference."""
+def _draw_legend(
+    page: PillowImage, draw: Any, box: tuple[int, int, int, int], size: int, inks: list[Any]
+) -> None:
+    """Draw the scale of the false colours, in the empty place below the reference.
+
+    `box` is (x, y, width, height), and `size` the size of the font, all in pixels.
+    """
     x, y, width, height = box
-    font, small = _font(size), _font(round(0.85 * size))
+    font, small = _load_font(size), _load_font(round(0.85 * size))
     middle = y + height // 2
     draw.text((x, middle - 3 * size), "difference in colour ΔE", inks[0], font)
     draw.text((x, middle - round(1.6 * size)), "CIEDE2000; 1 is just seen", inks[1], small)
-    bar = np.broadcast_to(np.linspace(0, MOST, width), (size, width))
-    page.paste(tile(_false_colour(bar), 1), (x, middle))
+    bar = np.broadcast_to(np.linspace(0, LARGEST_DIFFERENCE, width), (size, width))
+    page.paste(to_tile(_false_colour(bar), 1), (x, middle))
     draw.rectangle((x, middle, x + width - 1, middle + size - 1), outline=(200, 200, 200))
     below = middle + round(1.35 * size)
     for place, anchor, label in (
         (0, "la", "0"),
-        (width / 2, "ma", f"{MOST / 2:g}"),
-        (width, "ra", f"{MOST} and more"),
+        (width / 2, "ma", f"{LARGEST_DIFFERENCE / 2:g}"),
+        (width, "ra", f"{LARGEST_DIFFERENCE} and more"),
     ):
         draw.text((x + place, below), label, inks[0], small, anchor=anchor)

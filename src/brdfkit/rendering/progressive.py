@@ -1,8 +1,9 @@
 """`Progressive`: pictures that become better pass by pass [Lesar 2018, chapter 6].
 
-A pass is *generated*, *integrated* into the sums of all passes, of which the picture is the mean,
-and *reset* forgets them, as after a change of the scene. `tracing.py` does so until pictures are
-good enough; a program with a window may, too.
+The three steps are named as in the thesis. *Generate* renders a pass, *integrate* adds it to the
+sums, whose mean is the picture, and *reset* discards all passes after a change of the scene.
+`tracing.py` repeats the first two until the pictures are good enough; an interactive program can do
+so as well.
 """
 
 from collections.abc import Mapping
@@ -16,16 +17,17 @@ from brdfkit.images.errors.noise import Accumulated
 
 
 class Progressive:
-    """The passes of one or several scenes with the same samples, and what they add up to.
+    """The accumulated passes of one or several scenes, rendered with the same samples.
 
     Attributes
     ----------
     scenes : dict of str to mitsuba.Scene
-        Each with a camera and an integrator. They may change, by `mitsuba.traverse`: `reset` then.
+        The scenes, each with a camera and an integrator. Call `reset` after changing one by
+        `mitsuba.traverse`.
     seed : int
-        Of the samples, at least 0; equal seeds give equal passes.
+        Seed of the samples, at least 0; equal seeds give equal passes.
     accumulated : dict of str to Accumulated
-        What was integrated, by the scene's name.
+        The sums of the integrated passes, by the scene's name.
 
     Examples
     --------
@@ -40,35 +42,38 @@ class Progressive:
         self.reset()
 
     def reset(self) -> None:
-        """Forget all passes: the next one is the first."""
+        """Discard all passes, so that the next one is the first."""
         self.accumulated = dict.fromkeys(self.scenes, Accumulated())
 
     def generate(self, name: str, spp: int) -> NDArray[np.float32]:
-        """The picture (height, width, 3) of a scene's next pass alone, of `spp` samples per pixel.
+        """Render a scene's next pass alone, (height, width, 3), with `spp` samples per pixel.
 
-        It counts for nothing before it is integrated.
+        The pass does not count before it is integrated.
         """
         import mitsuba as mi
 
         number = self.accumulated[name].passes
         seed = np.random.SeedSequence(self.seed).generate_state(number + 1)[number]
         scene = self.scenes[name]
-        # not mi.render: it turns Ctrl-C into a RuntimeError. drjit.freeze makes it no faster
+        # mi.render would turn Ctrl-C into a RuntimeError; drjit.freeze makes this no faster
         with raise_first_cause():
-            return rgb(scene.integrator().render(scene, seed=mi.UInt32(int(seed)), spp=spp))
+            return to_rgb(scene.integrator().render(scene, seed=mi.UInt32(int(seed)), spp=spp))
 
     def pictures(self) -> dict[str, NDArray[np.float32]]:
-        """The pictures (height, width, 3) by the scene's name; none before the first pass."""
+        """Return the pictures (height, width, 3) by scene name; none before the first pass."""
         return {name: a.picture for name, a in self.accumulated.items() if a.passes}
 
-    def integrate(self, generated: Mapping[str, NDArray], spp: int) -> None:
-        """Add the pictures of a pass, those of all scenes at once."""
+    def integrate(self, generated: Mapping[str, NDArray[Any]], spp: int) -> None:
+        """Add the pictures of a pass, which are those of all scenes by name."""
         self.accumulated = {
             name: before.plus(generated[name], spp) for name, before in self.accumulated.items()
         }
 
 
-def rgb(image: Any) -> NDArray:
-    """(height, width, 3) of a film; one channel counts as grey, alpha is dropped."""
+def to_rgb(image: Any) -> NDArray[np.float32]:
+    """Convert Mitsuba's image to an array (height, width, 3).
+
+    A single channel becomes grey, and alpha is dropped.
+    """
     values = np.array(image)
     return np.repeat(values[..., :1], 3, axis=-1) if values.shape[-1] < 3 else values[..., :3]

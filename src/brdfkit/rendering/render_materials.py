@@ -14,6 +14,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from brdfkit.core.arguments import to_positive, to_whole_number
+from brdfkit.core.array_types import BoolArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
@@ -28,7 +29,7 @@ from brdfkit.rendering.scene_input.arguments import (
     to_list,
 )
 from brdfkit.rendering.scene_input.loading import SIZE, load_scenes
-from brdfkit.rendering.tracing import trace
+from brdfkit.rendering.tracing import Traced, trace
 
 SPP = 256  # samples per pixel
 MOST_SPP = 16_384  # samples per pixel, where a noise floor is requested
@@ -99,7 +100,8 @@ def render(
     Raises
     ------
     BrdfkitError
-        For what cannot be rendered, and for pictures larger than the available memory.
+        For a material, scene or environment that cannot be rendered, and for pictures
+        larger than the available memory.
 
     Examples
     --------
@@ -129,7 +131,7 @@ def render(
     described, parameters = describe_materials(subjects)
     where = scene, size, environment
     traced, mask = _load_and_trace(described, where, spp, seed, progress, noise_floor)
-    return rendering_of(traced, seed, noise_floor, parameters, mask)
+    return to_rendering(traced, seed, noise_floor, parameters, mask)
 
 
 def _find_scene_file(materials: object) -> Path | None:
@@ -146,18 +148,24 @@ def _find_scene_file(materials: object) -> Path | None:
 
 
 @in_turn
-def _render_scene_file(path, spp, seed, progress, noise_floor):
-    """Return the `Rendering` of a scene file of Mitsuba's."""
+def _render_scene_file(
+    path: Path,
+    spp: int | None,
+    seed: int,
+    progress: PictureProgress | None,
+    noise_floor: float | None,
+) -> Rendering:
+    """Render a scene file of Mitsuba's."""
     load_mitsuba()
     scene = load_scene_file(path)
     require_memory(scene.sensors()[0].film().size(), 1, path)
     spp = _to_samples(spp, scene.sensors()[0].sampler().sample_count(), noise_floor)
     traced = trace({path.stem: scene}, spp, seed, progress, noise_floor)
-    return rendering_of(traced, seed, noise_floor)
+    return to_rendering(traced, seed, noise_floor)
 
 
 def to_size(size: int | tuple[int, int]) -> tuple[int, int]:
-    """(width, height) of a picture; `BrdfkitError` for anything but whole numbers above 0."""
+    """Return (width, height); raise `BrdfkitError` unless both are whole numbers above 0."""
     sides = (size, size) if isinstance(size, int | np.integer) else size
     try:
         width, height = (to_whole_number("size", side, least=1) for side in sides)
@@ -168,15 +176,21 @@ def to_size(size: int | tuple[int, int]) -> tuple[int, int]:
     return width, height
 
 
-def _to_samples(spp, default, noise_floor):
-    """Samples per pixel: with a `noise_floor` the largest number, and two for the noise."""
+def _to_samples(spp: int | None, default: int, noise_floor: float | None) -> int:
+    """Return the samples per pixel; with a `noise_floor` their largest number, 2 or more."""
     if noise_floor is None:
         return to_whole_number("spp", default if spp is None else spp, least=1)
     return to_whole_number("spp", MOST_SPP if spp is None else spp, least=2)
 
 
-def rendering_of(traced, seed, noise_floor, parameters=None, mask=None):
-    """The `Rendering` of `Traced` pictures."""
+def to_rendering(
+    traced: Traced,
+    seed: int,
+    noise_floor: float | None,
+    parameters: dict[str, dict[str, Any]] | None = None,
+    mask: BoolArray | None = None,
+) -> Rendering:
+    """Convert `Traced` pictures to a `Rendering`."""
     return Rendering(
         traced.pictures,
         traced.spp,
@@ -192,20 +206,35 @@ def rendering_of(traced, seed, noise_floor, parameters=None, mask=None):
 
 
 @in_turn
-def _render_field(node, spp, size, seed, progress, noise_floor):
-    """The `Rendering` of a distance field, freed in its turn as in `_load_and_trace`."""
+def _render_field(
+    node: Node,
+    spp: int,
+    size: tuple[int, int],
+    seed: int,
+    progress: PictureProgress | None,
+    noise_floor: float | None,
+) -> Rendering:
+    """Render a distance field; its scene is freed before another thread renders."""
     require_memory(size, 1)
     load_mitsuba()
     traced = trace({"field": field.load_field_scene(node, size)}, spp, seed, progress, noise_floor)
-    return rendering_of(traced, seed, noise_floor)
+    return to_rendering(traced, seed, noise_floor)
 
 
 @in_turn
-def _load_and_trace(materials, where, spp, seed, progress, noise_floor):
-    """The result of `trace` for BSDFs' dictionaries by name, and the mask of the material.
+def _load_and_trace(
+    materials: dict[str, dict[str, Any]],
+    where: tuple[SceneLike, tuple[int, int] | None, str | Path | None],
+    spp: int,
+    seed: int,
+    progress: PictureProgress | None,
+    noise_floor: float | None,
+) -> tuple[Traced, BoolArray | None]:
+    """Trace materials, BSDF dictionaries by name; return the pictures and the material's mask.
 
-    The scenes are freed as this function returns, still in its turn: a kernel of Mitsuba's calls
-    the BSDFs of all scenes that exist in the process, also of one that another thread would free.
+    `where` is (scene, size, environment). The scenes are freed when this function returns, before
+    another thread renders: a kernel of Mitsuba's calls the BSDFs of all scenes in the process, even
+    of a scene that another thread is about to free.
     """
     loaded, mask = load_scenes(materials, *where)
     require_memory(next(iter(loaded.values())).sensors()[0].film().size(), len(loaded))

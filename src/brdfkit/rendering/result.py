@@ -1,4 +1,4 @@
-"""`Rendering`, what `render` returns: the pictures, their differences, and how to write them."""
+"""`Rendering`, the result of `render`: the pictures, their differences, and their files."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from brdfkit.images.errors import ImageErrors, compare_pictures
 from brdfkit.images.errors.noise import estimate_samples
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.images.tone_mapping import ToneMapping
-from brdfkit.rendering.montage import COLUMNS, TILE, montage, picture_suffix, write_exr
+from brdfkit.rendering.montage import COLUMNS, TILE, draw_montage, picture_suffix, write_exr
 
-BILLION = 1e9  # samples per pixel: a larger number tells nothing more
-WIDEST = 1100  # pixels of the pictures in a notebook
+BILLION = 1e9  # samples per pixel; larger estimates are not printed
+WIDEST = 1100  # largest width of the pictures in a notebook [pixels]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -44,18 +44,20 @@ class Rendering(Shown):
     mask : ndarray of bool, shape (height, width), or None
         Where the material shows; None for everywhere.
     requested : int or None
-        Samples per pixel that were asked for; with a noise floor, about how many it takes.
+        Samples per pixel that were requested; with a noise floor, an estimate of the number that
+        reaches it.
     other_seed : ndarray, shape (height, width, 3), or None
-        The reference as another seed would give it: as far from it as noise is. None with one
-        sample per pixel.
+        An estimate of the reference with another seed, which differs from it by the noise. None
+        with one sample per pixel.
     requested_noise_floor : float or None
         The noise floor that was requested [dB].
     standard_error : ndarray, shape (height, width, 3), or None
-        Of the numbers of the reference, as its passes tell; rough for a few. None for one pass.
+        The standard error of the reference's values, estimated from its passes; rough for a few
+        passes, and None for one.
     shadows : str
-        What pictures of `preview` show of shadows; "" for path-traced ones, which show all light.
+        Whether pictures of `preview` show shadows, in words; "" for path-traced ones, which do.
     tone_mapping : ToneMapping
-        How the pictures are shown; by default radiance 1 is white. The numbers stay as they are.
+        The curve that shows the pictures; by default radiance 1 is white. The values do not change.
     """
 
     pictures: dict[str, np.ndarray] = field(repr=False)
@@ -104,7 +106,8 @@ class Rendering(Shown):
         """
         return nan if self.other_seed is None else self._psnr(self.other_seed)
 
-    def _psnr(self, picture):
+    def _psnr(self, picture: np.ndarray) -> float:
+        """Return the PSNR [dB] of a picture to the reference, over the mask."""
         return psnr(self.pictures[self.reference], picture, self.mask)
 
     def errors(self) -> ImageErrors:
@@ -139,7 +142,7 @@ class Rendering(Shown):
         Raises
         ------
         BrdfkitError
-            For another suffix, or where it cannot write; no file is half-written.
+            For another suffix, or a file that cannot be written; no file is half-written.
 
         Examples
         --------
@@ -148,7 +151,7 @@ class Rendering(Shown):
         path = Path(path)
         suffix = picture_suffix(path)
         png = io.BytesIO()
-        montage(self).save(png, "PNG")
+        draw_montage(self).save(png, "PNG")
         if suffix == ".exr":
             with write_safely(path) as beside:
                 write_exr(self, beside)
@@ -186,7 +189,7 @@ class Rendering(Shown):
 
     @property
     def captions(self) -> dict[str, str]:
-        """A word or two on each picture, by its name."""
+        """A short description of each picture, by its name: PSNR, noise, shadows and curve."""
         floor = self.noise_floor
         noise = "" if isnan(floor) else "no noise" if floor == inf else f"noise {floor:.1f} dB"
         beside = f", {noise}" if noise else ""
@@ -201,7 +204,7 @@ class Rendering(Shown):
 
     @property
     def head(self) -> str:
-        """Size, samples per pixel and time, in a line."""
+        """The size, samples per pixel and time of the rendering, in one line."""
         height, width = self.pictures[self.reference].shape[:2]
         shadows = f", {self.shadows}" if self.shadows else ""
         return f"{width}×{height} pixels, {self.spp} spp, {self.seconds:.1f} s{shadows}"
@@ -217,7 +220,7 @@ class Rendering(Shown):
         return f"The noise floor is {floor:.1f} dB; {requested:g} dB take {many} samples per pixel."
 
     def document(self) -> Document:
-        """The pictures, how far they are from the reference, and how they were made."""
+        """Return the pictures, their PSNR to the reference, and a line on how they were made."""
         names = ", ".join(self.pictures)
         width = max(self.pictures[self.reference].shape[1], TILE)
         shown = min(len(self.pictures), COLUMNS) * width
@@ -230,9 +233,8 @@ class Rendering(Shown):
         return Document(self.head, (picture, Table(tuple(self.captions.items())), *short))
 
     def drawn(self) -> bytes:
-        """The pictures side by side, with captions, over their differences: a WebP, small enough
-        for a notebook, on a transparent ground."""
-        stream, page = io.BytesIO(), montage(self, on_any_ground=True)
+        """Draw the montage as a WebP on a transparent ground, small enough for a notebook."""
+        stream, page = io.BytesIO(), draw_montage(self, on_any_ground=True)
         page.thumbnail((WIDEST, 4 * WIDEST))
         page.save(stream, "WEBP", quality=90)
         return stream.getvalue()

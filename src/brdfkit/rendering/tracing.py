@@ -1,16 +1,22 @@
 """Path-traces several scenes together: each pass renders every picture once."""
 
+from __future__ import annotations
+
 import inspect
 import sys
 import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from math import isqrt
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from brdfkit.core.array_types import BoolArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.images.errors.noise import Accumulated, estimate_samples
+from brdfkit.images.errors.noise import Accumulated, Halves, estimate_samples
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.rendering.progressive import Progressive
 
@@ -22,8 +28,11 @@ RAYS = 2**22  # camera rays in one pass, at most; bounds the memory, and how lon
 
 @dataclass(frozen=True)
 class Traced:
-    """What `trace` makes: the pictures by name; `first`, what the first one adds up to; the samples
-    per pixel reached and asked for; and the seconds."""
+    """The result of `trace`: the pictures by name, and how they were made.
+
+    `first` has the accumulated passes of the first picture, the reference. `spp` and `requested`
+    are the samples per pixel that were reached and requested. `seconds` is the wall-clock time.
+    """
 
     pictures: dict[str, np.ndarray]
     first: Accumulated
@@ -32,26 +41,39 @@ class Traced:
     seconds: float
 
 
-def trace(loaded, spp, seed, progress, noise_floor=None, mask=None, limit=None, most=None):
-    """The `Traced` pictures of `loaded`, scenes by name; the first is the reference.
+def trace(
+    loaded: Mapping[str, MitsubaObject],
+    spp: int,
+    seed: int,
+    progress: Callable[..., object] | None,
+    noise_floor: float | None = None,
+    mask: BoolArray | None = None,
+    limit: float | None = None,
+    most: int | None = None,
+) -> Traced:
+    """Path-trace scenes, given by name, with `spp` samples per pixel; the first is the reference.
 
-    Each pass renders every picture once, of `most` samples per pixel at most, by default PASS, and
-    there are at least two, for the noise. Where a `noise_floor` [dB] is given, over the
-    `mask`, they end as soon as it is reached; `spp` is then the most; with a `limit` [s] after the
-    pass in which it is over. Ctrl-C ends after the last pass that all pictures have; it is raised
-    where there is none. `progress`: called with (done, total) after each picture of a pass; one
-    with a parameter `pictures` gets the function to ask for the pictures so far, too.
+    Each pass renders every picture once, with at most `most` samples per pixel, by default PASS.
+    From two samples on there are at least two passes, which tell the noise. With a `noise_floor`
+    [dB], measured over the `mask`, the passes end as soon as it is reached; with a `limit` [s],
+    they end after the pass in which the time is over. `spp` is then the largest number of samples.
+
+    Ctrl-C keeps the passes that all pictures have, and is raised if there is none. `progress` is
+    called with (done, total) after each picture of a pass. If it has a parameter `pictures`, it
+    also gets a function that returns the pictures so far.
     """
     if seed >= 2**31:
         raise BrdfkitError(f"The seed {seed} is out of bounds; give one from 0 to 2³¹ - 1.")
     start = time.perf_counter()
     pixels = max(int(np.prod(s.sensors()[0].film().crop_size())) for s in loaded.values())
-    passes = list(passes_of(spp, max(1, min(most or PASS, RAYS // pixels, (spp + 1) // 2))))
+    passes = list(
+        divide_into_passes(spp, max(1, min(most or PASS, RAYS // pixels, (spp + 1) // 2)))
+    )
     growing, reference = Progressive(loaded, seed), next(iter(loaded))
-    expected, more = len(passes), _of_pictures(progress, growing)
+    expected, keywords = len(passes), _progress_keywords(progress, growing)
     try:
         for number, count in enumerate(passes):
-            generated = {}
+            generated: dict[str, NDArray[np.float32]] = {}
             for name in loaded:
                 generated[name] = growing.generate(name, count)
                 if len(generated) == len(loaded):
@@ -63,7 +85,7 @@ def trace(loaded, spp, seed, progress, noise_floor=None, mask=None, limit=None, 
                     )
                 if progress:
                     done = number * len(loaded) + len(generated)
-                    progress(done, expected * len(loaded), **more)
+                    progress(done, expected * len(loaded), **keywords)
             if number + 1 == expected:
                 break
     except KeyboardInterrupt:
@@ -75,40 +97,53 @@ def trace(loaded, spp, seed, progress, noise_floor=None, mask=None, limit=None, 
     return Traced(pictures, first, first.spp, requested, time.perf_counter() - start)
 
 
-def _of_pictures(progress, growing):
-    """The keywords of a `progress`: the function of the pictures so far, where it has a parameter
-    for it. Nothing is summed up for one that does not ask."""
-    with suppress(TypeError, ValueError):  # of no function that tells its parameters
-        if "pictures" in inspect.signature(progress).parameters:
+def _progress_keywords(
+    progress: Callable[..., object] | None, growing: Progressive
+) -> dict[str, Callable[[], Any]]:
+    """Return the keyword arguments of `progress`: `pictures`, if it has such a parameter.
+
+    The argument is a function, so that the pictures are computed only when it is called.
+    """
+    with suppress(TypeError, ValueError):  # raised for objects without a signature
+        if progress and "pictures" in inspect.signature(progress).parameters:
             return {"pictures": growing.pictures}
     return {}
 
 
-def _passes_needed(passes, done, halves, noise_floor, mask):
-    """How many of the `passes` it takes to a noise floor of `noise_floor` [dB], `done` or more."""
+def _passes_needed(
+    passes: Sequence[int],
+    done: int,
+    halves: Halves,
+    noise_floor: float | None,
+    mask: BoolArray | None,
+) -> int:
+    """Estimate how many of the `passes` reach the noise floor [dB], at least the `done` ones.
+
+    `passes` are their samples per pixel. `halves` are two pictures from half of the passes each.
+    """
     if noise_floor is None or done == 1:
         return len(passes)
     floor = psnr(halves.picture, halves.other_seed, mask)
-    if not floor < noise_floor:  # or unknown, where nothing shows the material
+    if not floor < noise_floor:  # the floor is nan where no pixel shows the material
         return done
     samples = estimate_samples(noise_floor, floor, sum(halves.spp))
     needed = np.searchsorted(np.cumsum(passes), samples) + 1
     return int(np.clip(needed, done + 1, len(passes)))
 
 
-def _passes_within(limit, seconds, done):
-    """About how many passes begin within a `limit` [s], of which those `done` took so long."""
+def _passes_within(limit: float | None, seconds: float, done: int) -> int:
+    """Estimate how many passes begin within a time `limit` [s]; the `done` ones took `seconds`."""
     if limit is None:
         return sys.maxsize
     return done if seconds >= limit else max(done + 1, int(limit / seconds * done))
 
 
-def passes_of(spp, largest):
-    """Sample counts of the passes for `spp`, each at most `largest`.
+def divide_into_passes(spp: int, largest: int) -> Iterator[int]:
+    """Divide `spp` samples per pixel into passes of at most `largest`; yield the count of each.
 
-    Each is a product of two integers that are nearly equal, which stratifies well.
+    Each count is a product of two nearly equal integers, which stratifies well.
 
-    >>> list(passes_of(64, 32))
+    >>> list(divide_into_passes(64, 32))
     [30, 30, 4]
     """
     while spp:

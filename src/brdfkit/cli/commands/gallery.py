@@ -47,9 +47,9 @@ def gallery(things: tuple[str, ...], output: Path, size: int, console: Console) 
     names = _list_names(things, output)
     balls, skipped, interrupted = _draw_balls(names, size, console)
     if balls:
-        from brdfkit.rendering.contact_sheet import contact_sheet
+        from brdfkit.rendering.contact_sheet import draw_contact_sheet
 
-        sheet = contact_sheet(balls)
+        sheet = draw_contact_sheet(balls)
         with write_safely(output) as temporary:
             sheet.save(temporary, "PNG")
     written = [output] if balls else []

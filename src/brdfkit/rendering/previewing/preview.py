@@ -26,7 +26,7 @@ from brdfkit.materials.resolve import Material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.previewing.cache import load_bsdf, read_cached
 from brdfkit.rendering.previewing.scene import Shape, describe_preview
-from brdfkit.rendering.progressive import rgb
+from brdfkit.rendering.progressive import to_rgb
 from brdfkit.rendering.render_materials import to_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input import mesh_file
@@ -158,7 +158,7 @@ def _render(
             integrator.casters.set(loaded, None, shape.casters)
         mask = find_mask(loaded, material) if mask is None else mask
         with raise_first_cause():
-            pictures[name] = rgb(integrator.render(loaded, seed=0, spp=spp)).astype(np.float32)
+            pictures[name] = to_rgb(integrator.render(loaded, seed=0, spp=spp)).astype(np.float32)
     first, seconds = next(iter(pictures.values())), time.perf_counter() - start
     parameters = collect_parameters(materials)
     return Rendering(

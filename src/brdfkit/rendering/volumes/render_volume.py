@@ -15,7 +15,7 @@ from brdfkit.core.errors import BrdfkitError, no_such
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
-from brdfkit.rendering.render_materials import PictureProgress, rendering_of, to_size
+from brdfkit.rendering.render_materials import PictureProgress, to_rendering, to_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input.arguments import load_mitsuba
 from brdfkit.rendering.tracing import Traced, trace
@@ -152,7 +152,7 @@ def render_volume(
         "transfer": getattr(function, "name", None),
         **plain,
     }
-    return rendering_of(traced, seed, noise_floor, {volume.name: parameters})
+    return to_rendering(traced, seed, noise_floor, {volume.name: parameters})
 
 
 @in_turn
