@@ -19,9 +19,9 @@ from brdfkit.core.geometry.directions import to_half_difference
 from brdfkit.fitting.ranking import Ranked, Ranking, ranking
 from brdfkit.fitting.ranking.appearance import Appearance
 from brdfkit.fitting.ranking.cross_validation import Validated
-from brdfkit.fitting.ranking.held_out import PART, HeldOut, number_blocks, number_regions
+from brdfkit.fitting.ranking.held_out import SAMPLE_LIMIT, HeldOut, number_blocks, number_regions
 from brdfkit.fitting.ranking.ranked import rows_of
-from brdfkit.fitting.ranking.ties import beside, is_tied, paired_standard_error
+from brdfkit.fitting.ranking.ties import compare_with_best, is_tied, paired_standard_error
 from brdfkit.images.ball import draw_pixels
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import Model, labels, weight
@@ -121,7 +121,7 @@ def test_each_fold_sees_the_highlight_and_grazing_angles():
     table = bk.load("red_plastic")
     samples = select_samples(table, 80.0)
     held_out = HeldOut.draw(samples, bk.losses.named["log"], False, 5, np.random.default_rng(3))
-    assert len(held_out.folds) == len(held_out.samples.wi) <= PART
+    assert len(held_out.folds) == len(held_out.samples.wi) <= SAMPLE_LIMIT
     theta_h, theta_d, _ = to_half_difference(held_out.samples.wi, held_out.samples.wo)
     for fold in range(5):
         own = held_out.folds == fold
@@ -328,7 +328,7 @@ def test_a_fit_does_not_see_the_pixels_that_it_is_held_to(pixels_held_out):
     """And the errors of all are those that the fit minimises."""
     out, model = pixels_held_out.folds == 2, bk.models()["ward"]
     whole = pixels_held_out.regress(model, pixels_held_out.folds >= 0, starts=2)
-    squares = pixels_held_out.squares(model, whole, pixels_held_out.folds >= 0)
+    squares = pixels_held_out.square_differences(model, whole, pixels_held_out.folds >= 0)
     assert pixels_held_out.importance @ squares == pytest.approx(whole.loss**2, rel=1e-6)
 
     one = pixels_held_out.regress(model, ~out, starts=2)
@@ -342,7 +342,9 @@ def test_a_fit_does_not_see_the_pixels_that_it_is_held_to(pixels_held_out):
     again = spoilt.regress(model, ~out, starts=2)
     assert one.shapes == again.shapes
     np.testing.assert_array_equal(one.weights, again.weights)
-    held_to = [these.squares(model, one, out).mean() for these in (pixels_held_out, spoilt)]
+    held_to = [
+        these.square_differences(model, one, out).mean() for these in (pixels_held_out, spoilt)
+    ]
     assert held_to[1] > 10 * held_to[0]
 
 
@@ -443,8 +445,10 @@ def test_an_anisotropic_fit_has_no_such_note():
 
 def test_errors_that_differ_by_rounding_are_tied():
     shares, squares = np.full(4, 0.25), np.array([1.0, 2.0, 3.0, 4.0])
-    assert is_tied(*beside(squares * (1 + 1e-15), squares, shares))
-    assert not is_tied(*beside(squares * 1.001, squares, squares))  # by the same share everywhere
+    assert is_tied(*compare_with_best(squares * (1 + 1e-15), squares, shares))
+    assert not is_tied(
+        *compare_with_best(squares * 1.001, squares, squares)
+    )  # by the same share everywhere
     # one block tells nothing of noise
-    assert is_tied(*beside(squares[:1], squares[:1], shares[:1]))
-    assert not is_tied(*beside(squares[1:2], squares[:1], shares[:1]))
+    assert is_tied(*compare_with_best(squares[:1], squares[:1], shares[:1]))
+    assert not is_tied(*compare_with_best(squares[1:2], squares[:1], shares[:1]))

@@ -1,4 +1,4 @@
-"""The light that a fit should keep: what those samples reflect that it uses."""
+"""Finds the albedo that a fit should keep: the albedo of the samples that the fit uses."""
 
 from dataclasses import replace
 
@@ -8,20 +8,20 @@ from numpy.typing import ArrayLike
 from brdfkit.materials.measured import Measured
 from brdfkit.regression.light import Light
 
-# Samples beyond this angle to the normal [degrees] tell how values go on to the horizon, though
-# fits leave them out; a fit that leaves out more does not trust them
-USUAL = 80.0
+# A fit leaves out samples beyond this angle to the normal [degrees] by default. They still show how
+# values go on towards the horizon; a fit with a smaller angle does not trust them.
+DEFAULT_MAX_ANGLE = 80.0
 
 
 def light_of_data(data: Measured, weights: ArrayLike | None, max_angle: float) -> Light:
-    """The `Light` of the samples of a `Measured` that a fit uses.
+    """Return the `Light` of those samples of a `Measured` that a fit uses.
 
     Parameters
     ----------
     data : Measured
         The material, in the channels of the fit.
     weights : array_like, optional
-        The user's factors of the samples; those of factor 0 do not count.
+        The user's weights of the samples; samples with weight 0 do not count.
     max_angle : float
         The angle to the normal [degrees] from which on samples are left out.
 
@@ -35,26 +35,40 @@ def light_of_data(data: Measured, weights: ArrayLike | None, max_angle: float) -
     >>> light_of_data(paint, None, 80.0).known    # doctest: +SKIP
     array([ True,  True,  True, False])
     """
-    if weights is None and max_angle >= USUAL:
+    if weights is None and max_angle >= DEFAULT_MAX_ANGLE:
         light = Light.of(data.albedo, data.anisotropic)
-    elif data.has_lookup:  # no part of it can be asked for
+    elif data.has_lookup:  # it interpolates by itself, from all its samples
         light = Light.of(data.albedo, data.anisotropic)
         light = replace(light, known=light.known & (weights is None))
     else:
-        light = Light.of(_part(data, weights, max_angle).albedo, data.anisotropic)
+        light = Light.of(_select(data, weights, max_angle).albedo, data.anisotropic)
     return replace(light, known=light.known & (np.array(light.theta_i) < max_angle))
 
 
-def _part(data, weights, max_angle):
-    """The samples of a `Measured` below `max_angle`, or USUAL, and of a weight above 0."""
+def _select(data: Measured, weights: ArrayLike | None, max_angle: float) -> Measured:
+    """Return the samples of a `Measured` below `max_angle` whose weight is above 0.
+
+    From `DEFAULT_MAX_ANGLE` on, all angles count.
+    """
     samples = data.samples
-    good = samples.valid if max_angle >= USUAL else samples.within(max_angle)
+    good = samples.valid if max_angle >= DEFAULT_MAX_ANGLE else samples.within(max_angle)
     if weights is not None:
         good = good & (np.ravel(weights) > 0)
-    how = {"channels": data.channels, "name": data.name}
     if data.is_table:
         values = data.table.values
-        kept = np.where(good.reshape(values.shape[:-1])[..., None], values, np.nan)
-        return Measured.from_table(kept, phi_d_period=data.table.phi_d_period, **how)
+        values_in_use = np.where(good.reshape(values.shape[:-1])[..., None], values, np.nan)
+        return Measured.from_table(
+            values_in_use,
+            phi_d_period=data.table.phi_d_period,
+            channels=data.channels,
+            name=data.name,
+        )
     part = samples.at(good)
-    return Measured.from_samples(part.wi, part.wo, part.values, anisotropic=data.anisotropic, **how)
+    return Measured.from_samples(
+        part.wi,
+        part.wo,
+        part.values,
+        anisotropic=data.anisotropic,
+        channels=data.channels,
+        name=data.name,
+    )

@@ -1,23 +1,41 @@
-"""What one should know of a fit, in sentences."""
+"""Writes the notes of a fit: what is doubtful in its data and in its parameters, in sentences."""
 
+from __future__ import annotations
+
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.names import format_percent
 from brdfkit.fitting.lobe_notes import list_lobe_notes
 from brdfkit.fitting.uncertainty.isotropic_limit import note_on_azimuth
 from brdfkit.materials.auditing.data_findings import list_data_findings
+from brdfkit.materials.measured import Measured
+from brdfkit.model import Model
 from brdfkit.model.evaluation import compute_clamped_share
-from brdfkit.regression import Picture
+from brdfkit.model.samples import Samples
+from brdfkit.regression import Loss, Picture
+from brdfkit.regression.regression import Solution
 
 
-def list_notes(data, samples, loss, found, fitted, weighted):
-    """Notes on a fit, in words: what is doubtful in the data, too few measured numbers, negative
-    values, a clamped model, an isotropic one of an anisotropic material; `weighted`: whether the
-    user gave weights."""
+def list_notes(
+    data: Measured,
+    samples: Samples,
+    loss: Loss | Picture,
+    solution: Solution,
+    fitted: Model,
+    weighted: bool,
+) -> tuple[str, ...]:
+    """List the notes on a fit as sentences.
+
+    They tell what is doubtful in the data, and of too few measured numbers, negative values, a
+    model that is clamped at 0 and an isotropic model of an anisotropic material. `solution` is what
+    the search ended with, `fitted` the model with its values; `weighted` says whether the user gave
+    weights.
+    """
     notes = [*list_data_findings(data, samples.largest_angle)]
     if weighted:
         notes.append("samples count by the weights that were given; so in the loss")
     if isinstance(loss, Picture):
         notes.append(f"seen: {loss.describe()}; pixels tell no standard errors")
-    known, sought = found.certainty.numbers, found.certainty.parameters
+    known, sought = solution.certainty.numbers, solution.certainty.parameters
     if known < sought:
         notes.append(
             f"{known} numbers were measured for {sought} that are sought: other values fit as well"
@@ -32,17 +50,18 @@ def list_notes(data, samples, loss, found, fitted, weighted):
         notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
     if data.anisotropic and (note := note_on_azimuth(data, samples, loss, fitted)):
         notes.append(note)
-    notes += list_lobe_notes(data, samples, fitted, found.at_bounds)
-    return (*notes, *found.certainty.undetermined, *found.certainty.trades)
+    notes += list_lobe_notes(data, samples, fitted, solution.at_bounds)
+    return (*notes, *solution.certainty.undetermined, *solution.certainty.trades)
 
 
-def _are_equal(values):
-    """Whether all rows are equal; most often the first two tell."""
+def _are_equal(values: FloatArray) -> bool:
+    """Return whether all rows of values (n, channels) are equal."""
+    # The first two rows nearly always differ, and are compared at once
     return bool((values[0] == values[1]).all() and (values == values[0]).all())
 
 
-def _explain_negative(data):
-    """The end of a note in words: which values are negative, and what this does to the fit."""
+def _explain_negative(data: Measured) -> str:
+    """Return the end of a note: which values are negative, and what this does to the fit."""
     if (data.values[data.samples.valid] >= 0).all():
         return (
             "values in linear sRGB are negative and count as 0, though none was measured so: these "

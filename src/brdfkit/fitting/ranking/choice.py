@@ -81,8 +81,8 @@ class Choice:
         return f"No other model beats these either: {'; '.join(lines)}."
 
 
-def _compare(row, own):
-    """A row beside the recommended one, in words."""
+def _compare(row: Ranked, own: Ranked) -> str:
+    """Compare a row with the recommended one, `own`, in words."""
     more = row.parameters - own.parameters
     number = f"{abs(more)} {'more' if more > 0 else 'fewer'}" if more else "as many"
     gap = row.error - own.error

@@ -1,27 +1,35 @@
-"""Cross-validation: a model fitted to all folds but one, and held to that one, each in its turn."""
+"""Cross-validates a model: fits it to all folds but one, and takes its error on that one."""
+
+from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from brdfkit.core.array_types import FloatArray
+from brdfkit.fitting.ranking.appearance import Appearance
+from brdfkit.fitting.ranking.held_out import HeldOut
+from brdfkit.model import Model
 from brdfkit.model.evaluation import make_model
-from brdfkit.regression.light import Albedo
+from brdfkit.regression.light import Albedo, Light
 
-# Starts of the fits without a fold: they begin where the fit of all samples ended
+# Number of starts of the fits without one fold; the first is where the fit to all samples ended
 STARTS = 2
 
 
 @dataclass(frozen=True, eq=False)
 class Validated:
-    """A model's fit to all samples, and its squared errors where it did not see them.
+    """A model's fit to all samples, and its squared errors where it was not fitted.
 
-    `errors` (blocks,): of each block, in the units of E², which is their sum; of the fit to all
-    samples, `albedo`, `picture` and `doubt`: as in `Ranked`; `parameters`: how many were sought;
-    `bic`: its criterion; `seconds`: that it took.
+    `errors` (blocks,) are the squared errors of the blocks, whose sum is E². The others belong to
+    the fit to all samples: `albedo`, `picture` and `doubt` as in `Ranked`, the number of searched
+    `parameters`, the Bayesian information criterion `bic` and the time in `seconds`.
     """
 
-    errors: np.ndarray
+    errors: FloatArray
     albedo: Albedo
     picture: float
     doubt: str
@@ -30,17 +38,29 @@ class Validated:
     seconds: float
 
 
-def cross_validate(model, held_out, appearance, light, anisotropic, seed, report):
-    """The `Validated` of a model class on what is `HeldOut`, by the material's `Appearance` and its
-    `Light`, which the fit to all samples keeps; `report`: called with how many fits are done."""
-    how = {"anisotropic": anisotropic, "seed": seed}
+def cross_validate(
+    model: type[Model],
+    held_out: HeldOut,
+    appearance: Appearance,
+    light: Light,
+    anisotropic: bool | None,
+    seed: int,
+    report: Callable[[int], object],
+) -> Validated:
+    """Cross-validate a model class; `report` is called with the number of finished fits.
+
+    The fit to all samples keeps the `light`; `appearance` renders the material and judges the fit.
+    """
+    settings = {"anisotropic": anisotropic, "seed": seed}
     report(0)
     began = time.perf_counter()
-    whole = held_out.regress(model, held_out.folds >= 0, light=light, **how)
+    whole = held_out.regress(model, held_out.folds >= 0, light=light, **settings)
     seconds = time.perf_counter() - began
     report(1)
 
-    errors = errors_held_out(model, held_out, whole.shapes, how, lambda done: report(1 + done))
+    errors = compute_held_out_errors(
+        model, held_out, whole.shapes, settings, lambda done: report(1 + done)
+    )
     brdf, certainty = make_model(model, whole.shapes, whole.weights).eval, whole.certainty
     albedo = light.judge(brdf)
     return Validated(
@@ -54,16 +74,22 @@ def cross_validate(model, held_out, appearance, light, anisotropic, seed, report
     )
 
 
-def errors_held_out(model, held_out, first, how, report=lambda done: None):
-    """The squared errors (blocks,) of a model class where it was not fitted, in the units of E².
+def compute_held_out_errors(
+    model: type[Model],
+    held_out: HeldOut,
+    first: dict[str, float],
+    settings: dict[str, Any],
+    report: Callable[[int], object] = lambda done: None,
+) -> FloatArray:
+    """Return the squared errors (blocks,) of a model class where it was not fitted.
 
-    `first`: the shape parameters at which the fits begin; `how`: settings of `regress`; `report`:
-    called with how many of the fits are done.
+    Their sum is E². The fits begin at the shape parameters `first`, with `settings` of `regress`;
+    `report` is called with the number of finished fits.
     """
     errors = np.empty(len(held_out.folds))
     for fold in range(held_out.folds.max() + 1):
         out = held_out.folds == fold
-        part = held_out.regress(model, ~out, starts=STARTS, first=first, **how)
-        errors[out] = held_out.squares(model, part, out)
+        part = held_out.regress(model, ~out, starts=STARTS, first=first, **settings)
+        errors[out] = held_out.square_differences(model, part, out)
         report(1 + fold)
     return held_out.sum_by_block(errors)

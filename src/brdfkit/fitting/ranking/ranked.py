@@ -5,16 +5,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import to_printable
-from brdfkit.fitting.ranking.ties import beside, is_tied
+from brdfkit.fitting.ranking.cross_validation import Validated
+from brdfkit.fitting.ranking.ties import compare_with_best, is_tied
 from brdfkit.regression.light import Albedo
 
 # A smaller difference of pictures is rounding
-LEAST = 1e-6
+ROUNDING = 1e-6
 
 
 @dataclass(frozen=True)
@@ -84,17 +83,17 @@ def to_decibels(error: float) -> float:
     >>> to_decibels(0.1)
     20.0
     """
-    return -20 * math.log10(max(error, LEAST))
+    return -20 * math.log10(max(error, ROUNDING))
 
 
-def rows_of(results: Mapping[str, Any], shares: NDArray[np.float64]) -> tuple[Ranked, ...]:
+def rows_of(results: Mapping[str, Any], shares: FloatArray) -> tuple[Ranked, ...]:
     """The `Ranked` of every model, the best first; `results`: by label what came out, a `Validated`
     or an error; `shares` (blocks,): how much each block counts."""
     fitted = {label: one for label, one in results.items() if not isinstance(one, BrdfkitError)}
     best = min(fitted.values(), key=lambda one: one.errors.sum())
     rows = []
     for label, one in fitted.items():
-        error, behind, uncertainty = beside(one.errors, best.errors, shares)
+        error, behind, uncertainty = compare_with_best(one.errors, best.errors, shares)
         pareto = not any(_beats(other, one, shares) for other in fitted.values())
         looks = one.albedo, one.picture, pareto, one.doubt
         fit = one.parameters, one.bic, one.seconds
@@ -107,9 +106,8 @@ def rows_of(results: Mapping[str, Any], shares: NDArray[np.float64]) -> tuple[Ra
     return (*sorted(rows, key=lambda row: (row.error, row.parameters)), *failed)
 
 
-def _beats(one, other, shares):
-    """Whether `one` has a better picture than the `other`, and an error that is less by more than
-    the noise."""
+def _beats(one: Validated, other: Validated, shares: FloatArray) -> bool:
+    """Return whether `one` has a better picture and a smaller error, beyond the noise."""
     if one.picture >= other.picture:
         return False
-    return not is_tied(*beside(other.errors, one.errors, shares))
+    return not is_tied(*compare_with_best(other.errors, one.errors, shares))

@@ -102,7 +102,7 @@ class Ranking(Shown):
     def table(self) -> list[tuple[str, ...]]:
         """The rows of the models that could be fitted as texts, under `COLUMNS`."""
         own = self._choice.row
-        return [_texts(row, row is own) for row in self.rows if not row.message]
+        return [_format_row(row, row is own) for row in self.rows if not row.message]
 
     def document(self) -> Document:
         """The models in their order, which is recommended, and why."""
@@ -114,12 +114,13 @@ class Ranking(Shown):
         )
 
 
-def _stress(texts):
-    """A row of texts, strong where the model is recommended."""
+def _stress(texts: tuple[str, ...]) -> tuple[Cell, ...]:
+    """Return a row of cells, in bold where the model is recommended."""
     return tuple(Cell(text, STRONG if texts[-1] == TAKE else "") for text in texts)
 
 
-def _texts(row, recommended):
+def _format_row(row: Ranked, recommended: bool) -> tuple[str, ...]:
+    """Return the texts of a row; `recommended` is whether its model is the one to take."""
     behind = "-"
     if row.behind:
         least = (row.error - row.behind) or math.nan

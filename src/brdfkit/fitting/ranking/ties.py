@@ -1,36 +1,42 @@
-"""Which errors cannot be told apart: differences block by block, and the noise of their sum."""
+"""Decides which errors are tied, by their differences in each block of directions."""
 
 import math
 
 import numpy as np
 
-# A model is tied with the best where it is behind by at most so many standard errors: so large a
-# difference comes about by chance once in twenty times
+from brdfkit.core.array_types import FloatArray
+
+# A model is tied with the best one if it is behind by at most this many standard errors: chance
+# makes such a difference once in twenty times
 TIED = 2.0
-# Errors that differ by less, as shares of them, differ by rounding
+# Errors whose relative difference is smaller than this differ by rounding alone
 EQUAL = 1e-9
 
 
-def beside(errors, best, shares):
-    """A model's E, by how much it is above the best model's, and the standard error of that.
+def compare_with_best(
+    errors: FloatArray, best: FloatArray, shares: FloatArray
+) -> tuple[float, float, float]:
+    """Return a model's E, its excess over the best model's E, and the excess's standard error.
 
-    `errors`, `best` (blocks,): what each block of directions adds to the E² of each; `shares`
-    (blocks,): how much each block counts.
+    `errors` and `best` (blocks,) are what each block of directions adds to E² of the model and of
+    the best model; `shares` (blocks,) say how much each block counts.
     """
     error, least = (math.sqrt(squares.sum()) for squares in (errors, best))
     noise = paired_standard_error(errors - best, shares)
-    # Of E², whose difference is (E + least) (E - least)
+    # `noise` belongs to the difference of E², which is (E + least) (E - least)
     return error, error - least, noise / (error + least) if noise else 0.0
 
 
-def is_tied(error, behind, uncertainty):
-    """Whether an E is no worse than the best one, within the noise; see `beside`."""
+def is_tied(error: float, behind: float, uncertainty: float) -> bool:
+    """Return whether an E is no worse than the best one, within the noise."""
     return behind <= TIED * uncertainty + EQUAL * error
 
 
-def paired_standard_error(differences, shares):
-    """The standard error of the sum of `differences` (blocks,), of blocks with these `shares`; 0 of
-    one block, which tells nothing of noise."""
+def paired_standard_error(differences: FloatArray, shares: FloatArray) -> float:
+    """Return the standard error of the sum of `differences` (blocks,) of blocks with `shares`.
+
+    It is 0 for a single block, which shows no noise.
+    """
     count = len(differences)
     if count < 2:
         return 0.0

@@ -7,7 +7,7 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.fitting.ranking.appearance import Appearance
-from brdfkit.fitting.ranking.cross_validation import errors_held_out
+from brdfkit.fitting.ranking.cross_validation import compute_held_out_errors
 from brdfkit.fitting.ranking.held_out import HeldOut
 from brdfkit.fitting.ranking.ranked import to_decibels
 from brdfkit.fitting.settings import FitSettings
@@ -52,7 +52,7 @@ class Judge:
         model = type(fit.model)
         first = {name: fit.values[name] for name in model.shapes(how["anisotropic"])}
         try:
-            return math.sqrt(errors_held_out(model, self.held_out, first, how).sum())
+            return math.sqrt(compute_held_out_errors(model, self.held_out, first, how).sum())
         except BrdfkitError:
             return math.nan
 

@@ -12,7 +12,7 @@ from brdfkit.core.geometry.directions import to_angles
 from brdfkit.fitting.compare import choose_losses_to_show, compare, format_error
 from brdfkit.fitting.ranking.held_out import number_blocks
 from brdfkit.fitting.ranking.result import TAKE
-from brdfkit.fitting.ranking.ties import beside, is_tied
+from brdfkit.fitting.ranking.ties import compare_with_best, is_tied
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import ANGLES
 from brdfkit.materials.measured.selection import select_samples
@@ -90,7 +90,7 @@ def compute_fit_errors(material: Measured, fits: Sequence[Fit], loss: str) -> li
             one.albedos[one.best],
             *own_factors,
             _count_numbers(fit),
-            is_tied(*beside(own, best, shares)),
+            is_tied(*compare_with_best(own, best, shares)),
         )
         for fit, one, own, own_factors in zip(fits, compared, sums, factors, strict=True)
     ]
