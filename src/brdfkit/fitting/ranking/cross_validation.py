@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -77,7 +77,7 @@ def cross_validate(
 def compute_held_out_errors(
     model: type[Model],
     held_out: HeldOut,
-    first: dict[str, float],
+    first: Mapping[str, Any],
     settings: dict[str, Any],
     report: Callable[[int], object] = lambda done: None,
 ) -> FloatArray:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from brdfkit.core.array_types import FloatArray
+from brdfkit.core.array_types import AnyArray
 
 # A model is tied with the best one if it is behind by at most this many standard errors: chance
 # makes such a difference once in twenty times
@@ -14,7 +14,7 @@ EQUAL = 1e-9
 
 
 def compare_with_best(
-    errors: FloatArray, best: FloatArray, shares: FloatArray
+    errors: AnyArray, best: AnyArray, shares: AnyArray
 ) -> tuple[float, float, float]:
     """Return a model's E, its excess over the best model's E, and the excess's standard error.
 
@@ -32,7 +32,7 @@ def is_tied(error: float, behind: float, uncertainty: float) -> bool:
     return behind <= TIED * uncertainty + EQUAL * error
 
 
-def paired_standard_error(differences: FloatArray, shares: FloatArray) -> float:
+def paired_standard_error(differences: AnyArray, shares: AnyArray) -> float:
     """Return the standard error of the sum of `differences` (blocks,) of blocks with `shares`.
 
     It is 0 for a single block, which shows no noise.
