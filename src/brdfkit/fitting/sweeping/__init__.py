@@ -1,8 +1,8 @@
-"""`sweep`: models fitted to many materials, by several processes or on a cluster.
+"""`sweep` fits several models to many materials, in several processes or on a cluster.
 
-`planning.py` makes tasks of files, models and settings; `tasks.py` does a task, a pure function of
-plain data. `processes.py` and `cluster.py` run tasks, here and elsewhere; `saved_fits.py` keeps
-what is finished. `result.py` is what comes out, as text and tables; `page.py` its page.
+`planning.py` makes tasks from files, models and settings, and `tasks.py` carries out one task.
+`processes.py` runs tasks on this machine, `cluster.py` on a cluster. `saved_fits.py` stores the
+finished fits in a folder. `result.py` defines the result, which `tables.py` and `page.py` write.
 """
 
 from brdfkit.fitting.sweeping.result import Row as Row

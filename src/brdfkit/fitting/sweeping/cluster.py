@@ -1,4 +1,4 @@
-"""Runs tasks on a cluster, by a client of `dask.distributed`."""
+"""Run the tasks of a sweep on a cluster, through a client of `dask.distributed`."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -10,7 +10,10 @@ from brdfkit.fitting.sweeping.tasks import Outcome, Task, fail, fit_models
 
 
 def count_slots(client: Any) -> int:
-    """How many tasks a cluster does at once; `BrdfkitError` where `client` is no client of one."""
+    """Return how many tasks the cluster of a `client` runs at once.
+
+    Raises `BrdfkitError` if `client` is not a synchronous `distributed.Client`.
+    """
     try:
         from distributed import Client
     except ImportError:
@@ -24,11 +27,11 @@ def count_slots(client: Any) -> int:
 
 
 def run_on_cluster(tasks: list[Task], client: Any) -> Iterator[Outcome]:
-    """Yield the outcomes of tasks, as they come from the cluster of a `client`.
+    """Yield the outcomes of tasks in the order in which the cluster of a `client` finishes them.
 
-    A task whose worker dies is done again by another one, as often as the cluster allows. Then its
-    fits are tried one at a time, after all others: those that a worker had at hand when it died
-    count as its cause, though only one of them was.
+    If a worker dies, another worker repeats its task, as often as the cluster allows. After that,
+    the fits of the task run one at a time, after all other tasks: the cluster blames every task
+    that a dead worker held, although only one of them killed it.
     """
     from distributed import KilledWorker, as_completed
 
@@ -40,17 +43,17 @@ def run_on_cluster(tasks: list[Task], client: Any) -> Iterator[Outcome]:
             if isinstance(future.exception(), KilledWorker):
                 suspects += [replace(task, models={n: f}) for n, f in task.models.items()]
             else:
-                yield from _outcomes(future, task)
+                yield from _wait_for_outcomes(future, task)
         for task in suspects:
             future = client.submit(fit_task, task, pure=False)
             waiting[future] = task
-            yield from _outcomes(future, task)
+            yield from _wait_for_outcomes(future, task)
     finally:
         client.cancel(list(waiting))
 
 
-def _outcomes(future, task):
-    """The outcomes of a task, once its future is done."""
+def _wait_for_outcomes(future: Any, task: Task) -> list[Outcome]:
+    """Wait for the `future` of a task and return the outcomes, failures if the task was lost."""
     from distributed import KilledWorker
 
     try:
@@ -58,12 +61,12 @@ def _outcomes(future, task):
     except KilledWorker:
         why = "ended every worker that tried it; see the workers' logs."
         return [fail(task, label, f"{label} {why}") for label in task.models]
-    except Exception as error:  # the cluster is gone, or dropped the task
+    except Exception as error:  # the cluster has shut down or dropped the task
         return [fail(task, label, error) for label in task.models]
 
 
 def fit_task(task: Task) -> list[Outcome]:
-    """The outcomes of a task, in a thread of a cluster's worker."""
+    """Carry out a task in a thread of a cluster's worker and return its outcomes."""
     from distributed import get_worker
 
     use_threads(get_worker().state.nthreads)

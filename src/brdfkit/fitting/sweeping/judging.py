@@ -1,4 +1,4 @@
-"""Judges the fits to a material where they were not fitted, and by a picture."""
+"""Judge the fits to a material by their error in held-out directions and by a picture."""
 
 import math
 from contextlib import suppress
@@ -15,17 +15,16 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.regression import Fit, Picture, to_loss
 
-FOLDS = 5
-# Settings of a sweep's fit that its fits without a fold share; they begin where it ended
+FOLDS = 5  # parts of the directions, each of which is held out once
 
 
 class Judge:
-    """What tells how good the fits to a measured material are, beside their own error.
+    """A judge of the fits to one measured material, by more than the error of the fit itself.
 
-    `settings`: all those of the fits, whose seed draws what is held out, too.
+    `settings` are the settings of the fits; their seed also draws the held-out directions.
     """
 
-    def __init__(self, data: Measured, settings: FitSettings):
+    def __init__(self, data: Measured, settings: FitSettings) -> None:
         self.settings, self.anisotropic = settings, data.anisotropic
         angle, seed = settings.max_angle, settings.seed
         samples = select_samples(data, angle, None, False, settings.spectral)
@@ -37,12 +36,14 @@ class Judge:
                 self.held_out = HeldOut.draw(samples, loss, data.anisotropic, FOLDS, rng)
 
     def judge(self, fit: Fit) -> dict[str, float]:
-        """The numbers of a fit by their names in `Row`."""
+        """Return the held-out error and the PSNR of a fit, by their field's name in `Row`."""
         return {"held_out": self.error_of(fit), "psnr": self.psnr_of(fit)}
 
     def error_of(self, fit: Fit) -> float:
-        """E of the fit's loss in directions that a fit did not see; nan under a `Picture`, and
-        where there are too few samples."""
+        """Return the error E of the fit's loss in held-out directions, to which it is not fitted.
+
+        The error is nan if the loss is a `Picture` or if there are too few samples.
+        """
         if self.held_out is None:
             return math.nan
         how = self.settings.of_search()
@@ -57,5 +58,5 @@ class Judge:
             return math.nan
 
     def psnr_of(self, fit: Fit) -> float:
-        """The PSNR [dB] of a picture of a ball beside the measurement's, as `rank` tells it."""
+        """Return the PSNR [dB] of a ball's picture, compared with the measurement, as in `rank`."""
         return to_decibels(self.appearance.picture_error(fit.model.rgb.eval))

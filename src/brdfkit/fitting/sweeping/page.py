@@ -1,8 +1,8 @@
-"""Writes the page of a sweep: tables of errors by material and model, failures, and all fits."""
+"""Write the HTML page of a sweep, with tables of errors, the failures and all fits."""
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Sequence, Sized
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -17,7 +17,7 @@ from brdfkit.regression.albedo_cells import format_albedo, is_wrong, mean_albedo
 from brdfkit.regression.light import WRONG_FACTOR
 
 TINT_STEPS = 10  # shades of colour in the page's style
-COLOURLESS_RATIO = 4.0  # a cell with so many times the best error has no tint
+COLOURLESS_RATIO = 4.0  # a cell with this many times the best error has no tint
 ALBEDOS = (
     f"Under {join_words([f'{angle:g}°' for angle in ANGLES])}: the albedo of the fit, the share of "
     "the light from that angle to the normal that it reflects, the mean over the channels; below "
@@ -148,6 +148,6 @@ def _format_value(value: float | tuple[float, ...]) -> str:
     return "  ".join(f"{v:.5g}" for v in (value if isinstance(value, tuple) else [value]))
 
 
-def _count(things: Sequence[Any], noun: str) -> str:
+def _count(things: Sized, noun: str) -> str:
     """Return a number of things in words, such as "2 models"."""
     return f"{len(things)} {noun}{'' if len(things) == 1 else 's'}"

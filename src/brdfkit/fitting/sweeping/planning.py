@@ -1,8 +1,8 @@
-"""Makes tasks of files, models and settings, and cuts them where there are few."""
+"""Make the tasks of a sweep from files, models and settings, and split them among workers."""
 
 import math
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,15 +17,15 @@ from brdfkit.materials.formats import Source
 from brdfkit.materials.loading import locate
 from brdfkit.model import Model, labels
 
-PARTS = 4  # tasks a worker, at least, where there are so many fits: then all end at about one time
+PARTS = 4  # least number of tasks for each worker, so that all workers finish at about one time
 
 
 def plan(files: Any, models: Any, settings: FitSettings) -> list[Task]:
-    """A task for every file, with all models; a file or a model that is named twice counts once.
+    """Return one task for every file, with all models; duplicate files and models count once.
 
-    `files`, `models`: one or several; `settings`: those of all fits. A file that cannot be read
-    has a task with its failure. Raises `BrdfkitError` for what is no model, and where there is no
-    file or no model.
+    `files` and `models` are one or several each, and `settings` apply to all fits. The task of an
+    unreadable file holds the reason as its failure. Raises `BrdfkitError` if a model is unknown,
+    or if there is no file or no model.
     """
     classes = [labels.model(labels.load_files(m)) for m in _as_list(models, "model")]
     defined = {c.label(): _checksums_of_files(c) for c in classes}
@@ -39,12 +39,13 @@ def plan(files: Any, models: Any, settings: FitSettings) -> list[Task]:
 
 
 def split(tasks: list[Task], workers: int) -> list[Task]:
-    """`tasks`, with their models cut into parts where there are too few tasks for the workers."""
+    """Split the models of `tasks` into parts if there are too few tasks for the workers."""
     parts = math.ceil(PARTS * workers / max(1, len(tasks)))
-    return [part for task in tasks for part in _cut(task, parts)]
+    return [part for task in tasks for part in _split_task(task, parts)]
 
 
-def _cut(task, parts):
+def _split_task(task: Task, parts: int) -> Iterator[Task]:
+    """Yield the task in up to `parts` tasks, each with some of its models."""
     models = list(task.models.items())
     size = math.ceil(len(models) / parts)
     for start in range(0, len(models), size):
@@ -52,7 +53,7 @@ def _cut(task, parts):
 
 
 def _plan_file(file: Any, models: dict[str, dict[str, str]], settings: FitSettings) -> Task:
-    """The task of one file, or of a material that is known by name."""
+    """Return the task of one file, or of one material known by name."""
     if not isinstance(file, str | Path):
         raise BrdfkitError(
             f"A sweep takes files and names of materials, not a {type(file).__name__}; save it "
@@ -63,20 +64,24 @@ def _plan_file(file: Any, models: dict[str, dict[str, str]], settings: FitSettin
         path, sample = locate(file)
         checksum = sha256(path)
     except BrdfkitError as error:
-        return Task(_name(Path(file)), file, file, {}, models, settings, failure=str(error))
-    behind = "" if sample is None else f"#{sample}"
+        return Task(
+            _name_material(Path(file)), file, file, {}, models, settings, failure=str(error)
+        )
+    suffix = "" if sample is None else f"#{sample}"
     whole = str(path.absolute())
-    return Task(_name(path, behind), file, whole + behind, {whole: checksum}, models, settings)
+    return Task(
+        _name_material(path, suffix), file, whole + suffix, {whole: checksum}, models, settings
+    )
 
 
-def _name(path, behind=""):
-    """The name of a file's material, fit for a folder: the file's without suffix; `behind`: it."""
-    return to_file_stem(Source(path, None, b"").name + behind)
+def _name_material(path: Path, suffix: str = "") -> str:
+    """Return the file's name, without its extension and with `suffix`, as a valid folder name."""
+    return to_file_stem(Source(path, None, b"").name + suffix)
 
 
 def _checksums_of_files(model: type[Model]) -> dict[str, str]:
-    """The SHA-256 by path of the user's files that define a model."""
-    found = {}
+    """Return the SHA-256 of each user's file that defines a model, by path."""
+    checksums = {}
     for part in model.made_of():
         if not part.is_in_plugin_file():
             raise BrdfkitError(
@@ -85,14 +90,14 @@ def _checksums_of_files(model: type[Model]) -> dict[str, str]:
             )
         if part.__module__.rpartition(".")[0] == plugin_files.USERS:
             path = str(sys.modules[part.__module__].__file__)
-            found[path] = sha256(path)
-    return found
+            checksums[path] = sha256(path)
+    return checksums
 
 
 def _as_list(things: Any, what: str) -> list[Any]:
-    """One or several things as a list; an error where there are none."""
+    """Return one or several things as a list; raise `BrdfkitError` if there is none."""
     several = isinstance(things, Iterable) and not isinstance(things, str)
-    found = list(things) if several else [things]
-    if not found:
+    items = list(things) if several else [things]
+    if not items:
         raise BrdfkitError(f"There is no {what} here; give at least one.")
-    return found
+    return items

@@ -1,4 +1,4 @@
-"""`Sweep`, what a sweep returns: a row for every fit; prints as a table, and writes it."""
+"""`Sweep`, the result of `sweep`: a row for every fit, printed and written as tables."""
 
 from __future__ import annotations
 
@@ -15,40 +15,40 @@ from brdfkit.regression import Fit
 
 @dataclass(frozen=True)
 class Row:
-    """One fit of a sweep, or why there is none.
+    """One fit of a sweep, or the reason why it failed.
 
     Attributes
     ----------
     material : str
-        The name of the file's material in the sweep, unlike all others.
+        The name of the file's material, unique in the sweep.
     file : str
-        The file, as it was named.
+        The file, as the user named it.
     model : str
         The model's label.
     loss : str
-        Name of the loss, one of `brdfkit.losses.named`.
+        The name of the loss, one of `brdfkit.losses.named`.
     error : float
-        E of that loss, in its units; nan where the fit failed.
+        The error E of that loss, in its units; nan if the fit failed.
     seconds : float
-        Wall-clock time; of a saved fit, what it took then.
+        The wall-clock time of the fit; a saved fit keeps its original time.
     parameters : int
-        How many numbers were sought: the weights of each channel, and the shape parameters.
+        The number of fitted numbers: the weights of each channel and the shape parameters.
     samples : int
-        How many samples were fitted.
+        The number of fitted samples.
     at_bounds : tuple of str
-        Parameters that ended on a bound.
+        The parameters that ended on a bound.
     message : str
-        Why the search stopped, or one sentence on why the fit failed.
+        The reason why the search stopped, or one sentence on why the fit failed.
     fit : Fit or None
-        The fit; None where it failed.
+        The fit; None if it failed.
     saved : Path or None
-        Its file, where it was saved.
+        The file of the saved fit; None if it was not saved.
     held_out : float
-        E of the loss in directions that were held out of the fit, all in turn; nan where the sweep
-        does not judge, and where there are too few.
+        The error E of the loss in directions held out of the fit, each once; nan if the sweep does
+        not judge its fits or has too few samples.
     psnr : float
-        PSNR [dB] of a picture of a ball of the fit beside the measurement's, as in `Ranked`; nan
-        where the sweep does not judge.
+        The PSNR [dB] of a ball's picture, compared with the measurement, as in `Ranked`; nan if the
+        sweep does not judge its fits.
     """
 
     material: str
@@ -69,18 +69,18 @@ class Row:
 
 @dataclass(frozen=True, repr=False)
 class Sweep(Shown):
-    """The fits of several models to many materials; prints as a table. Made by `sweep`.
+    """The fits of several models to many materials; prints as a table. `sweep` returns it.
 
     Attributes
     ----------
     rows : tuple of Row
-        One for every fit that is finished or failed: by file, then by model.
+        One row for every fit that finished or failed, ordered by file, then by model.
     requested : int
-        How many fits were asked for; more than there are rows after Ctrl-C.
+        The number of planned fits; larger than the number of rows after Ctrl-C.
     found : int
-        How many of the fits had been saved by an earlier sweep.
+        The number of fits that an earlier sweep had saved.
     seconds : float
-        Wall-clock time.
+        The wall-clock time of the sweep.
     """
 
     rows: tuple[Row, ...]
@@ -105,7 +105,7 @@ class Sweep(Shown):
 
     @property
     def best(self) -> dict[str, Fit]:
-        """The fit with the least error of every material that has one, by the material's name."""
+        """The fit with the least error for every material with a fit, by the material's name."""
         best = {
             m: tables.ERROR.best(found.values()) for m, found in tables.by_material(self).items()
         }
@@ -113,12 +113,12 @@ class Sweep(Shown):
 
     @property
     def problems(self) -> list[str]:
-        """The sentences on what failed, each once: a file that cannot be read has one."""
+        """The messages of the failed fits, without repetition."""
         return list(dict.fromkeys(row.message for row in self.failed))
 
     @property
     def summary(self) -> str:
-        """How many fits there are, and of how many the light is wrong, in words."""
+        """A sentence with the number of fits, of failures and of fits with wrong albedos."""
         before = f", {self.found} of them saved before" if self.found else ""
         failed = f"; {len(self.failed)} failed" if self.failed else ""
         wrong = f"; the light of {len(self.warned)} is wrong (!)" if self.warned else ""
@@ -184,8 +184,7 @@ class Sweep(Shown):
         write_sweep_page(self, path)
 
     def document(self) -> Document:
-        """The errors, materials by models, and how they were judged; what failed, and how many fits
-        there are."""
+        """Return the tables of errors and judgements, the failures and a summary as a document."""
         shown: list[Table | Paragraph] = []
         for quantity in tables.quantities(self):
             columns, rows, foot = tables.compare(self, quantity)

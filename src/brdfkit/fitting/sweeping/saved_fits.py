@@ -1,6 +1,7 @@
-"""Keeps the fits of a sweep in a folder, each with what identifies it, and finds them again.
+"""Save the fits of a sweep in a folder, and find them again when a sweep is repeated.
 
-`FOLDER/MATERIAL/MODEL.json` is a fit as `save` writes it, with two more entries; `load` reads it.
+`FOLDER/MATERIAL/MODEL.json` holds a fit as `save` writes it, and `load` reads it. Two more entries
+hold the identity of the fit and its judgement.
 """
 
 import json
@@ -15,12 +16,12 @@ from brdfkit.fitting.sweeping.tasks import Outcome, Task
 from brdfkit.materials.formats import Source, fit_json
 from brdfkit.regression import Fit
 
-KEY, JUDGED = "sweep", "judged"  # the entries
+KEY, JUDGED = "sweep", "judged"  # the names of the two entries
 
 
 def keep(folder: Path, task: Task, outcome: Outcome) -> Path:
-    """Write a finished fit into `folder`, whole or not at all; the file's path."""
-    file = _path(folder, task, outcome.model)
+    """Write a finished fit into `folder`, completely or not at all, and return the file's path."""
+    file = _path_of_fit(folder, task, outcome.model)
     record = {**json.loads(outcome.text), KEY: _identity(task, outcome.model)}
     if task.judge:
         record[JUDGED] = {name: None if isnan(v) else v for name, v in outcome.judged.items()}
@@ -31,9 +32,12 @@ def keep(folder: Path, task: Task, outcome: Outcome) -> Path:
 
 
 def find(folder: Path, task: Task, label: str) -> tuple[Fit, Path, dict[str, float]] | None:
-    """The fit of a model in `folder`, its file and how it was judged, None unless it is just the
-    fit of the `task`."""
-    file = _path(folder, task, label)
+    """Find the saved fit of the model `label` in `folder`.
+
+    Returns the fit, its file and its judgement, or None unless the saved fit has the same file,
+    settings and versions as the `task`.
+    """
+    file = _path_of_fit(folder, task, label)
     if not task.checksums or not file.is_file():
         return None
     try:
@@ -43,24 +47,25 @@ def find(folder: Path, task: Task, label: str) -> tuple[Fit, Path, dict[str, flo
             judged = record.get(JUDGED, {}) if task.judge else {}
             judged = {name: nan if v is None else float(v) for name, v in judged.items()}
             return fit_json.read(Source(file, None, data)), file, judged
-    # Damaged, or a file of somebody else's
+    # A damaged file, or a file that no sweep wrote
     except (BrdfkitError, ValueError, TypeError, AttributeError):
         pass
     return None
 
 
 def parse(outcome: Outcome) -> Fit:
-    """The `Fit` of an outcome without failure."""
-    path = Path(f"{outcome.model}.json")  # for messages
+    """Return the `Fit` of an outcome that is no failure."""
+    path = Path(f"{outcome.model}.json")  # for error messages only
     return fit_json.read(Source(path, None, outcome.text.encode()))
 
 
-def _path(folder, task, label):
+def _path_of_fit(folder: Path, task: Task, label: str) -> Path:
+    """Return the path of the file in `folder` for the fit of the model `label`."""
     return to_fit_path(folder / task.material, label)
 
 
 def _identity(task: Task, label: str) -> Any:
-    """What a fit depends on, as JSON gives it back: if any of it changes, it is another fit."""
+    """Return everything that a fit depends on, as JSON; a change in it requires a new fit."""
     identity = {
         "file": [[sum_, task.path.removeprefix(path)] for path, sum_ in task.checksums.items()],
         "model": label,

@@ -1,4 +1,4 @@
-"""`sweep`: fits models to many materials, and continues where an earlier sweep ended."""
+"""`sweep` fits models to many materials, and continues where an earlier sweep ended."""
 
 from __future__ import annotations
 
@@ -93,24 +93,24 @@ def sweep(
         for name in (TABLE, PAGE):
             require_writable(folder / name)
 
-    # What is saved, and what is left to do
+    # Read the saved fits; the other models remain to be fitted
     rows = {key: row for task in tasks for key, row in _find_rows(task, folder)}
-    left = [_without(task, rows) for task in tasks]
+    left = [_remove_finished(task, rows) for task in tasks]
     found, total = len(rows), sum(len(task.models) for task in left)
 
-    # The fits, each saved as it comes
+    # Run the other fits and save each one when it is finished
     report = progress or (lambda done, total: None)
     named = {task.material: task for task in tasks}
     try:
         report(0, total)
-        with closing(_run([task for task in left if task.models], slots, client)) as outcomes:
+        with closing(_run_tasks([task for task in left if task.models], slots, client)) as outcomes:
             for outcome in outcomes:
                 task = named[outcome.material]
-                rows[outcome.material, outcome.model] = _finish(task, outcome, folder)
+                rows[outcome.material, outcome.model] = _save_outcome(task, outcome, folder)
                 report(len(rows) - found, total)
     except KeyboardInterrupt:
         for task in tasks:  # Ctrl-C may come between the saving of a fit and its row
-            rows.update(_find_rows(_without(task, rows), folder))
+            rows.update(_find_rows(_remove_finished(task, rows), folder))
         if not rows:
             raise
 
@@ -124,7 +124,7 @@ def sweep(
 
 
 def _count_slots(workers: int | None, client: Any) -> int:
-    """How many tasks are done at once."""
+    """Return how many tasks run at once, on this machine or on the cluster of a `client`."""
     if client is None:
         return default_workers() if workers is None else to_whole_number("workers", workers, 1)
     if workers is not None:
@@ -132,8 +132,8 @@ def _count_slots(workers: int | None, client: Any) -> int:
     return count_slots(client)
 
 
-def _run(tasks: list[Task], slots: int, client: Any) -> Generator[Outcome, None, None]:
-    """Yield the outcomes of tasks as they come; the files that cannot be read come first."""
+def _run_tasks(tasks: list[Task], slots: int, client: Any) -> Generator[Outcome, None, None]:
+    """Yield the outcomes of tasks as they finish; unreadable files come first."""
     readable = [task for task in tasks if not task.failure]
     for task in tasks:
         if task.failure:
@@ -143,20 +143,20 @@ def _run(tasks: list[Task], slots: int, client: Any) -> Generator[Outcome, None,
 
 
 def _find_rows(task: Task, folder: Path | None) -> Iterator[tuple[tuple[str, str], Row]]:
-    """Yield the rows, with their keys, of those fits of a task that are saved in `folder`."""
+    """Yield key and row of every fit of a task that is saved in `folder`."""
     for label in task.models:
         if folder and (saved := saved_fits.find(folder, task, label)):
             yield (task.material, label), _make_row(task, label, *saved)
 
 
-def _without(task: Task, rows: Mapping[tuple[str, str], Row]) -> Task:
-    """A task without the models that have a row."""
+def _remove_finished(task: Task, rows: Mapping[tuple[str, str], Row]) -> Task:
+    """Return the task without the models that already have a row."""
     models = {n: files for n, files in task.models.items() if (task.material, n) not in rows}
     return replace(task, models=models)
 
 
-def _finish(task: Task, outcome: Outcome, folder: Path | None) -> Row:
-    """The row of an outcome, whose fit is saved in `folder`."""
+def _save_outcome(task: Task, outcome: Outcome, folder: Path | None) -> Row:
+    """Save the fit of an outcome in `folder`, if one is given, and return its row."""
     try:
         fit = None if outcome.failure else saved_fits.parse(outcome)
     except BrdfkitError as error:
@@ -171,7 +171,7 @@ def _finish(task: Task, outcome: Outcome, folder: Path | None) -> Row:
 def _make_row(
     task: Task, label: str, fit: Fit, saved: Path | None, judged: Mapping[str, float]
 ) -> Row:
-    """The row of a fit that was `judged`, numbers by their names, or not."""
+    """Return the row of a fit; `judged` holds its judgement by field of `Row`, or nothing."""
     values = fit.model.free_values.items()
     sought = [v for n, v in values if n not in task.settings.fixed]
     return Row(

@@ -1,12 +1,14 @@
-"""The tables of a sweep: quantities by material and model, in words; all rows as CSV or Parquet."""
+"""Make the tables of a sweep: errors by material and model as text, all rows as CSV or Parquet."""
 
 import csv
 import json
 import math
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
+from pathlib import Path
 from statistics import median
+from typing import Any
 
 from brdfkit.core.documents.text import BAD_MARK
 from brdfkit.core.errors import BrdfkitError
@@ -18,10 +20,10 @@ from brdfkit.regression.albedo_cells import mean_albedos
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number of each fit that tells models apart: `name`: of the attribute of a `Row`.
+    """A number by which a sweep compares models; `name` is its attribute in `Row`.
 
-    `title`: above its table; `head`: of a column; `by`: what "times best" counts by; `format`: a
-    number as text; `decibels`: whether it is in dB, and more is better.
+    `title` stands above its table and `head` above its column; `by` completes "times best, by".
+    `format` turns a number into text; `decibels` marks a number in dB, for which more is better.
     """
 
     name: str
@@ -31,17 +33,17 @@ class Quantity:
     format: Callable[[float], str]
     decibels: bool = False
 
-    def of(self, row):
-        """The number of a `Row`; nan where it has none."""
-        return getattr(row, self.name) if row.fit else math.nan
+    def of(self, row: Any) -> float:
+        """Return the number of a `Row`; nan if its fit failed."""
+        return float(getattr(row, self.name)) if row.fit else math.nan
 
-    def best(self, rows):
-        """The row of the best number, None where no row has one."""
+    def best(self, rows: Iterable[Any]) -> Any:
+        """Return the `Row` with the best number; None if no row has a number."""
         numbers = [row for row in rows if not math.isnan(self.of(row))]
         return (max if self.decibels else min)(numbers, key=self.of, default=None)
 
-    def ratio(self, row, best):
-        """How many times the error of the `best` row that of a `row` is."""
+    def ratio(self, row: Any, best: Any) -> float:
+        """Return the error of a `row` divided by the error of the `best` row."""
         one, least = self.of(row), self.of(best)
         if self.decibels:
             return 10 ** ((least - one) / 20)
@@ -57,30 +59,35 @@ PSNR = Quantity(
 )
 
 
-def quantities(sweep):
-    """The quantities that the rows of a sweep have: the error, and those that it judged."""
+def quantities(sweep: Any) -> list[Quantity]:
+    """Return the quantities of a `Sweep`: the error, and the judgements if it has any."""
     judged = [q for q in (HELD_OUT, PSNR) if any(not math.isnan(q.of(row)) for row in sweep.rows)]
     return [ERROR, *judged]
 
 
-def compare(sweep, quantity=ERROR):
-    """The names of the columns, a row of texts for each material, and rows on all of them, by a
-    quantity.
+def compare(
+    sweep: Any, quantity: Quantity = ERROR
+) -> tuple[tuple[str, ...], list[tuple[str, ...]], list[tuple[str, ...]]]:
+    """Compare the models of a `Sweep` by a quantity, as the texts of a table.
 
-    A column of numbers has a name that begins with ">"; a number is marked where the light of the
-    fit is wrong.
+    Returns the names of the columns, a row for each material, and the rows of the foot. The name
+    of a column of numbers begins with ">"; a mark precedes numbers of fits with wrong albedos.
     """
     rows = by_material(sweep)
     models = list(dict.fromkeys(row.model for row in sweep.rows))
-    best = {material: quantity.best(found.values()) for material, found in rows.items()}
-    best = {material: row.fit.name if row else "" for material, row in best.items()}
+    best = {material: quantity.best(by_model.values()) for material, by_model in rows.items()}
+    names = {material: row.fit.name if row else "" for material, row in best.items()}
     body = [
-        (material, *(_cell(found.get(model), quantity) for model in models), best[material])
-        for material, found in rows.items()
+        (
+            material,
+            *(_format_cell(by_model.get(model), quantity) for model in models),
+            names[material],
+        )
+        for material, by_model in rows.items()
     ]
-    wins = Counter(best.values())
-    foot = [
-        ("median", *(quantity.format(m) for m in _medians(sweep, models, quantity)), ""),
+    wins = Counter(names.values())
+    foot: list[tuple[str, ...]] = [
+        ("median", *(quantity.format(m) for m in _compute_medians(sweep, models, quantity)), ""),
         (f"times best, by {quantity.by}", *(str(wins[model]) for model in models), ""),
     ]
     if sweep.warned:
@@ -90,32 +97,35 @@ def compare(sweep, quantity=ERROR):
     return columns, body, foot if len(rows) > 1 else []
 
 
-def by_material(sweep):
-    """The rows of a sweep by material and by model."""
-    found = {}
+def by_material(sweep: Any) -> dict[str, dict[str, Any]]:
+    """Return the rows of a `Sweep` by material, then by model."""
+    rows: dict[str, dict[str, Any]] = {}
     for row in sweep.rows:
-        found.setdefault(row.material, {})[row.model] = row
-    return found
+        rows.setdefault(row.material, {})[row.model] = row
+    return rows
 
 
-def _medians(sweep, models, quantity):
-    """The median of a quantity of each model over the materials to which it was fitted."""
+def _compute_medians(sweep: Any, models: Sequence[str], quantity: Quantity) -> Iterator[float]:
+    """Yield for each model the median of a quantity over all materials; nan without fits."""
     for model in models:
         numbers = [quantity.of(row) for row in sweep.rows if row.model == model]
         numbers = [number for number in numbers if not math.isnan(number)]
         yield median(numbers) if numbers else math.nan
 
 
-def write_csv(sweep, path):
-    """Write all rows as comma-separated values; bytes of names that are no UTF-8 become "?"."""
-    columns, how = _columns(sweep), {"encoding": "utf-8", "errors": "replace", "newline": ""}
-    with write_safely(path) as beside, beside.open("w", **how) as stream:
+def write_csv(sweep: Any, path: str | Path) -> None:
+    """Write all rows as comma-separated values; invalid UTF-8 in names becomes "?"."""
+    columns = _make_columns(sweep)
+    with (
+        write_safely(path) as beside,
+        beside.open("w", encoding="utf-8", errors="replace", newline="") as stream,
+    ):
         writer = csv.writer(stream)
         writer.writerow(columns)
         writer.writerows(zip(*columns.values(), strict=True))
 
 
-def write_parquet(sweep, path):
+def write_parquet(sweep: Any, path: str | Path) -> None:
     """Write all rows as an Apache Parquet table."""
     try:
         import pyarrow
@@ -126,33 +136,33 @@ def write_parquet(sweep, path):
             "or write a .csv."
         ) from None
     with write_safely(path) as beside:
-        parquet.write_table(pyarrow.table(_columns(sweep)), beside)
+        parquet.write_table(pyarrow.table(_make_columns(sweep)), beside)
 
 
-def _columns(sweep):
-    """The rows as a list of numbers or texts for each column, by its name; None where it is nan."""
-    records = [_record(row) for row in sweep.rows]
+def _make_columns(sweep: Any) -> dict[str, list[Any]]:
+    """Return the numbers or texts of each column by the column's name; None stands for nan."""
+    records = [_make_record(row) for row in sweep.rows]
     return {name: [record[name] for record in records] for name in records[0]}
 
 
-def _record(row):
+def _make_record(row: Any) -> dict[str, Any]:
+    """Return the numbers and texts of one row by the name of their column."""
     record = {f.name: getattr(row, f.name) for f in fields(row) if f.name not in ("fit", "saved")}
     record["at_bounds"] = " ".join(row.at_bounds)
     record["values"] = json.dumps(row.fit.values) if row.fit else None
-    for name, albedos in zip(("albedo", "measured_albedo"), _albedos(row), strict=True):
+    for name, albedos in zip(("albedo", "measured_albedo"), _mean_albedos(row), strict=True):
         record |= {f"{name}_{angle:g}": a for angle, a in zip(ANGLES, albedos, strict=True)}
     record["warnings"] = "; ".join(row.fit.warnings) if row.fit else None
     return {name: None if value != value else value for name, value in record.items()}
 
 
-def _albedos(row):
-    """The mean albedos of the fit of a row and of its data; nan where they are not known."""
+def _mean_albedos(row: Any) -> Any:
+    """Return the mean albedos of a row's fit and of its measurement; nan if unknown."""
     return mean_albedos(row.fit.albedo if row.fit else None)
 
 
-def _cell(row, quantity):
-    """A number of a row in words, marked where its light is wrong; nothing for a fit that did not
-    come about."""
+def _format_cell(row: Any, quantity: Quantity) -> str:
+    """Return a row's number as text, marked if its albedo is wrong; empty without a row."""
     if row is None:
         return ""
     if not row.fit:

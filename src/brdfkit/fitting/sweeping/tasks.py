@@ -1,7 +1,8 @@
-"""A task: the fits of several models to one file, as a pure function of plain data.
+"""A task of a sweep fits several models to one file.
 
-A process of this machine and a worker of a cluster run the same function, `fit_models`. What it
-takes and gives can be sent anywhere; only the files must be there, by the same paths.
+A process of this machine and a worker of a cluster run the same function, `fit_models`. Its
+argument and results are plain data that any process can receive; the files must have the same
+paths there.
 """
 
 import io
@@ -16,19 +17,20 @@ from brdfkit.fitting.settings import FitSettings
 from brdfkit.fitting.sweeping.judging import Judge
 from brdfkit.materials.formats import fit_json
 from brdfkit.materials.loading import load
+from brdfkit.materials.measured import Measured
 from brdfkit.materials.resolve import to_measured
 from brdfkit.model import labels
 
 
 @dataclass(frozen=True)
 class Task:
-    """A file, and the models to fit to it.
+    """A file and the models to fit to it.
 
-    `material`: its name in tables, unlike all others; `file`: as the user named it; `path`: what
-    `load` takes for it anywhere; `checksums`: the SHA-256 of the file by its path; `models`: the
-    same of the user's files that define a model, by its label; `settings`: all those of a fit;
-    `judge`: whether each fit is judged where it was not fitted and by a picture; `failure`: why the
-    file cannot be read, if so; `version`: of brdfkit.
+    `material` is the unique name of the material in tables, `file` the file as the user named it,
+    and `path` the argument of `load` for it. `checksums` holds the SHA-256 of the file by path;
+    `models` holds, for each model's label, the checksums of the user's files that define it.
+    `judge` asks for a held-out error and a PSNR of each fit. `failure` says why the file cannot be
+    read, and is empty if it can. `version` is the version of brdfkit.
     """
 
     material: str
@@ -44,9 +46,9 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one fit: `text`, the fit as brdfkit saves it, or `failure`, a sentence.
+    """The result of one fit: its saved form in `text`, or the reason of its `failure`.
 
-    `judged`: of a task that judges, numbers by their names in `Row`.
+    `judged` holds the held-out error and the PSNR by field of `Row`, if the task judges its fits.
     """
 
     material: str
@@ -57,9 +59,9 @@ class Outcome:
 
 
 def fit_models(task: Task) -> Iterator[Outcome]:
-    """Yield the `Outcome` of each model of a task, in their order; no error stops the others."""
+    """Fit the models of a task in order and yield the `Outcome` of each, also after an error."""
     try:
-        data = _read(task)
+        data = _read_measurement(task)
         judge = Judge(data, task.settings) if task.judge else None
     except Exception as error:
         yield from (fail(task, label, error) for label in task.models)
@@ -70,27 +72,27 @@ def fit_models(task: Task) -> Iterator[Outcome]:
             for path in files:
                 labels.load_model_file(path)
             stream = io.BytesIO()
-            found = fit(data, label, **vars(task.settings))
-            fit_json.write(found, stream)
-            judged = judge.judge(found) if judge else {}
+            result = fit(data, label, **vars(task.settings))
+            fit_json.write(result, stream)
+            judged = judge.judge(result) if judge else {}
             yield Outcome(task.material, label, text=stream.getvalue().decode(), judged=judged)
         except Exception as error:
             yield fail(task, label, error)
 
 
 def fail(task: Task, label: str, error: Exception | str) -> Outcome:
-    """The `Outcome` of a fit that ended with an error; its sentence names the file."""
+    """Return the `Outcome` of a fit that ended with an error; its message names the file."""
     if isinstance(error, Exception) and not isinstance(error, BrdfkitError):
         error = f"{label} fails with {type(error).__name__} ({error})."
-    said = str(error)
+    message = str(error)
     for path in (task.path, *task.checksums):
-        said = said.replace(path, task.file)
-    said = said if task.file in said else f"{task.file}: {said}"
-    return Outcome(task.material, label, failure=said)
+        message = message.replace(path, task.file)
+    message = message if task.file in message else f"{task.file}: {message}"
+    return Outcome(task.material, label, failure=message)
 
 
-def _read(task):
-    """The measured material of a task, if it is the one for which the task was made."""
+def _read_measurement(task: Task) -> Measured:
+    """Read the measured material of a task; raise `BrdfkitError` if it is not as planned."""
     if task.failure:
         raise BrdfkitError(task.failure)
     if task.version != __version__:
@@ -101,8 +103,8 @@ def _read(task):
     return to_measured(load(task.path))
 
 
-def _require_unchanged(checksums):
-    """Raise `BrdfkitError` unless the files have the SHA-256 `checksums`, by path."""
+def _require_unchanged(checksums: dict[str, str]) -> None:
+    """Raise `BrdfkitError` unless every file has its SHA-256; `checksums` are by path."""
     for path, checksum in checksums.items():
         if sha256(path) != checksum:
             raise BrdfkitError(f"{path}: has changed since the sweep began; begin it again.")
