@@ -1,4 +1,6 @@
-"""Colours of lobes that only their sum means, and of a rim that is not the material's."""
+"""Notes on colours: of lobes that only make sense in their sum, and of a fit at grazing angles."""
+
+from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,23 +12,27 @@ from brdfkit.model import Model
 from brdfkit.model.samples import Samples
 from brdfkit.model.samples.measures import compute_measure
 
-# A lobe is of one hue where its least channel is below this share of its largest, and two hues
-# differ where the cosine between them is smaller than the second
+# A lobe has a pure colour where its least channel is below the share PURE of its largest; two
+# colours differ in hue where the cosine between them is below ALIKE
 PURE, ALIKE = 0.1, 0.5
-# Lobes with less than this share of the highlight's light do not matter
+# Lobes with a smaller share of the highlight's albedo than this get no note
 FAINT = 0.05
-# The highlight of the material: samples with the cosine of theta_h above this
+# Samples whose cosine of the half angle θ_h is above this form the highlight of the material
 HIGHLIGHT = np.cos(np.radians(5))
-# The rim: samples within so many degrees of the most grazing ones, which are at least so oblique;
-# how much a share of R, G or B may be off; and among how many samples the light has to be spread
+# The rim: samples within RIM degrees of the most grazing, if these lie at least OBLIQUE degrees
+# from the normal. The share of R, G or B may be wrong by OFF. At least SPREAD samples have to share
+# the light, because a few bright samples do not determine a colour
 RIM, OBLIQUE, OFF, SPREAD = 10.0, 60.0, 0.1, 30
 
 
 def note_on_lobe_colours(
     samples: Samples, fitted: Model, albedos: NDArray[np.float64]
 ) -> list[str]:
-    """The note, if any, on lobes of a model with values that have pure colours of different hues,
-    where the highlight of the `Samples` has not; `albedos`: of the lobes (lobes, 3)."""
+    """Return the note, if any, on lobes that have pure colours of different hues.
+
+    There is no note where the measured highlight has a pure colour, too. `albedos` (lobes, 3) are
+    the albedos of the lobes.
+    """
     if albedos.shape[1] != 3 or samples.values.shape[1] != 3:
         return []
     diffuse = np.array([lobe.diffuse for lobe in fitted.lobes()])
@@ -51,8 +57,10 @@ def note_on_lobe_colours(
 
 
 def note_on_rim(data: Measured, samples: Samples, fitted: Model) -> list[str]:
-    """The note, if any, on a model with values whose colour at the most grazing of the `Samples` of
-    a `Measured` is not theirs."""
+    """Return the note, if any, on a fit whose colour differs from the measured one at the rim.
+
+    The rim are the most grazing of the fitted samples.
+    """
     if samples.values.shape[1] != 3 or fitted.wavelengths:
         return []
     cosine = np.minimum(samples.wi[:, 2], samples.wo[:, 2])
@@ -61,28 +69,28 @@ def note_on_rim(data: Measured, samples: Samples, fitted: Model) -> list[str]:
         return []
     rim = samples.at(cosine < np.cos(np.radians(largest - RIM)))
     light = rim.weight * rim.wi[:, 2] * rim.wo[:, 2]
-    if data.is_table:  # whose cells are small in the highlight, and many
+    if data.is_table:  # its cells are small and many in the highlight
         light = light * compute_measure(rim.extents, "solid_angle")
     each = light * np.maximum(rim.values, 0).sum(axis=1)
     if not each.sum() or each.sum() ** 2 < SPREAD * (each**2).sum():
         return []  # dark, or a few bright samples
-    here, there = (_shares(light @ values) for values in (fitted.eval(rim.wi, rim.wo), rim.values))
-    if np.abs(here - there).max() < OFF:
+    ours, theirs = (_shares(light @ values) for values in (fitted.eval(rim.wi, rim.wo), rim.values))
+    if np.abs(ours - theirs).max() < OFF:
         return []
-    told, measured = (" : ".join(f"{100 * s:.0f}" for s in shares) for shares in (here, there))
+    modelled, measured = (" : ".join(f"{100 * s:.0f}" for s in shares) for shares in (ours, theirs))
     return [
-        f"its colour at {largest - RIM:.0f}° to {largest:.0f}° is R : G : B = {told}, where "
+        f"its colour at {largest - RIM:.0f}° to {largest:.0f}° is R : G : B = {modelled}, where "
         f"{measured} was measured: try another model, or one lobe more"
     ]
 
 
 def _shares(colour: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The shares of R, G and B in a colour; negative ones count as 0."""
+    """Return the shares of R, G and B in a colour; negative values count as 0."""
     positive = colour.clip(min=0)
     return positive / (positive.sum() + 1e-300)
 
 
 def _cosine(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
-    """The cosine of the angle between two colours: 1 for one hue."""
+    """Return the cosine of the angle between two colours, which is 1 for equal hues."""
     lengths = float(np.linalg.norm(one) * np.linalg.norm(other))
     return float(one @ other) / (lengths + 1e-300)

@@ -1,4 +1,6 @@
-"""Notes on a fit whose lobes mean nothing, although the search converged."""
+"""Notes on lobes of a fit that have no physical meaning, although the search converged."""
+
+from __future__ import annotations
 
 import math
 
@@ -14,13 +16,14 @@ from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.model.samples import Samples
 from brdfkit.regression.light import make_albedo_pixels
 
-# Where the albedo of a lobe is looked at [degrees], and what is a gain
+# The incidences at which the albedo of a lobe is computed [degrees], and the albedo above which it
+# reflects more than arrives
 INCIDENCES, GAIN = (5, 45, 75), 1.05
-# An index of refraction above this is that of no surface
+# No surface has an index of refraction above this
 LARGEST_IOR = 5.0
-# A highlight that reflects less from above is of no metal, and should rise by this factor to 75°
+# A highlight with a smaller albedo at 5° is not a metal's, and should rise by this factor to 75°
 METALLIC, RISE = 0.2, 1.1
-# Half width above which a lobe is hardly a highlight [degrees]
+# A lobe with a larger half width than this is hardly a highlight [degrees]
 BROAD = 20.0
 FLAT = "the highlight does not rise towards grazing angles, as that of anything but metal should"
 
@@ -28,34 +31,32 @@ FLAT = "the highlight does not rise towards grazing angles, as that of anything 
 def list_lobe_notes(
     data: Measured, samples: Samples, fitted: Model, at_bounds: tuple[str, ...]
 ) -> list[str]:
-    """Sentences on lobes that mean nothing.
+    """Return sentences on lobes that have no physical meaning.
 
     Parameters
     ----------
     data : Measured
         The material.
     samples : Samples
-        Its samples that were fitted.
+        The samples of the material that were fitted.
     fitted : Model
-        The model with the values that were found.
+        The model with the fitted values.
     at_bounds : tuple of str
-        Its parameters that ended on a bound.
+        Names of the parameters that ended on a bound.
 
     Returns
     -------
     list of str
-        A sentence on each lobe that gains light, is not used, is narrower than the samples tell or
-        has a colour that only its sum with another means; on parameters at bounds and Fresnel
-        parameters of no surface; and on a rim whose colour is off.
+        Sentences on lobes that reflect more light than arrives, are not used, are narrower than
+        the samples can show, or have pure colours that the highlight lacks; on parameters at their
+        bounds; on Fresnel parameters that no surface has; and on a wrong colour at grazing angles.
 
     Examples
     --------
     >>> ward = models()["ward"](specular_reflectance=208)
     >>> list_lobe_notes(paint, samples, ward, ())    # doctest: +SKIP
     """
-    if (
-        fitted.has_signed_weights()
-    ):  # a sum of signed terms has no lobes that mean something by themselves
+    if fitted.has_signed_weights():  # then only the sum of the terms has a meaning
         return []
     albedos = lobe_albedos(fitted)
     diffuse = np.array([lobe.diffuse for lobe in fitted.lobes()])
@@ -75,7 +76,7 @@ def list_lobe_notes(
 
 
 def lobe_albedos(model: Model) -> NDArray[np.float64]:
-    """The directional albedo (incidences, lobes, channels) of each lobe with its weight."""
+    """Return the directional albedo (incidences, lobes, channels) of each lobe with its weight."""
     both = make_albedo_pixels(INCIDENCES).look(
         lambda wi, wo: np.hstack(compute_lobe_values(model, wi, wo))
     )
@@ -85,7 +86,7 @@ def lobe_albedos(model: Model) -> NDArray[np.float64]:
 
 
 def _list_gains(fitted: Model, albedos: NDArray[np.float64]) -> list[str]:
-    """A sentence on each lobe that alone reflects more light than arrives."""
+    """Return a sentence on each lobe that reflects more light than arrives, even alone."""
     notes = []
     for name, weight, albedo in zip(
         fitted.weights(), to_weight_matrix(fitted), albedos.max(axis=2).T, strict=True
@@ -100,7 +101,7 @@ def _list_gains(fitted: Model, albedos: NDArray[np.float64]) -> list[str]:
 
 
 def _list_unused(fitted: Model, at_bounds: tuple[str, ...]) -> list[str]:
-    """A sentence on each lobe, but a diffuse one, of which nothing is left."""
+    """Return a sentence on each lobe with weight 0, except diffuse ones."""
     return [
         f"the lobe of {name} is not used: its weight is 0"
         for name, lobe in fitted.terms()
@@ -109,7 +110,7 @@ def _list_unused(fitted: Model, at_bounds: tuple[str, ...]) -> list[str]:
 
 
 def _list_fresnel(fitted: Model) -> list[str]:
-    """A sentence on each Fresnel parameter beyond those of surfaces."""
+    """Return a sentence on each Fresnel parameter with a value that no surface has."""
     values = {name: getattr(fitted, name) for name in fitted.shapes()}
     high = [n for n, value in values.items() if _is(n, "ior") and value > LARGEST_IOR]
     above = [n for n, value in values.items() if _is(n, "f0") and value > 1]
@@ -130,8 +131,10 @@ def _list_fresnel(fitted: Model) -> list[str]:
 def _list_bounds(
     fitted: Model, at_bounds: tuple[str, ...], highlight: NDArray[np.float64]
 ) -> list[str]:
-    """Sentences on the shape parameters of used lobes that ended on their bounds; `highlight`: the
-    albedo of all lobes but the diffuse ones (incidences,)."""
+    """Return sentences on the shape parameters of used lobes that ended on their bounds.
+
+    `highlight` is the albedo (incidences,) of all lobes except the diffuse ones.
+    """
     by_meaning: dict[str, list[str]] = {}
     shapes = [n for n in fitted.shapes(anisotropic=True) if n in at_bounds]
     for name in _of_lit_lobes(fitted, shapes):
@@ -146,8 +149,10 @@ def _list_bounds(
 
 
 def _explain_bound(fitted: Model, name: str, highlight: NDArray[np.float64]) -> str:
-    """What it means that the shape parameter `name` ended on a bound of the model's; "" where that
-    is usual, or where the bound is a user's."""
+    """Return what it means that the shape parameter `name` ended on a bound of the model.
+
+    The text is empty where this is usual, and where the user set the bound.
+    """
     value, width = getattr(fitted, name), width_power(fitted, name)
     low, high = fitted.parameters[name].bounds
     upper = math.isclose(value, high, rel_tol=1e-5)
@@ -155,7 +160,7 @@ def _explain_bound(fitted: Model, name: str, highlight: NDArray[np.float64]) -> 
         return ""
     if (_is(name, "f0") or _is(name, "ior")) and not upper:
         return "such a lobe shines at grazing angles alone, and its weight is no reflectance"
-    if _is(name, "f0"):  # usual of metals, and of one lobe of several
+    if _is(name, "f0"):  # usual for metals, and for one lobe of several
         is_flat = highlight[0] < METALLIC and highlight[-1] < RISE * highlight[0]
         return FLAT if is_flat else ""
     if width and upper == (width < 0):
@@ -164,15 +169,15 @@ def _explain_bound(fitted: Model, name: str, highlight: NDArray[np.float64]) -> 
         return (
             "such a lobe is as broad as the model allows, hardly a highlight; one lobe fewer may do"
         )
-    return ""  # also of a streak, broad along one axis
+    return ""  # also for a streak, which is broad along one axis only
 
 
 def _of_lit_lobes(fitted: Model, names: list[str]) -> list[str]:
-    """Those of the shape parameters `names` that belong to a lobe that is not black."""
+    """Return the shape parameters among `names` that belong to a lobe that is not black."""
     lit = to_weight_matrix(fitted).any(axis=1)
     return [name for name in names if lit[lobes_of(fitted, name)].any()]
 
 
 def _is(name: str, what: str) -> bool:
-    """Whether a parameter is, as in "ggx_2_f0", that of a term."""
+    """Return whether `name` is the parameter `what`, alone or of a term, as f0 in "ggx_2_f0"."""
     return name == what or name.endswith(f"_{what}")

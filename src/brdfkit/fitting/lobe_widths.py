@@ -1,4 +1,6 @@
-"""Which lobes are narrower than the samples tell, and which parameters they have."""
+"""Finds lobes that are narrower than the samples can show, and the parameters of their widths."""
+
+from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,18 +10,20 @@ from brdfkit.model import Model
 from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.model.samples import Samples
 
-# Half angles at which a lobe is evaluated [rad], at this difference angle
+# The half angles θ_h at which a lobe is evaluated [rad], and their difference angle θ_d [rad]
 HALF_ANGLES = np.concatenate([[0.0], np.geomspace(1e-5, 1.2, 400)])
 THETA_D = np.radians(20)
-# Half angles nearer than this are one [degrees]: a goniometer's angles are rounded
+# Half angles that differ by less count as equal [degrees], because goniometers round their angles
 SAME = 0.01
-# So many samples nearest to the mirror direction are looked at
+# Number of samples nearest to the mirror direction whose half angles are compared
 NEAREST = 1_000
 
 
 def notes_on_widths(samples: Samples, fitted: Model) -> dict[str, str]:
-    """A sentence on each lobe of a model with values whose highlight lies between the `Samples`, by
-    the parameter that makes it so narrow."""
+    """Return a sentence on each lobe whose highlight is narrower than the spacing of the samples.
+
+    The keys are the names of the parameters that make the lobes so narrow.
+    """
     widths = [n for n in fitted.shapes(anisotropic=True) if width_power(fitted, n)]
     step = half_angle_step(samples) if widths else 0.0
     notes = {}
@@ -37,14 +41,19 @@ def notes_on_widths(samples: Samples, fitted: Model) -> dict[str, str]:
 
 
 def width_power(model: Model, name: str) -> float:
-    """p in: lobe width ∝ parameter^p, of a shape parameter; 0 for one that is no width."""
+    """Return the power p of a shape parameter to which the lobe's width is proportional.
+
+    It is 0 for a parameter that does not set a width.
+    """
     parameter = model.parameters[name]
     return model.parameters[parameter.follows or name].width
 
 
 def half_angle_step(samples: Samples) -> float:
-    """The second smallest half angle theta_h of `Samples` [degrees]: below it lies at most one, and
-    no width of a highlight can be told."""
+    """Return the second smallest half angle θ_h of samples [degrees].
+
+    At most one half angle is smaller, so the samples do not determine narrower highlights.
+    """
     cosine = cos_theta_h(samples.wi, samples.wo)
     few = np.partition(cosine, -NEAREST)[-NEAREST:] if len(cosine) > NEAREST else cosine
     different = np.unique(np.round(np.degrees(np.arccos(np.minimum(few, 1))) / SAME)) * SAME
@@ -52,9 +61,12 @@ def half_angle_step(samples: Samples) -> float:
 
 
 def half_widths(model: Model) -> NDArray[np.float64]:
-    """The half width at half maximum (lobes,) of every lobe over theta_h [degrees], along the
-    narrower axis; infinite where it does not peak in the mirror direction."""
-    found = []
+    """Return the half width at half maximum (lobes,) of every lobe over θ_h [degrees].
+
+    It is measured along the narrower axis, and infinite for a lobe that does not peak in the mirror
+    direction.
+    """
+    by_axis = []
     for phi_h in (0.0, np.pi / 2):
         wi, wo = from_half_difference(HALF_ANGLES, THETA_D, np.pi / 2, phi_h)
         above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
@@ -62,12 +74,12 @@ def half_widths(model: Model) -> NDArray[np.float64]:
         low = values < values[0] / 2
         half = np.degrees(HALF_ANGLES[above][low.argmax(axis=0)])
         peaked = low.any(axis=0) & (values.max(axis=0) <= values[0] * (1 + 1e-9))
-        found.append(np.where(peaked, half, np.inf))
-    return np.minimum(*found)
+        by_axis.append(np.where(peaked, half, np.inf))
+    return np.minimum(*by_axis)
 
 
 def lobes_of(model: Model, name: str) -> NDArray[np.intp]:
-    """The numbers of the lobes that the shape parameter `name` of a model with values changes."""
+    """Return the indices of the lobes that change with the shape parameter `name`."""
     low, high = model.parameters[name].bounds
     value = getattr(model, name)
     other = value + 0.05 * ((high if value < (low + high) / 2 else low) - value)
