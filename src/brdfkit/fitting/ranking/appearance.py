@@ -1,4 +1,4 @@
-"""How a fit looks beside the measured material: its picture, and its colour at grazing angles.
+"""Compares a fit with the measured material by a picture, and by its colour at grazing angles.
 
 Measurements end some degrees above the horizon, where a fit goes on by its formula. There light is
 reflected at the surface more and more, without a colour: what is seen lies between a colour of the
@@ -35,7 +35,7 @@ GAIN = 1.05  # times the light that arrives: fits of bright metals, whose measur
 
 
 class Appearance:
-    """What fits are held to: the pixels of a measured material, drawn once, and its colours.
+    """The pixels and colours of a measured material, with which its fits are compared.
 
     `data`: the `Measured`; `samples`: those of it that are fitted; directions at or beyond
     `max_angle` [degrees] to the normal are not in the picture. `seed`: not that of the pixels to
@@ -51,15 +51,17 @@ class Appearance:
         self.albedos = make_albedo_pixels(tuple(angles), self.azimuths).look(brdf)
 
     def picture_error(self, brdf: Brdf) -> float:
-        """RMS difference of the pixels of a BRDF from the measured ones, by sRGB's curve from 0 to
-        1, over the brightest of the measured ones."""
+        """Return the RMS difference of a BRDF's sRGB pixels from the measured ones.
+
+        It is divided by the brightest measured pixel.
+        """
         pixels, shown = self.pixels, to_srgb(self.pixels.values)
         apart = to_srgb(np.nan_to_num(pixels.look(brdf))) - shown
         error = math.sqrt(np.average((apart**2).mean(axis=1), weights=pixels.weights))
         return error / max(find_peak(shown[None]), DARKEST)
 
     def find_doubt(self, brdf: Brdf) -> str:
-        """A clause on what a BRDF does at 85° that the material hardly does; or nothing."""
+        """Return a clause on an implausible albedo or colour of a BRDF at 85°, or "" for none."""
         (albedo,) = make_albedo_pixels((GRAZING,), self.azimuths).look(brdf)
         if (albedo > GAIN * np.maximum(self.albedos.max(axis=0), 1)).any():
             return f"more light is reflected at {GRAZING:g}° than arrives"
@@ -68,7 +70,7 @@ class Appearance:
         return ""
 
     def _difference(self, colour: Array) -> float:
-        """ΔE2000 of a colour (3,) from the nearest mixture of one of the material's with grey."""
+        """Return the ΔE2000 of a colour (3,) from the nearest mixture of material and grey."""
         luminance = colour @ LUMINANCE
         own = np.maximum(self.albedos, 0)
         own = own / np.maximum(own @ LUMINANCE, 1e-9)[:, None]

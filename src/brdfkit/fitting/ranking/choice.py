@@ -1,8 +1,9 @@
 """Chooses the model that is recommended, and says why.
 
-Of the models that no other beats in both error and picture, the Pareto set, those whose pictures
-nobody tells from the best one; of these those that are tied for the least error; of these the one
-with the fewest parameters. Models whose extrapolation is doubtful stand back.
+The choice starts from the Pareto set: the models that no other beats in both error and picture.
+It keeps the models whose pictures look as good as the best one, then the models that are tied for
+the least error, and takes the one with the fewest parameters. A model with a doubtful extrapolation
+is taken only if no other can be.
 """
 
 from collections.abc import Sequence
@@ -13,7 +14,7 @@ from brdfkit.fitting.ranking.ranked import Ranked
 # Pictures that are worse than the best by less [dB] may be better when pixels are drawn anew; and
 # all that are as near as eight bits round to [dB] look the same
 NEAR, ROUNDED = 0.5, 59.0
-# How many other models of the Pareto set are described
+# Number of other models of the Pareto set that are described
 LINES = 3
 
 
@@ -33,7 +34,7 @@ class Choice:
 
     @classmethod
     def of(cls, rows: Sequence[Ranked]) -> "Choice":
-        """The choice from `Ranked` rows, some of which are of models that could be fitted."""
+        """Return the choice from rows, of which at least one has to be a model that was fitted."""
         pareto = [row for row in rows if row.pareto]
         certain = [row for row in rows if not row.doubt and not row.message]
         sound = [row for row in certain if row.pareto] or [row for row in certain if row.tied]
@@ -45,12 +46,12 @@ class Choice:
 
     @property
     def row(self) -> Ranked:
-        """The recommended one."""
+        """The row of the recommended model."""
         return min(self.tied, key=lambda row: (row.parameters, row.error))
 
     @property
     def why(self) -> str:
-        """Why it is recommended: a clause."""
+        """The reason for the recommendation, as a clause."""
         if self.pareto == [self.row]:
             return "no other model has a lesser error or a better picture"
         among = f"among the {len(self.pareto)} models that no other beats in both error and picture"
@@ -69,7 +70,7 @@ class Choice:
         return f"{among} it has the fewest parameters of {equals}"
 
     def others(self, rows: Sequence[Ranked]) -> str:
-        """A sentence on the models that are nearest to the recommended one; or nothing."""
+        """Return a sentence on the models next to the recommended one, or "" for none."""
         own = self.row
         others = [row for row in self.pareto if row is not own]
         if not others:

@@ -107,7 +107,7 @@ def rank(
     how = appearance, light, anisotropic, seed
 
     report, fits = progress or (lambda done, total: None), folds + 1
-    found: dict[str, Any] = {}
+    results: dict[str, Any] = {}
     try:
         for number, (label, model) in enumerate(classes.items()):
 
@@ -115,29 +115,29 @@ def rank(
                 report(before + done, len(classes) * fits)
 
             try:
-                found[label] = cross_validate(model, held_out, *how, step)
+                results[label] = cross_validate(model, held_out, *how, step)
             except BrdfkitError as error:
-                found[label] = error
+                results[label] = error
     except KeyboardInterrupt:
-        if not found:
+        if not results:
             raise
-    if all(isinstance(one, BrdfkitError) for one in found.values()):
-        raise next(iter(found.values()))
-    rows = rows_of(found, held_out.sum_by_block(np.ones(len(held_out.blocks))))
+    if all(isinstance(one, BrdfkitError) for one in results.values()):
+        raise next(iter(results.values()))
+    rows = rows_of(results, held_out.sum_by_block(np.ones(len(held_out.blocks))))
     return Ranking(data.name, chosen.name, rows, len(classes), time.perf_counter() - began)
 
 
 def candidates() -> list[str]:
-    """The labels of the models that are ranked where none is named."""
+    """Return the labels of the models that `rank` takes by default."""
     return [*(name for name in labels.models() if name != "mixture"), *SUMS]
 
 
 def _find_classes(models: Any) -> dict[str, type[Model]]:
-    """The classes of models by their labels; one that is named twice counts once."""
+    """Return the classes of models by their labels; a model that is named twice counts once."""
     if models is None:
         models = candidates()
     several = isinstance(models, Iterable) and not isinstance(models, str)
-    found = [labels.model(labels.load_files(m)) for m in (models if several else [models])]
-    if not found:
+    classes = [labels.model(labels.load_files(m)) for m in (models if several else [models])]
+    if not classes:
         raise BrdfkitError("There is no model to rank; name at least one.")
-    return {model.label(): model for model in found}
+    return {model.label(): model for model in classes}
