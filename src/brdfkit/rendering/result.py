@@ -159,7 +159,7 @@ class Rendering(Shown):
             beside.write_bytes(png.getvalue())
 
     def tone_mapped(self, tone_mapping: ToneMapping | str) -> Rendering:
-        """The same pictures, shown by another curve, in notebooks and PNG files.
+        """Return the pictures as another curve shows them, in notebooks and PNG files.
 
         An EXR file and all errors and differences are of the radiance itself, as before.
 

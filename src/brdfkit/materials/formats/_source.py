@@ -54,7 +54,7 @@ class Source:
 
     @cached_property
     def whole_lines(self) -> list[tuple[int, str]]:
-        """The same lines as `lines`, with the blanks and tabs at their ends."""
+        """The lines of `lines`, with the blanks and tabs at their ends."""
         numbered = enumerate(self._text, 1)
         return [(n, line) for n, line in numbered if line.strip()[:1] not in ("", "#")]
 

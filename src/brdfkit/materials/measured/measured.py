@@ -123,7 +123,7 @@ class Measured(Shown, FromAngles):
 
     @property
     def rgb(self) -> Measured:
-        """The same material in linear sRGB, or itself where it is RGB or achromatic already."""
+        """The material in linear sRGB, or itself where it is RGB or achromatic already."""
         # Not cached where it is the material itself: such a circle would keep its memory for long
         return self if self.channels == RGB or len(self.channels) == 1 else self._in_rgb
 
@@ -217,7 +217,7 @@ class Measured(Shown, FromAngles):
 
     @cached_in_turn
     def tabulated(self) -> Measured:
-        """The same material, with its `table` in place of the samples."""
+        """The material with its `table` in place of the samples."""
         if self.is_table:
             return self
         return self.from_table(
