@@ -25,7 +25,7 @@ LARGEST_IOR = 5.0
 METALLIC, RISE = 0.2, 1.1
 # A lobe with a larger half width than this is hardly a highlight [degrees]
 BROAD = 20.0
-FLAT = "the highlight does not rise towards grazing angles, as that of anything but metal should"
+FLAT = "the highlight does not rise towards grazing angles, as the highlight of a non-metal should"
 
 
 def list_lobe_notes(
