@@ -57,7 +57,7 @@ def test_the_noise_is_the_distance_to_a_picture_of_many_samples(llvm_variant, mo
     found = bk.rendering.compare_samplers(
         "studio", "plaster", scene="ball", rounds=8, spp=spp, size=size
     )
-    scenes = map_sampling._scenes("studio", bk.load("plaster"), "ball", size)
+    scenes = map_sampling._load_scenes("studio", bk.load("plaster"), "ball", size)
     truth = map_sampling._render(scenes["envmap"], 8192, 1000)
     scale = np.maximum(truth, map_sampling.DARK * truth.mean())
     for name, loaded in scenes.items():
