@@ -23,7 +23,7 @@ class Operators:
         return _combine("difference", self, other)
 
     def k(self, k: Any) -> "Smooth":
-        """Return this field as a right operand that the operator blends in over a width `k`."""
+        """Return this field as an operand that is blended over a width: ``a | b.k(0.1)``."""
         return Smooth(self, k)
 
     def translate(self, offset: Any) -> Any:

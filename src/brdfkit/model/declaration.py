@@ -11,7 +11,7 @@ from brdfkit.model.parameters import Option, Parameter
 
 
 class Declaration:
-    """The part of a `Model` that belongs to the class and not to the values."""
+    """The parameters and options that a `Model` class declares, without their values."""
 
     parameters: ClassVar[dict[str, Parameter]] = {}  # filled by __init_subclass__
     options: ClassVar[dict[str, Option]] = {}
@@ -123,7 +123,10 @@ class Declaration:
 
     @classmethod
     def is_anisotropic(cls) -> bool:
-        """Return whether the BRDF may depend on the azimuth, as a parameter follows another one."""
+        """Return whether the BRDF may depend on the azimuth.
+
+        It may if a parameter, such as alpha_v, has the value of another one, alpha_u, by default.
+        """
         return any(p.follows for p in cls.parameters.values())
 
     @classmethod

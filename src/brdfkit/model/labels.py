@@ -54,10 +54,11 @@ def models() -> Models:
 
 
 def model(label: str | type[Model]) -> type[Model]:
-    """Return the class of a label: a model's name, with options "lafortune:lobe_count=2", or a sum.
+    """Return the model class that a label names.
 
-    A sum, "ggx+ward", has the diffuse term of the first model and the other terms of all. A class
-    stands for itself. Raises `BrdfkitError` for an unknown name, and proposes the nearest.
+    A label is a model's name ("ggx"), a name with options ("lafortune:lobe_count=2"), or a sum
+    ("ggx+ward") with the diffuse term of its first model and the other terms of all its models. A
+    class is returned unchanged. Raises `BrdfkitError` for an unknown name, with the nearest one.
     """
     if isinstance(label, type) and issubclass(label, Model):
         label.make_known()

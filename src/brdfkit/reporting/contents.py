@@ -91,7 +91,7 @@ def collect_contents(
     differences = [*colour_differences(rendering).values()]
     pictures = [*rendering.pictures.values()]
 
-    # From here on, the fit to take is the first
+    # The fits are sorted from here on: the first is the recommended one
     order = order_fits(errors, loss)
     fits, errors = [fits[k] for k in order], [errors[k] for k in order]
     picture_errors = {metric: error.reorder(order) for metric, error in picture_errors.items()}

@@ -53,10 +53,10 @@ def make_mips(base: FloatArray) -> list[FloatArray]:
 
 
 def mip_level(kappa: JitFloat, z: JitFloat, side: int, coverage: float = COVERAGE) -> JitFloat:
-    """Return the level whose texel is as large as the cap with the share `coverage` of a lobe.
+    """Return the mip level whose texels are as large as the cap that holds a share of a lobe.
 
-    This is eq. 8.9, for the concentration `kappa`, a direction with the component `z`, and a base
-    of `side` texels.
+    The spherical cap holds the share `coverage` of the lobe's energy. This is eq. 8.9, for the
+    concentration `kappa`, a direction with the component `z`, and a base of `side` texels.
 
     >>> round(mip_level(100.0, 0.5, 512, coverage=0.9), 5)
     5.75745

@@ -15,8 +15,9 @@ from brdfkit.model.samples import Samples
 
 # By reciprocity: the least number of pairs, and the least factor between their two cosines
 FEWEST_PAIRS, LEAST_FACTOR = 6, 1.2
-# The powers that are a finding, and the largest share of the differences that p = 1 may leave: of
-# 194 materials none has these; times the cosine, 188 of them have
+# A fitted power p of the cosine within RECIPROCAL_POWERS is reported, if p = 1 leaves at most the
+# share LARGEST_REST of the differences. Of 194 materials none is reported; multiplied by the
+# cosine, 188 of them are.
 RECIPROCAL_POWERS, LARGEST_REST = (0.6, 1.4), 0.45
 # Near the horizon: the ranges of theta_o [degrees] that are compared; the second of the steeper
 # ones counts where the first has too few samples

@@ -35,7 +35,10 @@ def tabulate(
 
 
 def tabulate_lookup(lookup: Lookup, channels: int, anisotropic: bool) -> Table:
-    """Return the `Table` of a format's own interpolation; if not reciprocal, over 2π in phi_d."""
+    """Return a `Table` of a BRDF that a file format interpolates in its own way.
+
+    phi_d runs over π, or over 2π where the BRDF is not reciprocal.
+    """
     *others, n_phi_d = choose_table_shape(anisotropic)
     brdf = bound_lookup(lookup, anisotropic)
     if _is_reciprocal(lookup):

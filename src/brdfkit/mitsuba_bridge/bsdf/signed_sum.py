@@ -23,10 +23,10 @@ WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)
 
 
 def tabulate(model: Model, weights: AnyArray, lobes: list[int]) -> HalfVectorTable:
-    """Tabulate a sum of lobes, clamped at 0.
+    """Return a table of the sum of some lobes of a model, clamped at 0, to draw directions from.
 
-    `model` has its shape parameters; `weights` (lobes of the model, channels) are all weights, and
-    `lobes` the indices of the lobes in the sum.
+    `model` has its shape parameters; `weights` (lobes of the model, channels) has a row for every
+    lobe of the model, and `lobes` are the indices of the lobes in the sum.
     """
     weights = weights[lobes]
 

@@ -22,7 +22,7 @@ CONSTRAINTS: dict[str, Any] = {"albedo_at_most": AlbedoAtMost, "weights_at_most"
 
 
 def to_solver(value: Any) -> Any:
-    """Return the solver for an argument: a name, data or an object with `minimise`, or None."""
+    """Return the solver that a name, a dictionary of settings or a solver itself describes."""
     if isinstance(value, str):
         value = {"name": value}
     if isinstance(value, Mapping):
@@ -87,7 +87,7 @@ def require_plain(solver: Any, constraints: tuple[Any, ...]) -> None:
 
 
 def _make_from_data(kind: str, classes: Mapping[str, Any], data: Mapping[str, Any]) -> Any:
-    """Return the object of one of the `classes` from data, as `to_plain` returns them."""
+    """Rebuild an object of one of the `classes` from the data that `to_plain` made of it."""
     numbers = dict(data)
     name = numbers.pop("name", None)
     if not isinstance(name, str) or name not in classes:

@@ -23,12 +23,12 @@ from brdfkit.shadows.volumes.mesh import Mesh
 
 
 def cast_all(mesh: Mesh, light: Light) -> IntArray:
-    """Return (m,) how each triangle casts if all do."""
+    """Return for each triangle (m,) how its shadow volume counts if every triangle casts one."""
     return np.sign(compute_facing(mesh, light)).astype(int)
 
 
 def cast_light_facing(mesh: Mesh, light: Light) -> IntArray:
-    """Return (m,) how each triangle casts if those that face the light do."""
+    """Return for each triangle (m,) how its shadow volume counts if only lit triangles cast one."""
     require_solid(mesh, light)
     return is_facing_light(mesh, light).astype(int)
 

@@ -20,7 +20,7 @@ from brdfkit.inverse.photographs.search.starts import (
 DEFAULT_TAU = 0.1  # the typical difference of neighbours, in their units
 COARSEST_SIDE = 4  # texels along the longer side of the first maps
 NOISE_ROUNDS = 5  # searches until the estimate of the noise settles, at most
-SETTLED = 0.7  # a larger ratio to the noise before ends these searches
+SETTLED = 0.7  # they end when the noise is more than this share of the previous noise
 SWEEPS = 2  # times that neighbours take over better numbers
 
 

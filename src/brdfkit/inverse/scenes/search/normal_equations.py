@@ -139,7 +139,7 @@ class Equations:
         return np.sqrt(self.power) * extent <= ROUNDING
 
     def predict_gain(self, step: FloatArray) -> float:
-        """Return by how much a step (n,) should reduce E²."""
+        """Return by how much the linearised problem predicts that a step (n,) reduces E²."""
         return -float(2 * self.gradient @ step + step @ self.hessian @ step)
 
     def scale_hessian(self) -> tuple[FloatArray, FloatArray]:

@@ -18,13 +18,13 @@ BLEEDING = plain_number(0.2, (0.0, 0.99), "share of the light below which a poin
 
 
 class MomentMap:
-    """The means of moments over a square about any place of a map.
+    """A shadow map that holds moments of depth, averaged over a square about any place.
 
     moments : function from the tensor of depths to the list of tensors of moments.
     depths : the depths of the map.
     blur : texels on each side of a texel over which its moments are averaged; places between
         texels are interpolated.
-    bleeding : the share of light that counts as a leak.
+    bleeding : shares of light up to this one count as leaks, and become 0.
     """
 
     def __init__(
