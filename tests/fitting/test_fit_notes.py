@@ -12,7 +12,7 @@ import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.fitting.lobe_notes import list_lobe_notes
-from brdfkit.fitting.lobe_widths import half_angle_step, half_widths
+from brdfkit.fitting.lobe_widths import compute_half_widths, find_half_angle_spacing
 from brdfkit.materials.extrapolation import describe_extrapolation, note_extrapolation
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.selection import select_samples
@@ -199,14 +199,14 @@ def test_one_bright_sample_makes_no_rim():
 
 def test_widths_and_steps_are_those_of_formulas():
     """D of GGX falls to half where tan² θ_h = (√2 - 1) α²; G and F hardly change there."""
-    diffuse, lobe = half_widths(model("ggx", alpha_u=0.02))
+    diffuse, lobe = compute_half_widths(model("ggx", alpha_u=0.02))
     assert diffuse == np.inf
     assert lobe == pytest.approx(np.degrees(np.sqrt(np.sqrt(2) - 1) * 0.02), rel=0.04)
     for step in (5.0, 15.0):
         data = measure(PAINT, step=step)
-        assert half_angle_step(select_samples(data, 80.0)) == pytest.approx(step / 2)
+        assert find_half_angle_spacing(select_samples(data, 80.0)) == pytest.approx(step / 2)
     table = Measured.from_table(np.full((90, 4, 6, 3), 0.1))
-    assert half_angle_step(select_samples(table, 80.0)) < 0.1
+    assert find_half_angle_spacing(select_samples(table, 80.0)) < 0.1
 
 
 def test_all_that_show_a_fit_show_its_notes(tmp_path):

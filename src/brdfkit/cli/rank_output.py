@@ -27,12 +27,12 @@ def recommend(
     the settings of the fit. An interrupted ranking ends the command.
     """
     from brdfkit.fitting.ranking import rank
-    from brdfkit.fitting.settings import require_plain
+    from brdfkit.fitting.settings import require_no_sample_settings
 
     if BEST not in names:
         return names, None
     if how["loss"] == "picture":  # the fit would refuse these settings only after the ranking
-        require_plain(robust=how.get("robust"), spectral=how.get("spectral"))
+        require_no_sample_settings(robust=how.get("robust"), spectral=how.get("spectral"))
     for setting, option in IGNORED_OPTIONS.items():
         if how.get(setting):
             print_message(f"models are ranked without --{option}; the fit then uses it.")

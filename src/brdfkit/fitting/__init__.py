@@ -1,6 +1,6 @@
-"""The verbs of fitting: `fit`, `compare`, `rank` and `sweep`, and the uncertainty of fits.
+"""Fits BRDF models to measured materials: `fit`, `compare`, `rank`, `sweep` and `uncertainty`.
 
-The numerics behind them, which do not know `Measured`, are in `brdfkit.regression`.
+The numerical methods are in `brdfkit.regression`, which does not depend on the class `Measured`.
 """
 
 import lazy_loader

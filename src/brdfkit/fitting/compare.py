@@ -1,4 +1,4 @@
-"""`compare`: a table of how well models describe a measured material, and of their albedos."""
+"""`compare`: a table of the errors and albedos of several models of one measured material."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from brdfkit.regression.light import ANISOTROPIC_AZIMUTHS, ISOTROPIC_AZIMUTHS, m
 from brdfkit.regression.losses.loss import squared_differences
 from brdfkit.regression.losses.named_losses import DEFAULT
 
-# The losses that every table shows, besides those that fits minimised
+# Losses that every table shows, in addition to those that the compared fits minimised
 USUAL_LOSSES = "cosine", "log", "cbrt", "plain"
 
 
@@ -40,15 +40,18 @@ class Comparison(Shown):
     material : str
         Name of the measured material.
     errors : dict
-        Name → loss → E, in the units of `brdfkit.losses.named`, the best by the cbrt loss first;
-        nan where a loss weighs no sample.
+        Errors E by the name of the BRDF, then by the name of the loss. `brdfkit.losses.named` has
+        their units. The BRDF with the least cbrt loss is first. An error is nan where the loss
+        gives every sample the weight 0.
     albedos : dict
-        Name → the directional albedo at 5°, 45° and 75° of incidence, the mean over the channels.
+        Directional albedos at 5°, 45° and 75° of incidence, as means over the channels, by the
+        name of the BRDF.
     measured_albedo : tuple of float
-        The albedo of the measured material at the same angles; nan where its samples do not
-        determine it.
+        Albedos of the measured material at these angles; nan where its samples do not determine
+        them.
     shown : tuple of str
-        The losses of the table: the usual ones, and those that the compared fits minimised.
+        Names of the losses in the table: the usual ones, and those that the compared fits
+        minimised.
     """
 
     material: str
@@ -63,9 +66,9 @@ class Comparison(Shown):
         return next(iter(self.errors))
 
     def document(self) -> Document:
-        """Return the table: a row for the measurement and for each BRDF, its errors and albedos.
+        """Return the table, with a row for the measurement and one for each BRDF.
 
-        The least error under each loss is bold, and albedos that are wrong are marked.
+        The least error under each loss is bold, and wrong albedos are marked.
         """
         table = np.array([[row[loss] for loss in self.shown] for row in self.errors.values()])
         is_least = table == np.nanmin(np.vstack([table, np.full(len(self.shown), np.inf)]), axis=0)
@@ -87,7 +90,7 @@ class Comparison(Shown):
 
 
 def choose_losses_to_show(*minimised: str) -> list[str]:
-    """Return the usual losses and those that fits `minimised`, in the order of `losses.named`.
+    """Return the names of the usual losses and of the `minimised` ones, in the usual order.
 
     >>> choose_losses_to_show("relative")
     ['cosine', 'log', 'cbrt', 'plain', 'relative']
@@ -114,18 +117,18 @@ def compare(
     material : Measured, str or Path
         The measured material, or its name or path.
     fits : Fit, Model, Measured, str, Path or dict, or several
-        What is compared to it; equal names are numbered.
+        The BRDFs to compare; equal names are numbered.
     max_angle : float, default 80
         Largest angle to the normal [degrees, above 0 to 90]; samples at or beyond it are left out,
         as in `fit`.
     spectral : bool, default False
-        Whether to compare at the measured wavelengths, which all `fits` must have, too; otherwise
-        in linear sRGB.
+        Whether to compare at the measured wavelengths instead of in linear sRGB. Then all `fits`
+        must have the same wavelengths.
 
     Returns
     -------
     Comparison
-        The errors, sorted by the cbrt loss, the best first, and the albedos; prints as a table.
+        The errors, least cbrt loss first, and the albedos; prints as a table.
 
     Raises
     ------
@@ -147,8 +150,8 @@ def compare(
     errors: dict[str, dict[str, float]] = {}
     albedos: dict[str, tuple[float, ...]] = {}
     for thing in materials:
-        name, brdf = make_unique(thing.name, errors), thing if spectral else _in_rgb(thing)
-        values = _evaluate(brdf, data, samples)
+        name, brdf = make_unique(thing.name, errors), thing if spectral else _to_rgb_channels(thing)
+        values = _evaluate_at_samples(brdf, data, samples)
         errors[name] = {
             loss: _compute_error(losses.named.by_sample[loss], values, samples)
             for loss in losses.named.by_sample
@@ -161,20 +164,23 @@ def compare(
     return Comparison(data.name, errors, albedos, light.means, tuple(shown))
 
 
-def _in_rgb(brdf: Any) -> Any:
-    """Return a material in linear sRGB, or itself if it has no other channels."""
+def _to_rgb_channels(brdf: Any) -> Any:
+    """Return a material with linear sRGB channels; one that has no other channels is unchanged."""
     return getattr(brdf, "rgb", brdf)
 
 
 def _compute_albedos(brdf: Any, pixels: Pixels) -> tuple[float, ...]:
-    """Return the mean albedos of a BRDF at `ANGLES`, by the quadrature of `pixels`."""
+    """Return the albedos of a BRDF at `ANGLES`, as means over the channels, by quadrature."""
     if isinstance(brdf, Measured):
         return brdf.albedo.means
     return tuple(pixels.look(brdf.eval).mean(axis=1).tolist())
 
 
-def _evaluate(brdf: Any, data: Measured, samples: Samples) -> FloatArray:
-    """Return the values (n, channels) of a BRDF at samples of a measured material."""
+def _evaluate_at_samples(brdf: Any, data: Measured, samples: Samples) -> FloatArray:
+    """Return the values (n, channels) of a BRDF in the directions of the samples of a material.
+
+    Raises `BrdfkitError` if the BRDF and the measured `data` have different channels.
+    """
     values: FloatArray = brdf.eval(samples.wi, samples.wo)
     if values.shape[1] not in (1, samples.values.shape[1]):
         raise BrdfkitError(
@@ -185,7 +191,7 @@ def _evaluate(brdf: Any, data: Measured, samples: Samples) -> FloatArray:
 
 
 def _compute_error(loss: Loss, values: FloatArray, samples: Samples) -> float:
-    """Return the error E of `values` (n, channels) at samples; nan if the loss weighs none."""
+    """Return the error E of `values` (n, channels) at samples; nan if all their weights are 0."""
     importance = loss.importance(samples)
     return (
         math.sqrt(importance @ squared_differences(loss, values, samples))

@@ -14,8 +14,7 @@ from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress
 from brdfkit.core.version import find_versions
-from brdfkit.fitting.light_of_data import light_of_data
-from brdfkit.fitting.notes import list_notes
+from brdfkit.fitting.notes import list_fit_notes
 from brdfkit.fitting.settings import (
     Bounds,
     Constraints,
@@ -23,8 +22,9 @@ from brdfkit.fitting.settings import (
     LossLike,
     ModelLike,
     require_material_first,
-    require_plain,
+    require_no_sample_settings,
 )
+from brdfkit.fitting.target_albedo import find_target_albedo
 from brdfkit.images.ball import draw_pixels
 from brdfkit.materials.extrapolation import note_extrapolation
 from brdfkit.materials.measured.selection import select_samples
@@ -79,9 +79,9 @@ def fit(
         function (model, measured, cos_i, cos_o) of Dr.Jit arrays that returns the difference of a
         model value from a measured one.
     weights : array_like, shape (n,), optional
-        Factors of the samples, or of the cells of a table, in the table's shape or flat. They
-        multiply the share of the loss's measure of directions that each sample stands for. By
-        default all are 1.
+        Weights of the samples, or of the cells of a table in the table's shape or flat. Each is
+        multiplied by the share of directions that the loss assigns to the sample. By default all
+        are 1.
     use_standard_error : bool, default True
         Whether samples whose stated standard error exceeds the model's own error count less. It
         has no effect on measurements without standard errors.
@@ -94,24 +94,24 @@ def fit(
         or an object of your own with the same method. By default `LevenbergMarquardt`, or `SLSQP`
         where there are constraints.
     constraints : constraint or several, optional
-        Conditions on the model: `AlbedoAtMost`, `WeightsAtMost`, or functions of the model with
-        its values that return one number or several, each of which is negative where the
+        Conditions on the model: `AlbedoAtMost`, `WeightsAtMost`, or functions that receive the
+        model with its values and return one number or several, which are negative where the
         condition is violated. Functions are differentiated by finite differences.
     starts : int, optional
-        Number of points from which the search starts: the defaults, and others spread over the
-        bounds. By default 16 for each searched parameter, at most 96.
+        Number of points from which the search starts: the first has the default values, and the
+        others are spread over the bounds. By default 16 for each searched parameter, at most 96.
     bounds : dict of str to (float, float), optional
         Narrower bounds of shape parameters, as ``{"alpha_u": (0.01, 0.5)}``.
     fixed : dict of str to float, optional
-        Shape parameters that keep a value, as ``{"f0": 0.04}``.
+        Values of shape parameters that are not searched, as ``{"f0": 0.04}``.
     anisotropic : bool, optional
         Whether ``alpha_v`` and similar parameters are searched; otherwise they follow
         ``alpha_u``. By default they are searched where the measurement is anisotropic.
     max_angle : float, default 80
         Largest angle to the normal [degrees, above 0 to 90]; samples at or beyond it are left out.
     spectral : bool, default False
-        Whether to fit at the measured wavelengths, with a weight for each, all of which count
-        alike; otherwise in linear sRGB.
+        Whether to fit at the measured wavelengths, with a weight for each, instead of in linear
+        sRGB. All wavelengths count alike.
     seed : int, default 0
         Seed of the starts, and of the part of a large table on which they are compared; equal
         seeds give equal fits.
@@ -158,9 +158,10 @@ def fit(
     error = to_loss(loss)
     samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
 
-    light = light_of_data(data if spectral else data.rgb, weights, max_angle)
+    light = find_target_albedo(data if spectral else data.rgb, weights, max_angle)
 
     def to_fit(solution: Any) -> Fit:
+        """Return the `Fit` of a `Solution`, with its albedo, notes and warnings."""
         known = wavelengths(data) if spectral else ()
         fitted = make_model(model_class, solution.shapes, solution.weights, known)
         albedo = light.judge(fitted.eval)
@@ -173,17 +174,17 @@ def fit(
             samples=len(samples.wi),
             evaluations=solution.evaluations,
             seconds=time.perf_counter() - began,
-            message=_add_warning(solution.message) if warnings else solution.message,
+            message=_add_albedo_warning(solution.message) if warnings else solution.message,
             at_bounds=solution.at_bounds,
             certainty=solution.certainty,
             notes=(
                 *solution.notes,
                 *warnings,
-                *list_notes(data, samples, error, solution, fitted, weights is not None),
+                *list_fit_notes(data, samples, error, solution, fitted, weights is not None),
                 *note_extrapolation(data, float(max_angle)),
             ),
             albedo=albedo,
-            **describe_weights(error, samples, max_angle),
+            **measure_sample_coverage(error, samples, max_angle),
             settings=settings.to_record(),
             checksum=data.checksum,
             versions=dict(find_versions()),
@@ -191,12 +192,15 @@ def fit(
 
     solve = regress if samples.errors is None else regress_noisy
     if isinstance(error, Picture):
-        require_plain(robust=robust, weights=weights, spectral=spectral)
+        require_no_sample_settings(robust=robust, weights=weights, spectral=spectral)
         pixels = draw_pixels(error.lights, data.rgb.eval, max_angle, settings.seed)
         solve = partial(regress, pixels=pixels)
-    # A sum over samples, whatever they stand for, has no light to keep
+    # A loss that weighs all samples alike does not know their solid angles, so it cannot compare
+    # the albedo of the fit with the measured one
     without_light = getattr(error, "measure", None) == "samples" or light.has_another_unit
-    search: dict[str, Any] = settings.of_search() | {"light": None if without_light else light}
+    search: dict[str, Any] = settings.search_arguments() | {
+        "light": None if without_light else light
+    }
     try:
         return to_fit(solve(model_class, samples, error, **search, report=progress))
     except Interrupted as stop:
@@ -206,15 +210,22 @@ def fit(
         ) from None
 
 
-def _add_warning(message: str) -> str:
-    """Return the message of a search with a warning that the albedo of the fit is wrong."""
+def _add_albedo_warning(message: str) -> str:
+    """Return the message of a converged search with the warning that the fit's albedo is wrong."""
     end, semicolon, details = message.partition(";")
     converged = end.startswith(("converged", "settled"))
     return f"{end}, but its light is wrong{semicolon}{details}" if converged else message
 
 
-def describe_weights(loss: Loss | Picture, samples: Samples, max_angle: float) -> dict[str, float]:
-    """Return `Fit.effective_samples` and `Fit.unrepresented` of fitted samples by their names."""
+def measure_sample_coverage(
+    loss: Loss | Picture, samples: Samples, max_angle: float
+) -> dict[str, float]:
+    """Return the values of `Fit.effective_samples` and `Fit.unrepresented`, by these names.
+
+    The first is the number of samples with equal weights that would be as informative; the second
+    is the share of directions up to `max_angle` [degrees] without samples. A fit to a `Picture` has
+    neither.
+    """
     if isinstance(loss, Picture):
         return {}
     weights = loss.importance(samples)

@@ -1,4 +1,4 @@
-"""Notes on colours: of lobes that only make sense in their sum, and of a fit at grazing angles."""
+"""Writes notes on implausible colours of a fit: of single lobes, and at grazing angles."""
 
 from __future__ import annotations
 
@@ -12,26 +12,27 @@ from brdfkit.model import Model
 from brdfkit.model.samples import Samples
 from brdfkit.model.samples.measures import compute_measure
 
-# A lobe has a pure colour where its least channel is below the share PURE of its largest; two
-# colours differ in hue where the cosine between them is below ALIKE
+# A colour is pure if its smallest channel is below this share of its largest; two colours have
+# different hues if the cosine of the angle between their RGB vectors is below ALIKE
 PURE, ALIKE = 0.1, 0.5
-# Lobes with a smaller share of the highlight's albedo than this get no note
+# No note is written on a lobe with a smaller share of the highlight's albedo
 FAINT = 0.05
-# Samples whose cosine of the half angle θ_h is above this form the highlight of the material
+# Samples whose half vector is within 5° of the normal form the highlight of the material
 HIGHLIGHT = np.cos(np.radians(5))
-# The rim: samples within RIM degrees of the most grazing, if these lie at least OBLIQUE degrees
-# from the normal. The share of R, G or B may be wrong by OFF. At least SPREAD samples have to share
-# the light, because a few bright samples do not determine a colour
-RIM, OBLIQUE, OFF, SPREAD = 10.0, 60.0, 0.1, 30
+# Colours are compared in the last 10° before the most grazing sample, if this is at least 60° from
+# the normal. There the shares of R, G and B in the sum may differ by 0.1
+RIM, OBLIQUE, OFF = 10.0, 60.0, 0.1
+# Effective number of samples that determine a colour: a few bright ones alone do not
+SPREAD = 30
 
 
 def note_on_lobe_colours(
     samples: Samples, fitted: Model, albedos: NDArray[np.float64]
 ) -> list[str]:
-    """Return the note, if any, on lobes that have pure colours of different hues.
+    """Return a note if the lobes have pure colours of different hues, which the highlight lacks.
 
-    There is no note where the measured highlight has a pure colour, too. `albedos` (lobes, 3) are
-    the albedos of the lobes.
+    Such lobes only have a meaning in their sum. `albedos` (lobes, 3) are the albedos of the lobes.
+    The list is empty if there is nothing to note.
     """
     if albedos.shape[1] != 3 or samples.values.shape[1] != 3:
         return []
@@ -41,7 +42,7 @@ def note_on_lobe_colours(
     names = [
         fitted.weights()[k]
         for k in pure
-        if any(_cosine(albedos[k], albedos[other]) < ALIKE for other in pure)
+        if any(_compare_hues(albedos[k], albedos[other]) < ALIKE for other in pure)
     ]
     if not names:
         return []
@@ -56,10 +57,10 @@ def note_on_lobe_colours(
     ]
 
 
-def note_on_rim(data: Measured, samples: Samples, fitted: Model) -> list[str]:
-    """Return the note, if any, on a fit whose colour differs from the measured one at the rim.
+def note_on_grazing_colour(data: Measured, samples: Samples, fitted: Model) -> list[str]:
+    """Return a note if the fit has another colour than the samples at the most grazing angles.
 
-    The rim are the most grazing of the fitted samples.
+    The list is empty if there is nothing to note.
     """
     if samples.values.shape[1] != 3 or fitted.wavelengths:
         return []
@@ -69,12 +70,14 @@ def note_on_rim(data: Measured, samples: Samples, fitted: Model) -> list[str]:
         return []
     rim = samples.at(cosine < np.cos(np.radians(largest - RIM)))
     light = rim.weight * rim.wi[:, 2] * rim.wo[:, 2]
-    if data.is_table:  # its cells are small and many in the highlight
+    if data.is_table:  # small cells in the highlight must not count as much as large ones
         light = light * compute_measure(rim.extents, "solid_angle")
     each = light * np.maximum(rim.values, 0).sum(axis=1)
     if not each.sum() or each.sum() ** 2 < SPREAD * (each**2).sum():
-        return []  # dark, or a few bright samples
-    ours, theirs = (_shares(light @ values) for values in (fitted.eval(rim.wi, rim.wo), rim.values))
+        return []  # the rim is black, or only a few samples are bright
+    ours, theirs = (
+        _normalise_colour(light @ values) for values in (fitted.eval(rim.wi, rim.wo), rim.values)
+    )
     if np.abs(ours - theirs).max() < OFF:
         return []
     modelled, measured = (" : ".join(f"{100 * s:.0f}" for s in shares) for shares in (ours, theirs))
@@ -84,13 +87,13 @@ def note_on_rim(data: Measured, samples: Samples, fitted: Model) -> list[str]:
     ]
 
 
-def _shares(colour: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the shares of R, G and B in a colour; negative values count as 0."""
+def _normalise_colour(colour: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the shares of R, G and B in the sum of a colour; negative values count as 0."""
     positive = colour.clip(min=0)
     return positive / (positive.sum() + 1e-300)
 
 
-def _cosine(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
-    """Return the cosine of the angle between two colours, which is 1 for equal hues."""
+def _compare_hues(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+    """Return the cosine of the angle between two RGB colours; it is 1 for equal hues."""
     lengths = float(np.linalg.norm(one) * np.linalg.norm(other))
     return float(one @ other) / (lengths + 1e-300)

@@ -1,4 +1,4 @@
-"""Notes on lobes of a fit that have no physical meaning, although the search converged."""
+"""Writes notes on lobes of a fit that have no physical meaning, although the search converged."""
 
 from __future__ import annotations
 
@@ -8,30 +8,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.core.names import join_words
-from brdfkit.fitting.lobe_colours import note_on_lobe_colours, note_on_rim
-from brdfkit.fitting.lobe_widths import half_widths, lobes_of, notes_on_widths, width_power
+from brdfkit.fitting.lobe_colours import note_on_grazing_colour, note_on_lobe_colours
+from brdfkit.fitting.lobe_widths import (
+    compute_half_widths,
+    find_lobes_with_parameter,
+    find_width_exponent,
+    list_narrow_lobe_notes,
+)
 from brdfkit.materials.measured import Measured
 from brdfkit.model import Model
 from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.model.samples import Samples
 from brdfkit.regression.light import make_albedo_pixels
 
-# The incidences at which the albedo of a lobe is computed [degrees], and the albedo above which it
-# reflects more than arrives
-INCIDENCES, GAIN = (5, 45, 75), 1.05
-# No surface has an index of refraction above this
-LARGEST_IOR = 5.0
-# A highlight with a smaller albedo at 5° is not a metal's, and should rise by this factor to 75°
+INCIDENCES = 5, 45, 75  # angles of incidence at which the albedo of a lobe is computed [degrees]
+GAIN = 1.05  # a lobe with a larger albedo reflects more light than arrives
+LARGEST_IOR = 5.0  # no surface has a larger index of refraction
+# A highlight whose albedo at 5° is below METALLIC belongs to a non-metal. Fresnel reflection should
+# then raise its albedo at least by the factor RISE from 5° to 75°
 METALLIC, RISE = 0.2, 1.1
-# A lobe with a larger half width than this is hardly a highlight [degrees]
-BROAD = 20.0
+BROAD = 20.0  # a lobe with a larger half width [degrees] is hardly a highlight
 FLAT = "the highlight does not rise towards grazing angles, as the highlight of a non-metal should"
 
 
 def list_lobe_notes(
     data: Measured, samples: Samples, fitted: Model, at_bounds: tuple[str, ...]
 ) -> list[str]:
-    """Return sentences on lobes that have no physical meaning.
+    """Return notes, as sentences, on lobes of a fitted model that have no physical meaning.
 
     Parameters
     ----------
@@ -47,36 +50,40 @@ def list_lobe_notes(
     Returns
     -------
     list of str
-        Sentences on lobes that reflect more light than arrives, are not used, are narrower than
-        the samples can show, or have pure colours that the highlight lacks; on parameters at their
-        bounds; on Fresnel parameters that no surface has; and on a wrong colour at grazing angles.
+        Sentences on lobes that reflect more light than arrives, that have weight 0, that are
+        narrower than the spacing of the samples, or whose pure colours the highlight lacks; on
+        parameters at their bounds; on impossible Fresnel parameters; and on a wrong colour at
+        grazing angles.
 
     Examples
     --------
     >>> ward = models()["ward"](specular_reflectance=208)
     >>> list_lobe_notes(paint, samples, ward, ())    # doctest: +SKIP
     """
-    if fitted.has_signed_weights():  # then only the sum of the terms has a meaning
+    if fitted.has_signed_weights():  # lobes that cancel each other have no meaning alone
         return []
-    albedos = lobe_albedos(fitted)
+    albedos = compute_lobe_albedos(fitted)
     diffuse = np.array([lobe.diffuse for lobe in fitted.lobes()])
     highlight = albedos[:, ~diffuse].sum(axis=1).max(axis=1)
-    narrow = notes_on_widths(samples, fitted)
+    narrow = list_narrow_lobe_notes(samples, fitted)
     others = tuple(name for name in at_bounds if name not in narrow)
-    other_unit = data.rgb.albedo.has_another_unit  # then no lobe means anything
+    other_unit = data.rgb.albedo.has_another_unit  # then no albedo has a meaning
     return [
-        *([] if other_unit else _list_gains(fitted, albedos)),
-        *_list_unused(fitted, at_bounds),
-        *_list_fresnel(fitted),
-        *_list_bounds(fitted, others, highlight),
+        *([] if other_unit else _list_amplifying_lobes(fitted, albedos)),
+        *_list_unused_lobes(fitted, at_bounds),
+        *_list_impossible_fresnel_values(fitted),
+        *_list_parameters_at_bounds(fitted, others, highlight),
         *narrow.values(),
         *note_on_lobe_colours(samples, fitted, albedos[INCIDENCES.index(45)]),
-        *note_on_rim(data, samples, fitted),
+        *note_on_grazing_colour(data, samples, fitted),
     ]
 
 
-def lobe_albedos(model: Model) -> NDArray[np.float64]:
-    """Return the directional albedo (incidences, lobes, channels) of each lobe with its weight."""
+def compute_lobe_albedos(model: Model) -> NDArray[np.float64]:
+    """Return the directional albedo of each lobe, times its weight, at the angles `INCIDENCES`.
+
+    The shape is (incidences, lobes, channels).
+    """
     both = make_albedo_pixels(INCIDENCES).look(
         lambda wi, wo: np.hstack(compute_lobe_values(model, wi, wo))
     )
@@ -85,8 +92,11 @@ def lobe_albedos(model: Model) -> NDArray[np.float64]:
     return plain * weights + squared * weights**2
 
 
-def _list_gains(fitted: Model, albedos: NDArray[np.float64]) -> list[str]:
-    """Return a sentence on each lobe that reflects more light than arrives, even alone."""
+def _list_amplifying_lobes(fitted: Model, albedos: NDArray[np.float64]) -> list[str]:
+    """Return a sentence on each lobe that reflects more light than arrives.
+
+    `albedos` (incidences, lobes, channels) are the albedos of the lobes.
+    """
     notes = []
     for name, weight, albedo in zip(
         fitted.weights(), to_weight_matrix(fitted), albedos.max(axis=2).T, strict=True
@@ -100,8 +110,8 @@ def _list_gains(fitted: Model, albedos: NDArray[np.float64]) -> list[str]:
     return notes
 
 
-def _list_unused(fitted: Model, at_bounds: tuple[str, ...]) -> list[str]:
-    """Return a sentence on each lobe with weight 0, except diffuse ones."""
+def _list_unused_lobes(fitted: Model, at_bounds: tuple[str, ...]) -> list[str]:
+    """Return a sentence on each lobe whose weight ended on its bound 0, except diffuse lobes."""
     return [
         f"the lobe of {name} is not used: its weight is 0"
         for name, lobe in fitted.terms()
@@ -109,35 +119,36 @@ def _list_unused(fitted: Model, at_bounds: tuple[str, ...]) -> list[str]:
     ]
 
 
-def _list_fresnel(fitted: Model) -> list[str]:
-    """Return a sentence on each Fresnel parameter with a value that no surface has."""
+def _list_impossible_fresnel_values(fitted: Model) -> list[str]:
+    """Return a sentence on each Fresnel parameter whose value is impossible for a real surface."""
     values = {name: getattr(fitted, name) for name in fitted.shapes()}
-    high = [n for n, value in values.items() if _is(n, "ior") and value > LARGEST_IOR]
-    above = [n for n, value in values.items() if _is(n, "f0") and value > 1]
+    high = [n for n, value in values.items() if _is_parameter(n, "ior") and value > LARGEST_IOR]
+    above = [n for n, value in values.items() if _is_parameter(n, "f0") and value > 1]
     return [
         *(
             f"{name} = {values[name]:.3g} is the index of refraction of no surface: it says only "
             "that the lobe hardly rises towards grazing angles"
-            for name in _of_lit_lobes(fitted, high)
+            for name in _keep_parameters_of_used_lobes(fitted, high)
         ),
         *(
             f"{name} = {values[name]:.3g} is a reflectance above 1: only its product with the "
             "weight means something"
-            for name in _of_lit_lobes(fitted, above)
+            for name in _keep_parameters_of_used_lobes(fitted, above)
         ),
     ]
 
 
-def _list_bounds(
+def _list_parameters_at_bounds(
     fitted: Model, at_bounds: tuple[str, ...], highlight: NDArray[np.float64]
 ) -> list[str]:
-    """Return sentences on the shape parameters of used lobes that ended on their bounds.
+    """Return sentences on the shape parameters in `at_bounds`, which ended on their bounds.
 
-    `highlight` is the albedo (incidences,) of all lobes except the diffuse ones.
+    Parameters of lobes with weight 0 are left out. `highlight` (incidences,) is the albedo of all
+    lobes except the diffuse ones.
     """
     by_meaning: dict[str, list[str]] = {}
     shapes = [n for n in fitted.shapes(anisotropic=True) if n in at_bounds]
-    for name in _of_lit_lobes(fitted, shapes):
+    for name in _keep_parameters_of_used_lobes(fitted, shapes):
         if meaning := _explain_bound(fitted, name, highlight):
             by_meaning.setdefault(meaning, []).append(name)
     notes = []
@@ -149,35 +160,37 @@ def _list_bounds(
 
 
 def _explain_bound(fitted: Model, name: str, highlight: NDArray[np.float64]) -> str:
-    """Return what it means that the shape parameter `name` ended on a bound of the model.
+    """Return a clause on what it means that the shape parameter `name` ended on a model's bound.
 
-    The text is empty where this is usual, and where the user set the bound.
+    It is empty where this is usual, and where the bound is the user's own. `highlight`
+    (incidences,) is the albedo of all lobes except the diffuse ones.
     """
-    value, width = getattr(fitted, name), width_power(fitted, name)
+    value, width = getattr(fitted, name), find_width_exponent(fitted, name)
     low, high = fitted.parameters[name].bounds
     upper = math.isclose(value, high, rel_tol=1e-5)
     if not upper and not math.isclose(value, low, rel_tol=1e-5, abs_tol=1e-9):
         return ""
-    if (_is(name, "f0") or _is(name, "ior")) and not upper:
+    if (_is_parameter(name, "f0") or _is_parameter(name, "ior")) and not upper:
         return "such a lobe shines at grazing angles alone, and its weight is no reflectance"
-    if _is(name, "f0"):  # usual for metals, and for one lobe of several
+    if _is_parameter(name, "f0"):  # f0 = 1 is usual for metals, and for one lobe of several
         is_flat = highlight[0] < METALLIC and highlight[-1] < RISE * highlight[0]
         return FLAT if is_flat else ""
     if width and upper == (width < 0):
         return "such a lobe is as narrow as the model allows, and its width is a guess"
-    if width and half_widths(fitted)[lobes_of(fitted, name)].min() > BROAD:
+    # The half width along the narrower axis excludes streaks, which are broad along one axis only
+    if width and compute_half_widths(fitted)[find_lobes_with_parameter(fitted, name)].min() > BROAD:
         return (
             "such a lobe is as broad as the model allows, hardly a highlight; one lobe fewer may do"
         )
-    return ""  # also for a streak, which is broad along one axis only
+    return ""
 
 
-def _of_lit_lobes(fitted: Model, names: list[str]) -> list[str]:
-    """Return the shape parameters among `names` that belong to a lobe that is not black."""
+def _keep_parameters_of_used_lobes(fitted: Model, names: list[str]) -> list[str]:
+    """Return those of the shape parameters `names` that change a lobe whose weight is not 0."""
     lit = to_weight_matrix(fitted).any(axis=1)
-    return [name for name in names if lit[lobes_of(fitted, name)].any()]
+    return [name for name in names if lit[find_lobes_with_parameter(fitted, name)].any()]
 
 
-def _is(name: str, what: str) -> bool:
-    """Return whether `name` is the parameter `what`, alone or of a term, as f0 in "ggx_2_f0"."""
-    return name == what or name.endswith(f"_{what}")
+def _is_parameter(name: str, kind: str) -> bool:
+    """Return whether `name` is a parameter of this kind: "f0" or, in a sum, "ggx_2_f0" for "f0"."""
+    return name == kind or name.endswith(f"_{kind}")

@@ -1,4 +1,8 @@
-"""Finds lobes that are narrower than the samples can show, and the parameters of their widths."""
+"""Finds lobes that are narrower than the spacing of the samples, so that their width is a guess.
+
+The half angle θ_h is the angle between the half vector and the normal; the difference angle θ_d is
+the angle between the half vector and the direction of incidence.
+"""
 
 from __future__ import annotations
 
@@ -10,28 +14,30 @@ from brdfkit.model import Model
 from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.model.samples import Samples
 
-# The half angles θ_h at which a lobe is evaluated [rad], and their difference angle θ_d [rad]
+# Half angles θ_h at which a lobe is evaluated, and the difference angle θ_d of all of them [rad]
 HALF_ANGLES = np.concatenate([[0.0], np.geomspace(1e-5, 1.2, 400)])
 THETA_D = np.radians(20)
-# Half angles that differ by less count as equal [degrees], because goniometers round their angles
+# Half angles with a smaller difference [degrees] count as equal: goniometers round their angles
 SAME = 0.01
-# Number of samples nearest to the mirror direction whose half angles are compared
+# Number of samples, nearest to the mirror direction, in which the spacing is searched
 NEAREST = 1_000
 
 
-def notes_on_widths(samples: Samples, fitted: Model) -> dict[str, str]:
+def list_narrow_lobe_notes(samples: Samples, fitted: Model) -> dict[str, str]:
     """Return a sentence on each lobe whose highlight is narrower than the spacing of the samples.
 
-    The keys are the names of the parameters that make the lobes so narrow.
+    The keys are the names of the parameters that make these lobes narrow.
     """
-    widths = [n for n in fitted.shapes(anisotropic=True) if width_power(fitted, n)]
-    step = half_angle_step(samples) if widths else 0.0
+    widths = [n for n in fitted.shapes(anisotropic=True) if find_width_exponent(fitted, n)]
+    step = find_half_angle_spacing(samples) if widths else 0.0
     notes = {}
-    for k, half_width in enumerate(half_widths(fitted) if step else ()):
-        own = [n for n in widths if half_width < step / 2 and k in lobes_of(fitted, n)]
+    for k, half_width in enumerate(compute_half_widths(fitted) if step else ()):
+        own = [
+            n for n in widths if half_width < step / 2 and k in find_lobes_with_parameter(fitted, n)
+        ]
         if not own or not to_weight_matrix(fitted)[k].any():
             continue
-        name = min(own, key=lambda n: getattr(fitted, n) ** width_power(fitted, n))
+        name = min(own, key=lambda n: getattr(fitted, n) ** find_width_exponent(fitted, n))
         notes[name] = (
             f"{name} = {getattr(fitted, name):.3g} makes a lobe of the half width "
             f"{half_width:.2g}°, where the half vectors of the samples are {step:.2g}° apart: its "
@@ -40,8 +46,8 @@ def notes_on_widths(samples: Samples, fitted: Model) -> dict[str, str]:
     return notes
 
 
-def width_power(model: Model, name: str) -> float:
-    """Return the power p of a shape parameter to which the lobe's width is proportional.
+def find_width_exponent(model: Model, name: str) -> float:
+    """Return the power of a shape parameter to which the width of its lobe is proportional.
 
     It is 0 for a parameter that does not set a width.
     """
@@ -49,10 +55,10 @@ def width_power(model: Model, name: str) -> float:
     return model.parameters[parameter.follows or name].width
 
 
-def half_angle_step(samples: Samples) -> float:
+def find_half_angle_spacing(samples: Samples) -> float:
     """Return the second smallest half angle θ_h of samples [degrees].
 
-    At most one half angle is smaller, so the samples do not determine narrower highlights.
+    A narrower highlight contains samples at one half angle only, which do not determine its width.
     """
     cosine = cos_theta_h(samples.wi, samples.wo)
     few = np.partition(cosine, -NEAREST)[-NEAREST:] if len(cosine) > NEAREST else cosine
@@ -60,11 +66,11 @@ def half_angle_step(samples: Samples) -> float:
     return float(different[min(1, len(different) - 1)])
 
 
-def half_widths(model: Model) -> NDArray[np.float64]:
-    """Return the half width at half maximum (lobes,) of every lobe over θ_h [degrees].
+def compute_half_widths(model: Model) -> NDArray[np.float64]:
+    """Return the half width at half maximum of every lobe, as a half angle θ_h (lobes,) [degrees].
 
-    It is measured along the narrower axis, and infinite for a lobe that does not peak in the mirror
-    direction.
+    It is the smaller of the widths along the two tangents. It is infinite for a lobe whose maximum
+    is not in the mirror direction.
     """
     by_axis = []
     for phi_h in (0.0, np.pi / 2):
@@ -78,8 +84,8 @@ def half_widths(model: Model) -> NDArray[np.float64]:
     return np.minimum(*by_axis)
 
 
-def lobes_of(model: Model, name: str) -> NDArray[np.intp]:
-    """Return the indices of the lobes that change with the shape parameter `name`."""
+def find_lobes_with_parameter(model: Model, name: str) -> NDArray[np.intp]:
+    """Return the indices of the lobes whose values change with the shape parameter `name`."""
     low, high = model.parameters[name].bounds
     value = getattr(model, name)
     other = value + 0.05 * ((high if value < (low + high) / 2 else low) - value)

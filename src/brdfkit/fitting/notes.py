@@ -1,4 +1,4 @@
-"""Writes the notes of a fit: what is doubtful in its data and in its parameters, in sentences."""
+"""Writes the notes of a fit: sentences on doubtful data and doubtful parameters."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from brdfkit.regression import Loss, Picture
 from brdfkit.regression.regression import Solution
 
 
-def list_notes(
+def list_fit_notes(
     data: Measured,
     samples: Samples,
     loss: Loss | Picture,
@@ -23,11 +23,11 @@ def list_notes(
     fitted: Model,
     weighted: bool,
 ) -> tuple[str, ...]:
-    """List the notes on a fit as sentences.
+    """Return notes, as sentences, on doubtful data and doubtful parameters of a fit.
 
-    They tell what is doubtful in the data, and of too few measured numbers, negative values, a
-    model that is clamped at 0 and an isotropic model of an anisotropic material. `solution` is what
-    the search ended with, `fitted` the model with its values; `weighted` says whether the user gave
+    They concern, for example, defects of the data, too few measured numbers, negative values, a
+    model that is clamped at 0, and an isotropic model of an anisotropic material. `solution` is the
+    result of the search, `fitted` the model with its values, and `weighted` whether the user gave
     weights.
     """
     notes = [*list_data_findings(data, samples.largest_angle)]
@@ -40,11 +40,11 @@ def list_notes(
         notes.append(
             f"{known} numbers were measured for {sought} that are sought: other values fit as well"
         )
-    if len(samples.wi) > 1 and fitted.shapes() and _are_equal(samples.values):
+    if len(samples.wi) > 1 and fitted.shapes() and _are_rows_equal(samples.values):
         notes.append("all measured values are equal: they tell nothing of a highlight's shape")
     negative = (samples.values < 0).mean()
     if negative and not loss.linear:
-        notes.append(f"{format_percent(100 * negative)} of the {_explain_negative(data)}")
+        notes.append(f"{format_percent(100 * negative)} of the {_explain_negative_values(data)}")
     if fitted.has_signed_weights():
         clamped = compute_clamped_share(fitted)
         notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
@@ -54,14 +54,14 @@ def list_notes(
     return (*notes, *solution.certainty.undetermined, *solution.certainty.trades)
 
 
-def _are_equal(values: FloatArray) -> bool:
+def _are_rows_equal(values: FloatArray) -> bool:
     """Return whether all rows of values (n, channels) are equal."""
-    # The first two rows nearly always differ, and are compared at once
+    # Comparing the first two rows first is fast, because they nearly always differ
     return bool((values[0] == values[1]).all() and (values == values[0]).all())
 
 
-def _explain_negative(data: Measured) -> str:
-    """Return the end of a note: which values are negative, and what this does to the fit."""
+def _explain_negative_values(data: Measured) -> str:
+    """Return a clause on the cause of negative values in `data` and on their effect on the fit."""
     if (data.values[data.samples.valid] >= 0).all():
         return (
             "values in linear sRGB are negative and count as 0, though none was measured so: these "

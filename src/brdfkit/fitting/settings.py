@@ -1,4 +1,4 @@
-"""The settings of a fit, checked, and what a fit that is finished was made from."""
+"""Checks the settings of a fit, and restores settings and samples of a finished fit."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 from brdfkit.core.arguments import to_dictionary, to_number, to_pair, to_whole_number
 from brdfkit.core.array_types import ArrayLike
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.fitting.light_of_data import light_of_data
+from brdfkit.fitting.target_albedo import find_target_albedo
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model import Model, labels
@@ -38,8 +38,8 @@ Bounds: TypeAlias = Mapping[str, tuple[float, float]]
 class FitSettings:
     """The arguments of `fit` besides the material, the model, the weights and the progress.
 
-    Attributes have the names, meanings and defaults that `fit` documents; `checked` converts the
-    solver, the constraints, the bounds and the fixed values to what a search takes.
+    The attributes have the names, meanings and defaults of these arguments. `checked` converts the
+    solver, the constraints, the bounds and the fixed values to the types that the search needs.
     """
 
     loss: Any = "cbrt"
@@ -57,10 +57,10 @@ class FitSettings:
 
     @classmethod
     def read(cls, given: Any) -> FitSettings:
-        """Return the settings in a dictionary, checked, as the argument `settings` of verbs.
+        """Return checked settings from the dictionary that a user gave to `sweep` or `report`.
 
         The loss must be a name, because other processes may fit. Raises `BrdfkitError` for unknown
-        names and for values that `fit` would refuse for any model and any material.
+        names, and for values that `fit` refuses for every model and every material.
 
         >>> FitSettings.read({"loss": "log"}).max_angle
         80.0
@@ -79,9 +79,10 @@ class FitSettings:
         return settings.checked()
 
     def checked(self, where: str = "") -> FitSettings:
-        """Return the settings in the types that a search takes; `where` precedes names in errors.
+        """Return these settings in the types that the search needs.
 
-        Raises `BrdfkitError` for values that no model and no material could have.
+        Raises `BrdfkitError` for values that are wrong for every model and material. `where` is put
+        before the names of parameters in error messages.
         """
         if self.robust not in (None, *WEIGHTS):
             raise no_such("robust weight", self.robust, WEIGHTS)
@@ -103,13 +104,13 @@ class FitSettings:
             seed=seed,
         )
 
-    def of_search(self) -> dict[str, Any]:
-        """Return the arguments of `regress` that checked settings determine."""
+    def search_arguments(self) -> dict[str, Any]:
+        """Return the arguments of `regress` that these settings determine, by name."""
         names = "robust", "seed", "starts", "bounds", "fixed", "solver", "constraints"
         return {name: getattr(self, name) for name in (*names, "anisotropic")}
 
     def to_record(self) -> dict[str, Any]:
-        """Return checked settings as plain data, for `Fit.settings` and its file."""
+        """Return these settings as plain data, for `Fit.settings` and for the file of a fit."""
         return {
             "robust": self.robust,
             "max_angle": float(self.max_angle),
@@ -126,18 +127,18 @@ class FitSettings:
 
 
 def prepare_refit(fit: Fit, material: MaterialLike) -> Refit:
-    """Return the `Refit` of a fit and the material that was fitted."""
-    samples = find_fitted_samples(fit, material)
+    """Return a `Refit`, with which a fit to `material` can be repeated on changed samples."""
+    samples = select_fitted_samples(fit, material)
     data = to_measured(material)
     data = data if fit.wavelengths else data.rgb
-    light = light_of_data(data, None, fit.settings.get("max_angle", 80.0))
+    light = find_target_albedo(data, None, fit.settings.get("max_angle", 80.0))
     return Refit(fit, samples, light)
 
 
 def require_material_first(call: str, material: object) -> None:
     """Raise `BrdfkitError` if a model takes the place of the material, as in `fit("ggx", paint)`.
 
-    `call` is the right order, such as "fit(material, model)".
+    `call` is the right order of arguments, such as "fit(material, model)", for the message.
     """
     several = material if isinstance(material, list | tuple) else [material]
     if several and all(map(_is_model, several)):
@@ -147,15 +148,18 @@ def require_material_first(call: str, material: object) -> None:
 
 
 def _is_model(given: object) -> bool:
-    """Return whether an argument can only mean a model: a fit, a model, its class or its name."""
+    """Return whether an argument can only be a model: a fit, a model, its class, label or file."""
     if isinstance(given, str | Path):
         is_file = os.path.isfile(given)
         return str(given).endswith(".py") or (not is_file and labels.is_label(str(given)))
     return isinstance(given, Fit | Model) or (isinstance(given, type) and issubclass(given, Model))
 
 
-def find_fitted_samples(fit: Fit, material: MaterialLike) -> Samples:
-    """Return the samples of a material that were fitted, with standard errors if these counted."""
+def select_fitted_samples(fit: Fit, material: MaterialLike) -> Samples:
+    """Return the samples of `material` to which `fit` was fitted.
+
+    They have standard errors only if these weighed the samples of the fit.
+    """
     if not isinstance(fit, Fit):
         raise BrdfkitError(
             f"Here a Fit is needed first, then the material, not a {type(fit).__name__}; make one "
@@ -168,8 +172,8 @@ def find_fitted_samples(fit: Fit, material: MaterialLike) -> Samples:
     )
 
 
-def require_plain(**given: object) -> None:
-    """Raise `BrdfkitError` for arguments of a fit by pictures that need single samples.
+def require_no_sample_settings(**given: object) -> None:
+    """Raise `BrdfkitError` for each of the `given` arguments that a fit to pictures cannot use.
 
     A pixel mixes many samples and wavelengths, so weights of samples, robust weights and spectra
     have no meaning there.

@@ -46,7 +46,7 @@ class Judge:
         """
         if self.held_out is None:
             return math.nan
-        how = self.settings.of_search()
+        how = self.settings.search_arguments()
         del how["starts"]  # the search goes on from the fit
         if how["anisotropic"] is None:
             how["anisotropic"] = self.anisotropic

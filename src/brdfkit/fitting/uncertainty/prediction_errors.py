@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.fitting.settings import find_fitted_samples
+from brdfkit.fitting.settings import select_fitted_samples
 from brdfkit.materials.resolve import MaterialLike, to_material
 from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.model.samples.samples import Samples
@@ -97,7 +97,7 @@ def prediction_error(
     >>> linear = fit("plaster", "koenderink", loss="plain")    # doctest: +SKIP
     >>> print(prediction_error(linear, "plaster"))    # doctest: +SKIP
     """
-    samples = find_fitted_samples(fit, material)
+    samples = select_fitted_samples(fit, material)
     _require_linear(fit, samples)
     # Raises for fits with weights, constraints or standard errors, which are not known here
     Refit(fit, samples).require_least_loss()

@@ -1,4 +1,4 @@
-"""Finds the albedo that a fit should keep: the albedo of the samples that the fit uses."""
+"""Finds the albedos that a fit should keep, from the samples of the material that it uses."""
 
 from dataclasses import replace
 
@@ -8,13 +8,13 @@ from numpy.typing import ArrayLike
 from brdfkit.materials.measured import Measured
 from brdfkit.regression.light import Light
 
-# A fit leaves out samples beyond this angle to the normal [degrees] by default. They still show how
-# values go on towards the horizon; a fit with a smaller angle does not trust them.
+# By default a fit leaves out samples beyond this angle to the normal [degrees], but their values
+# still count in the measured albedo. A fit with a smaller angle ignores them there, too.
 DEFAULT_MAX_ANGLE = 80.0
 
 
-def light_of_data(data: Measured, weights: ArrayLike | None, max_angle: float) -> Light:
-    """Return the `Light` of those samples of a `Measured` that a fit uses.
+def find_target_albedo(data: Measured, weights: ArrayLike | None, max_angle: float) -> Light:
+    """Return the measured albedos that a fit should keep, from the samples that it uses.
 
     Parameters
     ----------
@@ -23,32 +23,32 @@ def light_of_data(data: Measured, weights: ArrayLike | None, max_angle: float) -
     weights : array_like, optional
         The user's weights of the samples; samples with weight 0 do not count.
     max_angle : float
-        The angle to the normal [degrees] from which on samples are left out.
+        Samples at or beyond this angle to the normal [degrees] are not fitted.
 
     Returns
     -------
     Light
-        The albedos; none is known at an angle that the fit leaves out.
+        The albedos by angle of incidence; angles of `max_angle` and more count as unknown.
 
     Examples
     --------
-    >>> light_of_data(paint, None, 80.0).known    # doctest: +SKIP
+    >>> find_target_albedo(paint, None, 80.0).known    # doctest: +SKIP
     array([ True,  True,  True, False])
     """
     if weights is None and max_angle >= DEFAULT_MAX_ANGLE:
         light = Light.of(data.albedo, data.anisotropic)
-    elif data.has_lookup:  # it interpolates by itself, from all its samples
+    elif data.has_lookup:  # its format interpolates all samples, and cannot leave some out
         light = Light.of(data.albedo, data.anisotropic)
         light = replace(light, known=light.known & (weights is None))
     else:
-        light = Light.of(_select(data, weights, max_angle).albedo, data.anisotropic)
+        light = Light.of(_select_fitted(data, weights, max_angle).albedo, data.anisotropic)
     return replace(light, known=light.known & (np.array(light.theta_i) < max_angle))
 
 
-def _select(data: Measured, weights: ArrayLike | None, max_angle: float) -> Measured:
-    """Return the samples of a `Measured` below `max_angle` whose weight is above 0.
+def _select_fitted(data: Measured, weights: ArrayLike | None, max_angle: float) -> Measured:
+    """Return a `Measured` with only the samples below `max_angle` [degrees] and of weight above 0.
 
-    From `DEFAULT_MAX_ANGLE` on, all angles count.
+    If `max_angle` is at least `DEFAULT_MAX_ANGLE`, samples at all angles are kept.
     """
     samples = data.samples
     good = samples.valid if max_angle >= DEFAULT_MAX_ANGLE else samples.within(max_angle)
