@@ -23,7 +23,8 @@ INDEX = """What `bk.load` reads and `bk.save` writes; each also as `.gz` or `.xz
 by its content, and by its suffix where that leaves a doubt. The columns are small materials that
 were written and read again by `make docs`: *yes* where nothing was lost, *changed* where the
 format's page says how, nothing where brdfkit only reads. `brdfkit convert` tells the same of a file
-of yours. To add a format: [CONTRIBUTING](../../CONTRIBUTING.md#add-a-format-a-check-a-thesis-or-a-command)."""
+of yours. To add a format:
+[CONTRIBUTING](../../CONTRIBUTING.md#add-a-format-a-check-a-thesis-or-a-command)."""
 HOLDS = "## What it holds\n\nEach was written and read again."
 
 
