@@ -104,14 +104,14 @@ def restart(file, model):
     """(E of the fit, the least E of `RESTARTS` searches from random points on all samples)."""
     data, model = bk.load(file), labels.model(model)
     samples = select_samples(data, MAX_ANGLE)
-    space = Space.of(model, {}, model.determine_parameters(samples), data.anisotropic)
+    space = Space.for_model(model, {}, model.determine_parameters(samples), data.anisotropic)
     problem = Problem(model, samples, bk.losses.named["log"], space)
     ends = []
     for u in np.random.default_rng(SEED).random((RESTARTS, 1, len(space.names))):
-        start = problem.start(u)
+        start = problem.estimate_weights(u)
         found = levenberg_marquardt(problem.expand, u, start, problem.least, 200, 1e-9).ends
         ends.append(float(np.sqrt(found.error[0])))
-    # without the term for its light, which a fit may have
+    # without the term for its albedo, which a fit may have
     return regress(model, samples, bk.losses.named["log"], seed=SEED).loss, min(ends)
 
 

@@ -1,6 +1,6 @@
 """The optima that fits should reach: `optima.csv`, made by `python tests/fitting/optima.py`.
 
-A row is the least loss E of one model on one material, without the term for its light that a fit
+A row is the least loss E of one model on one material, without the term for its albedo that a fit
 may add. `test_optima.py` holds that no search has become worse. A row is replaced only by a lower
 E, or where the loss itself is another one.
 """

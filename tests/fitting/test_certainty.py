@@ -201,13 +201,15 @@ def test_a_part_is_as_certain_as_the_whole(loss, monkeypatch):
     """Standard errors of 20,000 samples by a sixth of them, to a tenth."""
     data = noisy(bk.models()["ggx"](diffuse_reflectance=(0.1, 0.2, 0.3)), n=20_000)
     model, samples = labels.model("ggx"), select_samples(data, 80.0)
-    problem = Problem(model, samples, losses.named[loss], Space.of(model, {}, {}, False))
+    problem = Problem(model, samples, losses.named[loss], Space.for_model(model, {}, {}, False))
     fit = bk.fit(data, "ggx", loss=loss, starts=1)
-    u = problem.space.coordinates(fit.values)[None]
+    u = problem.space.to_coordinates(fit.values)[None]
     weights = np.array([fit.values[n] for n in model.weights()]).T[None]
     whole = certainty.compute_certainty(problem, u, weights)
     monkeypatch.setattr(certainty, "MANY_SAMPLES", 6000)
     part = certainty.compute_certainty(problem, u, weights, rng=np.random.default_rng(0))
     assert part.names == whole.names
-    ratio = [part.standard_errors()[n] / e for n, e in whole.standard_errors().items()]
+    ratio = [
+        part.compute_standard_errors()[n] / e for n, e in whole.compute_standard_errors().items()
+    ]
     np.testing.assert_allclose(ratio, 1, atol=0.1)

@@ -141,19 +141,21 @@ def test_gradient_of_pictures(name):
     """Against central differences, of all coordinates and weights."""
     truth = bk.models()["ggx"](**GLOSSY, alpha_u=0.2)
     model, data = bk.model.labels.model(name), measured(truth, 300)
-    samples, space = select_samples(data, 80.0), Space.of(model, {}, {}, False)
+    samples, space = select_samples(data, 80.0), Space.for_model(model, {}, {}, False)
     pixels = draw_pixels(("sky",), truth.eval, pixels=60)
     problem = PictureProblem(model, samples, bk.losses.Picture(share=0.1), space, pixels)
     rng = np.random.default_rng(2)
     u = rng.uniform(0.3, 0.7, (1, len(space.names)))
     weights = rng.uniform(0.1, 0.4, (1, 3, len(model.weights())))
-    found = problem.expand_here(u, weights)
-    residuals = np.concatenate(problem.residuals(u, weights))
+    found = problem.expand_at_weights(u, weights)
+    residuals = np.concatenate(problem.compute_residuals(u, weights))
     assert found.error[0] == pytest.approx(residuals @ residuals, rel=1e-12)
 
     def error(point):
         shapes, flat = point[: u.size], point[u.size :]
-        return problem.sums(shapes[None], flat.reshape(weights.shape), curvature=False).error[0]
+        return problem.compute_sums(
+            shapes[None], flat.reshape(weights.shape), curvature=False
+        ).error[0]
 
     at, h = np.concatenate([u[0], weights.ravel()]), 1e-6
     steps = h * np.eye(len(at))

@@ -76,13 +76,13 @@ def held(name, loss, noise, replicates, n=600, robust=None, seed=0):
     sample = Samples.from_arrays(wi, wo, np.ones((n, 3)), None, "RGB", "directions")
     given = model.determine_parameters(sample)
     own |= given
-    space = Space.of(model, {}, given, False)
-    u = np.clip(space.coordinates(own), 0.15, 0.85)[None]  # inside the bounds
-    own |= space.values(u[0])
+    space = Space.for_model(model, {}, given, False)
+    u = np.clip(space.to_coordinates(own), 0.15, 0.85)[None]  # inside the bounds
+    own |= space.to_values(u[0])
     truth = model(**own)
     values = truth.eval(wi, wo)
     weights = np.array([truth.values[w] for w in model.weights()]).T[None]
-    true = dict(zip(space.names, space.table(u)[0], strict=True))
+    true = dict(zip(space.names, space.to_parameters(u)[0], strict=True))
     for c, own in enumerate(weights[0]):
         true |= {f"{w}[{c}]": v for w, v in zip(model.weights(), own, strict=True)}
     extents = estimate_extents(wi, wo, False, 80.0)
@@ -99,10 +99,10 @@ def held(name, loss, noise, replicates, n=600, robust=None, seed=0):
                 problem, *point, robust, rng, lambda done, total: None
             )
         certainty = compute_certainty(problem, *point, passes)
-        values_ = dict(zip(space.names, space.table(point[0])[0], strict=True))
+        values_ = dict(zip(space.names, space.to_parameters(point[0])[0], strict=True))
         for c, own in enumerate(point[1][0]):
             values_ |= {f"{w}[{c}]": v for w, v in zip(model.weights(), own, strict=True)}
-        errors = certainty.standard_errors()
+        errors = certainty.compute_standard_errors()
         freedom = dict(zip(certainty.names, certainty.freedom, strict=True))
         for j, key in enumerate(true):
             if key in errors:

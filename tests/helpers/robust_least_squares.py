@@ -6,10 +6,10 @@ import numpy as np
 
 from brdfkit.regression.robust.reweighting import (
     WEIGHTS,
-    leverages,
+    compute_leverages,
+    compute_smallest_scale,
+    estimate_residual_scale,
     require_more_samples,
-    residual_scale,
-    smallest_scale,
 )
 
 PASSES = 50
@@ -29,11 +29,13 @@ class Reweighted:
 def sample_weights(residuals, name, rank, least, tune=None):
     """Return weights (n,) of samples by `residuals` (n,), already divided by √(1 - h).
 
-    `name`: in `WEIGHTS`; `rank`, `least`: see `residual_scale`; `tune`: replaces the constant of
-    the weight function.
+    `name`: in `WEIGHTS`; `rank`, `least`: see `estimate_residual_scale`; `tune`: replaces the
+    constant of the weight function.
     """
     function, default, _ = WEIGHTS[name]
-    return function(residuals / (residual_scale(residuals, rank, least) * (tune or default)))
+    return function(
+        residuals / (estimate_residual_scale(residuals, rank, least) * (tune or default))
+    )
 
 
 def robust_least_squares(design, values, name="bisquare", tune=None):
@@ -44,8 +46,8 @@ def robust_least_squares(design, values, name="bisquare", tune=None):
     """
     design, values = np.asarray(design, float), np.asarray(values, float)
     require_more_samples(*design.shape)
-    lever = np.sqrt(1 - leverages(design.T))
-    rank, least = np.linalg.matrix_rank(design), smallest_scale(values)
+    lever = np.sqrt(1 - compute_leverages(design.T))
+    rank, least = np.linalg.matrix_rank(design), compute_smallest_scale(values)
 
     def solve(weights):
         root = np.sqrt(weights)

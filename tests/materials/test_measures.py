@@ -86,7 +86,7 @@ def test_a_fit_without_grazing_angles_keeps_its_light(measured_data):
     """By the loss alone a ggx of this white paint reflects 1.5 times the light at 75°."""
     data = bk.load(measured_data / "minidiff_paints" / "C1_White.astm.xz")
     found = bk.fit(data, "ggx")
-    assert any("with a term for its light" in note for note in found.notes)
+    assert any("with a term for its albedo" in note for note in found.notes)
     assert max(map(max, found.albedo.fit)) <= 1.001
     assert found.message == "converged"
     fit, measured = (

@@ -100,7 +100,7 @@ def test_one_parameter_by_brute_force():
 def setup(label, data, loss, constraints):
     model = labels.model(label)
     problem = Problem(
-        model, select_samples(data, 80.0), losses.named[loss], Space.of(model, {}, {}, False)
+        model, select_samples(data, 80.0), losses.named[loss], Space.for_model(model, {}, {}, False)
     )
     return problem, Constraints(constraints, problem)
 
@@ -114,7 +114,7 @@ def test_the_end_is_feasible_and_stationary(model, loss):
     limits = [bk.solvers.AlbedoAtMost(limit)]
     found = bk.fit(data, model, loss=loss, starts=8, constraints=limits)
     problem, constraints = setup(model, data, loss, limits)
-    u = problem.space.coordinates(found.values)
+    u = problem.space.to_coordinates(found.values)
     weights = np.array([found.values[name] for name in problem.model.weights()]).T
     z = np.concatenate([u, weights.ravel()])
     assert constraints.values(z).min() >= -1e-8

@@ -16,8 +16,8 @@ from brdfkit.regression import losses
 from brdfkit.regression.problem.folding import fold_problem
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
-from brdfkit.regression.problem.subset import draw_part
-from brdfkit.regression.robust.reweighting import WEIGHTS, leverages
+from brdfkit.regression.problem.subset import draw_subset
+from brdfkit.regression.robust.reweighting import WEIGHTS, compute_leverages
 
 MODELS_WITHOUT_SUMS = [name for name in bk.models() if name != "mixture"]
 
@@ -31,7 +31,7 @@ def table(seed=0, shape=(12, 8, 24)):
 def problem_of(name, samples, loss="cosine"):
     """The `Problem` of a model, with what the directions determine fixed."""
     model = labels.model(name)
-    space = Space.of(model, {}, model.determine_parameters(samples), True)
+    space = Space.for_model(model, {}, model.determine_parameters(samples), True)
     return Problem(model, samples, losses.named.by_sample[loss], space)
 
 
@@ -53,13 +53,13 @@ def test_squared_error_and_gradient(name, loss):
     data = bk.Measured.from_samples(wi, wo, rng.uniform(0.1, 1, (60, 3)))
     problem = problem_of(name, select_samples(data, 90.0), loss)
     u, weights = point(problem, 3)
-    here = problem.expand_here(u, weights)
+    here = problem.expand_at_weights(u, weights)
 
     def error(u, weights):
-        return problem.expand_here(u, weights).error
+        return problem.expand_at_weights(u, weights).error
 
     for k in range(len(u)):
-        values = problem.space.values(u[k])
+        values = problem.space.to_values(u[k])
         linear = dict(zip(problem.model.weights(), map(tuple, weights[k].T), strict=True))
         model = problem.model(**values, **linear)
         expected = bk.compare(data, model, max_angle=90.0).errors[model.name][loss]
@@ -115,7 +115,7 @@ def test_a_part_stands_for_the_whole():
     influence = samples.values.sum(axis=1) ** 4
     sums = []
     for _ in range(50):
-        part, rows = draw_part(samples, influence, 300, rng)
+        part, rows = draw_subset(samples, influence, 300, rng)
         np.testing.assert_array_equal(part.values, samples.values[rows])
         sums.append(part.weight @ part.values)
     expected = samples.weight @ samples.values
@@ -136,7 +136,7 @@ def test_settled_weights_give_the_solution_back(model, name):
     columns, _ = compute_lobe_values(fit.model, wi, wo)
     solution = np.ravel([fit.values[n] for n in fit.model.weights()])
     fitted = columns @ solution
-    residuals = (values[:, 0] - fitted) / np.sqrt(1 - leverages(columns.T))
+    residuals = (values[:, 0] - fitted) / np.sqrt(1 - compute_leverages(columns.T))
     weights = sample_weights(residuals, name, columns.shape[1], 1e-12)
     root = np.sqrt(weights)[:, None]
     again = columns @ np.linalg.lstsq(columns * root, values * root, rcond=None)[0][:, 0]

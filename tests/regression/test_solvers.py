@@ -12,7 +12,7 @@ import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.regression import solvers
-from brdfkit.regression.solvers.settings import SOLVERS, to_plain, to_solver
+from brdfkit.regression.solvers.settings import SOLVERS, to_plain_data, to_solver
 
 N = 300
 # The solvers other than the default, with less effort than usual
@@ -95,7 +95,7 @@ def test_a_fit_by_any_solver_is_reproducible(noisy):
 def test_a_solver_is_plain_data(name):
     solver = SOLVERS[name]()
     known = {cls.__name__: cls for cls in SOLVERS.values()}
-    assert solver == to_solver(name) == to_solver(to_plain(solver))
+    assert solver == to_solver(name) == to_solver(to_plain_data(solver))
     assert solver == pickle.loads(pickle.dumps(solver)) == eval(repr(solver), known)
     assert solver != SOLVERS[name](iterations=3)
 
@@ -186,7 +186,7 @@ def test_bad_numbers_are_explained(make, words):
 
 @pytest.mark.quick
 def test_a_sweep_takes_no_code():
-    with pytest.raises(BrdfkitError, match="<lambda> is code"):
+    with pytest.raises(BrdfkitError, match="<lambda> is your own code"):
         bk.sweep("plaster", "lambert", settings={"constraints": [lambda model: 1.0]})
 
 

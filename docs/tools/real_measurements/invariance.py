@@ -9,7 +9,7 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.quadrature import directional_albedo
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
-from brdfkit.regression.losses.loss import squared_differences
+from brdfkit.regression.losses.loss import sum_squared_differences
 
 LOSSES = "cosine", "log", "cbrt", "plain"
 # A parameter is the same within this share of it, or a lobe's albedo within that share of all light
@@ -101,7 +101,9 @@ class Part:
         loss = bk.losses.named[fit.loss_name]
         values = fit.eval(self.samples.wi, self.samples.wo)
         return float(
-            np.sqrt(loss.importance(self.samples) @ squared_differences(loss, values, self.samples))
+            np.sqrt(
+                loss.importance(self.samples) @ sum_squared_differences(loss, values, self.samples)
+            )
         )
 
 

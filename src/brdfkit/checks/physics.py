@@ -10,7 +10,7 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.quadrature import TOLERANCE, directional_albedo
 from brdfkit.core.jit import double_precision
 from brdfkit.model.evaluation import compute_lobe_values
-from brdfkit.regression.problem.not_finite import require_finite, require_finite_slopes
+from brdfkit.regression.problem.not_finite import require_finite_lobes, require_finite_slopes
 
 
 @check_of(MODELS)
@@ -60,7 +60,7 @@ def defined(subject: Subject) -> tuple[bool, str]:
     directions = double_precision.to_vector(wi), double_precision.to_vector(wo)
     plain, _ = compute_lobe_values(model, wi, wo)
     try:
-        require_finite(model, plain.T, *directions)
+        require_finite_lobes(model, plain.T, *directions)
         require_finite_slopes(model, shapes, shapes, *directions)
     except BrdfkitError as error:
         # Only the reason, between the model's name and the remedy

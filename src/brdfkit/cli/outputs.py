@@ -74,11 +74,9 @@ def remember(target: Path) -> None:
 
 def _is_cached(target: Path) -> bool:
     """Return whether a file lies in brdfkit's cache folder."""
-    from brdfkit.materials.collections.public import (
-        find_cache_folder,
-    )  # here, because it loads slowly
+    from brdfkit.materials.collections.public import cache_folder  # here, because it loads slowly
 
-    return target.is_relative_to(find_cache_folder().resolve())
+    return target.is_relative_to(cache_folder().resolve())
 
 
 def _is_own(target: Path, context: click.Context) -> bool:
@@ -96,12 +94,10 @@ def _is_own(target: Path, context: click.Context) -> bool:
 
 def _record_path(target: Path) -> Path:
     """Return the path in the cache folder of the record on the file `target`."""
-    from brdfkit.materials.collections.public import (
-        find_cache_folder,
-    )  # here, because it loads slowly
+    from brdfkit.materials.collections.public import cache_folder  # here, because it loads slowly
 
     name = hashlib.sha256(os.fsencode(target)).hexdigest()[:32]
-    return find_cache_folder() / "written" / f"{name}.json"
+    return cache_folder() / "written" / f"{name}.json"
 
 
 def _describe_command(context: click.Context) -> str:

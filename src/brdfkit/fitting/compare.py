@@ -22,9 +22,9 @@ from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.resolve import MaterialLike, to_materials, to_measured
 from brdfkit.model.samples.samples import Samples
 from brdfkit.regression import Fit, Loss, losses
+from brdfkit.regression.albedo import ANISOTROPIC_AZIMUTHS, ISOTROPIC_AZIMUTHS, make_albedo_pixels
 from brdfkit.regression.albedo_cells import make_albedo_cell
-from brdfkit.regression.light import ANISOTROPIC_AZIMUTHS, ISOTROPIC_AZIMUTHS, make_albedo_pixels
-from brdfkit.regression.losses.loss import squared_differences
+from brdfkit.regression.losses.loss import sum_squared_differences
 from brdfkit.regression.losses.named_losses import DEFAULT
 
 # Losses that every table shows, in addition to those that the compared fits minimised
@@ -194,7 +194,7 @@ def _compute_error(loss: Loss, values: FloatArray, samples: Samples) -> float:
     """Return the error E of `values` (n, channels) at samples; nan if all their weights are 0."""
     importance = loss.importance(samples)
     return (
-        math.sqrt(importance @ squared_differences(loss, values, samples))
+        math.sqrt(importance @ sum_squared_differences(loss, values, samples))
         if importance.any()
         else math.nan
     )

@@ -26,7 +26,7 @@ from brdfkit.fitting.settings import (
 )
 from brdfkit.fitting.target_albedo import find_target_albedo
 from brdfkit.images.ball import draw_pixels
-from brdfkit.materials.extrapolation import note_fit_extrapolation
+from brdfkit.materials.extrapolation import note_extrapolation
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 from brdfkit.materials.resolve import MaterialLike, to_measured
@@ -35,7 +35,7 @@ from brdfkit.model.evaluation import make_model
 from brdfkit.model.samples.measures import compute_measure, integrate_measure
 from brdfkit.model.samples.samples import Samples
 from brdfkit.regression import Fit, Loss, Picture, regress, to_loss
-from brdfkit.regression.measurement_noise import regress_noisy
+from brdfkit.regression.measurement_noise import regress_with_noise
 from brdfkit.regression.solvers import Solver
 
 
@@ -164,7 +164,7 @@ def fit(
         """Return the `Fit` of a `Solution`, with its albedo, notes and warnings."""
         known = wavelengths(data) if spectral else ()
         fitted = make_model(model_class, solution.shapes, solution.weights, known)
-        albedo = light.judge(fitted.eval)
+        albedo = light.compare(fitted.eval)
         warnings = [] if light.has_another_unit else albedo.warnings()
         return Fit(
             model=fitted,
@@ -181,7 +181,7 @@ def fit(
                 *solution.notes,
                 *warnings,
                 *list_fit_notes(data, samples, error, solution, fitted, weights is not None),
-                *note_fit_extrapolation(data, float(max_angle)),
+                *note_extrapolation(data, float(max_angle)),
             ),
             albedo=albedo,
             **measure_sample_coverage(error, samples, max_angle),
@@ -190,7 +190,7 @@ def fit(
             versions=dict(find_versions()),
         )
 
-    solve = regress if samples.errors is None else regress_noisy
+    solve = regress if samples.errors is None else regress_with_noise
     if isinstance(error, Picture):
         require_no_sample_settings(robust=robust, weights=weights, spectral=spectral)
         pixels = draw_pixels(error.lights, data.rgb.eval, max_angle, settings.seed)
@@ -199,7 +199,7 @@ def fit(
     # the albedo of the fit with the measured one
     without_light = getattr(error, "measure", None) == "samples" or light.has_another_unit
     search: dict[str, Any] = settings.search_arguments() | {
-        "light": None if without_light else light
+        "target_albedo": None if without_light else light
     }
     try:
         return to_fit(solve(model_class, samples, error, **search, report=progress))

@@ -19,7 +19,7 @@ from brdfkit.materials.measured import Measured
 from brdfkit.model import Model
 from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.model.samples import Samples
-from brdfkit.regression.light import make_albedo_pixels
+from brdfkit.regression.albedo import make_albedo_pixels
 
 INCIDENCES = 5, 45, 75  # angles of incidence at which the albedo of a lobe is computed [degrees]
 GAIN = 1.05  # a lobe with a larger albedo reflects more light than arrives

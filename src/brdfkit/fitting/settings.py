@@ -21,9 +21,9 @@ from brdfkit.regression.refitting import Refit
 from brdfkit.regression.robust.reweighting import WEIGHTS
 from brdfkit.regression.solvers import AlbedoAtMost, WeightsAtMost
 from brdfkit.regression.solvers.settings import (
-    require_suitable,
+    require_supported_constraints,
     to_constraints,
-    to_plain,
+    to_plain_data,
     to_solver,
 )
 
@@ -87,7 +87,7 @@ class FitSettings:
         if self.robust not in (None, *WEIGHTS):
             raise no_such("robust weight", self.robust, WEIGHTS)
         solver, constraints = to_solver(self.solver), to_constraints(self.constraints)
-        require_suitable(solver, constraints, self.robust)
+        require_supported_constraints(solver, constraints, self.robust)
         starts = self.starts
         if starts is not None:
             starts = to_whole_number("starts", starts, least=1)
@@ -119,8 +119,8 @@ class FitSettings:
             "starts": self.starts,
             "bounds": self.bounds,
             "fixed": self.fixed,
-            "solver": to_plain(self.solver),
-            "constraints": list(map(to_plain, self.constraints)),
+            "solver": to_plain_data(self.solver),
+            "constraints": list(map(to_plain_data, self.constraints)),
             "anisotropic": self.anisotropic,
             "spectral": bool(self.spectral),
         }

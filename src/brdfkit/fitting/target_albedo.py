@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from brdfkit.materials.measured import Measured
-from brdfkit.regression.light import Light
+from brdfkit.regression.albedo import TargetAlbedo
 
 # By default a fit leaves out samples beyond this angle to the normal [degrees], but their values
 # still count in the measured albedo. A fit with a smaller angle ignores them there, too.
 DEFAULT_MAX_ANGLE = 80.0
 
 
-def find_target_albedo(data: Measured, weights: ArrayLike | None, max_angle: float) -> Light:
+def find_target_albedo(data: Measured, weights: ArrayLike | None, max_angle: float) -> TargetAlbedo:
     """Return the measured albedos that a fit should keep, from the samples that it uses.
 
     Parameters
@@ -27,7 +27,7 @@ def find_target_albedo(data: Measured, weights: ArrayLike | None, max_angle: flo
 
     Returns
     -------
-    Light
+    TargetAlbedo
         The albedos by angle of incidence; angles of `max_angle` and more count as unknown.
 
     Examples
@@ -36,13 +36,15 @@ def find_target_albedo(data: Measured, weights: ArrayLike | None, max_angle: flo
     array([ True,  True,  True, False])
     """
     if weights is None and max_angle >= DEFAULT_MAX_ANGLE:
-        light = Light.of(data.albedo, data.anisotropic)
+        target = TargetAlbedo.from_measured(data.albedo, data.anisotropic)
     elif data.has_lookup:  # its format interpolates all samples, and cannot leave some out
-        light = Light.of(data.albedo, data.anisotropic)
-        light = replace(light, known=light.known & (weights is None))
+        target = TargetAlbedo.from_measured(data.albedo, data.anisotropic)
+        target = replace(target, known=target.known & (weights is None))
     else:
-        light = Light.of(_select_fitted(data, weights, max_angle).albedo, data.anisotropic)
-    return replace(light, known=light.known & (np.array(light.theta_i) < max_angle))
+        target = TargetAlbedo.from_measured(
+            _select_fitted(data, weights, max_angle).albedo, data.anisotropic
+        )
+    return replace(target, known=target.known & (np.array(target.theta_i) < max_angle))
 
 
 def _select_fitted(data: Measured, weights: ArrayLike | None, max_angle: float) -> Measured:

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.names import join_words
-from brdfkit.regression.problem.parameter_space import channel_rows, join
+from brdfkit.regression.problem.parameter_space import find_channel_entries, join_point
 from brdfkit.regression.problem.problem import Problem
-from brdfkit.regression.problem.subset import draw_part
+from brdfkit.regression.problem.subset import draw_subset
 
 # If there are more samples, half this number are drawn
 MANY_SAMPLES = 40_000
@@ -53,46 +53,46 @@ class Certainty:
     numbers: int
     parameters: int
 
-    def standard_errors(self) -> dict[str, float]:
+    def compute_standard_errors(self) -> dict[str, float]:
         """Return the standard errors by the names of the parameters."""
-        variances = np.diagonal(self.matrix())
+        variances = np.diagonal(self.make_covariance_matrix())
         return dict(zip(self.names, np.sqrt(variances).tolist(), strict=True))
 
-    def half_widths(self) -> dict[str, float]:
+    def compute_half_widths(self) -> dict[str, float]:
         """Return half the widths of the 95 % confidence intervals, by Student's t, by name."""
         from scipy.special import stdtrit
 
         quantiles = stdtrit(np.array(self.freedom), 0.975).tolist()
-        errors = self.standard_errors().items()
+        errors = self.compute_standard_errors().items()
         return {name: t * error for t, (name, error) in zip(quantiles, errors, strict=True)}
 
-    def criterion(self, loss: float, price: float) -> float:
+    def compute_criterion(self, loss: float, price: float) -> float:
         """Return N ln(E²) + `price` · k, with E = `loss`, N measured numbers and k parameters."""
         with np.errstate(divide="ignore"):
             return float(self.numbers * 2 * np.log(loss) + price * self.parameters)
 
-    def bic(self, loss: float) -> float:
+    def compute_bic(self, loss: float) -> float:
         """Return the Bayesian information criterion of the error `loss`."""
-        return self.criterion(loss, np.log(self.numbers))
+        return self.compute_criterion(loss, np.log(self.numbers))
 
-    def matrix(self) -> NDArray[np.float64]:
+    def make_covariance_matrix(self) -> NDArray[np.float64]:
         """Return the covariance as an array (n, n)."""
         return np.array(self.covariance).reshape(len(self.names), len(self.names))
 
-    def without_errors(self, numbers: int) -> Certainty:
+    def without_standard_errors(self, numbers: int) -> Certainty:
         """Return the certainty without standard errors, with another number of measured `numbers`.
 
         Standard errors have no meaning without independent noise: pixels show the same samples.
         """
         return replace(self, names=(), covariance=(), freedom=(), numbers=numbers)
 
-    def correlation(self) -> NDArray[np.float64]:
+    def compute_correlation(self) -> NDArray[np.float64]:
         """Return the correlations (n, n)."""
-        root = np.sqrt(np.maximum(np.diagonal(self.matrix()), 1e-300))
-        return self.matrix() / np.outer(root, root)
+        root = np.sqrt(np.maximum(np.diagonal(self.make_covariance_matrix()), 1e-300))
+        return self.make_covariance_matrix() / np.outer(root, root)
 
 
-def intervals(values: Mapping[str, Any], half: Mapping[str, Any]) -> dict[str, Any]:
+def make_intervals(values: Mapping[str, Any], half: Mapping[str, Any]) -> dict[str, Any]:
     """Return the intervals (low, high) by name: the `values`, numbers or tuples, ± `half`."""
     limits = {}
     for name, value in values.items():
@@ -118,7 +118,7 @@ def compute_certainty(
     generator that draws a part if there are many samples.
     """
     names, free = _list_parameters(problem, u, weights)
-    at = join(problem.space.table(u), weights)[0]
+    at = join_point(problem.space.to_parameters(u), weights)[0]
     counted = problem.importance > 0
     numbers = int(counted.sum()) * problem.channels
     nothing = Certainty((), (), (), (), (), numbers, len(names))
@@ -126,19 +126,21 @@ def compute_certainty(
         return nothing
     shares = np.ones(len(counted))
     if len(counted) > MANY_SAMPLES and rng is not None:
-        part, rows = draw_part(problem.samples, problem.black, MANY_SAMPLES // 2, rng)
+        part, rows = draw_subset(problem.samples, problem.black_squares, MANY_SAMPLES // 2, rng)
         whole, problem = problem.importance[rows], problem.with_samples(part)
         shares = whole / np.where(problem.importance > 0, problem.importance, 1)
         if passes:
             passes = [w[rows] for w in passes[0]], [slope[rows] for slope in passes[1]]
-    residuals, jacobians = problem.jacobians(u, weights)
-    free |= _find_open_bounds(jacobians, free, u.shape[1])
-    scores, hessian, scale = _sum_scores(residuals, jacobians, free, u.shape[1], shares, passes)
+    residuals, jacobians = problem.compute_jacobians(u, weights)
+    free |= _find_undetermined_at_bounds(jacobians, free, u.shape[1])
+    scores, hessian, scale = _compute_scores(residuals, jacobians, free, u.shape[1], shares, passes)
     most = (numbers - len(names)) / problem.channels
-    return conclude_certainty(names, free, at, scores, hessian, scale, numbers, most)
+    return compute_certainty_from_derivatives(
+        names, free, at, scores, hessian, scale, numbers, most
+    )
 
 
-def conclude_certainty(
+def compute_certainty_from_derivatives(
     names: Sequence[str],
     free: BoolArray,
     at: FloatArray,
@@ -161,7 +163,7 @@ def conclude_certainty(
     inner = vectors[:, ~open_] / np.abs(values[~open_]) @ vectors[:, ~open_].T
     spread = inner @ scores
     covariance = spread @ spread.T * np.outer(scale, scale)
-    freedom = _count_freedom(spread, most)
+    freedom = _estimate_degrees_of_freedom(spread, most)
     loose = (np.abs(vectors[:, open_]) > ABSENT).any(axis=1)
     own = [name for name, is_free in zip(names, free, strict=True) if is_free]
     return Certainty(
@@ -177,7 +179,7 @@ def conclude_certainty(
     )
 
 
-def _count_freedom(spread: FloatArray, most: float) -> FloatArray:
+def _estimate_degrees_of_freedom(spread: FloatArray, most: float) -> FloatArray:
     """Return the degrees of freedom (n,) of the variances, between 1 and `most`, by Satterthwaite.
 
     A variance is the sum of squares of a row of `spread` (n, samples). It has few degrees of
@@ -200,7 +202,9 @@ def _list_parameters(
     return names, np.concatenate([inside, (weights[0] > problem.least).ravel()])
 
 
-def _find_open_bounds(jacobians: list[FloatArray], free: BoolArray, shapes: int) -> BoolArray:
+def _find_undetermined_at_bounds(
+    jacobians: list[FloatArray], free: BoolArray, shapes: int
+) -> BoolArray:
     """Return which parameters (n,) are shape parameters on a bound that E² does not determine.
 
     E² stays equal if such a parameter moves together with others. So rounding decides where along
@@ -229,7 +233,7 @@ def _sum_hessian(
     where = np.cumsum(free) - 1
     rows, derivatives = [], []
     for c, jacobian in enumerate(jacobians):
-        own = channel_rows(c, shapes, len(jacobian) - shapes)
+        own = find_channel_entries(c, shapes, len(jacobian) - shapes)
         rows.append(where[own[free[own]]])
         derivatives.append(jacobian[free[own]])
     hessian = np.zeros((free.sum(), free.sum()))
@@ -239,7 +243,7 @@ def _sum_hessian(
     return hessian * np.outer(scale, scale), scale, rows, derivatives
 
 
-def _sum_scores(
+def _compute_scores(
     residuals: list[FloatArray],
     jacobians: list[FloatArray],
     free: BoolArray,
@@ -311,7 +315,7 @@ def _strip_channel(name: str) -> str:
     return name.partition("[")[0]
 
 
-def explain_end(certainty: Certainty) -> str | None:
+def explain_undetermined(certainty: Certainty) -> str | None:
     """Return the message of a fit whose data do not determine all parameters, or None."""
     numbers, parameters = certainty.numbers, certainty.parameters
     if numbers < parameters:

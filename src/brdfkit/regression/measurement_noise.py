@@ -30,13 +30,13 @@ BY_ERRORS = "samples count by their standard errors"
 EQUAL_WEIGHTS = 0.05
 
 
-def regress_noisy(model: type[Model], samples: Samples, loss: Any, **how: Any) -> Solution:
+def regress_with_noise(model: type[Model], samples: Samples, loss: Any, **how: Any) -> Solution:
     """Return the `Solution` of `regress`, with `Samples` weighted by their standard errors.
 
     `how`: the other arguments of `regress`.
     """
     solution = regress(model, samples, loss, **how)
-    shares = find_shares(samples, loss, solution.eval(model, samples), solution.loss)
+    shares = compute_noise_weights(samples, loss, solution.eval(model, samples), solution.loss)
     if shares.min() > (1 - EQUAL_WEIGHTS) * shares.max():
         return solution
     solution = regress(model, replace(samples, weight=samples.weight * shares), loss, **how)
@@ -45,14 +45,16 @@ def regress_noisy(model: type[Model], samples: Samples, loss: Any, **how: Any) -
     return replace(solution, notes=(*solution.notes, note))
 
 
-def find_shares(samples: Samples, loss: Loss, values: FloatArray, error: float) -> FloatArray:
+def compute_noise_weights(
+    samples: Samples, loss: Loss, values: FloatArray, error: float
+) -> FloatArray:
     """Return the weights τ² / (τ² + σ²) of the samples (n,).
 
     `values` (n, channels): the model's, from a first fit; `error`: E, the loss of this fit.
     """
     errors: Any = samples.errors
     variances = [
-        _variance(samples, loss, *channel)
+        _compute_variances(samples, loss, *channel)
         for channel in zip(values.T, samples.values.T, errors.T, strict=True)
     ]
     variance = sum(variances, np.zeros(len(values)))
@@ -63,7 +65,7 @@ def find_shares(samples: Samples, loss: Loss, values: FloatArray, error: float) 
     return tau2 / (tau2 + variance) if tau2 else np.ones(len(values))
 
 
-def _variance(
+def _compute_variances(
     samples: Samples, loss: Loss, model: FloatArray, measured: FloatArray, sigma: FloatArray
 ) -> FloatArray:
     """Return the variances (n,) of a channel's differences, at the values `model` (n,)."""

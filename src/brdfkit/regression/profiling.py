@@ -67,6 +67,6 @@ def _refit_path(refit: Refit, parameter: str, values: Iterable[float]) -> list[t
     shapes, weights, path = refit.fit.values, refit.weights, []
     for value in values:
         problem = refit.make_problem(**{parameter: float(value)})
-        shapes, weights, error = refit.descend(problem, shapes, weights)
+        shapes, weights, error = refit.search_from(problem, shapes, weights)
         path.append((float(value), float(np.sqrt(error))))
     return path

@@ -16,8 +16,8 @@ from brdfkit.regression.losses.picture import Picture
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.robust.search import search_robust
+from brdfkit.regression.search.albedo_search import NOTE, correct_albedo
 from brdfkit.regression.search.levenberg_marquardt import levenberg_marquardt
-from brdfkit.regression.search.light_search import NOTE, correct_light
 from brdfkit.regression.search.multistart import EXACT, LARGEST_STEPS
 
 
@@ -25,12 +25,12 @@ from brdfkit.regression.search.multistart import EXACT, LARGEST_STEPS
 class Refit:
     """A `Fit` and the `Samples` that were fitted, ready to be fitted again.
 
-    `light`: the `Light` of the data, for a fit that was corrected by it.
+    `target_albedo`: the `TargetAlbedo` of the data, for a fit that was corrected by it.
     """
 
     fit: Any
     samples: Any
-    light: Any = None
+    target_albedo: Any = None
 
     def __post_init__(self) -> None:
         if self.fit.loss_name == "rendered":
@@ -59,8 +59,8 @@ class Refit:
                 "them first."
             )
         problem = self.make_problem()
-        u = problem.space.coordinates(self.fit.values)[None]
-        loss = math.sqrt(problem.sums(u, self.weights, curvature=False).error[0])
+        u = problem.space.to_coordinates(self.fit.values)[None]
+        loss = math.sqrt(problem.compute_sums(u, self.weights, curvature=False).error[0])
         if not math.isclose(loss, self.fit.loss, rel_tol=1e-6, abs_tol=1e-9):
             raise BrdfkitError(
                 f"{self.fit.name}: its loss is {loss:.6g} here, {self.fit.loss:.6g} in the fit; "
@@ -75,13 +75,13 @@ class Refit:
         return np.broadcast_to(matrix, (len(matrix), channels)).T[None].copy()
 
     @property
-    def has_corrected_light(self) -> bool:
+    def has_corrected_albedo(self) -> bool:
         """Whether the fit was searched again for the light of its data."""
         return any(note.startswith(NOTE) for note in self.fit.notes)
 
     def require_least_loss(self) -> None:
         """Raise `BrdfkitError` if the fit does not minimise its loss alone."""
-        if self.has_corrected_light:
+        if self.has_corrected_albedo:
             raise BrdfkitError(
                 f"{self.fit.name} was searched again for the light of its data, and is not the "
                 "least of its loss alone, as is needed here; "
@@ -97,7 +97,7 @@ class Refit:
         space = Space.for_samples(self.samples, model, bounds, fixed, anisotropic)
         return Problem(model, self.samples, losses.named.by_sample[self.fit.loss_name], space)
 
-    def descend(
+    def search_from(
         self,
         problem: Problem,
         values: Mapping[str, Any],
@@ -109,20 +109,20 @@ class Refit:
         Return (values, weights, E²) at the end. `rng`: a generator, for robust fits and for fits
         with corrected light.
         """
-        u = problem.space.coordinates(values)[None]
+        u = problem.space.to_coordinates(values)[None]
         given = problem.expand, u, weights, problem.least
         ends = levenberg_marquardt(*given, LARGEST_STEPS, EXACT).ends
         start, u, weights, error = u, ends.u, ends.weights, ends.error[0]
-        if self.light is not None and self.has_corrected_light:
-            corrected = correct_light(problem, u, weights, self.light, start, rng)
+        if self.target_albedo is not None and self.has_corrected_albedo:
+            corrected = correct_albedo(problem, u, weights, self.target_albedo, start, rng)
             if corrected is not None:
                 u, weights = corrected[:2]
-                error = problem.sums(u, weights, curvature=False).error[0]
+                error = problem.compute_sums(u, weights, curvature=False).error[0]
         if robust := self.fit.settings.get("robust"):
             u, weights, *_ = search_robust(
                 problem, u, weights, robust, rng, lambda done, total: None
             )
-        return problem.space.values(u[0]), weights, error
+        return problem.space.to_values(u[0]), weights, error
 
     def to_values(self, shapes: dict[str, Any], weights: FloatArray) -> dict[str, Any]:
         """Return all values of the model by name, from `shapes` by name and `weights`."""

@@ -15,19 +15,24 @@ from brdfkit.images.ball import Pixels
 from brdfkit.model import Model
 from brdfkit.model.evaluation import mix_lobes
 from brdfkit.model.samples import Samples
-from brdfkit.regression.certainty import ON_BOUND, Certainty, compute_certainty, explain_end
-from brdfkit.regression.light import Light
+from brdfkit.regression.albedo import TargetAlbedo
+from brdfkit.regression.certainty import (
+    ON_BOUND,
+    Certainty,
+    compute_certainty,
+    explain_undetermined,
+)
 from brdfkit.regression.problem.folding import fold_problem
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.pixel_problem import PictureProblem
 from brdfkit.regression.problem.problem import Problem
-from brdfkit.regression.problem.subset import mix_bands
+from brdfkit.regression.problem.subset import average_to_bands
 from brdfkit.regression.robust.search import search_robust
+from brdfkit.regression.search.albedo_search import correct_albedo
 from brdfkit.regression.search.levenberg_marquardt import ROUNDING
-from brdfkit.regression.search.light_search import correct_light
 from brdfkit.regression.search.multistart import (
-    add_parts,
     default_start_count,
+    make_part_problems,
     make_start_points,
     search_from_starts,
 )
@@ -35,7 +40,7 @@ from brdfkit.regression.solvers import SLSQP, LevenbergMarquardt, Objective
 from brdfkit.regression.solvers.constraints import Constraints
 
 # Starts of a search that corrects the light, beside the end of the search before it
-LIGHT_STARTS = 8
+CORRECTION_STARTS = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +80,7 @@ def regress(
     fixed: Mapping[str, float] | None = None,
     anisotropic: bool = False,
     pixels: Pixels | None = None,
-    light: Light | None = None,
+    target_albedo: TargetAlbedo | None = None,
     seed: int = 0,
     first: Mapping[str, Any] | None = None,
     report: Progress | None = None,
@@ -88,10 +93,11 @@ def regress(
     points, which are the model's defaults and points spread over the bounds, by default as
     `default_start_count` says; `bounds`: (low, high) by shape parameter; `fixed`: a value by shape
     parameter; `anisotropic`: whether the second parameter of an anisotropic model, such as
-    ``alpha_v``, is searched, too; `light`: the `Light` of the data, to which a fit without `robust`
-    and `constraints` is corrected; `seed`: for the start points, and for parts of many samples;
-    `first`: the shape parameters of the first start point, by default the model's; `report`: called
-    with (done, total). On Ctrl-C `Interrupted` is raised with the best `Solution` so far.
+    ``alpha_v``, is searched, too; `target_albedo`: the `TargetAlbedo` of the data, to which a fit
+    without `robust` and `constraints` is corrected; `seed`: for the start points, and for parts of
+    many samples; `first`: the shape parameters of the first start point, by default the model's;
+    `report`: called with (done, total). On Ctrl-C `Interrupted` is raised with the best `Solution`
+    so far.
     """
     bounds, report = bounds or {}, report or (lambda done, total: None)
     space = Space.for_samples(samples, model, bounds, fixed or {}, anisotropic)
@@ -99,15 +105,15 @@ def regress(
     if pixels is None:
         whole = Problem(model, samples, loss, space)
         folded = fold_problem(whole)
-        problems: list[Any] = [folded] if folded else list(add_parts(whole, rng))
+        problems: list[Any] = [folded] if folded else list(make_part_problems(whole, rng))
     else:
-        whole = PictureProblem.of(model, samples, loss, space, pixels, rng)
-        problems = [whole.reduce(rng), whole]
-    default = space.coordinates(first or model().values)
+        whole = PictureProblem.for_fit(model, samples, loss, space, pixels, rng)
+        problems = [whole.make_smaller(rng), whole]
+    default = space.to_coordinates(first or model().values)
     points = make_start_points(default, starts or default_start_count(len(space.names)), seed)
     evaluations = 0
     if len(whole.groups) > 1:  # compare the starts on few channels
-        bands = add_parts(whole.with_samples(mix_bands(samples)), rng)
+        bands = make_part_problems(whole.with_samples(average_to_bands(samples)), rng)
         try:
             ends, _, evaluations = search_from_starts(bands, points, report)
         except Interrupted:  # nothing is known of a fit to all channels yet
@@ -127,7 +133,7 @@ def regress(
         end, stopped = best, True
     (u, weights), passes = objective.split(end.point[None]), None
     error, message, notes = end.error, end.message, limits.notes(end.point) if limits else ()
-    if message != "converged" and error <= ROUNDING * whole.black.sum():
+    if message != "converged" and error <= ROUNDING * whole.black_squares.sum():
         message = "converged"  # the model meets the data exactly, and E² is rounding
     # Reduce the weight of outliers, from the optimum where all samples count alike
     if robust and not stopped:
@@ -137,26 +143,30 @@ def regress(
             )
         except Interrupted as stop:
             u, weights, stopped = stop.best.point.u, stop.best.point.weights, True
-        error = whole.sums(u, weights, curvature=False).error[0]
-    elif light is not None and not (limits or stopped or pixels):
+        error = whole.compute_sums(u, weights, curvature=False).error[0]
+    elif target_albedo is not None and not (limits or stopped or pixels):
         try:
-            corrected = correct_light(whole, u, weights, light, points[:LIGHT_STARTS], rng)
+            corrected = correct_albedo(
+                whole, u, weights, target_albedo, points[:CORRECTION_STARTS], rng
+            )
         except KeyboardInterrupt:
             corrected, stopped = None, True
         if corrected is not None:
             u, weights, notes = corrected[0], corrected[1], (*notes, corrected[2])
-            error = whole.sums(u, weights, curvature=False).error[0]
+            error = whole.compute_sums(u, weights, curvature=False).error[0]
     certainty = compute_certainty(whole, u, weights, passes, rng)
     if pixels is not None:
-        certainty = certainty.without_errors(samples.values.size)
-    message = "interrupted: the best so far" if stopped else explain_end(certainty) or message
+        certainty = certainty.without_standard_errors(samples.values.size)
+    message = (
+        "interrupted: the best so far" if stopped else explain_undetermined(certainty) or message
+    )
     solution = Solution(
-        space.values(u[0]),
+        space.to_values(u[0]),
         weights[0],
         math.sqrt(error),
         evaluations + objective.count(),
         message,
-        _find_at_bounds(space, u[0], model, weights[0]),
+        _find_parameters_at_bounds(space, u[0], model, weights[0]),
         notes,
         certainty,
     )
@@ -170,7 +180,7 @@ def choose_solver(constraints: Iterable[Any]) -> Any:
     return SLSQP() if constraints else LevenbergMarquardt()
 
 
-def _find_at_bounds(
+def _find_parameters_at_bounds(
     space: Space, u: FloatArray, model: type[Model], weights: FloatArray
 ) -> tuple[str, ...]:
     """Return the parameters on a bound: weights of 0 in all channels, then shape parameters."""

@@ -16,9 +16,9 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.thumbnails import make_thumbnails
 from brdfkit.model import Model
 from brdfkit.model.value_table import make_value_table
+from brdfkit.regression.albedo import Albedo
 from brdfkit.regression.albedo_cells import describe_albedo
-from brdfkit.regression.certainty import Certainty, intervals
-from brdfkit.regression.light import Albedo
+from brdfkit.regression.certainty import Certainty, make_intervals
 from brdfkit.regression.measurement_noise import BY_ERRORS
 
 NAN = float("nan")
@@ -133,23 +133,27 @@ class Fit(Shown):
     @property
     def standard_errors(self) -> dict[str, float | tuple[float, ...]]:
         """The standard errors of `values`; NaN for parameters fixed, on a bound or undetermined."""
-        return self._group_by_value(self.certainty.standard_errors() if self.certainty else {})
+        return self._arrange_like_values(
+            self.certainty.compute_standard_errors() if self.certainty else {}
+        )
 
     @property
     def intervals(self) -> dict[str, tuple[float, float] | tuple[tuple[float, float], ...]]:
         """The 95 % confidence intervals (low, high) of `values`, by Student's t."""
-        half = self._group_by_value(self.certainty.half_widths() if self.certainty else {})
-        return intervals(self.values, half)
+        half = self._arrange_like_values(
+            self.certainty.compute_half_widths() if self.certainty else {}
+        )
+        return make_intervals(self.values, half)
 
     @property
     def covariance(self) -> NDArray[np.float64]:
         """The covariance (n, n) of ``certainty.names``."""
-        return self.certainty.matrix() if self.certainty else np.zeros((0, 0))
+        return self.certainty.make_covariance_matrix() if self.certainty else np.zeros((0, 0))
 
     @property
     def correlation(self) -> NDArray[np.float64]:
         """The correlation (n, n) of ``certainty.names``."""
-        return self.certainty.correlation() if self.certainty else np.zeros((0, 0))
+        return self.certainty.compute_correlation() if self.certainty else np.zeros((0, 0))
 
     @property
     def degrees_of_freedom(self) -> int | None:
@@ -165,14 +169,18 @@ class Fit(Shown):
         robust weights, and no table. It is NaN for a fit to pictures, whose pixels show the same
         samples.
         """
-        return self._sample_certainty.criterion(self.loss, 2.0) if self._sample_certainty else NAN
+        return (
+            self._sample_certainty.compute_criterion(self.loss, 2.0)
+            if self._sample_certainty
+            else NAN
+        )
 
     @property
     def bic(self) -> float:
         """The Bayesian information criterion, N ln(E²) + k ln N; see `aic`."""
-        return self._sample_certainty.bic(self.loss) if self._sample_certainty else NAN
+        return self._sample_certainty.compute_bic(self.loss) if self._sample_certainty else NAN
 
-    def _group_by_value(self, numbers: Mapping[str, float]) -> dict[str, Any]:
+    def _arrange_like_values(self, numbers: Mapping[str, float]) -> dict[str, Any]:
         """Return `numbers` by the names of `Certainty` in the form of `values`; NaN if missing."""
         grouped: dict[str, Any] = {}
         for name, value in self.values.items():

@@ -8,11 +8,11 @@ from typing import Any
 from brdfkit.core.files import sha256
 from brdfkit.core.version import find_versions
 from brdfkit.fitting.settings import FitSettings
-from brdfkit.materials.loading import locate_material
+from brdfkit.materials.loading import locate
 from brdfkit.materials.measured import Measured
 from brdfkit.regression import Fit
 from brdfkit.regression.solvers import AlbedoAtMost
-from brdfkit.regression.solvers.settings import to_plain, to_solver
+from brdfkit.regression.solvers.settings import to_plain_data, to_solver
 from brdfkit.reporting.pictures.defaults import SCENE
 
 
@@ -31,7 +31,7 @@ def describe_provenance(
     """
     provenance = {"file": str(file) if file else f"{material.name}, from memory"}
     if file:
-        provenance["SHA-256 of the file"] = sha256(locate_material(file)[0])
+        provenance["SHA-256 of the file"] = sha256(locate(file)[0])
     provenance["SHA-256 of its data"] = material.checksum
     settings = f"{size}×{size} pixels, {spp} samples per pixel, seed {seed}"
     provenance["pictures"] = f"{describe_scene(scene, environment)}; {settings}"
@@ -87,10 +87,14 @@ def _to_option(name: str, value: Any) -> list[str]:
         return ["--robust", str(value)]
     if name == "max_angle":
         return ["--max-angle", f"{value:g}"]
-    if name == "solver" and isinstance(value, dict) and value == to_plain(to_solver(value["name"])):
+    if (
+        name == "solver"
+        and isinstance(value, dict)
+        and value == to_plain_data(to_solver(value["name"]))
+    ):
         return ["--solver", value["name"]]
     if name == "constraints" and len(value or ()) == 1 and isinstance(value[0], dict):
         limit: Any = value[0].get("limit")
-        if value[0] == to_plain(AlbedoAtMost(limit)):
+        if value[0] == to_plain_data(AlbedoAtMost(limit)):
             return ["--albedo-at-most", f"{limit:g}"]
     return []

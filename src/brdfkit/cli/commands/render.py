@@ -255,7 +255,7 @@ def _choose_path(request: Request, name: str) -> Path:
 
 def _warn_of_gains(models: Sequence[Any]) -> None:
     """Print a warning for each model that reflects more light than arrives, by its parameters."""
-    from brdfkit.regression.light import LARGEST_ALBEDO, format_share, make_albedo_pixels
+    from brdfkit.regression.albedo import LARGEST_ALBEDO, format_share, make_albedo_pixels
 
     for model in models:
         albedo = float(make_albedo_pixels((5.0, 45.0, 75.0)).look(model.eval).max())

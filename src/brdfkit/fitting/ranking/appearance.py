@@ -17,7 +17,7 @@ from brdfkit.images.errors.colour_difference import ciede2000
 from brdfkit.images.errors.psnr import find_peak
 from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Samples
-from brdfkit.regression.light import ISOTROPIC_AZIMUTHS, make_albedo_pixels
+from brdfkit.regression.albedo import ISOTROPIC_AZIMUTHS, make_albedo_pixels
 
 Array = NDArray[np.float64]
 Brdf = Callable[[Array, Array], Array]  # (wi, wo) → (n, channels)

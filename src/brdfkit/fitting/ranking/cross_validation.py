@@ -14,7 +14,7 @@ from brdfkit.fitting.ranking.appearance import Appearance
 from brdfkit.fitting.ranking.held_out import HeldOut
 from brdfkit.model import Model
 from brdfkit.model.evaluation import make_model
-from brdfkit.regression.light import Albedo, Light
+from brdfkit.regression.albedo import Albedo, TargetAlbedo
 
 # Number of starts of the fits without one fold; the first is where the fit to all samples ended
 STARTS = 2
@@ -42,7 +42,7 @@ def cross_validate(
     model: type[Model],
     held_out: HeldOut,
     appearance: Appearance,
-    light: Light,
+    light: TargetAlbedo,
     anisotropic: bool | None,
     seed: int,
     report: Callable[[int], object],
@@ -54,7 +54,7 @@ def cross_validate(
     settings = {"anisotropic": anisotropic, "seed": seed}
     report(0)
     began = time.perf_counter()
-    whole = held_out.regress(model, held_out.folds >= 0, light=light, **settings)
+    whole = held_out.regress(model, held_out.folds >= 0, target_albedo=light, **settings)
     seconds = time.perf_counter() - began
     report(1)
 
@@ -62,14 +62,14 @@ def cross_validate(
         model, held_out, whole.shapes, settings, lambda done: report(1 + done)
     )
     brdf, certainty = make_model(model, whole.shapes, whole.weights).eval, whole.certainty
-    albedo = light.judge(brdf)
+    albedo = light.compare(brdf)
     return Validated(
         errors,
         albedo,
         appearance.picture_error(brdf),
         appearance.find_doubt(brdf) or next(iter(albedo.warnings()), ""),
         certainty.parameters,
-        certainty.bic(whole.loss),
+        certainty.compute_bic(whole.loss),
         seconds,
     )
 

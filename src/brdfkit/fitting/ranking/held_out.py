@@ -21,8 +21,8 @@ from brdfkit.model import Model
 from brdfkit.model.evaluation import make_model
 from brdfkit.model.samples import Samples
 from brdfkit.regression import Loss, Picture, losses, regress
-from brdfkit.regression.losses.loss import squared_differences
-from brdfkit.regression.problem.subset import draw_part
+from brdfkit.regression.losses.loss import sum_squared_differences
+from brdfkit.regression.problem.subset import draw_subset
 from brdfkit.regression.regression import Solution
 
 # Larger measurements are represented by this number of samples, drawn at random
@@ -62,9 +62,9 @@ class HeldOut:
         """Divide `Samples`, and for a `Picture` loss `Pixels`, at random into blocks and folds."""
         of_samples = _loss_of_samples(loss)
         if len(samples.wi) > SAMPLE_LIMIT:
-            black = squared_differences(of_samples, np.zeros_like(samples.values), samples)
+            black = sum_squared_differences(of_samples, np.zeros_like(samples.values), samples)
             parts = of_samples.importance(samples) * black
-            samples, _ = draw_part(samples, parts, SAMPLE_LIMIT, rng)
+            samples, _ = draw_subset(samples, parts, SAMPLE_LIMIT, rng)
         blocks = number_blocks(samples.wi, samples.wo, anisotropic)
         own = assign_folds(blocks, folds, rng, "samples")
         importance = of_samples.importance(samples)
@@ -93,12 +93,14 @@ class HeldOut:
         of_samples, of_pixels = self._split(rows)
         samples = self.samples.at(of_samples)
         values = solution.eval(model, samples)
-        squares = squared_differences(_loss_of_samples(self.loss), values, samples)
+        squares = sum_squared_differences(_loss_of_samples(self.loss), values, samples)
         if self.pixels is None or not isinstance(self.loss, Picture):
             return squares
         pixels = self.pixels.at(of_pixels)
         brdf = make_model(model, solution.shapes, solution.weights).eval
-        apart = squared_differences(self.loss.pixel_loss, pixels.look(brdf), _as_samples(pixels))
+        apart = sum_squared_differences(
+            self.loss.pixel_loss, pixels.look(brdf), _as_samples(pixels)
+        )
         return np.concatenate([squares, apart])
 
     def sum_by_block(self, values: FloatArray) -> FloatArray:

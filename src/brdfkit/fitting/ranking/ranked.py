@@ -10,7 +10,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import to_printable
 from brdfkit.fitting.ranking.cross_validation import Validated
 from brdfkit.fitting.ranking.ties import compare_with_best, is_tied
-from brdfkit.regression.light import Albedo
+from brdfkit.regression.albedo import Albedo
 
 # A smaller difference of pictures is rounding
 ROUNDING = 1e-6

@@ -22,7 +22,7 @@ from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model import Model, labels
 from brdfkit.regression import Picture, to_loss
-from brdfkit.regression.light import Light
+from brdfkit.regression.albedo import TargetAlbedo
 
 # The sums that are ranked by default: the best of docs/leaderboard.md with few and with more
 # parameters
@@ -103,7 +103,7 @@ def rank(
         pixels = draw_pixels(chosen.lights, data.rgb.eval, max_angle, seed)
     held_out = HeldOut.draw(samples, chosen, data.anisotropic, folds, rng, pixels)
     appearance = Appearance(data, samples, max_angle, seed + 1)
-    light = Light.of(data.rgb.albedo, data.anisotropic)
+    light = TargetAlbedo.from_measured(data.rgb.albedo, data.anisotropic)
     how = appearance, light, anisotropic, seed
 
     report, fits = progress or (lambda done, total: None), folds + 1

@@ -13,8 +13,8 @@ from brdfkit.core.version import __version__
 from brdfkit.fitting.sweeping import tables
 from brdfkit.materials.measured.albedos import ANGLES
 from brdfkit.regression import losses
-from brdfkit.regression.albedo_cells import format_albedo, is_wrong, mean_albedos
-from brdfkit.regression.light import WRONG_FACTOR
+from brdfkit.regression.albedo import WRONG_FACTOR
+from brdfkit.regression.albedo_cells import average_albedos, format_albedo, is_wrong_albedo
 
 TINT_STEPS = 10  # shades of colour in the page's style
 COLOURLESS_RATIO = 4.0  # a cell with this many times the best error has no tint
@@ -129,8 +129,8 @@ def _list_fits(sweep: Any) -> dict[str, Any] | None:
                 "model": row.model,
                 "quantities": [quantity.format(quantity.of(row)) for quantity in quantities],
                 "albedos": [
-                    (format_albedo(own), format_albedo(measured), is_wrong(own, measured))
-                    for own, measured in zip(*mean_albedos(row.fit.albedo), strict=True)
+                    (format_albedo(own), format_albedo(measured), is_wrong_albedo(own, measured))
+                    for own, measured in zip(*average_albedos(row.fit.albedo), strict=True)
                 ],
                 "numbers": [row.parameters, f"{row.samples:,}", f"{row.seconds:.2f}"],
                 "remarks": "; ".join([*bounds, *row.fit.notes, row.message]),

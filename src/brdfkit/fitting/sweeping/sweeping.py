@@ -21,7 +21,7 @@ from brdfkit.fitting.sweeping.processes import default_workers, run_in_processes
 from brdfkit.fitting.sweeping.result import Row, Sweep
 from brdfkit.fitting.sweeping.tasks import Outcome, Task, fail, fit_models
 from brdfkit.regression import Fit
-from brdfkit.regression.solvers.settings import require_plain
+from brdfkit.regression.solvers.settings import require_plain_data
 
 TABLE, PAGE = "table.csv", "index.html"  # files in the folder
 
@@ -83,7 +83,7 @@ def sweep(
     """
     began = time.perf_counter()
     checked = FitSettings.read(to_dictionary("settings", settings))
-    require_plain(checked.solver, checked.constraints)
+    require_plain_data(checked.solver, checked.constraints)
     slots = _count_slots(workers, client)
     tasks = [replace(task, judge=bool(judge)) for task in plan(materials, models, checked)]
     require_material_first("sweep(materials, models)", materials)

@@ -15,7 +15,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import write_safely
 from brdfkit.fitting.compare import format_error
 from brdfkit.materials.measured.albedos import ANGLES
-from brdfkit.regression.albedo_cells import mean_albedos
+from brdfkit.regression.albedo_cells import average_albedos
 
 
 @dataclass(frozen=True)
@@ -158,7 +158,7 @@ def _make_record(row: Any) -> dict[str, Any]:
 
 def _mean_albedos(row: Any) -> Any:
     """Return the mean albedos of a row's fit and of its measurement; nan if unknown."""
-    return mean_albedos(row.fit.albedo if row.fit else None)
+    return average_albedos(row.fit.albedo if row.fit else None)
 
 
 def _format_cell(row: Any, quantity: Quantity) -> str:

@@ -126,7 +126,7 @@ def bootstrap(
         drawn = samples.at(rows)
         drawn = replace(drawn, weight=drawn.weight * times[rows])
         part = problem.with_samples(drawn)
-        shapes, weights, _ = again.descend(part, fit.values, again.weights, rng)
+        shapes, weights, _ = again.search_from(part, fit.values, again.weights, rng)
         refitted.append(again.to_values(shapes, weights))
         if progress:
             progress(number, draws)

@@ -16,7 +16,7 @@ from brdfkit.materials.resolve import MaterialLike, to_material
 from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.model.samples.samples import Samples
 from brdfkit.regression import Fit
-from brdfkit.regression.losses.loss import squared_differences
+from brdfkit.regression.losses.loss import sum_squared_differences
 from brdfkit.regression.losses.named_losses import to_loss
 from brdfkit.regression.refitting import Refit
 
@@ -160,4 +160,4 @@ def _compute_root_weights(loss: Any, samples: Samples) -> FloatArray:
     """Return √W (n,) of a linear loss, whose squared differences are W (model - measured)²."""
     ones = np.ones((len(samples.wi), 1))
     black = replace(samples, values=0 * ones)
-    return np.sqrt(loss.importance(samples) * squared_differences(loss, ones, black))
+    return np.sqrt(loss.importance(samples) * sum_squared_differences(loss, ones, black))

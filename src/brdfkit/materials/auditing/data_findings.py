@@ -22,7 +22,7 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.conventions import can_mend
 from brdfkit.materials.measured.coverage import is_in_plane
 from brdfkit.model.samples import Samples
-from brdfkit.regression.light import format_share
+from brdfkit.regression.albedo import format_share
 
 # The limits above which something is a finding; for the two ratios *_BELOW, below which
 RECIPROCITY_ERROR, FEWEST_PAIRS = 0.1, 20  # a median difference, by at least so many pairs

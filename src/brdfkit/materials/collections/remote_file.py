@@ -1,4 +1,4 @@
-"""`RemoteFile` reads parts of a file on a server, to get one member of a large zip archive."""
+"""`RemoteFile`: a file on a server, read in parts, for one member of a large zip archive."""
 
 import io
 from typing import Any
@@ -6,18 +6,16 @@ from zipfile import BadZipFile
 
 import requests
 
-BLOCK = 2**22  # bytes per request; small blocks need many requests, whose number servers limit
-TIMEOUT = 30  # seconds to wait for an answer
+BLOCK = 2**22  # bytes per request: servers limit their number
+TIMEOUT = 30  # seconds without an answer
 PARTIAL = 206  # HTTP status of an answer with a part of the file
-# Ask for bytes without compression, because positions count the bytes of the file
-PLAIN = {"Accept-Encoding": "identity"}
+PLAIN = {"Accept-Encoding": "identity"}  # uncompressed, so that positions agree with the file
 
 
 class RemoteFile(io.RawIOBase):
-    """A binary stream of the file at `url`, which requests only the parts that are read.
+    """The seekable file at `url`, which `zipfile` reads through an `io.BufferedReader`.
 
-    `zipfile` reads it through an `io.BufferedReader`. Raises the errors of `requests`, and
-    `BadZipFile` where the server sends whole files only.
+    Raises the errors of `requests`, and `BadZipFile` where the server sends whole files only.
     """
 
     def __init__(self, url: str) -> None:
@@ -26,10 +24,7 @@ class RemoteFile(io.RawIOBase):
         self.size = int(content_range.rpartition("/")[2])
 
     def _read_range(self, first: int, last: int) -> tuple[bytes, str]:
-        """Request the bytes `first` to `last`, both included, from the server.
-
-        The second result is the answer's header Content-Range, which states the file's size.
-        """
+        """Return the bytes from `first` to `last` included, and the header Content-Range."""
         headers = PLAIN | {"Range": f"bytes={first}-{last}"}
         with requests.get(self.url, headers=headers, stream=True, timeout=TIMEOUT) as answer:
             answer.raise_for_status()

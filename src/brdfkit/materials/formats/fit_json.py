@@ -8,8 +8,8 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.version import __version__
 from brdfkit.materials.formats._source import Source
 from brdfkit.model import labels
+from brdfkit.regression.albedo import Albedo
 from brdfkit.regression.certainty import Certainty
-from brdfkit.regression.light import Albedo
 from brdfkit.regression.result import Fit
 
 NAME = "brdfkit fit"

@@ -15,7 +15,7 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured.measured_data import MeasuredData
 from brdfkit.model.samples.coordinates import compute_coordinates, compute_sample_coordinates
 from brdfkit.model.samples.measures import REACH
-from brdfkit.regression.light import (
+from brdfkit.regression.albedo import (
     ANISOTROPIC_AZIMUTHS,
     ISOTROPIC_AZIMUTHS,
     LARGEST_MEASURED_ALBEDO,

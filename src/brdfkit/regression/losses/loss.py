@@ -81,7 +81,8 @@ class Loss:
         known = np.array([-3.0, -1e-4, 0.0, 1e-5, 0.02, 0.5, 4.0, 3e3])
         model, measured = (pairs.ravel() for pairs in np.meshgrid(known, known))
         difference, kappa = (
-            _evaluate_oblique(self, m, r) for m, r in ((model, measured), (1 + 0 * model, 0))
+            _evaluate_at_oblique_angles(self, m, r)
+            for m, r in ((model, measured), (1 + 0 * model, 0))
         )
         if not np.isfinite(difference).all():
             return False
@@ -113,7 +114,7 @@ class Loss:
 
 
 @in_turn
-def squared_differences(loss: Loss, values: Any, samples: Any) -> FloatArray:
+def sum_squared_differences(loss: Loss, values: Any, samples: Any) -> FloatArray:
     """Return squared differences (n,) of `values` (n, channels) from `Samples`, channels summed."""
     array = double_precision.to_array
     cosines = [array(w[:, 2]) for w in (samples.wi, samples.wo)]
@@ -132,18 +133,18 @@ def make_loss(difference: Callable[..., Any]) -> Loss:
     name = getattr(difference, "__name__", type(difference).__name__).strip("<>")
     lines = (difference.__doc__ or "a loss of the user's").strip().splitlines()
     loss = Loss(name, lines[0].rstrip("."), difference)
-    require_working(loss)
+    require_working_loss(loss)
     return loss
 
 
-def require_working(loss: Loss) -> None:
+def require_working_loss(loss: Loss) -> None:
     """Raise `BrdfkitError` for a loss that cannot be minimised.
 
     It may fail on Dr.Jit arrays, return too few numbers, or not change with the model.
     """
     model = np.array([0.1, 0.5, 1.0, 3.0])
     try:
-        difference = _evaluate_oblique(loss, model, 0.4)
+        difference = _evaluate_at_oblique_angles(loss, model, 0.4)
     except Exception as error:
         raise BrdfkitError(
             f"The loss {loss.name} fails with {type(error).__name__} ({error}); it is called with "
@@ -164,7 +165,9 @@ def require_working(loss: Loss) -> None:
         )
 
 
-def _evaluate_oblique(loss: Loss, model: FloatArray, measured: FloatArray | float) -> FloatArray:
+def _evaluate_at_oblique_angles(
+    loss: Loss, model: FloatArray, measured: FloatArray | float
+) -> FloatArray:
     """Return the differences (n,) of a loss in NumPy, where cosθ_i is 0.75 and cosθ_o 0.5."""
     values = (model, measured + 0 * model, 0.75 + 0 * model, 0.5 + 0 * model)
     difference = loss.difference(*map(double_precision.to_array, values))

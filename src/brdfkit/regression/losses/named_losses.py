@@ -17,7 +17,7 @@ from brdfkit.core.array_types import FloatArray, JitFloat
 from brdfkit.core.documents import Cell, Document, Shown, Table
 from brdfkit.core.documents.parts import STRONG
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.regression.losses.loss import Loss, make_loss, require_working
+from brdfkit.regression.losses.loss import Loss, make_loss, require_working_loss
 from brdfkit.regression.losses.picture import Picture
 
 # The loss of a fit that names none
@@ -29,22 +29,30 @@ OFFSET = 1e-3
 CBRT_OFFSET = 1e-6
 
 
-def _cosine(model: JitFloat, measured: JitFloat, cos_i: JitFloat, cos_o: JitFloat) -> JitFloat:
+def _cosine_difference(
+    model: JitFloat, measured: JitFloat, cos_i: JitFloat, cos_o: JitFloat
+) -> JitFloat:
     return dr.sqrt((dr.square(cos_i) + dr.square(cos_o)) / 2) * (model - measured)
 
 
-def _cbrt(model: JitFloat, measured: JitFloat, cos_i: JitFloat, cos_o: JitFloat) -> JitFloat:
+def _cbrt_difference(
+    model: JitFloat, measured: JitFloat, cos_i: JitFloat, cos_o: JitFloat
+) -> JitFloat:
     squares = dr.square(dr.cbrt(cos_i)) + dr.square(dr.cbrt(cos_o))
     roots = dr.cbrt(model + CBRT_OFFSET), dr.cbrt(dr.maximum(measured, 0) + CBRT_OFFSET)
     return dr.sqrt(squares / 2) * (roots[0] - roots[1])
 
 
-def _log(model: JitFloat, measured: JitFloat, cos_i: JitFloat, cos_o: JitFloat) -> JitFloat:
+def _log_difference(
+    model: JitFloat, measured: JitFloat, cos_i: JitFloat, cos_o: JitFloat
+) -> JitFloat:
     cosines = cos_i * cos_o
     return dr.log(cosines * model + OFFSET) - dr.log(cosines * dr.maximum(measured, 0) + OFFSET)
 
 
-def _relative(model: JitFloat, measured: JitFloat, cos_i: JitFloat, cos_o: JitFloat) -> JitFloat:
+def _relative_difference(
+    model: JitFloat, measured: JitFloat, cos_i: JitFloat, cos_o: JitFloat
+) -> JitFloat:
     return (model - measured) / (dr.maximum(measured, 0) + OFFSET)
 
 
@@ -86,19 +94,19 @@ named = Losses(
         Loss(
             name="cosine",
             meaning="RMS difference of f cos θ_i by solid angle: the light that is reflected",
-            difference=_cosine,
+            difference=_cosine_difference,
             measure="solid_angle",
         ),
         Loss(
             name="log",
             meaning="RMS difference of ln(f cos θ_i cos θ_o + 0.001): relative error, dark counts",
-            difference=_log,
+            difference=_log_difference,
             measure="angles",
         ),
         Loss(
             name="cbrt",
             meaning="RMS difference of the cube root of f cos θ_i: between cosine and log",
-            difference=_cbrt,
+            difference=_cbrt_difference,
         ),
         Loss(
             name="plain",
@@ -115,7 +123,7 @@ named = Losses(
         Loss(
             name="relative",
             meaning="RMS difference of f as a share of the measured f + 0.001: dark counts",
-            difference=_relative,
+            difference=_relative_difference,
             measure="angles",
         ),
         Loss(
@@ -151,5 +159,5 @@ def to_loss(value: Any) -> Loss | Picture:
             f"A loss of your own is named {loss.name!r}; give it a name that brdfkit.losses.named "
             "lacks."
         )
-    require_working(loss)
+    require_working_loss(loss)
     return loss

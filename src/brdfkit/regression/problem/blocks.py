@@ -42,7 +42,7 @@ class Block:
     point: Any
 
     @classmethod
-    def of(
+    def from_samples(
         cls, samples: Samples, importance: FloatArray, loss: Loss, rows: slice, count: int
     ) -> Block:
         """Return the block with the `rows` of `Samples`; `importance` (n,): weights of samples."""
@@ -60,7 +60,7 @@ class Block:
         measured = [array(channel) for channel in samples.values.T]
         return cls(loss, rows, count, wi, wo, measured, array(importance), index(pad(point)))
 
-    def spread(self, table: FloatArray) -> list[JitFloat]:
+    def repeat_for_samples(self, table: FloatArray) -> list[JitFloat]:
         """Return the columns of `table` (count, columns) as arrays with one value per sample."""
         float64, columns = double_precision.float_type(), table.shape[1]
         if not double_precision.has_derivatives():  # these arrays do not support dr.gather
@@ -69,19 +69,21 @@ class Block:
         flat, first = double_precision.to_array(table.ravel()), self.point * columns
         return [dr.gather(float64, flat, first + k) for k in range(columns)]
 
-    def columns(self, columns: Columns, table: FloatArray) -> list[JitFloat]:
+    def evaluate_columns(self, columns: Columns, table: FloatArray) -> list[JitFloat]:
         """Evaluate all `Columns` at the parameters in `table` (count, shapes); return arrays."""
-        return columns.eval(self.spread(table) if table.size else [], self.wi, self.wo)
+        return columns.evaluate(
+            self.repeat_for_samples(table) if table.size else [], self.wi, self.wo
+        )
 
     def directions(self) -> tuple[Vector, Vector]:
         """Return (wi, wo) of the samples, without the repetition."""
         wi, wo = (
-            Vector(*(double_precision.to_array(self.fold(x)[0]) for x in (w.x, w.y, w.z)))
+            Vector(*(double_precision.to_array(self.split_by_point(x)[0]) for x in (w.x, w.y, w.z)))
             for w in (self.wi, self.wo)
         )
         return wi, wo
 
-    def fold(self, array: JitFloat) -> FloatArray:
+    def split_by_point(self, array: JitFloat) -> FloatArray:
         """Return a Dr.Jit array as a NumPy array (count, samples)."""
         return np.asarray(array).reshape(self.count, -1)
 
@@ -101,8 +103,8 @@ class Blocks:
         if n > step:
             for start in range(0, n, step):
                 rows = slice(start, min(start + step, n))
-                yield Block.of(*given, rows, count)
+                yield Block.from_samples(*given, rows, count)
             return
         if count not in self._cache:
-            self._cache[count] = Block.of(*given, slice(0, n), count)
+            self._cache[count] = Block.from_samples(*given, slice(0, n), count)
         yield self._cache[count]

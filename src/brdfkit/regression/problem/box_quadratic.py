@@ -34,7 +34,7 @@ def minimise_in_box(
         if not fixed.any():
             break
         z = np.where(at_low, low, np.where(at_high, high, 0.0))
-        z = _solve(form, force, fixed, z)
+        z = _solve_free_entries(form, force, fixed, z)
         slope = (form @ z[:, :, None])[:, :, 0] + force
         to_low = np.where(fixed, at_low & (slope > 0), z < low)
         to_high = np.where(fixed, at_high & (slope < 0), z > high)
@@ -48,7 +48,9 @@ def minimise_in_box(
     return np.minimum(np.maximum(z, low), high) * scale
 
 
-def _solve(form: FloatArray, force: FloatArray, fixed: BoolArray, values: FloatArray) -> FloatArray:
+def _solve_free_entries(
+    form: FloatArray, force: FloatArray, fixed: BoolArray, values: FloatArray
+) -> FloatArray:
     """Return z with z = `values` where `fixed`, and F z + f = 0 elsewhere."""
     free = ~fixed
     reduced = form * (free[:, :, None] & free[:, None, :])

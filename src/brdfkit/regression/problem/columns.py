@@ -38,7 +38,9 @@ class Columns:
     slopes: tuple[tuple[int, int], ...]
 
     @classmethod
-    def of(cls, model: type[Model], names: Sequence[str], fixed: dict[str, float]) -> Columns:
+    def for_model(
+        cls, model: type[Model], names: Sequence[str], fixed: dict[str, float]
+    ) -> Columns:
         """Return the columns of a `model` class; `fixed`: values by the parameters' names."""
         key: Any = model
         traced = _trace_columns(key, tuple(names), tuple(sorted(fixed)))
@@ -47,12 +49,12 @@ class Columns:
     def __len__(self) -> int:
         return len(self.lobes) + len(self.slopes)
 
-    def bind(self, shapes: Sequence[JitFloat]) -> Model:
+    def make_model(self, shapes: Sequence[JitFloat]) -> Model:
         """Return the model with `shapes`, one array or number for each name."""
         fixed = {name: double_precision.to_scalar(value) for name, value in self.fixed.items()}
         return self.model.bind(dict(zip(self.names, shapes, strict=True)) | fixed)
 
-    def eval(
+    def evaluate(
         self,
         shapes: Sequence[JitFloat],
         wi: Vector,
@@ -65,12 +67,12 @@ class Columns:
         value of a lobe.
         """
         if not self.slopes:
-            return self.values(shapes, wi, wo, factor)
+            return self.evaluate_values(shapes, wi, wo, factor)
         if not double_precision.has_derivatives():
-            return self.values(shapes, wi, wo) + self._difference_slopes(shapes, wi, wo)
+            return self.evaluate_values(shapes, wi, wo) + self._difference_slopes(shapes, wi, wo)
         for shape in shapes:
             dr.enable_grad(shape)
-        values = self.values(shapes, wi, wo, factor)
+        values = self.evaluate_values(shapes, wi, wo, factor)
         slopes: dict[tuple[int, int], JitFloat] = {}
         for j, shape in enumerate(shapes):
             dr.clear_grad(values)
@@ -80,15 +82,15 @@ class Columns:
             slopes |= {(v, k): dr.grad(values[v]) for v, k in self.slopes if k == j}
         return [dr.detach(value) for value in values] + [slopes[key] for key in self.slopes]
 
-    def values(
+    def evaluate_values(
         self,
         shapes: Sequence[JitFloat],
         wi: Vector,
         wo: Vector,
         factor: Callable[[Lobe], JitFloat] | None = None,
     ) -> list[JitFloat]:
-        """Evaluate only the values, and return arrays (n,); see `eval`."""
-        lobes = [lobe for _, lobe in self.bind(shapes).terms()]
+        """Evaluate only the values, and return arrays (n,); see `evaluate`."""
+        lobes = [lobe for _, lobe in self.make_model(shapes).terms()]
         zeros = 0 * wi.z  # makes an array of a constant lobe
         plain = [(factor(lobe) if factor else lobe.eval(wi, wo)) + zeros for lobe in lobes]
         return plain + [lobe.quadratic(wi, wo) + zeros for lobe in lobes if lobe.quadratic]
@@ -103,7 +105,7 @@ class Columns:
             h = 1e-6 * dr.maximum(dr.abs(shapes[j]), 1e-3)
             ends = dr.maximum(shapes[j] - h, low), dr.minimum(shapes[j] + h, high)
             below, above = (
-                self.values([*shapes[:j], end, *shapes[j + 1 :]], wi, wo) for end in ends
+                self.evaluate_values([*shapes[:j], end, *shapes[j + 1 :]], wi, wo) for end in ends
             )
             width = ends[1] - ends[0]
             slopes |= {(v, k): (above[v] - below[v]) / width for v, k in self.slopes if k == j}

@@ -35,13 +35,13 @@ class Expansion:
     moment: np.ndarray
 
     @classmethod
-    def of(
+    def from_sums(
         cls, columns: Columns, space: Space, sums: Sums, u: FloatArray, weights: FloatArray
     ) -> Expansion:
         """Return the expansion made from `Sums` at the points."""
         points, channels, lobes = weights.shape
         shapes = len(columns.names)
-        change = combine_columns(columns, weights, space.slopes(u))
+        change = make_derivative_matrix(columns, weights, space.differentiate(u))
         by_channel = (change @ sums.moment[..., None])[..., 0]
         gradient = np.zeros((points, shapes + channels * lobes))
         gradient[:, :shapes] = by_channel[:, :, :shapes].sum(axis=1)
@@ -51,7 +51,7 @@ class Expansion:
         return made if sums.gram is None else replace(made, hessian=made._make_hessian(change))
 
     def _make_hessian(self, change: FloatArray) -> FloatArray:
-        """Return the Hessian (points, n, n); `change`: as `combine_columns` returns."""
+        """Return the Hessian (points, n, n); `change`: as `make_derivative_matrix` returns."""
         points, channels, lobes = self.weights.shape
         shapes = self.u.shape[1]
         products = change @ self.gram @ change.transpose(0, 1, 3, 2)
@@ -72,7 +72,7 @@ class Expansion:
         along which the strength of a lobe and its Fresnel reflectance trade off.
         """
         columns, count = self.columns, len(self.columns.lobes)
-        by = self.space.table(u) - self.space.table(self.u)
+        by = self.space.to_parameters(u) - self.space.to_parameters(self.u)
         # The lobes at `u`, as combinations of the columns at these points
         lobes = np.zeros((len(u), count, len(columns)))
         lobes[:, range(count), range(count)] = 1
@@ -88,11 +88,11 @@ class Expansion:
             gram.reshape(-1, count, count), moment.reshape(-1, count), least, np.inf
         ).reshape(self.weights.shape)
 
-    def at(self, rows: Any) -> Expansion:
+    def select(self, rows: Any) -> Expansion:
         """Return the expansion about some of the points."""
         return replace(self, **{name: getattr(self, name)[rows] for name in ARRAYS})
 
-    def put(self, rows: IntArray, other: Expansion) -> None:
+    def replace_points(self, rows: IntArray, other: Expansion) -> None:
         """Replace the points `rows` by the points of the expansion `other`."""
         for name in ARRAYS:
             getattr(self, name)[rows] = getattr(other, name)
@@ -101,7 +101,7 @@ class Expansion:
 ARRAYS = [f.name for f in fields(Expansion) if f.name not in ("columns", "space")]
 
 
-def combine_columns(columns: Columns, weights: FloatArray, slopes: FloatArray) -> FloatArray:
+def make_derivative_matrix(columns: Columns, weights: FloatArray, slopes: FloatArray) -> FloatArray:
     """Return the model's derivatives as combinations of its columns.
 
     The array (points, channels, shapes + lobes, columns) has the derivatives by coordinates, then

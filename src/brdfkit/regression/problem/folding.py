@@ -22,7 +22,7 @@ from brdfkit.model.lobes import Lobe
 from brdfkit.regression.problem.blocks import Block
 from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.problem import Problem
-from brdfkit.regression.problem.sums import Sums, move_weights, solve_weights
+from brdfkit.regression.problem.sums import Sums, move_sums_to_weights, solve_weights
 
 # Folding pays if a node, a half vector with its sums, stands for at least this number of samples
 SAMPLES_PER_NODE = 20
@@ -30,8 +30,8 @@ SAMPLES_PER_NODE = 20
 LONG_NODE = 1000
 
 
-def fold_problem(problem: Problem) -> Folded | None:
-    """Return the `Folded` problem of a `Problem`, or None if it cannot be folded."""
+def fold_problem(problem: Problem) -> FoldedProblem | None:
+    """Return the `FoldedProblem` problem of a `Problem`, or None if it cannot be folded."""
     cells = problem.samples.cells
     few = len(problem.groups) == 1  # a node holds the products of all channels
     if not (problem.linear and few) or cells is None or not double_precision.has_derivatives():
@@ -43,7 +43,9 @@ def fold_problem(problem: Problem) -> Folded | None:
     if not problem.columns.slopes:  # without slopes S is constant, and one node is enough
         numbers = np.zeros_like(numbers)
     starts = np.flatnonzero(np.diff(numbers, prepend=-1))
-    return Folded(problem, starts) if len(starts) * SAMPLES_PER_NODE <= len(numbers) else None
+    return (
+        FoldedProblem(problem, starts) if len(starts) * SAMPLES_PER_NODE <= len(numbers) else None
+    )
 
 
 def _depends_on_cos_d(problem: Problem) -> bool | None:
@@ -53,22 +55,23 @@ def _depends_on_cos_d(problem: Problem) -> bool | None:
     """
     space, up = problem.space, double_precision.to_vector(np.array([[0.0, 0.0, 1.0]]))
     shapes = [
-        double_precision.to_scalar(x) for x in space.table(np.full((1, len(space.names)), 0.5))[0]
+        double_precision.to_scalar(x)
+        for x in space.to_parameters(np.full((1, len(space.names)), 0.5))[0]
     ]
     cos_d = double_precision.to_scalar(1.0)
-    fixed = problem.columns.bind(shapes).lobes()
+    fixed = problem.columns.make_model(shapes).lobes()
     dr.enable_grad(cos_d)
     depends = any(dr.grad_enabled(l.factors[0](up, cos_d)) for l in fixed if l.factors)
     for shape in shapes:
         dr.enable_grad(shape)
-    for lobe in problem.columns.bind(shapes).lobes():
+    for lobe in problem.columns.make_model(shapes).lobes():
         constant = lobe.factors[1] if lobe.factors else lobe.eval
         if dr.grad_enabled(constant(up, up)):
             return None
     return depends
 
 
-class Folded:
+class FoldedProblem:
     """A `Problem` of a linear loss as sums over nodes; `starts`: the first samples of the nodes."""
 
     clamped = False
@@ -86,21 +89,23 @@ class Folded:
             inside = starts[(starts > block.rows.start) & (starts < block.rows.stop)]
             first = int(np.searchsorted(starts, block.rows.start, "right")) - 1
             edges = np.concatenate([[block.rows.start], inside]) - block.rows.start
-            sums[first : first + len(edges)] += _sum_products(self._constants(block), edges)
+            sums[first : first + len(edges)] += _sum_products(
+                self._evaluate_constants(block), edges
+            )
         by_node = sums.transpose(1, 2, 0)
         values = [*range(lobes), *(value for value, _ in self.columns.slopes)]
         self.grams = by_node[np.ix_(values, values)]
         self.moments = by_node[np.ix_(values, range(lobes, lobes + channels))]
         self.squares = float(np.trace(by_node[lobes:, lobes:].sum(axis=2)))
 
-    def _constants(self, block: Block) -> FloatArray:
+    def _evaluate_constants(self, block: Block) -> FloatArray:
         """Return the factors κ A of the lobes, and -κ R by channel, times √w, as (..., n)."""
         columns, problem = self.columns, self.problem
-        middle = self.space.table(np.full((1, len(self.space.names)), 0.5))[0]
-        lobes = columns.bind([double_precision.to_scalar(x) for x in middle]).lobes()
+        middle = self.space.to_parameters(np.full((1, len(self.space.names)), 0.5))[0]
+        lobes = columns.make_model([double_precision.to_scalar(x) for x in middle]).lobes()
         root, constants, differences = dr.sqrt(block.importance), [], []
         for c in range(self.channels):
-            difference, kappa = problem._difference(block, 0.0, c)
+            difference, kappa = problem._evaluate_difference(block, 0.0, c)
             differences.append(root * difference)
         for lobe in lobes:
             constant = lobe.factors[1] if lobe.factors else lobe.eval
@@ -108,32 +113,36 @@ class Folded:
         dr.eval(constants, differences)
         return np.stack([np.asarray(array) for array in constants + differences])
 
-    def start(self, u: FloatArray) -> FloatArray:
-        """Return the best weights at coordinates `u`; see `Problem.start`."""
-        return solve_weights(self.columns, self._sums(u), self.least)
+    def estimate_weights(self, u: FloatArray) -> FloatArray:
+        """Return the best weights at coordinates `u`; see `Problem.estimate_weights`."""
+        return solve_weights(self.columns, self._sum_nodes(u), self.least)
 
     def expand(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
         """Return the `Expansion` of E² with the best weights; see `Problem.expand`."""
-        sums = self._sums(u)
+        sums = self._sum_nodes(u)
         weights = solve_weights(self.columns, sums, self.least)
-        sums = move_weights(self.columns, sums, weights)
-        return Expansion.of(self.columns, self.space, sums, u, weights)
+        sums = move_sums_to_weights(self.columns, sums, weights)
+        return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 
-    def expand_here(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
+    def expand_at_weights(
+        self, u: FloatArray, weights: FloatArray, curvature: bool = True
+    ) -> Expansion:
         """Return the `Expansion` at these `weights`, with the Hessian, which costs nothing."""
-        sums = move_weights(self.columns, self._sums(u), weights)
-        return Expansion.of(self.columns, self.space, sums, u, weights)
+        sums = move_sums_to_weights(self.columns, self._sum_nodes(u), weights)
+        return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 
-    def _sums(self, u: FloatArray) -> Sums:
+    def _sum_nodes(self, u: FloatArray) -> Sums:
         """Return the `Sums` over all samples at coordinates `u` and weights of 0."""
         points, nodes = len(u), len(self.wi.x)
-        table = self.space.table(u)
+        table = self.space.to_parameters(u)
         shapes = [double_precision.to_array(np.repeat(x, nodes)) for x in table.T]
         wi, wo = (
             double_precision.Vector(*(dr.tile(x, points) for x in (w.x, w.y, w.z)))
             for w in (self.wi, self.wo)
         )
-        columns = self.columns.eval(shapes, wi, wo, factor=lambda lobe: _eval_factor(lobe, wi, wo))
+        columns = self.columns.evaluate(
+            shapes, wi, wo, factor=lambda lobe: _eval_factor(lobe, wi, wo)
+        )
         dr.eval(columns)
         T = np.stack([np.asarray(column).reshape(points, nodes) for column in columns], axis=1)
         gram = np.einsum("pai,pbi,abi->pab", T, T, self.grams)[:, None]

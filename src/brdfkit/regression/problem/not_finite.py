@@ -47,7 +47,7 @@ def require_finite_columns(
     for point in np.flatnonzero(
         [not np.isfinite([v[k] for v in values]).all() for k in range(len(u))]
     ):
-        shapes = space.values(u[point])
+        shapes = space.to_values(u[point])
         require_finite_slopes(columns.model, shapes, space.names, *block.directions())
     return [*values[:count], *(np.nan_to_num(v, posinf=0, neginf=0) for v in values[count:])]
 
@@ -78,7 +78,7 @@ def require_finite_loss(
     )
 
 
-def require_finite(model: Any, columns: FloatArray, wi: Vector, wo: Vector) -> None:
+def require_finite_lobes(model: Any, columns: FloatArray, wi: Vector, wo: Vector) -> None:
     """Raise `BrdfkitError` if a lobe's values, `columns` (lobes, n), are not finite."""
     if np.isfinite(columns.sum(axis=1)).all():  # quick: one sum per lobe
         return

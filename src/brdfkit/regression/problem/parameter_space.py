@@ -19,25 +19,25 @@ from brdfkit.model import Model
 from brdfkit.model.samples import Samples
 
 
-def join(u: FloatArray, weights: FloatArray) -> FloatArray:
+def join_point(u: FloatArray, weights: FloatArray) -> FloatArray:
     """Join `u` (points, shapes) and `weights` (points, channels, lobes) to vectors (points, n)."""
     return np.concatenate([u, weights.reshape(len(u), math.prod(weights.shape[1:]))], axis=1)
 
 
-def split(z: FloatArray, shapes: int, channels: int) -> tuple[FloatArray, FloatArray]:
-    """Split vectors `z` (points, n) into coordinates and weights, as `join` takes them."""
+def split_point(z: FloatArray, shapes: int, channels: int) -> tuple[FloatArray, FloatArray]:
+    """Split vectors `z` (points, n) into coordinates and weights, as `join_point` takes them."""
     lobes = (z.shape[1] - shapes) // channels
     return z[:, :shapes], z[:, shapes:].reshape(len(z), channels, lobes)
 
 
-def limits(shapes: int, channels: int, least: FloatArray) -> tuple[FloatArray, FloatArray]:
+def make_limits(shapes: int, channels: int, least: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the bounds low and high (n,) of vectors; `least` (lobes,): the smallest weights."""
     count = channels * len(least)
     low = np.concatenate([np.zeros(shapes), np.tile(least, channels)])
     return low, np.concatenate([np.ones(shapes), np.full(count, np.inf)])
 
 
-def channel_rows(c: int, shapes: int, lobes: int) -> IntArray:
+def find_channel_entries(c: int, shapes: int, lobes: int) -> IntArray:
     """Return the indices of the entries that channel `c` depends on: all shapes, its weights."""
     return np.r_[0:shapes, shapes + c * lobes : shapes + (c + 1) * lobes]
 
@@ -56,7 +56,7 @@ class Space:
     fixed: dict[str, float]
 
     @classmethod
-    def of(
+    def for_model(
         cls,
         model: type[Model],
         bounds: Mapping[str, tuple[float, float]],
@@ -92,18 +92,18 @@ class Space:
         determined = {
             n: v for n, v in model.determine_parameters(samples).items() if n not in bounds
         }
-        return cls.of(model, bounds, {**determined, **fixed}, anisotropic)
+        return cls.for_model(model, bounds, {**determined, **fixed}, anisotropic)
 
-    def table(self, u: FloatArray) -> FloatArray:
+    def to_parameters(self, u: FloatArray) -> FloatArray:
         """Return the parameters (points, shapes) at coordinates `u`, of the same shape."""
         linear = self.low + u * (self.high - self.low)
-        return np.where(self.log, self._geometric(u), linear)
+        return np.where(self.log, self._interpolate_logarithmically(u), linear)
 
-    def values(self, u: FloatArray) -> dict[str, float]:
+    def to_values(self, u: FloatArray) -> dict[str, float]:
         """Return the parameters by name, with the fixed ones, at the coordinates `u` (shapes,)."""
-        return dict(zip(self.names, map(float, self.table(u)), strict=True)) | self.fixed
+        return dict(zip(self.names, map(float, self.to_parameters(u)), strict=True)) | self.fixed
 
-    def coordinates(self, values: Mapping[str, Any]) -> FloatArray:
+    def to_coordinates(self, values: Mapping[str, Any]) -> FloatArray:
         """Return the coordinates (shapes,) of parameters by name, clamped to [0, 1]."""
         x = np.array([values[name] for name in self.names])
         linear = (x - self.low) / (self.high - self.low)
@@ -111,13 +111,13 @@ class Space:
             log = np.log(x / self.low) / np.log(self.high / self.low)
         return np.clip(np.where(self.log, log, linear), 0, 1)
 
-    def slopes(self, u: FloatArray) -> FloatArray:
+    def differentiate(self, u: FloatArray) -> FloatArray:
         """Return the derivative of each parameter by its coordinate, at coordinates `u`."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            log = self._geometric(u) * np.log(self.high / self.low)
+            log = self._interpolate_logarithmically(u) * np.log(self.high / self.low)
         return np.where(self.log, log, self.high - self.low)
 
-    def _geometric(self, u: FloatArray) -> FloatArray:
+    def _interpolate_logarithmically(self, u: FloatArray) -> FloatArray:
         """Return the parameters at coordinates `u` as if all were logarithmic."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return self.low * (self.high / self.low) ** u

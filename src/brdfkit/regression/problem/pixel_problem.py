@@ -28,7 +28,7 @@ from brdfkit.regression.problem.columns import Columns
 from brdfkit.regression.problem.not_finite import require_finite_columns
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
-from brdfkit.regression.problem.subset import draw_part
+from brdfkit.regression.problem.subset import draw_subset
 
 UP = (0.0, 0.0, 1.0)
 LOG = named.by_sample["log"]
@@ -46,13 +46,13 @@ class PixelBlock(Block):
 
     pairs: Block
 
-    def columns(self, columns: Columns, table: FloatArray) -> list[JitFloat]:
-        """Evaluate the columns of pixels, sums over their pairs; see `Block.columns`.
+    def evaluate_columns(self, columns: Columns, table: FloatArray) -> list[JitFloat]:
+        """Evaluate the columns of pixels, sums over their pairs; see `Block.evaluate_columns`.
 
         A slope that is not finite at a pair counts as 0, as in `require_finite_columns`.
         """
         lobes, each = len(columns.lobes), len(self.pairs.wi.x) // len(self.wi.x)
-        arrays = self.pairs.columns(columns, table)
+        arrays = self.pairs.evaluate_columns(columns, table)
         slopes = [dr.select(dr.isfinite(slope), slope, 0) for slope in arrays[lobes:]]
         return [_sum_groups(self.pairs.importance * c, each) for c in (*arrays[:lobes], *slopes)]
 
@@ -78,9 +78,11 @@ class PixelBlocks:
             return
         for start in range(0, n, step):
             rows = slice(start, min(start + step, n))
-            of_pixels = Block.of(self.whole, self.importance, self.loss, rows, count)
+            of_pixels = Block.from_samples(self.whole, self.importance, self.loss, rows, count)
             pair_rows = slice(rows.start * pairs, rows.stop * pairs)
-            of_pairs = Block.of(self.pairs, self.pixels.shares, self.loss, pair_rows, count)
+            of_pairs = Block.from_samples(
+                self.pairs, self.pixels.shares, self.loss, pair_rows, count
+            )
             block = PixelBlock(**vars(of_pixels), pairs=of_pairs)
             if n <= step:
                 self._cache[count] = block
@@ -118,19 +120,19 @@ class PixelProblem(Problem):
         self._sample_blocks = Blocks(samples, sample_weights, loss)
         self._pixel_blocks = PixelBlocks(pixels, pixel_weights, pixel_loss)
         self.importance = np.concatenate([sample_weights, pixel_weights])
-        self.blocks = self._all_blocks
+        self.blocks = self._iterate_blocks
 
-    def _all_blocks(self, count: int) -> Iterator[Block]:
+    def _iterate_blocks(self, count: int) -> Iterator[Block]:
         """Yield the blocks of samples, then the blocks of pixels."""
         yield from self._sample_blocks(count)
         yield from self._pixel_blocks(count)
 
-    def _evaluate(
+    def _evaluate_block(
         self, block: Block, u: FloatArray, columns: list[JitFloat], *others: list[JitFloat]
     ) -> tuple[Any, ...]:
         if isinstance(block, PixelBlock):
             self._require_finite_pairs(block, u, columns)
-        return super()._evaluate(block, u, columns, *others)
+        return super()._evaluate_block(block, u, columns, *others)
 
     def _require_finite_pairs(
         self, block: PixelBlock, u: FloatArray, columns: list[JitFloat]
@@ -138,7 +140,10 @@ class PixelProblem(Problem):
         """Raise `BrdfkitError` for a lobe that is not finite at one of the pairs of pixels."""
         values = columns[: len(self.columns.lobes)]
         if not all(np.isfinite(np.array(value)).all() for value in values):
-            arrays = [block.pairs.fold(column) for column in self._columns(block.pairs, u)]
+            arrays = [
+                block.pairs.split_by_point(column)
+                for column in self._evaluate_columns(block.pairs, u)
+            ]
             require_finite_columns(self.columns, arrays, block.pairs, self.space, u)
 
 
@@ -160,7 +165,7 @@ class PictureProblem(PixelProblem):
             )
 
     @classmethod
-    def of(
+    def for_fit(
         cls,
         model: type[Model],
         samples: Samples,
@@ -173,7 +178,7 @@ class PictureProblem(PixelProblem):
         samples = _draw_samples(model, samples, space, SAMPLES, rng)
         return cls(model, samples, picture, space, pixels)
 
-    def reduce(self, rng: np.random.Generator) -> PictureProblem:
+    def make_smaller(self, rng: np.random.Generator) -> PictureProblem:
         """Return the same problem on few samples and pixels, to compare starts."""
         samples = _draw_samples(self.model, self.samples, self.space, FEW_SAMPLES, rng)
         pixels = self.pixels.take_first(math.ceil(len(self.pixels.values) * PIXEL_SHARE))
@@ -186,5 +191,5 @@ def _draw_samples(
     """Draw about `size` of `Samples`; return all if there are at most twice as many."""
     if len(samples.wi) <= 2 * size:
         return samples
-    part, _ = draw_part(samples, Problem(model, samples, LOG, space).black, size, rng)
+    part, _ = draw_subset(samples, Problem(model, samples, LOG, space).black_squares, size, rng)
     return part

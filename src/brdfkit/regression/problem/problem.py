@@ -22,10 +22,10 @@ from brdfkit.model.samples import Samples
 from brdfkit.regression.losses.loss import Loss
 from brdfkit.regression.problem.blocks import GROUP, Block, Blocks
 from brdfkit.regression.problem.columns import Columns
-from brdfkit.regression.problem.expansion import Expansion, combine_columns
+from brdfkit.regression.problem.expansion import Expansion, make_derivative_matrix
 from brdfkit.regression.problem.not_finite import require_finite_columns, require_finite_loss
 from brdfkit.regression.problem.parameter_space import Space
-from brdfkit.regression.problem.sums import Sums, move_weights, solve_weights
+from brdfkit.regression.problem.sums import Sums, move_sums_to_weights, solve_weights
 
 
 class Problem:
@@ -41,7 +41,7 @@ class Problem:
         self, model: type[Model], samples: Samples, loss: Loss, space: Space, extended: bool = False
     ) -> None:
         self.model, self.samples, self.loss, self.space = model, samples, loss, space
-        self.columns = Columns.of(model, space.names, space.fixed)
+        self.columns = Columns.for_model(model, space.names, space.fixed)
         self.channels = samples.values.shape[1]
         numbers = range(self.channels)
         self.groups = [numbers[k : k + GROUP] for k in numbers[::GROUP]]
@@ -66,22 +66,22 @@ class Problem:
         return Problem(self.model, samples, self.loss, self.space)
 
     @cached_property
-    def black(self) -> FloatArray:
+    def black_squares(self) -> FloatArray:
         """The contributions (n,) of the samples to E² of a black model."""
         squares = []
         for block in self.blocks(1):
             total = 0
             for group in self.groups:
-                total += sum(dr.square(self._difference(block, 0.0, c)[0]) for c in group)
-                self._end_group(total)
+                total += sum(dr.square(self._evaluate_difference(block, 0.0, c)[0]) for c in group)
+                self._evaluate_group(total)
             squares.append(np.asarray(block.importance * total))
         contributions = np.concatenate(squares)
         if not np.isfinite(contributions).all():
             black = np.zeros((1, self.channels, len(self.least)))
-            self._explain_not_finite(np.full((1, len(self.space.names)), 0.5), black)
+            self._raise_if_not_finite(np.full((1, len(self.space.names)), 0.5), black)
         return contributions
 
-    def start(self, u: FloatArray, evenly: bool = False) -> FloatArray:
+    def estimate_weights(self, u: FloatArray, evenly: bool = False) -> FloatArray:
         """Return the weights with the least E² at coordinates `u`, exact for a linear loss.
 
         Another loss is linearised at the measured values, or if `evenly`, replaced by the plain
@@ -89,21 +89,21 @@ class Problem:
         """
         sums = Sums.zeros(len(u), self.channels, len(self.columns))
         for block in self.blocks(len(u)):
-            columns = self._columns(block, u)
+            columns = self._evaluate_columns(block, u)
             moments, weights = [], []
             for group in self.groups:
                 for c in group:
                     value = block.measured[c]
                     value = value if self.loss.linear else dr.maximum(value, 0)
-                    _, slope = self._difference(block, value, c)
+                    _, slope = self._evaluate_difference(block, value, c)
                     slope = 0 * slope + 1 if evenly else slope
                     weights.append(block.importance * slope * slope)
                     moments.append(-weights[-1] * value)
-                self._end_group(columns, moments, weights)
+                self._evaluate_group(columns, moments, weights)
             squares = [0 * block.importance]
-            sums.add(*self._evaluate(block, u, columns, squares, moments, weights))
+            sums.add_samples(*self._evaluate_block(block, u, columns, squares, moments, weights))
         if not sums.is_finite():
-            self._explain_not_finite(u)
+            self._raise_if_not_finite(u)
         return solve_weights(self.columns, sums, self.least)
 
     def expand(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
@@ -115,38 +115,38 @@ class Problem:
         solve = self.linear and curvature and self.factors is None
         if solve:
             weights = np.zeros_like(weights)
-        sums = self.sums(u, weights, curvature)
+        sums = self.compute_sums(u, weights, curvature)
         if solve:
             weights = solve_weights(self.columns, sums, self.least)
-            sums = move_weights(self.columns, sums, weights)
-        return Expansion.of(self.columns, self.space, sums, u, weights)
+            sums = move_sums_to_weights(self.columns, sums, weights)
+        return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 
-    def sums(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Sums:
+    def compute_sums(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Sums:
         """Return the `Sums` at points."""
         sums = Sums.zeros(len(u), self.channels, len(self.columns), curvature)
         for _, evaluated in self._evaluate_blocks(u, weights):
-            sums.add(*evaluated)
+            sums.add_samples(*evaluated)
         if not sums.is_finite():
-            self._explain_not_finite(u, weights)
+            self._raise_if_not_finite(u, weights)
         return sums
 
-    def jacobians(self, u: FloatArray, weights: FloatArray) -> list[list[FloatArray]]:
+    def compute_jacobians(self, u: FloatArray, weights: FloatArray) -> list[list[FloatArray]]:
         """Return the residuals (n,) at one point, and their derivatives (shapes + lobes, n).
 
         Both are lists by channel. The derivatives are by the parameters, not by their coordinates;
         a residual without a slope is 0.
         """
-        _, residuals, jacobians = zip(*self.jacobian_blocks(u, weights), strict=True)
+        _, residuals, jacobians = zip(*self.iterate_jacobians(u, weights), strict=True)
         return [
             [np.concatenate(own, axis=-1) for own in zip(*blocks, strict=True)]
             for blocks in (residuals, jacobians)
         ]
 
-    def jacobian_blocks(
+    def iterate_jacobians(
         self, u: FloatArray, weights: FloatArray
     ) -> Iterator[tuple[slice, list[FloatArray], list[FloatArray]]]:
-        """Yield the rows, residuals and derivatives of each block; see `jacobians`."""
-        change = combine_columns(self.columns, weights, np.ones_like(u))[0]
+        """Yield the rows, residuals and derivatives of each block; see `compute_jacobians`."""
+        change = make_derivative_matrix(self.columns, weights, np.ones_like(u))[0]
         for block, (columns, _, moments, grams) in self._evaluate_blocks(u, weights):
             roots = [np.sqrt(gram[0]) for gram in grams]
             residuals = [
@@ -160,15 +160,15 @@ class Problem:
     def _evaluate_blocks(
         self, u: FloatArray, weights: FloatArray
     ) -> Iterator[tuple[Block, tuple[Any, ...]]]:
-        """Yield each block with its arguments of `Sums.add`."""
+        """Yield each block with its arguments of `Sums.add_samples`."""
         for block in self.blocks(len(u)):
-            columns = self._columns(block, u)
+            columns = self._evaluate_columns(block, u)
             squares, moments, grams = [], [], []
             for group in self.groups:
                 own = []
-                model = self._mix(block, columns, weights[:, group])
+                model = self._evaluate_model(block, columns, weights[:, group])
                 for c, value in zip(group, model, strict=True):
-                    difference, slope = self._difference(block, value, c)
+                    difference, slope = self._evaluate_difference(block, value, c)
                     importance = block.importance
                     if self.factors is not None:
                         factors = double_precision.to_array(self.factors[c][block.rows])
@@ -177,49 +177,55 @@ class Problem:
                     moments.append(importance * difference * slope)
                     grams.append(importance * slope * slope)
                 squares.append(sum(own))
-                self._end_group(columns, squares, moments, grams)
-            yield block, self._evaluate(block, u, columns, squares, moments, grams)
+                self._evaluate_group(columns, squares, moments, grams)
+            yield block, self._evaluate_block(block, u, columns, squares, moments, grams)
 
-    def expand_here(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
+    def expand_at_weights(
+        self, u: FloatArray, weights: FloatArray, curvature: bool = True
+    ) -> Expansion:
         """Return the `Expansion` about points without changing their `weights`."""
-        sums = self.sums(u, weights, curvature)
-        return Expansion.of(self.columns, self.space, sums, u, weights)
+        sums = self.compute_sums(u, weights, curvature)
+        return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 
-    def residuals(self, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
+    def compute_residuals(self, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
         """Return the residuals (n,) at one point, by channel; E² is the sum of their squares."""
         parts: list[list[JitFloat]] = []
         for block in self.blocks(1):
-            columns, root = self._columns(block, u), dr.sqrt(block.importance)
+            columns, root = self._evaluate_columns(block, u), dr.sqrt(block.importance)
             parts.append([])
             for group in self.groups:
-                model = self._mix(block, columns, weights[:, group])
+                model = self._evaluate_model(block, columns, weights[:, group])
                 pairs = zip(group, model, strict=True)
-                parts[-1] += [root * self._difference(block, m, c)[0] for c, m in pairs]
-                self._end_group(columns, parts[-1])
+                parts[-1] += [root * self._evaluate_difference(block, m, c)[0] for c, m in pairs]
+                self._evaluate_group(columns, parts[-1])
             dr.eval(parts[-1])
         return [np.concatenate([np.asarray(p) for p in part]) for part in zip(*parts, strict=True)]
 
-    def _end_group(self, *arrays: Any) -> None:
+    def _evaluate_group(self, *arrays: Any) -> None:
         """Evaluate the arrays of a group of channels, so that the next group has its own kernel."""
         if len(self.groups) > 1:
             dr.eval(*arrays)
 
-    def _columns(self, block: Block, u: FloatArray) -> list[JitFloat]:
+    def _evaluate_columns(self, block: Block, u: FloatArray) -> list[JitFloat]:
         """Return the columns of a block at coordinates `u`, a list of Dr.Jit arrays."""
-        return block.columns(self.columns, self.space.table(u))
+        return block.evaluate_columns(self.columns, self.space.to_parameters(u))
 
-    def _mix(self, block: Block, columns: list[JitFloat], weights: FloatArray) -> list[JitFloat]:
+    def _evaluate_model(
+        self, block: Block, columns: list[JitFloat], weights: FloatArray
+    ) -> list[JitFloat]:
         """Return the model at the samples of a block, a Dr.Jit array for each channel."""
         factors = weights[:, :, self.columns.lobes] ** self.columns.powers
         points, channels, values = factors.shape
-        spread = block.spread(factors.reshape(points, -1))
+        spread = block.repeat_for_samples(factors.reshape(points, -1))
         mixed = []
         for c in range(channels):
             own = spread[c * values : (c + 1) * values]
             mixed.append(sum(f * column for f, column in zip(own, columns, strict=False)))
         return mixed
 
-    def _difference(self, block: Block, value: JitFloat, c: int) -> tuple[JitFloat, JitFloat]:
+    def _evaluate_difference(
+        self, block: Block, value: JitFloat, c: int
+    ) -> tuple[JitFloat, JitFloat]:
         """Return the loss's difference in channel `c`, and its slope by the model's `value`."""
 
         def difference(value: JitFloat) -> JitFloat:
@@ -239,7 +245,7 @@ class Problem:
         _, slope = differentiate(difference, 0 * value)
         return differentiate(extended, value)
 
-    def _explain_not_finite(self, u: FloatArray, weights: FloatArray | None = None) -> None:
+    def _raise_if_not_finite(self, u: FloatArray, weights: FloatArray | None = None) -> None:
         """Raise `BrdfkitError` that names a sample at which the loss is not finite.
 
         The model has these `weights`, or by default meets the measured values.
@@ -247,12 +253,12 @@ class Problem:
         for block in self.blocks(len(u)):
             model = block.measured
             if weights is not None:
-                model = self._mix(block, self._columns(block, u), weights)
+                model = self._evaluate_model(block, self._evaluate_columns(block, u), weights)
             for c, value in enumerate(model):
-                both = self._difference(block, value, c)
+                both = self._evaluate_difference(block, value, c)
                 require_finite_loss(block.loss, block, value, block.measured[c], *both)
 
-    def _evaluate(
+    def _evaluate_block(
         self,
         block: Block,
         u: FloatArray,
@@ -261,14 +267,14 @@ class Problem:
         moments: list[JitFloat],
         weights: list[JitFloat],
     ) -> tuple[Any, ...]:
-        """Evaluate a block in one kernel, and return the arguments of `Sums.add`."""
+        """Evaluate a block in one kernel, and return the arguments of `Sums.add_samples`."""
         total = sum(squares)
         dr.eval(columns, total, moments, weights)
-        values = [block.fold(column) for column in columns]
+        values = [block.split_by_point(column) for column in columns]
         values = require_finite_columns(self.columns, values, block, self.space, u)
         return (
             values,
-            block.fold(total),
-            [block.fold(m) for m in moments],
-            [block.fold(w) for w in weights],
+            block.split_by_point(total),
+            [block.split_by_point(m) for m in moments],
+            [block.split_by_point(w) for w in weights],
         )

@@ -11,13 +11,13 @@ from brdfkit.model.samples import Samples
 BANDS = 4
 
 
-def mix_bands(samples: Samples) -> Samples:
+def average_to_bands(samples: Samples) -> Samples:
     """Return `Samples` with few channels, the means of neighbouring channels."""
     bands = np.array_split(samples.values, BANDS, axis=1)
     return replace(samples, values=np.stack([band.mean(axis=1) for band in bands], axis=1))
 
 
-def draw_part(
+def draw_subset(
     samples: Samples, influence: FloatArray, size: int, rng: np.random.Generator
 ) -> tuple[Samples, IntArray]:
     """Draw about `size` of some `Samples`; return them, with larger weights, and their indices.
@@ -42,12 +42,12 @@ def _sort_by_theta_h(samples: Samples) -> IntArray | None:
     """Return the indices that sort samples by theta_h; None if they are sorted, like a table's."""
     if samples.cells is not None:  # one sample for each half vector is enough
         first = np.flatnonzero(np.diff(samples.cells[0], prepend=-1))
-        if _is_falling(cos_theta_h(samples.wi[first], samples.wo[first])):
+        if _is_decreasing(cos_theta_h(samples.wi[first], samples.wo[first])):
             return None
     cosine = cos_theta_h(samples.wi, samples.wo)
-    return None if _is_falling(cosine) else np.argsort(-cosine, kind="stable")
+    return None if _is_decreasing(cosine) else np.argsort(-cosine, kind="stable")
 
 
-def _is_falling(cosine: FloatArray) -> bool:
+def _is_decreasing(cosine: FloatArray) -> bool:
     """Return whether the numbers (n,) never rise, except by rounding."""
     return np.diff(cosine).max(initial=0) <= 1e-12

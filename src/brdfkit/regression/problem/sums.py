@@ -39,7 +39,7 @@ class Sums:
         return bool(np.isfinite(self.error).all() and np.isfinite(self.moment).all())
 
     @np.errstate(invalid="ignore")  # `is_finite` reports it
-    def add(
+    def add_samples(
         self,
         columns: list[FloatArray],
         squares: FloatArray,
@@ -76,7 +76,7 @@ def solve_weights(columns: Columns, sums: Sums, low: FloatArray) -> FloatArray:
     return minimise_in_box(gram, moment, low, np.inf).reshape(points, channels, lobes)
 
 
-def move_weights(columns: Columns, sums: Sums, weights: FloatArray) -> Sums:
+def move_sums_to_weights(columns: Columns, sums: Sums, weights: FloatArray) -> Sums:
     """Return the `Sums` at `weights`, from `sums` at weights of 0, for a linear difference."""
     factors = weights[:, :, columns.lobes] ** columns.powers
     values = len(columns.lobes)

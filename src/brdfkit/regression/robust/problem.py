@@ -9,14 +9,14 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.expansion import Expansion
-from brdfkit.regression.problem.parameter_space import join, limits
+from brdfkit.regression.problem.parameter_space import join_point, make_limits
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.robust.reweighting import (
     WEIGHTS,
-    leverages,
+    compute_leverages,
+    compute_smallest_scale,
+    estimate_residual_scale,
     require_more_samples,
-    residual_scale,
-    smallest_scale,
 )
 
 # One of this number of samples, with residuals next to the median, determines its derivative
@@ -33,9 +33,9 @@ class Point:
     weights: np.ndarray
     residuals: list[np.ndarray]
 
-    def join(self) -> FloatArray:
+    def to_vector(self) -> FloatArray:
         """Return the point as a vector (k,)."""
-        return join(self.u, self.weights)[0]
+        return join_point(self.u, self.weights)[0]
 
 
 class RobustProblem:
@@ -64,20 +64,22 @@ class RobustProblem:
         self.rank = u.shape[1] + weights.shape[2]
         require_more_samples(len(problem.samples.wi), self.rank)
         # Leverages, smallest scales and the metric of fitted values do not change between passes
-        self.metric = self.part.expand_here(u, weights).hessian[0]
+        self.metric = self.part.expand_at_weights(u, weights).hessian[0]
         root = np.sqrt(problem.importance / problem.importance.mean())
         root[root == 0] = 1.0  # its residual is 0
         self.levers = [root * np.sqrt(1 - h) for h in self._find_leverages(u, weights)]
-        black = problem.residuals(u, 0 * weights)
-        self.least = [smallest_scale(target / root) for target in black]
+        black = problem.compute_residuals(u, 0 * weights)
+        self.least = [compute_smallest_scale(target / root) for target in black]
         self.spread = np.sqrt(sum(len(t) * np.var(t) for t in black)) or 1.0
-        self.low, self.high = limits(u.shape[1], problem.channels, problem.least)
+        self.low, self.high = make_limits(u.shape[1], problem.channels, problem.least)
 
     def _find_leverages(self, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
         """Return the leverages (n,) of the linear parameters by channel, exact or from the part."""
         if self.part is self.problem:
             blocks = [own for _, own in _iterate_columns(self.problem, u, weights)]
-            return [leverages(np.concatenate(own, axis=1)) for own in zip(*blocks, strict=True)]
+            return [
+                compute_leverages(np.concatenate(own, axis=1)) for own in zip(*blocks, strict=True)
+            ]
         # The part's weights make up for the other samples, so its products stand for all
         blocks = [own for _, own in _iterate_columns(self.part, u, weights)]
         inverses = []
@@ -90,46 +92,46 @@ class RobustProblem:
                 h[rows] = np.minimum((columns * (inverse @ columns)).sum(axis=0), 0.9999)
         return all_leverages
 
-    def forget_part(self) -> None:
+    def use_all_samples(self) -> None:
         """Compute the Hessians from all samples from now on."""
         self.part, self.rows = self.problem, slice(None)
 
     def make_point(self, u: FloatArray, weights: FloatArray) -> Point:
         """Return the `Point` of coordinates and weights."""
-        return Point(u, weights, self.problem.residuals(u, weights))
+        return Point(u, weights, self.problem.compute_residuals(u, weights))
 
-    def move(self, point: Point, step: FloatArray) -> Point:
+    def take_step(self, point: Point, step: FloatArray) -> Point:
         """Return the `Point` after a step (k,), within the bounds."""
         shapes = point.u.shape[1]
         moved = point.weights + step[shapes:].reshape(point.weights.shape)
         u = np.clip(point.u + step[:shapes], 0, 1)
         return self.make_point(u, np.maximum(moved, self.problem.least))
 
-    def scales(self, point: Point) -> list[float]:
+    def estimate_scales(self, point: Point) -> list[float]:
         """Return the scales of the residuals at a point, by channel."""
         adjusted = [r / lever for r, lever in zip(point.residuals, self.levers, strict=True)]
         return [
-            self.tune * residual_scale(r, self.rank, least)
+            self.tune * estimate_residual_scale(r, self.rank, least)
             for r, least in zip(adjusted, self.least, strict=True)
         ]
 
-    def ratios(self, point: Point, scales: list[float]) -> list[FloatArray]:
+    def divide_residuals(self, point: Point, scales: list[float]) -> list[FloatArray]:
         """Return the arguments r (n,) of the weights, residuals over levers and scales."""
         both = zip(point.residuals, self.levers, scales, strict=True)
         return [residual / (lever * scale) for residual, lever, scale in both]
 
-    def merit(self, point: Point, scales: list[float]) -> float:
+    def compute_merit(self, point: Point, scales: list[float]) -> float:
         """Return the sum that a pass reduces, Σ lever² ρ(r) in units of squared residuals."""
-        each = zip(self.ratios(point, scales), self.levers, scales, strict=True)
+        each = zip(self.divide_residuals(point, scales), self.levers, scales, strict=True)
         return sum(scale**2 * (lever**2 * self.rho(r)).sum() for r, lever, scale in each)
 
-    def weights_and_slopes(
+    def compute_weights_and_slopes(
         self, u: FloatArray, weights: FloatArray
     ) -> tuple[list[FloatArray], list[FloatArray]]:
         """Return the weights ω of the samples, and the derivatives of ω r by r, by channel."""
         point = self.make_point(u, weights)
-        ratios = self.ratios(point, self.scales(point))
-        return [self.function(r) for r in ratios], [self._slope(r) for r in ratios]
+        ratios = self.divide_residuals(point, self.estimate_scales(point))
+        return [self.function(r) for r in ratios], [self._differentiate_weight(r) for r in ratios]
 
     def expand_weighted(
         self, point: Point, factors: list[FloatArray]
@@ -142,25 +144,27 @@ class RobustProblem:
         hessian = here.hessian if own else self._expand(self.part, point, factors).hessian
         return here.gradient[0], hessian[0]
 
-    def newton_matrix(self, point: Point, ratios: list[FloatArray]) -> FloatArray:
+    def compute_newton_matrix(self, point: Point, ratios: list[FloatArray]) -> FloatArray:
         """Return Newton's matrix (k, k), with the change of the weights at constant scales."""
-        slopes = [self._slope(r[self.rows]) for r in ratios]
+        slopes = [self._differentiate_weight(r[self.rows]) for r in ratios]
         return self._expand(self.part, point, slopes).hessian[0]
 
-    def scale_derivatives(
+    def differentiate_scales(
         self, point: Point, ratios: list[FloatArray], scales: list[float]
     ) -> tuple[FloatArray, FloatArray]:
         """Return ∂g/∂ln s (k, channels) of the gradient g, and ∂ln s/∂z (channels, k)."""
         of_gradient, of_scale = [], []
         for c, (r, scale) in enumerate(zip(ratios, scales, strict=True)):
             r = r[self.rows]
-            of_gradient.append(self._gradient(point, c, self.function(r) - self._slope(r)))
-            of_scale.append(self._gradient(point, c, self._median_weights(c, r, scale)))
+            of_gradient.append(
+                self._gradient(point, c, self.function(r) - self._differentiate_weight(r))
+            )
+            of_scale.append(self._gradient(point, c, self._weigh_samples_at_median(c, r, scale)))
         return np.array(of_gradient).T, np.array(of_scale)
 
     def find_best_step(self, hessian: FloatArray, gradient: FloatArray, point: Point) -> FloatArray:
         """Return the step (k,) within the bounds that minimises the quadratic model."""
-        z = point.join()
+        z = point.to_vector()
         return minimise_in_box(hessian[None], gradient[None], self.low - z, self.high - z)[0]
 
     def _gradient(self, point: Point, channel: int, factors: FloatArray) -> FloatArray:
@@ -169,7 +173,7 @@ class RobustProblem:
         every[channel] = factors
         return self._expand(self.part, point, every, curvature=False).gradient[0]
 
-    def _median_weights(self, channel: int, r: FloatArray, scale: float) -> FloatArray:
+    def _weigh_samples_at_median(self, channel: int, r: FloatArray, scale: float) -> FloatArray:
         """Return weights of the part's samples, with which the gradient of E² is that of ln s.
 
         Only samples whose ratios `r` are next to the median, which determines s, have weight.
@@ -190,12 +194,12 @@ class RobustProblem:
         """Return the `Expansion` of E² with the samples weighted by `factors`."""
         problem.factors = factors
         try:
-            sums = problem.sums(point.u, point.weights, curvature)
+            sums = problem.compute_sums(point.u, point.weights, curvature)
         finally:  # also after Ctrl-C
             problem.factors = None
-        return Expansion.of(problem.columns, problem.space, sums, point.u, point.weights)
+        return Expansion.from_sums(problem.columns, problem.space, sums, point.u, point.weights)
 
-    def _slope(self, r: FloatArray) -> FloatArray:
+    def _differentiate_weight(self, r: FloatArray) -> FloatArray:
         """Return the derivative of ω r by r."""
         steps = -DIFFERENCE_STEP, DIFFERENCE_STEP
         ends = [self.function(r + step) * (r + step) for step in steps]
@@ -206,5 +210,5 @@ def _iterate_columns(
     problem: Problem, u: FloatArray, weights: FloatArray
 ) -> Iterator[tuple[slice, list[FloatArray]]]:
     """Yield the rows of each block, and by channel the residuals' derivatives by weights."""
-    for rows, _, jacobians in problem.jacobian_blocks(u, weights):
+    for rows, _, jacobians in problem.iterate_jacobians(u, weights):
         yield rows, [jacobian[u.shape[1] :] for jacobian in jacobians]

@@ -24,15 +24,15 @@ from brdfkit.core.errors import BrdfkitError
 ZERO_BELL = 30.0  # exp(-r²) is 0 beyond
 
 
-def _sine(r: FloatArray) -> FloatArray:
+def _andrews_weight(r: FloatArray) -> FloatArray:
     return np.where(np.abs(r) < np.pi, np.sinc(r / np.pi), 0)
 
 
-def _tanh(r: FloatArray) -> FloatArray:
+def _logistic_weight(r: FloatArray) -> FloatArray:
     return np.tanh(r) / np.where(r == 0, 1, r) + (r == 0)
 
 
-def _bell(r: FloatArray) -> FloatArray:
+def _welsch_weight(r: FloatArray) -> FloatArray:
     return np.exp(-(np.minimum(np.abs(r), ZERO_BELL) ** 2))
 
 
@@ -50,7 +50,7 @@ def _piecewise(
 
 # Name → (weight ω of r, tune: a larger one is gentler, ρ: the integral of ω r)
 WEIGHTS = {
-    "andrews": (_sine, 1.339, _piecewise(np.pi, lambda r: 1 - np.cos(r), lambda r: 2.0)),
+    "andrews": (_andrews_weight, 1.339, _piecewise(np.pi, lambda r: 1 - np.cos(r), lambda r: 2.0)),
     "bisquare": (
         lambda r: (1 - np.minimum(np.abs(r), 1) ** 2) ** 2,
         4.685,
@@ -67,17 +67,17 @@ WEIGHTS = {
         1.345,
         _piecewise(1, lambda r: r**2 / 2, lambda r: r - 0.5),
     ),
-    "logistic": (_tanh, 1.205, lambda r: np.logaddexp(r, -r) - np.log(2)),
+    "logistic": (_logistic_weight, 1.205, lambda r: np.logaddexp(r, -r) - np.log(2)),
     "talwar": (
         lambda r: (np.abs(r) < 1).astype(float),
         2.795,
         _piecewise(1, lambda r: r**2 / 2, lambda r: 0.5),
     ),
-    "welsch": (_bell, 2.985, lambda r: (1 - _bell(r)) / 2),
+    "welsch": (_welsch_weight, 2.985, lambda r: (1 - _welsch_weight(r)) / 2),
 }
 
 
-def residual_scale(residuals: FloatArray, rank: int, least: float) -> float:
+def estimate_residual_scale(residuals: FloatArray, rank: int, least: float) -> float:
     """Return the scale s of `residuals` (n,), already divided by √(1 - h).
 
     `rank`: the number of parameters; the smallest rank - 1 residuals are nearly zero by
@@ -102,12 +102,12 @@ def require_more_samples(samples: int, rank: int) -> None:
         )
 
 
-def smallest_scale(values: FloatArray) -> float:
+def compute_smallest_scale(values: FloatArray) -> float:
     """Return the smallest scale of residuals, 1e-6 of the standard deviation of `values` (n,)."""
     return 1e-6 * float(np.std(values, ddof=1)) or 1.0
 
 
-def leverages(columns: FloatArray) -> FloatArray:
+def compute_leverages(columns: FloatArray) -> FloatArray:
     """Return the leverages h (n,) of `columns` (parameters, n), kept below 1.
 
     They are the diagonal of the projection onto the columns.

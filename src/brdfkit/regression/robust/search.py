@@ -19,7 +19,7 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.progress_bar import Progress
 from brdfkit.regression.problem.problem import Problem
-from brdfkit.regression.problem.subset import draw_part
+from brdfkit.regression.problem.subset import draw_subset
 from brdfkit.regression.robust.problem import Point, RobustProblem
 
 # Newton's steps are longer than ordinary ones by at most 1 / this factor, in each direction
@@ -120,15 +120,15 @@ class RobustSearch:
         problem, near, solved = self.problem, NEAR_END, False
         for number in range(1, PASSES + 1):
             report(number, PASSES)
-            scales = problem.scales(point)
-            ratios = problem.ratios(point, scales)
+            scales = problem.estimate_scales(point)
+            ratios = problem.divide_residuals(point, scales)
             factors = [problem.function(r) for r in ratios]
             # The step of an ordinary pass, and its change of the fitted values
             gradient, hessian = problem.expand_weighted(point, factors)
             ordinary = problem.find_best_step(hessian, gradient, point)
             change = np.sqrt(max(ordinary @ problem.metric @ ordinary, 0)) / problem.spread
             if solved and change > SLOW * self.best.change:
-                problem.forget_part()
+                problem.use_all_samples()
             astray = solved and change > self.best.change
             if self.best is None or change < self.best.change:
                 outliers = float(np.mean([f < 0.5 for f in factors]))
@@ -142,13 +142,13 @@ class RobustSearch:
             elif number <= ordinary_passes:
                 point = self._reduce_merit(point, scales, (ordinary,))
             else:
-                newton = problem.newton_matrix(point, ratios)
+                newton = problem.compute_newton_matrix(point, ratios)
                 convex, concave = make_convex(newton, hessian)
                 step = problem.find_best_step(convex, gradient, point)
                 solved = change < near
                 if solved:
-                    step = self._solve_end(point, ratios, scales, newton, gradient, step)
-                    point = problem.move(point, step)
+                    step = self._step_to_fixed_point(point, ratios, scales, newton, gradient, step)
+                    point = problem.take_step(point, step)
                 else:
                     further = None if concave is None else concave @ step
                     point = self._reduce_merit(point, scales, (step, ordinary), further)
@@ -168,22 +168,22 @@ class RobustSearch:
         step along which the merit is concave; it is added again, twice as long each time, while the
         merit falls.
         """
-        before = self.problem.merit(point, scales)
+        before = self.problem.compute_merit(point, scales)
         for tried in (step / share for step in steps for share in (1, 2, 8)):
-            moved = self.problem.move(point, tried)
-            merit = self.problem.merit(moved, scales)
+            moved = self.problem.take_step(point, tried)
+            merit = self.problem.compute_merit(moved, scales)
             if merit <= before:
                 break
         while further is not None and np.any(further):
             tried, further = tried + further, 2 * further
-            longer = self.problem.move(point, tried)
-            less = self.problem.merit(longer, scales)
+            longer = self.problem.take_step(point, tried)
+            less = self.problem.compute_merit(longer, scales)
             if less >= merit:
                 break
             moved, merit = longer, less
         return moved
 
-    def _solve_end(
+    def _step_to_fixed_point(
         self,
         point: Point,
         ratios: list[FloatArray],
@@ -197,8 +197,8 @@ class RobustSearch:
         It includes the change of the scales: g + H v + A (B v) = 0, with the columns ∂g/∂ln s of A
         and the rows ∂ln s/∂z of B. Parameters that `step` moves to a bound stay there.
         """
-        A, B = self.problem.scale_derivatives(point, ratios, scales)
-        z = point.join() + step
+        A, B = self.problem.differentiate_scales(point, ratios, scales)
+        z = point.to_vector() + step
         free = (z > self.problem.low) & (z < self.problem.high)
         matrix = newton[np.ix_(free, free)] + A[free] @ B[:, free]
         unit = 1 / np.sqrt(np.maximum(np.abs(np.diagonal(matrix)), 1e-300))
@@ -218,13 +218,14 @@ def search_robust(
 ) -> tuple[FloatArray, FloatArray, str, tuple[str, ...], tuple[list[FloatArray], list[FloatArray]]]:
     """Search a robust fit from the optimum where all samples count alike.
 
-    Return (u, weights) at the end, a message, notes, and `RobustProblem.weights_and_slopes` there.
-    `name`: a weight function of `WEIGHTS`. With many samples the search starts on a part of them,
-    drawn by the generator `rng`. On Ctrl-C `Interrupted` is raised with the best `RobustEnd`.
+    Return (u, weights) at the end, a message, notes, and there the result of
+    `RobustProblem.compute_weights_and_slopes`. `name`: a weight function of `WEIGHTS`. With many
+    samples the search starts on a part of them, drawn by the generator `rng`. On Ctrl-C
+    `Interrupted` is raised with the best `RobustEnd`.
     """
     samples = problem.samples
     if len(samples.wi) > MANY_SAMPLES:
-        samples, rows = draw_part(samples, np.ones(len(samples.wi)), MANY_SAMPLES // 2, rng)
+        samples, rows = draw_subset(samples, np.ones(len(samples.wi)), MANY_SAMPLES // 2, rng)
         part = problem.with_samples(samples)
         first = RobustSearch(RobustProblem(part, u, weights, name))
         start = first.search(u, weights, report, LOOSE, ordinary_passes=0).point
@@ -241,4 +242,4 @@ def search_robust(
             f"{end.change:.1g} of their spread"
         )
     u, weights = end.point.u, end.point.weights
-    return u, weights, message, (note,), robust.weights_and_slopes(u, weights)
+    return u, weights, message, (note,), robust.compute_weights_and_slopes(u, weights)

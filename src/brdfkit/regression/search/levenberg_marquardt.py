@@ -13,7 +13,7 @@ from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.expansion import Expansion
-from brdfkit.regression.problem.parameter_space import join, limits
+from brdfkit.regression.problem.parameter_space import join_point, make_limits
 
 # A search continues while this many times its next gain could bring it below the best search
 PATIENCE = 10
@@ -65,7 +65,7 @@ def levenberg_marquardt(
     now = expand(u.copy(), weights.copy())  # the ends are stored in these arrays
     points, shapes = now.u.shape
     channels = weights.shape[1]
-    low, high = limits(shapes, channels, least)
+    low, high = make_limits(shapes, channels, least)
     correction = np.zeros_like(now.hessian)
     dampings, growth, evaluations = np.full(points, damping), np.full(points, 4.0), points
     exact = ROUNDING * now.error.max()
@@ -77,14 +77,14 @@ def levenberg_marquardt(
             (rows,) = np.nonzero(searching)
             if not len(rows):
                 break
-            here = now.at(rows)
+            here = now.select(rows)
             H, g = _add_correction(here.hessian, correction[rows]), here.gradient
             diagonal = H.diagonal(axis1=1, axis2=2)
             floor = 1e-12 * diagonal.max(axis=1, keepdims=True) + 1e-300
             damped = (
                 H + np.eye(H.shape[1]) * (dampings[rows, None] * (diagonal + floor))[:, None, :]
             )
-            at = join(here.u, here.weights)
+            at = join_point(here.u, here.weights)
             step = minimise_in_box(damped, g, low - at, high - at)
             gain = -((2 * g + (H @ step[:, :, None])[:, :, 0]) * step).sum(axis=1)
             # A search ends if the step would gain nothing; otherwise the step is tried
@@ -93,7 +93,7 @@ def levenberg_marquardt(
             leader = now.error[converged].min(initial=np.inf)
             over |= here.error - PATIENCE * gain > leader * (1 - 1e-7)
             searching[rows[over]] = False
-            rows, here, step, gain = rows[~over], here.at(~over), step[~over], gain[~over]
+            rows, here, step, gain = rows[~over], here.select(~over), step[~over], gain[~over]
             if not len(rows):
                 break
             u = np.clip(here.u + step[:, :shapes], 0, 1)
@@ -111,15 +111,15 @@ def levenberg_marquardt(
             searching[rows[dampings[rows] > LARGEST_DAMPING]] = False
             better = trial.error < here.error
             good, bad = rows[better], rows[~better]
-            here, trial = here.at(better), trial.at(better)
+            here, trial = here.select(better), trial.select(better)
             correction[bad] = 0
             correction[good] = _update_correction(
                 correction[good],
-                join(trial.u, trial.weights) - join(here.u, here.weights),
+                join_point(trial.u, trial.weights) - join_point(here.u, here.weights),
                 trial.gradient - here.gradient,
                 trial.hessian,
             )
-            now.put(good, trial)
+            now.replace_points(good, trial)
             converged |= now.error <= exact
             searching &= ~converged
     except KeyboardInterrupt:

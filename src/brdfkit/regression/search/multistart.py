@@ -10,7 +10,7 @@ from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.progress_bar import Progress
 from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.problem import Problem
-from brdfkit.regression.problem.subset import draw_part
+from brdfkit.regression.problem.subset import draw_subset
 from brdfkit.regression.search.levenberg_marquardt import Search, levenberg_marquardt
 from brdfkit.regression.search.zero_weights import revive_zero_weights
 
@@ -51,14 +51,14 @@ def _spread_points(dimensions: int, count: int, seed: int) -> FloatArray | tuple
     return qmc.Halton(dimensions, rng=seed).random(count) if count and dimensions else ()
 
 
-def add_parts(whole: Problem, rng: np.random.Generator) -> list[Problem]:
+def make_part_problems(whole: Problem, rng: np.random.Generator) -> list[Problem]:
     """Return the problems of a search: parts of many samples, the smallest first, then `whole`."""
     problems = [whole]
     # A clamped model has many ends, and a small part has other ends than the whole
     for size in PARTS[:1] if whole.clamped else PARTS:
         samples = problems[0].samples
         if 2 * size < len(samples.wi):
-            part, _ = draw_part(samples, problems[0].black, size, rng)
+            part, _ = draw_subset(samples, problems[0].black_squares, size, rng)
             problems.insert(0, whole.with_samples(part))
     return problems
 
@@ -76,23 +76,23 @@ def search_from_starts(
     of evaluations. `iterations`, `tolerance`: see `levenberg_marquardt`.
     """
     first, last, starts = problems[0], problems[-1], u
-    weights, evaluations = first.start(u), 0
+    weights, evaluations = first.estimate_weights(u), 0
     if first.clamped:
         u, weights = _add_unclamped_starts(first, u, weights)
     # A few steps from all starts, a few more from the best of these, and so on
     for count, steps in MANY_SHAPES_ROUNDS if u.shape[1] > FEW_SHAPES else FEW_SHAPES_ROUNDS:
         search = levenberg_marquardt(first.expand, u, weights, first.least, steps)
         evaluations += search.evaluations
-        ends = search.ends.at(search.find_best(count))
+        ends = search.ends.select(search.find_best(count))
         u, weights = ends.u, ends.weights
-    revived = revive_zero_weights(first, ends.at([0]), starts)
+    revived = revive_zero_weights(first, ends.select([0]), starts)
     u, weights = (np.concatenate(parts) for parts in zip((u, weights), revived, strict=True))
     for number, problem in enumerate(problems):
         report(number, len(problems))
         if number:
             rows = search.find_best(FINALISTS)
             error = search.ends.error
-            ends = search.ends.at(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
+            ends = search.ends.select(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
             u, weights = ends.u, ends.weights
         # A clamped model moves slowly from kink to kink, which is cheaper on a part
         tight = MANY_SAMPLES_FACTOR * tolerance
@@ -103,7 +103,7 @@ def search_from_starts(
         evaluations += count
     report(len(problems), len(problems))
     best = search.find_best(FINALISTS)
-    return search.ends.at(best), search.converged[best], evaluations
+    return search.ends.select(best), search.converged[best], evaluations
 
 
 def _add_unclamped_starts(problem: Problem, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
@@ -113,7 +113,7 @@ def _add_unclamped_starts(problem: Problem, u: FloatArray, weights: FloatArray) 
     """
     extended = Problem(problem.model, problem.samples, problem.loss, problem.space, extended=True)
     ends = levenberg_marquardt(extended.expand, u, weights, problem.least, LARGEST_STEPS).ends
-    evenly = problem.start(u, evenly=True)
+    evenly = problem.estimate_weights(u, evenly=True)
     starts = [(u, weights), (ends.u, ends.weights), (u, evenly), (u, (evenly + weights) / 2)]
     starts.append(((u + ends.u) / 2, (weights + ends.weights) / 2))
     return [np.concatenate(parts) for parts in zip(*starts, strict=True)]
@@ -154,7 +154,7 @@ def _borrow_curvature(
 
     def expand(u: FloatArray, weights: FloatArray) -> Expansion:
         expansion = whole.expand(u, weights, curvature=False)
-        near = part.expand_here(u, weights)
+        near = part.expand_at_weights(u, weights)
         return replace(expansion, hessian=near.hessian, gram=near.gram)
 
     return expand

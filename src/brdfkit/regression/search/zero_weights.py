@@ -34,7 +34,7 @@ def revive_zero_weights(problem: Problem, end: Expansion, starts: FloatArray) ->
         u = np.repeat(end.u, len(own), axis=0)
         u[:, shapes] = own
         weights = np.repeat(end.weights, len(own), axis=0)
-        here = problem.expand_here(u, weights)
+        here = problem.expand_at_weights(u, weights)
         slope, bend = here.moment[:, :, lobe], here.gram[:, :, lobe, lobe]
         best = np.maximum(-slope, 0) / np.maximum(bend, 1e-300)
         gain = -(slope * best).sum(axis=1)

@@ -16,9 +16,9 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.quadrature import make_ring_rule
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.double_precision import Vector
-from brdfkit.regression.problem.expansion import combine_columns
-from brdfkit.regression.problem.not_finite import require_finite
-from brdfkit.regression.problem.parameter_space import channel_rows
+from brdfkit.regression.problem.expansion import make_derivative_matrix
+from brdfkit.regression.problem.not_finite import require_finite_lobes
+from brdfkit.regression.problem.parameter_space import find_channel_entries
 from brdfkit.regression.problem.problem import Problem
 
 # Half the rings of a quadrature, and the points on each; they make albedos exact to 1e-7
@@ -62,20 +62,22 @@ class AlbedoAtMost:
         They are ordered by directions, then channels.
         """
         values = []
-        for rule, T in self._integrate(problem, problem.columns.values, u):
+        for rule, T in self._iterate_quadratures(problem, problem.columns.evaluate_values, u):
             # A model with negative weights is clamped at 0
-            values.append(self.limit - np.maximum(_mix_columns(problem, weights, T), 0) @ rule)
+            values.append(self.limit - np.maximum(_evaluate_model(problem, weights, T), 0) @ rule)
         return np.concatenate(values)
 
     def slopes(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
         """Return the derivatives (m, n) of `values` by coordinates, then by weights."""
-        change = combine_columns(problem.columns, weights, problem.space.slopes(u))[0]
+        change = make_derivative_matrix(problem.columns, weights, problem.space.differentiate(u))[0]
         shapes, (channels, lobes) = u.shape[1], weights.shape[1:]
         slopes = []
-        for rule, T in self._integrate(problem, problem.columns.eval, u):
-            for c, model in enumerate(_mix_columns(problem, weights, T)):
+        for rule, T in self._iterate_quadratures(problem, problem.columns.evaluate, u):
+            for c, model in enumerate(_evaluate_model(problem, weights, T)):
                 slope = np.zeros(shapes + channels * lobes)
-                slope[channel_rows(c, shapes, lobes)] = -change[c] @ (T @ (rule * (model >= 0)))
+                slope[find_channel_entries(c, shapes, lobes)] = -change[c] @ (
+                    T @ (rule * (model >= 0))
+                )
                 slopes.append(slope)
         return np.array(slopes)
 
@@ -84,20 +86,21 @@ class AlbedoAtMost:
         angles = np.repeat(self.theta, len(self.phi))[rows // channels]
         return f"the albedo at {', '.join(dict.fromkeys(f'{angle:g}°' for angle in angles))}"
 
-    def _integrate(
+    def _iterate_quadratures(
         self, problem: Problem, evaluate: Callable[..., list[JitFloat]], u: FloatArray
     ) -> Iterator[tuple[FloatArray, FloatArray]]:
         """Yield for each incident direction a quadrature's weights (n,) and the columns there.
 
         `evaluate`: a method of `Columns`, which returns (columns, n).
         """
-        wi, wo, rules = _place_nodes(self.theta, self.phi)
+        wi, wo, rules = _place_quadrature_nodes(self.theta, self.phi)
         shapes = [
-            double_precision.to_array(np.full(len(wi.z), x)) for x in problem.space.table(u)[0]
+            double_precision.to_array(np.full(len(wi.z), x))
+            for x in problem.space.to_parameters(u)[0]
         ]
         T = np.stack([np.asarray(column) for column in evaluate(shapes, wi, wo)])
         values = len(problem.columns.lobes)
-        require_finite(problem.model, T[: problem.columns.lobes.max() + 1], wi, wo)
+        require_finite_lobes(problem.model, T[: problem.columns.lobes.max() + 1], wi, wo)
         # For the derivative of 0^p by p, which is 0, Dr.Jit's forward mode returns NaN
         T[values:] = np.nan_to_num(T[values:], posinf=0, neginf=0)
         ends = np.cumsum([len(rule) for rule in rules])
@@ -105,7 +108,7 @@ class AlbedoAtMost:
 
 
 @lru_cache(maxsize=4)
-def _place_nodes(
+def _place_quadrature_nodes(
     theta: tuple[float, ...], phi: tuple[float, ...]
 ) -> tuple[Vector, Vector, tuple[FloatArray, ...]]:
     """Return wi and wo of the quadratures for all incident directions, and their weights.
@@ -119,7 +122,7 @@ def _place_nodes(
     return double_precision.to_vector(wi), double_precision.to_vector(np.concatenate(nodes)), rules
 
 
-def _mix_columns(problem: Problem, weights: FloatArray, T: FloatArray) -> FloatArray:
+def _evaluate_model(problem: Problem, weights: FloatArray, T: FloatArray) -> FloatArray:
     """Return the model (channels, n), not clamped, from its columns (columns, n)."""
     columns = problem.columns
     factors = (weights[0][:, columns.lobes]) ** columns.powers

@@ -13,7 +13,7 @@ from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import Model
 from brdfkit.model.evaluation import make_model
-from brdfkit.regression.problem.parameter_space import join, limits, split
+from brdfkit.regression.problem.parameter_space import join_point, make_limits, split_point
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.solvers.objective import End
 
@@ -65,12 +65,12 @@ class UserConstraint:
 
     def values(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
         """Return the values (m,) at a point."""
-        return self._call(problem, join(u, weights)[0])
+        return self._call(problem, join_point(u, weights)[0])
 
     def slopes(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
         """Return the derivatives (m, n) of the values by central differences."""
-        z = join(u, weights)[0]
-        low, high = limits(u.shape[1], problem.channels, problem.least)
+        z = join_point(u, weights)[0]
+        low, high = make_limits(u.shape[1], problem.channels, problem.least)
         slopes = []
         for k in range(len(z)):
             below, above = z.copy(), z.copy()
@@ -82,8 +82,8 @@ class UserConstraint:
 
     def _call(self, problem: Problem, z: FloatArray) -> FloatArray:
         """Call the function at a point z (n,); raise `BrdfkitError` if it fails."""
-        u, weights = split(z[None], len(problem.space.names), problem.channels)
-        model = make_model(problem.columns.model, problem.space.values(u[0]), weights[0])
+        u, weights = split_point(z[None], len(problem.space.names), problem.channels)
+        model = make_model(problem.columns.model, problem.space.to_values(u[0]), weights[0])
         try:
             returned = self.function(model)
         except Exception as error:
@@ -156,4 +156,4 @@ class Constraints:
 
     def _split(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return coordinates (1, shapes) and weights (1, channels, lobes) of a point z (n,)."""
-        return split(z[None], len(self.problem.space.names), self.problem.channels)
+        return split_point(z[None], len(self.problem.space.names), self.problem.channels)

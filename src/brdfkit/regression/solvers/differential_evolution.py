@@ -50,7 +50,7 @@ class DifferentialEvolution:
     def minimise(self, objective: Objective) -> End:
         """Return the end of the search."""
         coordinates = self._explore(objective) if objective.shapes else objective.coordinates
-        return LevenbergMarquardt().find_ends(objective, coordinates)[0]
+        return LevenbergMarquardt().search_best_ends(objective, coordinates)[0]
 
     def _explore(self, objective: Objective) -> FloatArray:
         """Return the coordinates (points, shapes) of the last population, the best first."""
@@ -77,7 +77,7 @@ def _find_least_error(objective: Objective, u: FloatArray) -> FloatArray:
     """Return E² (points,) at coordinates `u` (points, shapes), with nearly the best weights."""
     shapes, problem = objective.shapes, objective.problem
     low = np.tile(problem.least, problem.channels)
-    z, least = objective.join(u, problem.start(u)), np.full(len(u), np.inf)
+    z, least = objective.join(u, problem.estimate_weights(u)), np.full(len(u), np.inf)
     for _ in range(WEIGHT_STEPS):
         here = objective.expand(z)
         gained = (least - here.error) > SETTLED * here.error

@@ -40,9 +40,9 @@ class LevenbergMarquardt:
 
     def minimise(self, objective: Objective) -> End:
         """Return the end of the search."""
-        return self.find_ends(objective, objective.coordinates)[0]
+        return self.search_best_ends(objective, objective.coordinates)[0]
 
-    def find_ends(self, objective: Objective, coordinates: FloatArray) -> list[End]:
+    def search_best_ends(self, objective: Objective, coordinates: FloatArray) -> list[End]:
         """Return the best ends of the search from `coordinates` (count, shapes), the best first."""
         problems = [stage.problem for stage in objective.stages()]
         ends, converged, evaluations = search_from_starts(

@@ -18,7 +18,7 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.progress_bar import Progress
 from brdfkit.regression.problem.expansion import Expansion
-from brdfkit.regression.problem.parameter_space import join, limits, split
+from brdfkit.regression.problem.parameter_space import join_point, make_limits, split_point
 from brdfkit.regression.problem.problem import Problem
 
 
@@ -76,7 +76,7 @@ class Objective:
         self.constraints, self.parts = constraints, parts
         self.shapes, self.evaluations = coordinates.shape[1], 0
         self.best: tuple[float, FloatArray] | None = None  # (E², point) with the least E² so far
-        self.low, self.high = limits(self.shapes, problem.channels, problem.least)
+        self.low, self.high = make_limits(self.shapes, problem.channels, problem.least)
 
     @classmethod
     def of(cls, problems: Sequence[Any], *given: Any) -> Objective:
@@ -91,7 +91,7 @@ class Objective:
 
     @cached_property
     def starts(self) -> FloatArray:
-        return self.join(self.coordinates, self.problem.start(self.coordinates))
+        return self.join(self.coordinates, self.problem.estimate_weights(self.coordinates))
 
     def error(self, points: ArrayLike) -> FloatArray:
         """Return E² (count,) at `points` (count, n) within the bounds, all in one kernel."""
@@ -105,7 +105,7 @@ class Objective:
         """
         points = np.array(points, float, ndmin=2)
         self.evaluations += len(points)
-        expansion = self.problem.expand_here(*self.split(points), curvature)
+        expansion = self.problem.expand_at_weights(*self.split(points), curvature)
         best = int(np.argmin(expansion.error))
         if self.best is None or expansion.error[best] < self.best[0]:
             self.best = expansion.error[best], points[best]
@@ -117,11 +117,11 @@ class Objective:
 
     def split(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return coordinates (count, shapes) and weights (count, channels, lobes) of points."""
-        return split(points, self.shapes, self.problem.channels)
+        return split_point(points, self.shapes, self.problem.channels)
 
     def join(self, u: FloatArray, weights: FloatArray) -> FloatArray:
         """Return the points (count, n) of coordinates and weights."""
-        return join(u, weights)
+        return join_point(u, weights)
 
     def count(self) -> int:
         """Return the number of evaluations, on all samples and on parts of them."""
@@ -143,7 +143,7 @@ class Objective:
             raise BrdfkitError("The solver returned an End whose point is not finite.")
         if self.constraints and not self.constraints.are_met(point):
             raise BrdfkitError("The solver returned an End that does not meet the constraints.")
-        sums = self.problem.expand_here(*self.split(point[None]), curvature=False)
+        sums = self.problem.expand_at_weights(*self.split(point[None]), curvature=False)
         return End(point, float(sums.error[0]), str(end.message))
 
     def best_so_far(self, ends: Expansion | None = None) -> End | None:
@@ -153,7 +153,7 @@ class Objective:
         many samples as possible.
         """
         if ends is not None:
-            best = ends.at([int(np.argmin(ends.error))])
+            best = ends.select([int(np.argmin(ends.error))])
             point = self.join(best.u, best.weights)[0]
         elif seen := [stage.best for stage in self.stages() if stage.best]:
             point = seen[-1][1]

@@ -55,7 +55,7 @@ def _to_constraint(value: Any) -> Any:
     return value
 
 
-def to_plain(setting: Any) -> Any:
+def to_plain_data(setting: Any) -> Any:
     """Return a solver or a constraint as data for JSON, or only the name of a user's own."""
     for name, cls in (SOLVERS | CONSTRAINTS).items():
         if type(setting) is cls:
@@ -63,7 +63,9 @@ def to_plain(setting: Any) -> Any:
     return setting and getattr(setting, "__qualname__", type(setting).__qualname__)
 
 
-def require_suitable(solver: Any, constraints: tuple[Any, ...], robust: str | None) -> None:
+def require_supported_constraints(
+    solver: Any, constraints: tuple[Any, ...], robust: str | None
+) -> None:
     """Raise `BrdfkitError` for constraints that the solver, or a robust fit, does not support."""
     if constraints and robust:
         raise BrdfkitError(
@@ -76,18 +78,18 @@ def require_suitable(solver: Any, constraints: tuple[Any, ...], robust: str | No
         )
 
 
-def require_plain(solver: Any, constraints: tuple[Any, ...]) -> None:
+def require_plain_data(solver: Any, constraints: tuple[Any, ...]) -> None:
     """Raise `BrdfkitError` for a solver or constraints that cannot be sent to other processes."""
     for setting in (solver, *constraints):
-        if isinstance(to_plain(setting), str):
+        if isinstance(to_plain_data(setting), str):
             raise BrdfkitError(
-                f"{to_plain(setting)} is code; where other processes fit, solvers and constraints "
-                "should be brdfkit's."
+                f"{to_plain_data(setting)} is your own code, which cannot be sent to other "
+                "processes; take a solver and constraints of brdfkit."
             )
 
 
 def _make_from_data(kind: str, classes: Mapping[str, Any], data: Mapping[str, Any]) -> Any:
-    """Rebuild an object of one of the `classes` from the data that `to_plain` made of it."""
+    """Rebuild an object of one of the `classes` from the data that `to_plain_data` made of it."""
     numbers = dict(data)
     name = numbers.pop("name", None)
     if not isinstance(name, str) or name not in classes:

@@ -55,7 +55,7 @@ class SLSQP:
         if objective.constraints is None:
             return search_stages(objective, self._search, find_best_starts(objective, self.starts))
         # If the optimum without constraints meets them, it is the result
-        free = LevenbergMarquardt().find_ends(objective, objective.coordinates)
+        free = LevenbergMarquardt().search_best_ends(objective, objective.coordinates)
         if objective.constraints.are_met(free[0].point):
             return free[0]
         end = search_stages(objective, self._search, [end.point for end in free])

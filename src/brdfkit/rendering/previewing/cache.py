@@ -6,7 +6,7 @@ from typing import Any
 
 from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.materials.loading import locate_material
+from brdfkit.materials.loading import locate
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.resolve import Material, to_material
 from brdfkit.rendering.scene_input.material import load_material
@@ -24,7 +24,7 @@ def read_cached(renderable: Any) -> Any:
     if not isinstance(renderable, str | Path):
         return renderable
     try:
-        path, _ = locate_material(renderable)
+        path, _ = locate(renderable)
         status = path.stat()
     except (BrdfkitError, OSError, ValueError):
         return renderable  # the name of a model, or an error that its reader explains better

@@ -17,9 +17,9 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import ANGLES
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.regression import Fit, losses
-from brdfkit.regression.albedo_cells import format_albedo, is_wrong
-from brdfkit.regression.light import WRONG_FACTOR
-from brdfkit.regression.losses.loss import squared_differences
+from brdfkit.regression.albedo import WRONG_FACTOR
+from brdfkit.regression.albedo_cells import format_albedo, is_wrong_albedo
+from brdfkit.regression.losses.loss import sum_squared_differences
 from brdfkit.regression.losses.named_losses import DEFAULT
 
 SAMPLE_LIMIT = 200_000  # for quantiles and ties: of more samples, so many are drawn
@@ -80,7 +80,9 @@ def compute_fit_errors(material: Measured, fits: Sequence[Fit], loss: str) -> li
     sums, factors = [], []
     for fit in fits:
         values = np.broadcast_to(fit.rgb.eval(samples.wi, samples.wo), samples.values.shape)
-        sums.append(np.bincount(blocks, weight * squared_differences(by_sample, values, samples)))
+        sums.append(
+            np.bincount(blocks, weight * sum_squared_differences(by_sample, values, samples))
+        )
         factors.append(_compute_factors(values, samples))
     best = min(sums, key=np.sum)
     shares = np.bincount(blocks, weight)
@@ -161,7 +163,7 @@ def make_errors_table(
         {
             "cells": [(format_error(one.by_loss[n]), one.by_loss[n] == best[n]) for n in by_loss],
             "albedos": [
-                (format_albedo(own), is_wrong(own, known))
+                (format_albedo(own), is_wrong_albedo(own, known))
                 for own, known in zip(one.albedos, measured, strict=True)
             ],
             "numbers": one.numbers,
@@ -175,7 +177,7 @@ def make_errors_table(
         "losses": by_loss,
         "angles": [f"{angle:g}°" for angle in ANGLES],
         "factor": WRONG_FACTOR,
-        "measured": [(format_albedo(known), is_wrong(known)) for known in measured],
+        "measured": [(format_albedo(known), is_wrong_albedo(known)) for known in measured],
         "rows": rows,
     }
 

@@ -15,7 +15,7 @@ from brdfkit.inverse.scenes.result.residual_noise import ResidualNoise
 from brdfkit.inverse.scenes.search.gauss_newton import Search, find_free, solve_step
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 from brdfkit.regression import Fit
-from brdfkit.regression.certainty import Certainty, conclude_certainty
+from brdfkit.regression.certainty import Certainty, compute_certainty_from_derivatives
 
 
 def conclude_search(
@@ -95,7 +95,7 @@ def estimate_certainty(views: Views, state: Search, noise: ResidualNoise) -> Cer
     hessian[unseen] = hessian[:, unseen] = scores[unseen] = 0
     scale = 1 / np.sqrt(np.where(np.diagonal(hessian) > 0, np.diagonal(hessian), 1))
     blocks = scores.shape[1]
-    certainty = conclude_certainty(
+    certainty = compute_certainty_from_derivatives(
         views.names,
         free,
         np.concatenate(views.to_values(here.x)),
@@ -105,7 +105,7 @@ def estimate_certainty(views: Views, state: Search, noise: ResidualNoise) -> Cer
         int(np.count_nonzero(views.weights)),
         max(1, blocks - len(slopes)),
     )
-    covariance = certainty.matrix() * (1 if noise.is_noise else noise.area)
+    covariance = certainty.make_covariance_matrix() * (1 if noise.is_noise else noise.area)
     if not state.converged:
         step = slopes * solve_step(views, here, equations, damping=0)
         by_name = dict(zip(views.names, step, strict=True))
@@ -209,7 +209,7 @@ def _make_fits(views: Views, result: Refinement) -> dict[str, Fit]:
 def _select_model(certainty: Certainty, owner: str) -> Certainty:
     """Return the part of a `Certainty` about the BSDF `owner`, with short parameter names."""
     rows = [row for row, name in enumerate(certainty.names) if name.startswith(f"{owner}.")]
-    covariance = certainty.matrix()[np.ix_(rows, rows)]
+    covariance = certainty.make_covariance_matrix()[np.ix_(rows, rows)]
     return replace(
         certainty,
         names=tuple(certainty.names[row].removeprefix(f"{owner}.") for row in rows),

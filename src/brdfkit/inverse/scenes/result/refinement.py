@@ -13,7 +13,7 @@ from brdfkit.core.documents.parts import BAD, SOFT
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.scenes.problem.targets import find_white
 from brdfkit.regression import Fit
-from brdfkit.regression.certainty import Certainty, intervals
+from brdfkit.regression.certainty import Certainty, make_intervals
 from brdfkit.rendering.montage import TILE
 from brdfkit.rendering.result import WIDEST, Rendering
 
@@ -110,22 +110,22 @@ class Refinement(Shown):
     @property
     def standard_errors(self) -> dict[str, Value]:
         """The standard errors of `values`; NaN for values that are on a bound or undetermined."""
-        return self._by_value(self.certainty.standard_errors())
+        return self._by_value(self.certainty.compute_standard_errors())
 
     @property
     def intervals(self) -> dict[str, Any]:
         """The 95 % confidence intervals (low, high) of `values`, from Student's t distribution."""
-        return intervals(self.values, self._by_value(self.certainty.half_widths()))
+        return make_intervals(self.values, self._by_value(self.certainty.compute_half_widths()))
 
     @property
     def covariance(self) -> FloatArray:
         """The covariance matrix (n, n) of the values in ``certainty.names``."""
-        return self.certainty.matrix()
+        return self.certainty.make_covariance_matrix()
 
     @property
     def correlation(self) -> FloatArray:
         """The correlation matrix (n, n) of the values in ``certainty.names``."""
-        return self.certainty.correlation()
+        return self.certainty.compute_correlation()
 
     def look(self, sensor: int = 0) -> Rendering:
         """Return the given and the rendered picture of a sensor, to compare them.

@@ -91,7 +91,7 @@ def _compare(views: Views, before: Residuals, end: Search, equations: Equations)
     """Return the `SecondLook` of one point: `before` of the search, `end` of other samples."""
     here = end.residuals
     certainty = estimate_certainty(views, end, ResidualNoise.measure(views, here))
-    errors = certainty.standard_errors()
+    errors = certainty.compute_standard_errors()
     certain = np.array([name in errors for name in views.names])
     step = solve_step(views, here, equations, damping=0)
     moved = dict(zip(views.names, np.abs(views.differentiate_values(here.x) * step), strict=True))

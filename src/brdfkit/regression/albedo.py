@@ -1,4 +1,8 @@
-"""Compares the light that a fit and its data reflect: albedos at a few angles of incidence."""
+"""Compares the directional albedos of a fit with those of its data, at a few angles of incidence.
+
+A fit minimises a loss of single values, and may still reflect too much or too little light in
+total. The comparison finds such fits: a second search corrects them, and warnings describe them.
+"""
 
 from __future__ import annotations
 
@@ -16,20 +20,22 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.quadrature import directional_albedo, make_ring_rule
 from brdfkit.images.ball import Pixels
 
-# Beyond the first factor between the albedos of a fit and its data, the fit is searched once more;
-# beyond the second one, 1.25 less the error of the quadrature, its light is called wrong
+# If the albedos of a fit and its data differ by more than the first factor, the fit is searched
+# once more; by more than the second, 1.25 less the error of the quadrature, a warning says so
 ACCEPTED_FACTOR, WRONG_FACTOR = 1.2, 1.24
-# Beyond this angle [degrees] a model may be too dark: few models rise like materials there
+# Beyond this angle of incidence [degrees] an albedo that is too small counts as right: real
+# materials become brighter at grazing angles than most models can
 STEEP_ANGLE = 60
-# Further angles of incidence [degrees] at which only the fit is evaluated
+# Angles of incidence [degrees] at which the fit is also checked for an albedo above 1
 OTHER_ANGLES = 60.0, 80.0, 89.0
-# No surface reflects more light, beyond rounding of the quadrature
+# A larger albedo is wrong: no surface reflects more light than arrives, and the quadrature has an
+# error of less than 0.001
 LARGEST_ALBEDO = 1.001
 # A measurement with a larger albedo has another unit than 1/sr, so its albedo means nothing
 LARGEST_MEASURED_ALBEDO = 2.0
-# Half the rings of the quadrature, and the points on each
+# The quadrature over outgoing directions has twice this number of rings, with this number of points
 POINTS = 32
-# Azimuths of incidence [rad]
+# Azimuths of incidence [rad] over which the albedo of a model is averaged
 ISOTROPIC_AZIMUTHS, ANISOTROPIC_AZIMUTHS = (0.0,), tuple(np.arange(4) * np.pi / 2)
 UP = 0.0, 0.0, 1.0
 
@@ -38,10 +44,10 @@ UP = 0.0, 0.0, 1.0
 def make_albedo_pixels(
     theta_i: tuple[float, ...], azimuths: tuple[float, ...] = ISOTROPIC_AZIMUTHS
 ) -> Pixels:
-    """Return the quadrature with which `Pixels.look` computes the albedos (n, channels) of a BRDF.
+    """Return a quadrature for directional albedos, as `Pixels` without measured values.
 
-    Light arrives at the angles `theta_i` [degrees] (n,); the albedos are means over `azimuths`
-    [rad]. The pixels have no values.
+    `Pixels.look` applies it to a BRDF and returns the albedos (n, channels) at the n angles of
+    incidence `theta_i` [degrees], averaged over the `azimuths` [rad] of incidence.
     """
     rules = [
         [(wi, *make_ring_rule(wi, POINTS)) for wi in from_angles(np.radians(theta), azimuths)]
@@ -61,12 +67,12 @@ def make_albedo_pixels(
 
 
 @dataclass(frozen=True, eq=False)
-class Light:
-    """The albedos of a measurement at some angles of incidence, to compare a fit with.
+class TargetAlbedo:
+    """The albedos of a measurement at some angles of incidence, which a fit should have, too.
 
-    `theta_i`: the angles [degrees] (n,); `values` (n, channels): the albedos; `known` (n,): whether
-    the samples determine them; `pixels`: the quadrature that computes the albedos of a model, means
-    over `azimuths` [rad].
+    `theta_i`: the n angles of incidence [degrees]; `values`: the measured albedos (n, channels);
+    `known`: whether the samples determine the albedo at each angle (n,); `pixels`: the quadrature
+    for the albedos of a model; `azimuths`: azimuths of incidence [rad] over which it averages.
     """
 
     theta_i: tuple[float, ...]
@@ -76,26 +82,32 @@ class Light:
     azimuths: tuple[float, ...]
 
     @classmethod
-    def of(cls, albedo: Any, anisotropic: bool) -> Light:
-        """Return the light of a `MeasuredAlbedo`."""
+    def from_measured(cls, albedo: Any, anisotropic: bool) -> TargetAlbedo:
+        """Return the albedos to aim at, from the `MeasuredAlbedo` of a material."""
         azimuths = ANISOTROPIC_AZIMUTHS if anisotropic else ISOTROPIC_AZIMUTHS
         pixels = make_albedo_pixels(albedo.theta_i, azimuths)
-        target = np.minimum(albedo.values, 1)  # a file may reflect more light than arrives, no fit
+        target = np.minimum(
+            albedo.values, 1
+        )  # a file may contain albedos above 1; a fit should not
         pixels = replace(pixels, values=target)
         return cls(albedo.theta_i, albedo.values, albedo.known, pixels, azimuths)
 
     @property
-    def target(self) -> FloatArray:
-        """The albedos (n, channels) that a fit should have: the measured ones, at most 1."""
+    def wanted(self) -> FloatArray:
+        """The albedos (n, channels) that a fit should have: the measured albedos, cut off at 1."""
         return self.pixels.values
 
     @property
     def has_another_unit(self) -> bool:
-        """Whether the measurement reflects so much that its values cannot be in 1/sr."""
+        """Whether the measured albedo is so large that the values cannot be a BRDF in sr⁻¹."""
         return bool((self.known[:, None] & (self.values > LARGEST_MEASURED_ALBEDO)).any())
 
-    def judge(self, brdf: Callable[[FloatArray, FloatArray], FloatArray]) -> Albedo:
-        """Return the `Albedo` of a fit beside these; `brdf`: (wi, wo) → (n, channels)."""
+    def compare(self, brdf: Callable[[FloatArray, FloatArray], FloatArray]) -> Albedo:
+        """Return an `Albedo` with the albedos of a fit next to the measured ones.
+
+        `brdf`: the BRDF of the fit, a function of directions wi and wo (n, 3) to values
+        (n, channels).
+        """
         angles = (*self.theta_i, *OTHER_ANGLES)
         every = [make_albedo_pixels(angles, (azimuth,)).look(brdf) for azimuth in self.azimuths]
         fit = np.mean(every, axis=0)[: len(self.theta_i)]
@@ -112,10 +124,10 @@ class Light:
         angles: tuple[float, ...],
         peaks: FloatArray,
     ) -> tuple[float, float]:
-        """Return the angle [degrees] at which a BRDF reflects most light, and its albedo there.
+        """Return the angle of incidence [degrees] with the largest albedo, and this albedo.
 
-        `peaks` (azimuths, angles): the largest albedos over the channels; they are computed again,
-        with more points, where they are above 1.
+        `peaks`: the albedos of the brightest channel (azimuths, angles). Those above 1 are computed
+        again by a finer quadrature, because they might only be errors of the coarse one.
         """
         for azimuth, row in np.argwhere(peaks > LARGEST_ALBEDO):
             wi = from_angles(np.radians(angles[row]), self.azimuths[azimuth])
@@ -123,44 +135,51 @@ class Light:
         row = int(np.argmax(peaks.max(axis=0)))
         return angles[row], float(peaks[:, row].max())
 
-    def look(self, brdf: Callable[[FloatArray, FloatArray], FloatArray]) -> FloatArray:
-        """Return the albedos (n, channels) of a BRDF (wi, wo) → (n, channels)."""
+    def evaluate(self, brdf: Callable[[FloatArray, FloatArray], FloatArray]) -> FloatArray:
+        """Return the albedos (n, channels) of a model; `brdf(wi, wo)`: its values (n, channels)."""
         return self.pixels.look(brdf)
 
-    def is_right(self, albedos: FloatArray) -> bool:
-        """Return whether `albedos` (n, channels) are close to the measured ones, and at most 1."""
-        near = self.departure(albedos) <= np.log(ACCEPTED_FACTOR)
+    def accepts(self, albedos: FloatArray) -> bool:
+        """Return whether `albedos` (n, channels) are near the measured albedos and at most 1."""
+        near = self.compute_distance(albedos) <= np.log(ACCEPTED_FACTOR)
         return bool(near and albedos.max() <= LARGEST_ALBEDO)
 
     def find_wrong_angles(self, albedos: FloatArray) -> BoolArray:
-        """Return at which angles (n,) a fit with these `albedos` (n, channels) should improve."""
-        dark = self._are_steep() & (self.factors(albedos) < 1)
+        """Return for each angle (n,) whether a second search should correct the albedo of a fit.
+
+        These are all angles where the measured albedo is known, and those where one of the fit's
+        `albedos` (n, channels) is above 1. Grazing angles where the fit is too dark are left out.
+        """
+        dark = self._find_steep_angles() & (self.compute_ratios(albedos) < 1)
         return (self.known & ~dark) | (albedos.max(axis=1) > LARGEST_ALBEDO)
 
-    def departure(self, albedos: FloatArray) -> float:
-        """Return the distance of `albedos` (n, channels) from the measured ones.
+    def compute_distance(self, albedos: FloatArray) -> float:
+        """Return how far `albedos` (n, channels) are from the measured albedos, as one number.
 
-        It is the logarithm of the largest factor between them, plus the logarithm of the largest
-        albedo if this is above 1. Albedos that are too dark at grazing angles do not count.
+        The number is the logarithm of the largest factor between both, plus the logarithm of the
+        largest albedo if this is above 1. Grazing angles where the fit is too dark do not count.
         """
-        logs = np.log(self.factors(albedos))
-        logs = np.where(self._are_steep(), np.maximum(logs, 0), np.abs(logs))
+        logs = np.log(self.compute_ratios(albedos))
+        logs = np.where(self._find_steep_angles(), np.maximum(logs, 0), np.abs(logs))
         most = float(albedos.max())
         return float(logs.max()) + (math.log(most / LARGEST_ALBEDO) if most > LARGEST_ALBEDO else 0)
 
-    def factors(self, albedos: FloatArray) -> FloatArray:
-        """Return `albedos` (n, channels) over the measured ones, as means (n,); 1 where unknown."""
-        measured, own = (np.maximum(a.mean(axis=1), 1e-9) for a in (self.target, albedos))
+    def compute_ratios(self, albedos: FloatArray) -> FloatArray:
+        """Return the ratios (n,) of `albedos` (n, channels) to the measured albedos.
+
+        Both are averaged over the channels. A ratio is 1 where the measured albedo is unknown.
+        """
+        measured, own = (np.maximum(a.mean(axis=1), 1e-9) for a in (self.wanted, albedos))
         return np.where(self.known, own / measured, 1.0)
 
-    def _are_steep(self) -> BoolArray:
-        """Return which angles (n,) are beyond `STEEP_ANGLE`."""
+    def _find_steep_angles(self) -> BoolArray:
+        """Return for each angle of incidence (n,) whether it is grazing, beyond `STEEP_ANGLE`."""
         return np.array(self.theta_i) > STEEP_ANGLE
 
 
 @dataclass(frozen=True)
 class Albedo:
-    """The albedos of a fit and of its data.
+    """The directional albedos of a fit, next to those of the data that were fitted.
 
     Attributes
     ----------
@@ -171,8 +190,8 @@ class Albedo:
     measured : tuple of tuple of float or None
         The albedo of the data; None where the samples do not determine it.
     peak : tuple of float, optional
-        The angle [degrees], of some angles up to 89°, at which a channel of the fit reflects most,
-        and its albedo there.
+        The angle of incidence [degrees] at which the fit has its largest albedo, among a few angles
+        up to 89°, and this albedo in its brightest channel.
     """
 
     theta_i: tuple[float, ...]
@@ -181,7 +200,7 @@ class Albedo:
     peak: tuple[float, float] | None = None
 
     def warnings(self) -> list[str]:
-        """Return sentences on what is wrong with the albedos of the fit."""
+        """Return a sentence on each fault: an albedo above 1, or far from the measured one."""
         sentences = []
         most = [max(albedos) for albedos in self.fit]
         pairs = list(zip(self.theta_i, most, strict=True))
@@ -204,7 +223,7 @@ class Albedo:
     def means(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return the albedos of the fit and of its data at each angle, averaged over the channels.
 
-        They are nan where the samples do not determine them.
+        An albedo of the data is NaN where the samples do not determine it.
         """
         fit = tuple(sum(row) / len(row) for row in self.fit)
         measured = tuple(sum(row) / len(row) if row else math.nan for row in self.measured)
@@ -212,7 +231,7 @@ class Albedo:
 
 
 def format_share(share: float) -> str:
-    """Return a share of light as text.
+    """Return an albedo, a share of the incident light, as text with two digits.
 
     >>> format_share(0.3521), format_share(0.01201), format_share(2e9)
     ('0.35', '0.012', '2e+09')
@@ -223,7 +242,7 @@ def format_share(share: float) -> str:
 
 
 def factor_between(one: float, other: float) -> float:
-    """Return the factor between two albedos, at least 1; it is 1 if one of them is nan."""
+    """Return the larger of two albedos over the smaller one, or 1 if one of them is NaN."""
     if math.isnan(one + other):
         return 1.0
     low, high = sorted((max(one, 1e-9), max(other, 1e-9)))
