@@ -7,9 +7,9 @@ microfacet ABC model [Löw et al. 2012, eq. 15], with the factor 1/π of the fit
 published. Its weight `specular_reflectance` is A. The distribution D is not normalised: the albedo
 is roughly proportional to A/B. F is the Fresnel reflectance of a dielectric in unpolarised light,
 as in the paper, and G the shadowing of V-grooves, both in the form of [Cook & Torrance 1982]. With
-C = 2 the peak is close to a GGX peak of width α = √(2/B). It shows polished metals, paints and
-plastics, whose highlights may have longer or shorter tails than with GGX; no anisotropy, no
-retro-reflection.
+C = 2 the peak is close to a GGX peak of width α = √(2/B). It suits polished metals, paints and
+plastics, whose highlights may have longer or shorter tails than with GGX. It has no anisotropy and
+no retro-reflection.
 """
 
 from dataclasses import dataclass
@@ -25,18 +25,22 @@ from brdfkit.model.numerics import expm1, log1p
 
 
 @dataclass(frozen=True)
-class PowerOfHeight:
-    """Normals at the angle θ_h to the surface's, with a density ∝ (1 + B (1 - cosθ_h))^-C."""
+class PowerDistribution:
+    """A distribution of microfacet normals with the density ∝ (1 + B (1 - cosθ_h))^-C.
+
+    θ_h is the angle of a microfacet normal to the surface normal, B the sharpness of the highlight
+    and C the steepness of its tails.
+    """
 
     B: JitFloat
     C: JitFloat
 
     def power(self, h: JitVector) -> JitFloat:
-        return dr.exp(-self.C * self._log(h))
+        return dr.exp(-self.C * self._log_base(h))
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
-        # x = log(1 + B (1 - cosθ)) has the density exp(q x)
-        q = self._q()
+        # x = log(1 + B (1 - cosθ_h)) has a density proportional to exp(q x)
+        q = self._integral_exponent()
         x = log1p(u.x * expm1(q * log1p(self.B))) / q
         complement = dr.minimum(expm1(x) / self.B, 1)
         sin_theta = dr.sqrt(complement * (2 - complement))
@@ -44,30 +48,31 @@ class PowerOfHeight:
         return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, 1 - complement)
 
     def pdf(self, wi: JitVector, h: JitVector, cos_d: JitFloat) -> JitFloat:
-        return dr.exp((self._q() - 1) * self._log(h)) / self.integral()
+        return dr.exp((self._integral_exponent() - 1) * self._log_base(h)) / self.integrate_power()
 
-    def integral(self) -> JitFloat:
-        """Return the integral of `power` over the hemisphere."""
-        q = self._q()
+    def integrate_power(self) -> JitFloat:
+        """Return the integral of `power(h)` over the hemisphere, the normalisation of `pdf`."""
+        q = self._integral_exponent()
         return 2 * dr.pi / self.B * expm1(q * log1p(self.B)) / q
 
-    def _q(self) -> JitFloat:
-        """Return 1 - C, but 0.001 near 0, where the integral is a logarithm.
+    def _integral_exponent(self) -> JitFloat:
+        """Return the exponent 1 - C of the integral over 1 + B (1 - cosθ_h).
 
-        The error is small enough for sampling.
+        Near 0, where the integral is a logarithm, the exponent is rounded to 0.001; the error is
+        small enough for sampling.
         """
         q = 1 - self.C
         return dr.select(abs(q) < 1e-3, 1e-3, q)
 
-    def _log(self, h: JitVector) -> JitFloat:
-        """Return log(1 + B (1 - cosθ_h)), accurate near the normal."""
+    def _log_base(self, h: JitVector) -> JitFloat:
+        """Return log(1 + B (1 - cosθ_h)), accurate where h is close to the normal."""
         return log1p(self.B * (h.x * h.x + h.y * h.y) / (1 + h.z))
 
 
 def fresnel(ior: JitFloat, cos_theta: JitFloat) -> JitFloat:
-    """Return the reflectance of a dielectric in unpolarised light [Cook & Torrance 1982].
+    """Return the Fresnel reflectance of a dielectric in unpolarised light [Cook & Torrance 1982].
 
-    `ior`: the index of refraction; `cos_theta`: the cosine of the angle of incidence.
+    `ior` is the index of refraction, `cos_theta` the cosine of the angle of incidence.
     """
     g = dr.sqrt(ior * ior - 1 + cos_theta * cos_theta)
     a = (g - cos_theta) / (g + cos_theta)
@@ -75,7 +80,7 @@ def fresnel(ior: JitFloat, cos_theta: JitFloat) -> JitFloat:
     return 0.5 * a * a * (1 + b * b)
 
 
-# The ball on the model's page: a polished surface that also scatters a little in all directions
+# The ball in the picture on the model's page: a polished surface with some diffuse light
 PICTURE = {
     "diffuse_reflectance": [0.1, 0.02, 0.14],
     "specular_reflectance": 300.0,
@@ -91,17 +96,19 @@ class ABC(Model):
     c = shape(1.5, (0.05, 5.0), "C: steepness of its tails", log=True)
     ior = shape(1.5, (1.01, 100.0), "η: index of refraction", log=True)
 
-    def geometry(self, wi: JitVector, wo: JitVector) -> JitFloat:
+    def geometry_factor(self, wi: JitVector, wo: JitVector) -> JitFloat:
         return v_groove(wi, wo, half_vector(wi, wo)) / (dr.pi * wi.z * wo.z)
 
     def lobes(self) -> tuple[Lobe, ...]:
-        heights = PowerOfHeight(self.b, self.c)
+        normals = PowerDistribution(self.b, self.c)
 
-        def facets(h: JitVector, cos_d: JitFloat) -> JitFloat:
-            return heights.power(h) * fresnel(self.ior, cos_d)
+        def facet_factor(h: JitVector, cos_d: JitFloat) -> JitFloat:
+            return normals.power(h) * fresnel(self.ior, cos_d)
 
         def energy(wi: JitVector) -> JitFloat:
-            return 4 / dr.pi * heights.integral() * fresnel(self.ior, wi.z)
+            return 4 / dr.pi * normals.integrate_power() * fresnel(self.ior, wi.z)
 
-        sampling = HalfVector(Visible(heights))
-        return lambertian(), make_factored_lobe(facets, self.geometry, sampling, energy)
+        sampling = HalfVector(Visible(normals))
+        return lambertian(), make_factored_lobe(
+            facet_factor, self.geometry_factor, sampling, energy
+        )

@@ -7,10 +7,10 @@
     diffuse=coupled   f_d = 28 k_d / 23π (1 - F₀) (1 - (1 - N·L/2)⁵) (1 - (1 - N·V/2)⁵)
 
 N, L, V and H are the normal, the directions of light and view, and the half vector, φ_h its
-azimuth. [Ashikhmin & Shirley 2000]; [Kurt 2007, eqs. 3.13-3.17]. The paper has no k_s, and the
-coupled f_d, which becomes darker where the highlight becomes brighter. With fresnel=coloured, k_d
-includes the factor 1 - F₀ of f_d. It shows metals, brushed or not, and varnished surfaces; no
-retro-reflection. Where F₀ is about 1, measurements determine only the product k_s F₀.
+azimuth. [Ashikhmin & Shirley 2000]; [Kurt 2007, eqs. 3.13-3.17]. The paper has the coupled f_d,
+which becomes darker where the highlight becomes brighter, and no k_s. With fresnel=coloured, k_d
+includes the factor 1 - F₀ of f_d. It suits metals, brushed or not, and varnished surfaces, and has
+no retro-reflection. Where F₀ is about 1, measurements determine only the product k_s F₀.
 """
 
 import drjit as dr
@@ -22,7 +22,7 @@ from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import Cosine, HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import CosinePower, Visible, fifth_power
 
-# The ball on the model's page: brushed copper
+# The ball in the picture on the model's page: brushed copper
 PICTURE = {
     "diffuse_reflectance": 0.02,
     "specular_reflectance": [0.95, 0.64, 0.54],
@@ -43,16 +43,22 @@ class AshikhminShirley(FresnelModel):
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
     def coupled_diffuse(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        return 28 / (23 * dr.pi) * self.rest() * entering_share(wi.z) * entering_share(wo.z)
+        return (
+            28
+            / (23 * dr.pi)
+            * self.unreflected_share()
+            * entering_share(wi.z)
+            * entering_share(wo.z)
+        )
 
     def coupled_albedo(self, wi: JitVector) -> JitFloat:
-        return self.rest() * entering_share(wi.z)
+        return self.unreflected_share() * entering_share(wi.z)
 
-    def rest(self) -> JitFloat:
-        """Return 1 - F₀, or 1 where F is coloured and k_d includes this factor."""
+    def unreflected_share(self) -> JitFloat:
+        """Return the diffuse term's factor 1 - F₀, or 1 if F is coloured: k_d then includes it."""
         return 1 - self.f0 if self.fresnel == "schlick" else 1
 
-    def geometry(self, wi: JitVector, wo: JitVector) -> JitFloat:
+    def geometry_factor(self, wi: JitVector, wo: JitVector) -> JitFloat:
         return 1 / (4 * cos_theta_d(wi, wo) * dr.maximum(wi.z, wo.z))
 
     def lobes(self) -> tuple[Lobe, ...]:
@@ -61,9 +67,9 @@ class AshikhminShirley(FresnelModel):
         if self.diffuse == "coupled":
             diffuse = Lobe(self.coupled_diffuse, Cosine(), self.coupled_albedo, diffuse=True)
         sampling = HalfVector(Visible(powers))
-        return diffuse, *self.make_fresnel_lobes(powers.density, self.geometry, sampling)
+        return diffuse, *self.make_fresnel_lobes(powers.density, self.geometry_factor, sampling)
 
 
 def entering_share(cosine: JitFloat) -> JitFloat:
-    """Return the share of light that enters the diffuse base, at this cosine to the normal."""
+    """Return the share of light that enters the base layer at an angle with this `cosine`."""
     return 1 - fifth_power(1 - cosine / 2)

@@ -4,12 +4,12 @@
     F₉₀ = 1/2 + 2 r (V·H)²
 
 N, L, V and H are the normal, the directions of light and view, and the half vector. [Burley 2012]
-found this formula from the materials of the MERL database. Smooth surfaces lose light at grazing
-angles, where less of it is refracted into the base layer; rough surfaces reflect it back towards
-the light. The albedo of a white surface at normal incidence is 0.98 for the roughness r = 0 and
-1.04 for r = 1. At 85° it is 0.67 and 1.40, so rough surfaces conserve energy only if they are
-darker. It shows the base layer of plastics, paints and cloth, without gloss. The sum "burley+ggx"
-adds a highlight.
+found this formula from the materials of the MERL database. At grazing angles smooth surfaces are
+darker, because less light is refracted into the base layer, and rough surfaces are brighter,
+because they reflect light back to where it came from. The albedo of a white surface at normal
+incidence is 0.98 for the roughness r = 0 and 1.04 for r = 1. At 85° it is 0.67 and 1.40, so rough
+surfaces conserve energy only if they are darker. It suits the base layer of plastics, paints and
+cloth, without gloss. The sum "burley+ggx" adds a highlight.
 """
 
 import drjit as dr
@@ -20,7 +20,7 @@ from brdfkit.model import Model, shape, weight
 from brdfkit.model.lobes import Cosine, Lobe
 from brdfkit.model.microfacet import fifth_power
 
-# The ball on the model's page: felt, which is brighter at its rim
+# The ball in the picture on the model's page: felt, which is brighter at its rim
 PICTURE = {
     "diffuse_reflectance": [0.12, 0.35, 0.2],
     "roughness": 1.0,
@@ -31,10 +31,10 @@ class Burley(Model):
     diffuse_reflectance = weight(0.5, "k_d: approximately the albedo")
     roughness = shape(0.5, (0.0, 1.0), "r: roughness")
 
-    def value(self, wi: JitVector, wo: JitVector) -> JitFloat:
+    def diffuse_brdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
         rise = 2 * self.roughness * dr.square(cos_theta_d(wi, wo)) - 0.5  # F₉₀ - 1
         entering, leaving = 1 + rise * fifth_power(1 - wi.z), 1 + rise * fifth_power(1 - wo.z)
         return entering * leaving / dr.pi
 
     def lobes(self) -> tuple[Lobe, ...]:
-        return (Lobe(self.value, Cosine(), diffuse=True),)
+        return (Lobe(self.diffuse_brdf, Cosine(), diffuse=True),)

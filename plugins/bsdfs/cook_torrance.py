@@ -4,9 +4,9 @@
 
 N, L and V are the normal and the directions of light and view, θ_h is the angle between N and the
 half vector, G the shadowing of V-grooves. [Cook & Torrance 1982]; [Kurt 2007, eqs. 3.28, 3.29],
-with Schlick's Fresnel reflectance F (3.16). The printed term is four times D G F / 4(N·L)(N·V), the
-form in use today: energy is conserved only for about k_d + 4 k_s ≤ 1. It shows metals and plastics
-of one roughness; no anisotropy.
+with Schlick's Fresnel reflectance F (eq. 3.16). The printed second term is four times D G F /
+4(N·L)(N·V), the form in use today: energy is conserved only for about k_d + 4 k_s ≤ 1. It suits
+metals and plastics of one roughness, and has no anisotropy.
 """
 
 from brdfkit.core.array_types import JitFloat, JitVector
@@ -16,7 +16,7 @@ from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import Beckmann, Visible, v_groove
 
-# The ball on the model's page: cast bronze
+# The ball in the picture on the model's page: cast bronze
 PICTURE = {
     "diffuse_reflectance": [0.06, 0.04, 0.02],
     "specular_reflectance": [0.35, 0.22, 0.1],
@@ -31,10 +31,14 @@ class CookTorrance(FresnelModel):
     alpha = shape(0.2, (0.001, 1.0), "m: rms slope of the facets", log=True, width=1)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def geometry(self, wi: JitVector, wo: JitVector) -> JitFloat:
+    def geometry_factor(self, wi: JitVector, wo: JitVector) -> JitFloat:
         return v_groove(wi, wo, half_vector(wi, wo)) / (wi.z * wo.z)
 
     def lobes(self) -> tuple[Lobe, ...]:
-        slopes = Beckmann(self.alpha, self.alpha)  # its D includes the factor 1/π of eq. 3.28
+        slopes = Beckmann(
+            self.alpha, self.alpha
+        )  # the D of this class includes the 1/π of eq. 3.28
         sampling = HalfVector(Visible(slopes))
-        return lambertian(), *self.make_fresnel_lobes(slopes.D, self.geometry, sampling, albedo=4)
+        return lambertian(), *self.make_fresnel_lobes(
+            slopes.D, self.geometry_factor, sampling, albedo=4
+        )

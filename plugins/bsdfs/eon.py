@@ -11,10 +11,9 @@ view, θ is the angle of either to N. E is the albedo of the first term at ρ = 
 [Portsmouth et al. 2025]; the first term is due to [Fujii 2013]. The second term is the light that
 is scattered twice or more often. In the paper it has the factor ρ² Ē / (1 - ρ (1 - Ē)); here it has
 ρ², the same at ρ = 1, since weights enter a model only by their first and second power. So white
-surfaces reflect all light at every angle, as in the paper; others
-are brighter than in the paper, by at most 0.007 or 1.2 % of the albedo (at r = 1). At r = 0 the
-model is Lambert's. It shows clay, plaster, cloth and the base layer of paints, flat and with
-retro-reflection; no gloss.
+surfaces reflect all light at every angle, as in the paper. The albedo of other surfaces is larger
+than in the paper, by at most 0.007 or 1.2 % (at r = 1). At r = 0 the model is Lambert's. It suits
+clay, plaster, cloth and the base layer of paints: flat, with retro-reflection, without gloss.
 """
 
 import math
@@ -29,7 +28,7 @@ from brdfkit.model.lobes import Cosine, Lobe
 C1, C2 = 1 / 2 - 2 / (3 * math.pi), 2 / 3 - 28 / (15 * math.pi)
 
 
-# The ball on the model's page: rough plaster, whose light between facets is more saturated
+# The ball in the picture on the model's page: rough plaster, saturated by scattering between facets
 PICTURE = {
     "diffuse_reflectance": [0.8, 0.62, 0.3],
     "roughness": 1.0,
@@ -40,24 +39,37 @@ class EON(Model):
     diffuse_reflectance = weight(0.5, "ρ: albedo of a facet")
     roughness = shape(0.5, (0.0, 1.0), "r: roughness of the facets")
 
-    def once(self, wi: JitVector, wo: JitVector) -> JitFloat:
+    def single_scattering(self, wi: JitVector, wo: JitVector) -> JitFloat:
         s = dot(wi, wo) - wi.z * wo.z
         t = dr.select(s > 0, dr.maximum(wi.z, wo.z), 1)
-        return self.A() * (1 + self.roughness * s / t) / dr.pi
+        return self.facet_factor() * (1 + self.roughness * s / t) / dr.pi
 
-    def again(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        # Divided by r A, which 1 - E and 1 - Ē have as a factor
-        return self.roughness * self.A() * lost(wi.z) * lost(wo.z) / ((C1 - C2) * dr.pi)
+    def multiple_scattering(self, wi: JitVector, wo: JitVector) -> JitFloat:
+        # The formula with its fraction reduced by r A, a factor of 1 - E and of 1 - Ē
+        return (
+            self.roughness
+            * self.facet_factor()
+            * lost_albedo(wi.z)
+            * lost_albedo(wo.z)
+            / ((C1 - C2) * dr.pi)
+        )
 
-    def A(self) -> JitFloat:
+    def facet_factor(self) -> JitFloat:
         return 1 / (1 + C1 * self.roughness)
 
     def lobes(self) -> tuple[Lobe, ...]:
-        return (Lobe(self.once, Cosine(), quadratic=self.again, diffuse=True),)
+        return (
+            Lobe(
+                self.single_scattering, Cosine(), quadratic=self.multiple_scattering, diffuse=True
+            ),
+        )
 
 
-def lost(cosine: JitFloat) -> JitFloat:
-    """Return (1 - E) / (r A) = c₁ - G/π at this cosine to the normal; it is 0 at the horizon."""
+def lost_albedo(cosine: JitFloat) -> JitFloat:
+    """Return (1 - E) / (r A) = c₁ - G/π, where 1 - E is the share of light that is scattered again.
+
+    `cosine` is the cosine of the direction's angle to the normal; the result is 0 at the horizon.
+    """
     sine = dr.sqrt(dr.maximum(1 - cosine * cosine, 1e-14))
     grazing = sine * cosine * (1 + sine + sine * sine) / (1 + sine)  # tanθ (1 - sin³θ)
     G = sine * (dr.safe_acos(cosine) - sine * cosine) + 2 / 3 * (grazing - sine)

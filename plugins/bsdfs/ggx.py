@@ -4,8 +4,8 @@
 
 N, L and V are the normal and the directions of light and view. The distribution of normals D is
 given by [Walter et al. 2007], Smith's height-correlated shadowing G₂ by [Heitz 2014], the Fresnel
-reflectance F by Schlick. It shows most metals, paints and plastics, by its long tails; no
-retro-reflection, no scattering between facets.
+reflectance F by Schlick. With its long tails it suits most metals, paints and plastics. It has no
+retro-reflection and no scattering between facets.
 """
 
 from brdfkit.core.array_types import JitFloat, JitVector
@@ -14,7 +14,7 @@ from brdfkit.model.fresnel import FresnelModel
 from brdfkit.model.lobes import HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import TrowbridgeReitz
 
-# The ball on the model's page: polished gold, with a haze about its highlights
+# The ball in the picture on the model's page: polished gold, with a haze about its highlights
 PICTURE = {
     "diffuse_reflectance": 0.0,
     "specular_reflectance": [1.0, 0.77, 0.34],
@@ -33,7 +33,7 @@ class GGX(FresnelModel):
     def lobes(self) -> tuple[Lobe, ...]:
         slopes = TrowbridgeReitz(self.alpha_u, self.alpha_v)
 
-        def geometry(wi: JitVector, wo: JitVector) -> JitFloat:
+        def geometry_factor(wi: JitVector, wo: JitVector) -> JitFloat:
             return slopes.G2(wi, wo) / (4 * wi.z * wo.z)
 
-        return lambertian(), *self.make_fresnel_lobes(slopes.D, geometry, HalfVector(slopes))
+        return lambertian(), *self.make_fresnel_lobes(slopes.D, geometry_factor, HalfVector(slopes))

@@ -6,16 +6,15 @@
     anisotropic  f = Σ a_nkml H_nkml,
                  H_nkml = [K_n^k(i) K_m^l(r) + K_n^k(r) K_m^l(i)] / √(2 + 2δ_nm δ_kl)
 
-The directions of light (i) and view (r) have the angle θ to the normal and the azimuth φ;
-Δφ = φ_i - φ_r, ρ = √2 sin(θ/2), and R are Zernike's radial polynomials.
-A = (1 if l > 0 else 2)(1 if n ≠ m else 2). The basis of one hemisphere is
-K_n^l = √((n+1)/2π) R_n^|l|(ρ) {√2 cos lφ, 1, √2 sin |l|φ}, for l > 0, l = 0 and l < 0. The sum is
-over m ≤ n ≤ `order` with n - l even. The orders 2, 4 and 8 have 5, 14 and 55 isotropic weights, and
-21, 120 and 1035 anisotropic ones. Order 0 is Lambert with a_0_0_0 = 2 k_d. Weights may be negative;
-a sum below 0 is clamped at 0.
+The directions of light (i) and view (r) have the angle θ to the normal and the azimuth φ; Δφ = φ_i
+- φ_r, ρ = √2 sin(θ/2), and R are Zernike's radial polynomials. A = (1 if l > 0 else 2)(1 if n ≠ m
+else 2). The basis of one hemisphere is K_n^l = √((n+1)/2π) R_n^|l|(ρ) {√2 cos lφ, 1, √2 sin |l|φ},
+for l > 0, l = 0 and l < 0. The sum is over m ≤ n ≤ `order` with n - l even. The orders 2, 4 and 8
+have 5, 14 and 55 isotropic weights, and 21, 120 and 1035 anisotropic ones. Order 0 is Lambert's
+model with a_0_0_0 = 2 k_d. Weights may be negative; a sum below 0 is clamped at 0.
 
-[Koenderink et al. 1996]; [Koenderink & van Doorn 1998]; [Kurt 2007, section 3.1]. It shows rough,
-diffuse and retro-reflecting surfaces; a highlight needs infinitely many terms.
+[Koenderink et al. 1996]; [Koenderink & van Doorn 1998]; [Kurt 2007, section 3.1]. It suits rough,
+diffuse and retro-reflecting surfaces; a highlight would need infinitely many terms.
 """
 
 import math
@@ -29,8 +28,8 @@ from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.model import Model, Parameter, option, weight
 from brdfkit.model.lobes import Cosine, Lobe
 
-# The ball on the model's page: a cloth of the Burley model, fitted; it reflects some light back and
-# is brighter at its rim
+# The ball in the picture on the model's page: a fit to a cloth of the Burley model, which
+# reflects some light back and is brighter at its rim
 PICTURE = {
     "a_0_0_0": [1.006, 0.179, 0.268],
     "a_1_1_1": [0.091, 0.016, 0.024],
@@ -41,52 +40,57 @@ PICTURE = {
 
 
 def isotropic_term(n: int, m: int, l: int, wi: JitVector, wo: JitVector) -> JitFloat:
-    """Return the isotropic term I_nml, smooth at the normal, where azimuths are undefined."""
+    """Return the isotropic basis function I_nml [sr⁻¹] of the module's formula at two directions.
+
+    It is smooth at the normal, where azimuths are undefined.
+    """
     a = (1 if l > 0 else 2) * (1 if n != m else 2)
-    i, r = disc(wi), disc(wo)
-    # (ρ_i ρ_r)^l cos lΔφ is the real part of u^l, u = p_i · conj(p_r), which has a recurrence
+    i, r = map_to_disc(wi), map_to_disc(wo)
+    # (ρ_i ρ_r)^l cos lΔφ is the real part of u^l, where u is the product of p_i = x_i + i y_i and
+    # the conjugate of p_r; a recurrence computes it without azimuths
     re, square = i[0] * r[0] + i[1] * r[1], i[2] * r[2]
     harmonic, before = (re, 1.0) if l > 0 else (1.0, None)
     for _ in range(l - 1):
         harmonic, before = 2 * re * harmonic - square * before, harmonic
-    radial = radial_part(n, l, i[2]) * radial_part(m, l, r[2])
-    radial += radial_part(m, l, i[2]) * radial_part(n, l, r[2])
+    radial = radial_polynomial(n, l, i[2]) * radial_polynomial(m, l, r[2])
+    radial += radial_polynomial(m, l, i[2]) * radial_polynomial(n, l, r[2])
     return math.sqrt((n + 1) * (m + 1) / a) / (2 * math.pi) * radial * harmonic
 
 
 def anisotropic_term(n: int, k: int, m: int, l: int, wi: JitVector, wo: JitVector) -> JitFloat:
-    """Return the anisotropic term H_nkml."""
-    both = mode(n, k, wi) * mode(m, l, wo) + mode(n, k, wo) * mode(m, l, wi)
+    """Return the anisotropic basis function H_nkml [sr⁻¹] of the module's formula."""
+    both = hemisphere_function(n, k, wi) * hemisphere_function(m, l, wo)
+    both += hemisphere_function(n, k, wo) * hemisphere_function(m, l, wi)
     return both / math.sqrt(4 if (n, k) == (m, l) else 2)
 
 
-def mode(n: int, l: int, w: JitVector) -> JitFloat:
-    """Return K_n^l at a direction, a function of the basis of one hemisphere."""
-    x, y, square = disc(w)
+def hemisphere_function(n: int, l: int, w: JitVector) -> JitFloat:
+    """Return the function K_n^l of Zernike's basis on the hemisphere, at the direction `w`."""
+    x, y, square = map_to_disc(w)
     re, im = 1.0, 0.0
     for _ in range(abs(l)):
         re, im = re * x - im * y, re * y + im * x
     azimuth = 1.0 if l == 0 else math.sqrt(2) * (re if l > 0 else im)
-    return math.sqrt((n + 1) / (2 * math.pi)) * radial_part(n, abs(l), square) * azimuth
+    return math.sqrt((n + 1) / (2 * math.pi)) * radial_polynomial(n, abs(l), square) * azimuth
 
 
-def disc(w: JitVector) -> tuple[JitFloat, JitFloat, JitFloat]:
-    """Return (x, y, ρ²) of a direction's point on the unit disc, by an equal-area map."""
+def map_to_disc(w: JitVector) -> tuple[JitFloat, JitFloat, JitFloat]:
+    """Map a direction to the unit disc, preserving areas; return (x, y, ρ² = x² + y²) there."""
     s = dr.rsqrt(1 + w.z)
     return w.x * s, w.y * s, 1 - w.z
 
 
-def radial_part(n: int, l: int, square: JitFloat) -> JitFloat:
-    """Return R_n^l(ρ) / ρ^l, a polynomial in ρ² = `square`."""
+def radial_polynomial(n: int, l: int, square: JitFloat) -> JitFloat:
+    """Return Zernike's radial polynomial R_n^l(ρ) divided by ρ^l, a polynomial in ρ² = `square`."""
     value = 0.0
-    for c in _coefficients(n, l):
+    for c in _list_coefficients(n, l):
         value = value * square + c
     return value
 
 
 @cache
-def _coefficients(n: int, l: int) -> list[float]:
-    """Return the coefficients of ρ^(n-l), ρ^(n-l-2), ..., 1 in `radial_part`."""
+def _list_coefficients(n: int, l: int) -> list[float]:
+    """Return the coefficients of ρ^(n-l), ρ^(n-l-2), ..., 1 in Zernike's R_n^l(ρ) / ρ^l."""
     return [
         (-1) ** s
         * factorial(n - s)
@@ -97,7 +101,7 @@ def _coefficients(n: int, l: int) -> list[float]:
 
 @cache
 def _list_isotropic(order: int) -> list[tuple[int, ...]]:
-    """Return (n, m, l) of the isotropic terms up to an order."""
+    """Return the indices (n, m, l) of the isotropic basis functions up to an order."""
     return [
         (n, m, l)
         for n in range(order + 1)
@@ -108,13 +112,16 @@ def _list_isotropic(order: int) -> list[tuple[int, ...]]:
 
 @cache
 def _list_anisotropic(order: int) -> list[tuple[int, ...]]:
-    """Return (n, k, m, l) of the anisotropic terms up to an order."""
+    """Return the indices (n, k, m, l) of the anisotropic basis functions up to an order."""
     modes = [(n, l) for n in range(order + 1) for l in range(-n, n + 1, 2)]
     return [(*a, *b) for j, a in enumerate(modes) for b in modes[: j + 1]]
 
 
 def _make_lobe(term: Callable[..., JitFloat], index: tuple[int, ...], cosine: Cosine) -> Lobe:
-    """Return the lobe of one term; only the constant one contributes to the energy."""
+    """Make the lobe of the basis function `term` with this index.
+
+    Only the constant function counts for the energy, by which lobes are chosen.
+    """
     constant = not any(index)
     albedo = 0.5 if constant else 0.0
     return Lobe(lambda wi, wo: term(*index, wi, wo), cosine, energy=lambda wi: albedo, diffuse=True)
@@ -136,16 +143,16 @@ class Koenderink(Model):
             "a_" + "_".join(str(k).replace("-", "m") for k in index): weight(
                 float(not any(index)), f"weight of the term {index}", (-math.inf, math.inf)
             )
-            for index in cls.indices()
+            for index in cls.list_indices()
         }
 
     @classmethod
-    def indices(cls) -> list[tuple[int, ...]]:
-        """Return (n, m, l) of all terms, or (n, k, m, l) where the model is anisotropic."""
+    def list_indices(cls) -> list[tuple[int, ...]]:
+        """Return the indices of all terms: (n, m, l), or (n, k, m, l) if it is anisotropic."""
         list_terms = _list_isotropic if cls.symmetry == "isotropic" else _list_anisotropic
         return list_terms(cls.order)
 
     def lobes(self) -> tuple[Lobe, ...]:
         term = isotropic_term if self.symmetry == "isotropic" else anisotropic_term
         cosine = Cosine()
-        return tuple(_make_lobe(term, index, cosine) for index in self.indices())
+        return tuple(_make_lobe(term, index, cosine) for index in self.list_indices())

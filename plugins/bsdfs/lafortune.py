@@ -8,8 +8,8 @@ l and v are the directions of light and view, with z along the normal. [Lafortun
 lobe is Phong's, with C_z < -C_x it peaks below the mirror direction, with C_x > 0 it reflects back
 to the light, and with C_x ≠ C_y it is anisotropic. The option `lobe_count` is the number of lobes
 in the sum. The weight k_s is the albedo of a mirror lobe at normal incidence; other lobes reflect
-less. It shows off-specular and retro-reflection of rough surfaces; highlights are round, never
-elliptic, and there is no Fresnel effect.
+less. It suits rough surfaces with off-specular peaks or retro-reflection. Highlights are round,
+never elliptic, and there is no Fresnel effect.
 """
 
 import drjit as dr
@@ -20,7 +20,7 @@ from brdfkit.model import Model, Parameter, follows, option, shape, weight
 from brdfkit.model.lobes import Lobe, PowerLobe, lambertian
 from brdfkit.model.numerics import cosine_power
 
-# The ball on the model's page: reflective tape, which sends light back
+# The ball in the picture on the model's page: reflective tape, which sends light back
 PICTURE = {
     "diffuse_reflectance": [0.3, 0.22, 0.02],
     "specular_reflectance": 0.6,
@@ -34,8 +34,8 @@ class Lafortune(Model):
     lobe_count = option(1, (1, 2, 3), "S: the number of lobes")
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.3, "k_s: strength of the lobe")
-    # These bounds allow all ratios up to 1000. With C_z > 0 the lobe's axis is above the surface,
-    # and C_x, C_y and C_z are never 0 together
+    # These bounds allow all ratios up to 1000. C_z > 0 keeps the lobe's axis above the surface, and
+    # excludes that C_x, C_y and C_z are all 0
     c_x = shape(-0.7, (-1.0, 1.0), "C_x: below 0 towards the mirror direction, above 0 back")
     c_y = follows("c_x", c_x, "C_y: like C_x, along y")
     c_z = shape(0.68, (0.001, 1.0), "C_z: along the normal; only the ratios to C_x and C_y matter")
@@ -45,7 +45,8 @@ class Lafortune(Model):
     def more_parameters(cls) -> dict[str, Parameter | None]:
         more: dict[str, Parameter | None] = {}
         for j in range(2, cls.lobe_count + 1):
-            # Equal lobes would be a saddle point of the fit, so each starts wider than the last
+            # Equal lobes would be a saddle point of the fit, so each lobe starts wider than the one
+            # before
             more |= {
                 f"specular_reflectance_{j}": weight(0.1, f"k_s: strength of lobe {j}"),
                 f"c_x_{j}": (c_x := shape(-0.7, (-1.0, 1.0), f"C_x of lobe {j}")),
@@ -64,16 +65,20 @@ class Lafortune(Model):
 
 
 def make_lobe(c_x: JitFloat, c_y: JitFloat, c_z: JitFloat, n: JitFloat) -> Lobe:
-    """Return the lobe of one term of the sum, with the exponent `n`."""
+    """Make one lobe of the sum, with the factors C_x, C_y, C_z and the exponent n."""
     largest = dr.maximum(dr.maximum(dr.abs(c_x), dr.abs(c_y)), c_z)
-    a_x, a_y, a_z = (ratio(c, largest) for c in (c_x, c_y, c_z))
+    a_x, a_y, a_z = (ratio_to_largest(c, largest) for c in (c_x, c_y, c_z))
 
     def value(wi: JitVector, wo: JitVector) -> JitFloat:
-        # 1 minus the bracket of the formula, accurate where it is small
-        complement = defect(a_x, wi.x, wo.x) + defect(a_y, wi.y, wo.y) + defect(a_z, wi.z, wo.z)
+        # 1 minus the bracket of the formula, accurate where the bracket is close to 1
+        complement = (
+            complement_term(a_x, wi.x, wo.x)
+            + complement_term(a_y, wi.y, wo.y)
+            + complement_term(a_z, wi.z, wo.z)
+        )
         return (n + 2) / (2 * dr.pi) * cosine_power(complement, n)
 
-    def axis(wi: JitVector) -> JitVector:
+    def lobe_axis(wi: JitVector) -> JitVector:
         c = type(wi)(a_x * wi.x, a_y * wi.y, a_z * wi.z)
         return c * dr.rsqrt(dot(c, c))
 
@@ -83,18 +88,21 @@ def make_lobe(c_x: JitFloat, c_y: JitFloat, c_z: JitFloat, n: JitFloat) -> Lobe:
         lost = (1 - a_x * a_x) * x + (1 - a_y * a_y) * y + (1 - a_z * a_z) * z
         return cosine_power(lost, n / 2) * sampling.energy(wi)
 
-    sampling = PowerLobe(axis, n)
+    sampling = PowerLobe(lobe_axis, n)
     return Lobe(value, sampling, energy)
 
 
-def ratio(c: JitFloat, largest: JitFloat) -> JitFloat:
-    """Return c / largest, or ±1 without derivatives, which would cancel, if c is the largest."""
+def ratio_to_largest(c: JitFloat, largest: JitFloat) -> JitFloat:
+    """Return c / largest, or if `c` is the largest, ±1 as a constant, since its derivative is 0."""
     sign = dr.select(c < 0, -1, 1)
     return dr.select(dr.abs(c) == largest, sign, c / largest)
 
 
-def defect(a: JitFloat, l: JitFloat, v: JitFloat) -> JitFloat:
-    """Return (l² + v²)/2 - a l v, as two terms that are both small where a ≈ ±1 and l ≈ ±v."""
+def complement_term(a: JitFloat, l: JitFloat, v: JitFloat) -> JitFloat:
+    """Return (l² + v²)/2 - a l v, without loss of digits where a ≈ ±1 and l ≈ ±v.
+
+    Summed over x, y and z of two unit vectors l and v, this is 1 - Σ a l v.
+    """
     sign = dr.select(a < 0, -1, 1)
     d = l - sign * v
     return 0.5 * d * d + (sign - a) * l * v

@@ -35,14 +35,14 @@ COSINE_SHARE = 0.02
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.BSDF`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.BSDF`."""
 
     Frame: MitsubaObject = define_measured_frame(mi)
 
     class MeasuredAdaptive(Frame):
         def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
-            props = _read(props)
+            props = _read_rgl_arrays(props)
             stored: dict[str, Any] = {name: np.array(props[name], np.float32) for name in ARRAYS}
             self.lookup = AdaptiveLookup(**stored, **{name: props[name] for name in FLAGS})
             wavelengths = np.array(props["wavelengths"]) if "wavelengths" in props else None
@@ -65,10 +65,10 @@ def define(mi: MitsubaModule) -> type:
     return MeasuredAdaptive
 
 
-def _read(props: MitsubaObject) -> MitsubaObject:
-    """Return the arrays and flags of an RGL file: `props`, or read from the file named there."""
+def _read_rgl_arrays(props: MitsubaObject) -> MitsubaObject:
+    """Return the arrays and flags of an RGL file: `props` itself, or read from its filename."""
     if "filename" in props:
-        from brdfkit.materials.loading import load  # slow: plugins are listed without it
+        from brdfkit.materials.loading import load  # imported here, since the import is slow
 
         name, props = props["filename"], load(resolve_file(props["filename"])).scene_dict()
         if "density" not in props:

@@ -26,28 +26,29 @@ from brdfkit.mitsuba_bridge.channels import make_channels
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 from brdfkit.model.samples import Table
 
-# The size of the table of half vectors of an anisotropic material; a larger one would take seconds
+# The size of the table from which half vectors of an anisotropic material are drawn; a larger one
+# would take seconds to compute
 ANISOTROPIC = {"azimuths": 24, "angles": 16, "cells": (60, 32), "points": 1}
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.BSDF`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.BSDF`."""
 
     Frame: MitsubaObject = define_measured_frame(mi)
 
     class MeasuredTable(Frame):
         def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
-            self.table, wavelengths = _read(props)
+            self.table, wavelengths = _read_table(props)
             cells = self.table.filled_values
             self.values = make_channels(cells.reshape(-1, cells.shape[-1]), wavelengths)
             size: dict[str, Any] = ANISOTROPIC if self.table.anisotropic else {}
-            half_vectors = HalfVectorTable(self.look_up, **size)
+            half_vectors = HalfVectorTable(self.eval_in_numpy, **size)
             self.albedos = make_channels(half_vectors.albedo, wavelengths)
             self.draw_by(half_vectors, self.table.anisotropic)
 
-        def look_up(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-            """Return `brdf` in NumPy. Cells may be negative; a negative mean of cells becomes 0."""
+        def eval_in_numpy(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
+            """Return the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3), in NumPy."""
             return np.maximum(self.table.eval(wi, wo), 0)
 
         def brdf(self, wi: JitVector, wo: JitVector, si: MitsubaObject) -> JitColour:
@@ -63,16 +64,16 @@ def define(mi: MitsubaModule) -> type:
 
 
 def example() -> dict[str, Any]:
-    """Return a measured table for the checks: a material that brdfkit brings."""
-    from brdfkit.core import catalogue  # slow: plugins are listed without it
+    """Return a BSDF of plaster, a measured material that brdfkit includes, to test the plugin."""
+    from brdfkit.core import catalogue  # imported here, since the import is slow
 
     return {"type": "measured_table", "filename": str(catalogue.find_material_file("plaster"))}
 
 
-def _read(props: MitsubaObject) -> tuple[Table, FloatArray | None]:
-    """Return the `Table`, and its wavelengths [nm], None where the channels are colours."""
+def _read_table(props: MitsubaObject) -> tuple[Table, FloatArray | None]:
+    """Read the `Table` and its wavelengths [nm], None for RGB channels, from the properties."""
     if "filename" in props:
-        from brdfkit.materials.loading import load  # slow: plugins are listed without it
+        from brdfkit.materials.loading import load  # imported here, since the import is slow
 
         measured = load(resolve_file(props["filename"]))
         props = getattr(measured, "tabulated", measured).scene_dict()

@@ -4,9 +4,9 @@
 
 The option `models` names the models, as in "ggx+ggx" or "lambert+ward+cook_torrance"; such a sum
 may stand wherever brdfkit takes the name of a model. The first model gives the diffuse term. The
-parameters of the j-th model are named after the model and j, such as ggx_2_alpha_u. It shows metals
-and glossy plastics, by two lobes better than by one; measurements seldom tell three apart.
-[Ngan et al. 2005]; [Kurt 2007, eqs. 3.12, 3.30].
+parameters of the j-th model are named after the model and j, such as ggx_2_alpha_u. Two lobes fit
+metals and glossy plastics better than one; measurements seldom distinguish three. [Ngan et al.
+2005]; [Kurt 2007, eqs. 3.12, 3.30].
 """
 
 from dataclasses import replace
@@ -16,8 +16,8 @@ from brdfkit.model import Model, Parameter, labels, option
 from brdfkit.model.lobes import Lobe
 from brdfkit.model.samples import Samples
 
-# Equal lobes would be a saddle point of the fit, so each further lobe of the same model starts
-# narrower by this factor
+# A fit from equal lobes would start at a saddle point, so each further lobe of the same model
+# starts narrower by this factor
 NARROWER = 3.0
 
 
@@ -29,12 +29,16 @@ class Mixture(Model):
         return cls.models
 
     @classmethod
-    def parts(cls) -> list[tuple[str, type[Model], list[str]]]:
-        """Return (prefix of its parameters, model, names of its weights in the sum) by term."""
+    def list_summands(cls) -> list[tuple[str, type[Model], list[str]]]:
+        """Return for each summand: the prefix of its parameters, its model and its weights' names.
+
+        The weights leave out the diffuse term of every model but the first.
+        """
         named, parts = cls.models.split("+"), []
         if len(named) < 2:
             raise BrdfkitError(
-                f"mixture: models = {cls.models} should name two or more, joined by +, as ggx+ward."
+                f"mixture: models = {cls.models} should name two or more models, joined by +, "
+                "such as ggx+ward."
             )
         for number, label in enumerate(named, 1):
             model = labels.model(label)
@@ -49,19 +53,19 @@ class Mixture(Model):
 
     @classmethod
     def made_of(cls) -> tuple[type[Model], ...]:
-        return (Mixture, *(part for _, model, _ in cls.parts() for part in model.made_of()))
+        return (Mixture, *(part for _, model, _ in cls.list_summands() for part in model.made_of()))
 
     @classmethod
     def more_parameters(cls) -> dict[str, Parameter | None]:
         parameters: dict[str, Parameter | None] = {}
         earlier: list[type[Model]] = []
-        parts = cls.parts()
+        parts = cls.list_summands()
         for prefix, model, brought in parts:
             for name, parameter in model.parameters.items():
                 if parameter.linear and name not in brought:
                     continue
-                # A fit starts at the defaults: with lobes of different widths, and with weights
-                # that share the light
+                # A fit starts at the defaults. So equal models get unequal widths, and weights are
+                # divided by the number of models
                 default = parameter.default
                 if default is not None and parameter.width:
                     default = default * NARROWER ** (-earlier.count(model) / parameter.width)
@@ -76,16 +80,16 @@ class Mixture(Model):
 
     @classmethod
     def determine_parameters(cls, samples: Samples) -> dict[str, float]:
-        """Return the terms' shape parameters that are computed from the measured directions."""
+        """Return the models' shape parameters that follow from the measured directions alone."""
         return {
             prefix + name: value
-            for prefix, model, _ in cls.parts()
+            for prefix, model, _ in cls.list_summands()
             for name, value in model.determine_parameters(samples).items()
         }
 
     def lobes(self) -> tuple[Lobe, ...]:
         lobes = []
-        for prefix, model, brought in self.parts():
+        for prefix, model, brought in self.list_summands():
             shapes = {n: getattr(self, prefix + n) for n in model.shapes(anisotropic=True)}
             terms = model.bind(shapes).terms()
             lobes += [lobe for name, lobe in terms if name in brought]

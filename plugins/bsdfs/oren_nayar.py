@@ -9,10 +9,10 @@ the smaller of them, Δφ is the difference of their azimuths. A = C₁ = 1 - 0.
 B = 0.45 σ² / (σ² + 0.09), C₂ = B (sinα, less (2β/π)³ where cosΔφ < 0),
 C₃ = 0.125 σ² / (σ² + 0.09) (4αβ/π²)². The term with k_d² is light reflected between facets.
 
-[Oren & Nayar 1994]; [Kurt 2007, eqs. 3.18-3.24]. (The bracket closes too early in the printed
-eq. 3.23, which would make surfaces black at normal incidence.) At σ = 0 the model is Lambert's. It
-shows clay, plaster, cloth and the moon, flat and with retro-reflection at grazing angles; no gloss.
-With k_d = 1 the full form reflects up to 5 % more light than arrives at grazing incidence.
+[Oren & Nayar 1994]; [Kurt 2007, eqs. 3.18-3.24]. (In the printed eq. 3.23 the bracket closes too
+early, which would make surfaces black at normal incidence.) At σ = 0 the model is Lambert's. It
+suits clay, plaster, cloth and the moon: flat, with retro-reflection at grazing angles, without
+gloss. With k_d = 1 the full form reflects up to 5 % more light than arrives at grazing incidence.
 """
 
 import drjit as dr
@@ -21,7 +21,7 @@ from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.model import Model, option, shape, weight
 from brdfkit.model.lobes import Cosine, Lobe
 
-# The ball on the model's page: fired clay, as bright at its rim as in its middle
+# The ball in the picture on the model's page: fired clay, as bright at its rim as in its middle
 PICTURE = {
     "diffuse_reflectance": [0.62, 0.3, 0.18],
     "sigma": 0.8,
@@ -33,45 +33,44 @@ class OrenNayar(Model):
     diffuse_reflectance = weight(0.5, "k_d: albedo of a facet")
     sigma = shape(0.2, (0.0, 1.5), "σ: standard deviation of the facets' inclination [rad]")
 
-    def qualitative(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        A, B, _ = self.factors()
-        # max(0, cosΔφ) sinα tanβ, without a trigonometric function
+    def qualitative_brdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
+        A, B, _ = self.roughness_factors()
+        # Equals max(0, cosΔφ) sinα tanβ, without trigonometric functions
         towards = dr.maximum(wi.x * wo.x + wi.y * wo.y, 0) / dr.maximum(wi.z, wo.z)
         return (A + B * towards) / dr.pi
 
-    def full(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        C1, B, _ = self.factors()
-        alpha, beta, cos_phi = angles(wi, wo)
-        less = dr.select(cos_phi < 0, cube(2 * beta / dr.pi), 0)
+    def full_brdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
+        C1, B, _ = self.roughness_factors()
+        alpha, beta, cos_phi = find_angles(wi, wo)
+        less = dr.select(cos_phi < 0, (2 * beta / dr.pi) ** 3, 0)
         C2 = B * (dr.sin(alpha) - less)
         C3 = 0.125 / 0.45 * B * dr.square(4 * alpha * beta / dr.pi**2)
         across = (1 - dr.abs(cos_phi)) * C3 * dr.tan((alpha + beta) / 2)
-        # The formula is below 0 for rough facets opposite the light and near the horizon
+        # For rough facets the formula is below 0 near the horizon on the side opposite to the light
         return dr.maximum(C1 + cos_phi * C2 * dr.tan(beta) + across, 0) / dr.pi
 
     def interreflection(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        _, _, share = self.factors()
-        _, beta, cos_phi = angles(wi, wo)
+        _, _, share = self.roughness_factors()
+        _, beta, cos_phi = find_angles(wi, wo)
         return 0.17 / dr.pi * share * (1 - cos_phi * dr.square(2 * beta / dr.pi))
 
-    def factors(self) -> tuple[JitFloat, JitFloat, JitFloat]:
-        """Return A = C₁, B and σ² / (σ² + 0.13)."""
+    def roughness_factors(self) -> tuple[JitFloat, JitFloat, JitFloat]:
+        """Return the factors that depend on σ alone: A = C₁, B and σ² / (σ² + 0.13)."""
         s = self.sigma * self.sigma
         return 1 - 0.5 * s / (s + 0.33), 0.45 * s / (s + 0.09), s / (s + 0.13)
 
     def lobes(self) -> tuple[Lobe, ...]:
         if self.form == "qualitative":
-            return (Lobe(self.qualitative, Cosine(), diffuse=True),)
-        return (Lobe(self.full, Cosine(), quadratic=self.interreflection, diffuse=True),)
+            return (Lobe(self.qualitative_brdf, Cosine(), diffuse=True),)
+        return (Lobe(self.full_brdf, Cosine(), quadratic=self.interreflection, diffuse=True),)
 
 
-def angles(wi: JitVector, wo: JitVector) -> tuple[JitFloat, JitFloat, JitFloat]:
-    """Return α, β [rad] and cosΔφ; cosΔφ is 0 where a direction is the normal."""
+def find_angles(wi: JitVector, wo: JitVector) -> tuple[JitFloat, JitFloat, JitFloat]:
+    """Return α and β, the larger and the smaller angle to the normal [rad], and cosΔφ.
+
+    Δφ is the difference of the azimuths; cosΔφ is 0 where a direction is the normal.
+    """
     high, low = dr.minimum(wi.z, wo.z), dr.maximum(wi.z, wo.z)
     sines = dr.sqrt(dr.maximum((1 - wi.z * wi.z) * (1 - wo.z * wo.z), 1e-20))
     cos_phi = dr.maximum(dr.minimum((wi.x * wo.x + wi.y * wo.y) / sines, 1), -1)
     return dr.safe_acos(high), dr.safe_acos(low), cos_phi
-
-
-def cube(x: JitFloat) -> JitFloat:
-    return x * x * x

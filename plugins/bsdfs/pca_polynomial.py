@@ -11,8 +11,8 @@ from these directions, and the fitted material keeps it as angles [rad]. Weights
 sum below 0 is clamped at 0. The interactions Z_1^j Z_2^k are left out, as in the paper, although
 uncorrelated components may well interact.
 
-[Öztürk et al. 2008]; [Kurt 2007, eqs. 7.4, 7.5]. It shows diffuse and rough materials; a highlight
-needs a high degree, with which the polynomial swings below 0 elsewhere.
+[Öztürk et al. 2008]; [Kurt 2007, eqs. 7.4, 7.5]. It suits diffuse and rough materials. A highlight
+needs a high degree, with which the polynomial swings below 0 in other directions.
 """
 
 import math
@@ -26,7 +26,7 @@ from brdfkit.model import Model, Parameter, option, shape, weight
 from brdfkit.model.lobes import Cosine, Lobe
 from brdfkit.model.samples import Samples
 
-# The ball on the model's page: a dull metal, GGX of alpha 0.55, fitted
+# The ball in the picture on the model's page: a dull metal, GGX of alpha 0.55, fitted
 PICTURE = {
     "beta_0": [0.141, 0.099, 0.051],
     "beta_1": [-0.14, -0.096, -0.047],
@@ -41,14 +41,17 @@ PICTURE = {
 PLANES = {2: ((0, 1),), 3: ((0, 1), (0, 2), (1, 2))}
 
 
-def products(wi: JitVector, wo: JitVector, components: int) -> list[JitFloat]:
-    """Return the products of two directions: the two components of W, or the three of X."""
+def multiply_coordinates(wi: JitVector, wo: JitVector, components: int) -> list[JitFloat]:
+    """Return the products of two directions' coordinates.
+
+    They are [x x' + y y', z z'] for 2 `components` (W), and [x x', y y', z z'] for 3 (X).
+    """
     x, y, z = wi.x * wo.x, wi.y * wo.y, wi.z * wo.z
     return [x + y, z] if components == 2 else [x, y, z]
 
 
-def rotate(products: Sequence[JitFloat], angles: Sequence[JitFloat]) -> list[JitFloat]:
-    """Return Z, the `products` along the axes that the `angles` [rad] give."""
+def rotate_to_axes(products: Sequence[JitFloat], angles: Sequence[JitFloat]) -> list[JitFloat]:
+    """Rotate the `products` to the principal axes, which the `angles` [rad] give."""
     z = list(products)
     for (a, b), angle in zip(PLANES[len(z)], angles, strict=True):
         sine, cosine = dr.sin(angle), dr.cos(angle)
@@ -56,8 +59,8 @@ def rotate(products: Sequence[JitFloat], angles: Sequence[JitFloat]) -> list[Jit
     return z
 
 
-def find_angles(axes: FloatArray) -> list[float]:
-    """Return the angles [rad] with which `rotate` projects on `axes` (n, n), orthonormal rows."""
+def find_rotation_angles(axes: FloatArray) -> list[float]:
+    """Return the angles [rad] that rotate the coordinate axes onto `axes`, orthonormal rows."""
     if np.linalg.det(axes) < 0:  # the sign of a component is arbitrary
         axes = np.vstack([axes[:-1], -axes[-1]])
     angles = [math.atan2(axes[0, 1], axes[0, 0])]
@@ -74,17 +77,17 @@ class PCAPolynomial(Model):
     )
 
     @classmethod
-    def components(cls) -> int:
+    def component_count(cls) -> int:
         return 2 if cls.symmetry == "isotropic" else 3
 
     @classmethod
-    def angle_names(cls) -> list[str]:
-        return [f"angle_{a + 1}_{b + 1}" for a, b in PLANES[cls.components()]]
+    def list_angle_names(cls) -> list[str]:
+        return [f"angle_{a + 1}_{b + 1}" for a, b in PLANES[cls.component_count()]]
 
     @classmethod
-    def powers(cls) -> list[tuple[int, int]]:
-        """Return (component j from 0, exponent k) of β_1, β_2, ..."""
-        return [(j, k) for k in range(1, cls.degree + 1) for j in range(cls.components())]
+    def list_powers(cls) -> list[tuple[int, int]]:
+        """Return (component j from 0, exponent k) of the power of Z for each of β_1, β_2, ..."""
+        return [(j, k) for k in range(1, cls.degree + 1) for j in range(cls.component_count())]
 
     @classmethod
     def is_anisotropic(cls) -> bool:
@@ -96,34 +99,37 @@ class PCAPolynomial(Model):
         constant = {"beta_0": weight(0.15, "β_0: constant", signed)}
         betas = {
             f"beta_{number}": weight(0.0, f"β_{number}: weight of Z_{j + 1}^{k}", signed)
-            for number, (j, k) in enumerate(cls.powers(), 1)
+            for number, (j, k) in enumerate(cls.list_powers(), 1)
         }
         angles = {
             name: shape(0.0, (-math.pi, math.pi), "turn of the principal axes in this plane [rad]")
-            for name in cls.angle_names()
+            for name in cls.list_angle_names()
         }
         return constant | betas | angles
 
     @classmethod
     def determine_parameters(cls, samples: Samples) -> dict[str, float]:
-        """Return the angles of the principal axes of the products of the measured directions."""
+        """Return the angles that rotate the products of the measured directions to their axes."""
         data = samples.wi * samples.wo
-        if cls.components() == 2:
+        if cls.component_count() == 2:
             data = np.stack([data[:, 0] + data[:, 1], data[:, 2]], axis=1)
         variances, axes = np.linalg.eigh(np.cov(data.T, ddof=0))
         axes = axes[:, np.argsort(-variances)].T
         axes = axes * np.sign(axes[range(len(axes)), np.abs(axes).argmax(axis=1)])[:, None]
-        return dict(zip(cls.angle_names(), find_angles(axes), strict=True))
+        return dict(zip(cls.list_angle_names(), find_rotation_angles(axes), strict=True))
 
     def lobes(self) -> tuple[Lobe, ...]:
         cosine = Cosine()
-        angles = [getattr(self, name) for name in self.angle_names()]
+        angles = [getattr(self, name) for name in self.list_angle_names()]
 
-        def power(j: int, k: int) -> Lobe:
+        def make_power_lobe(j: int, k: int) -> Lobe:
             def value(wi: JitVector, wo: JitVector) -> JitFloat:
-                return rotate(products(wi, wo, self.components()), angles)[j] ** k
+                return (
+                    rotate_to_axes(multiply_coordinates(wi, wo, self.component_count()), angles)[j]
+                    ** k
+                )
 
             return Lobe(value, cosine, lambda wi: 0.0, diffuse=True)
 
         constant = Lobe(lambda wi, wo: 1.0, cosine, lambda wi: math.pi, diffuse=True)
-        return constant, *(power(j, k) for j, k in self.powers())
+        return constant, *(make_power_lobe(j, k) for j, k in self.list_powers())

@@ -9,10 +9,11 @@ to N; s = tan²θ_h is the squared slope of a facet. [Bagher et al. 2012]. The d
 up to the slope α, a power law up to the slope √α and a Gaussian beyond; with p = 0 it is Beckmann's
 of width √α. Smith's shadowing G₁ is integrated numerically; the paper approximates it within 2e-3
 by 1 + λ (1 - exp(c (θ - θ₀)^k)), with four more numbers per material. The Fresnel reflectance F is
-Schlick's, without the paper's further term -F₁ V·H, which can make F negative. The printed term is
-4/π times D G F / 4(N·L)(N·V), the form in use today: energy is conserved for about
-ρ_d + 4/π ρ_s ≤ 1. It shows paints, plastics and metals, with tails that are longer than Beckmann's
-and end before GGX's; no anisotropy, no retro-reflection. A fit takes twice as long as with GGX.
+Schlick's, without the paper's further term -F₁ V·H, which can make F negative. The printed second
+term is 4/π times D G F / 4(N·L)(N·V), the form in use today: energy is conserved for about ρ_d +
+4/π ρ_s ≤ 1. It suits paints, plastics and metals, whose tails are longer than Beckmann's and
+shorter than GGX's. It has no anisotropy and no retro-reflection. A fit takes twice as long as with
+GGX.
 """
 
 from collections.abc import Iterator
@@ -28,44 +29,50 @@ from brdfkit.model.lobes import HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import Visible
 from brdfkit.model.numerics import expm1, log1p
 
-# Gauss-Legendre nodes and weights; integrals over slopes end where the Gaussian is exp(-END)
+# Nodes and weights of Gauss-Legendre quadrature over slopes, which ends where the Gaussian factor
+# of the density is exp(-END)
 POINTS, GAUSS = np.polynomial.legendre.leggauss(12)
 END = 10
 
 
 @dataclass(frozen=True)
 class ShiftedGamma:
-    """Facets whose squared slopes s have the density P₂₂ = (1 + s/α²)^-p exp(-s/α) / (α² I).
+    """A distribution of microfacet normals whose slopes follow a shifted Gamma distribution.
 
-    I is the integral that normalises it.
+    A facet with the squared slope s has the density P₂₂ = (1 + s/α²)^-p exp(-s/α) / (α² I), where I
+    is the integral that normalises it.
     """
 
     alpha: JitFloat
     p: JitFloat
 
     def D(self, h: JitVector) -> JitFloat:
-        # Slopes beyond 1000 do not occur, but have derivatives beyond the range of single precision
-        s = dr.minimum(_slope_squared(h), 1e6)
+        # Slopes beyond 1000 do not occur, but their derivatives would overflow single precision
+        s = dr.minimum(_squared_slope(h), 1e6)
         power = dr.exp(-self.p * log1p(s / (self.alpha * self.alpha)) - s / self.alpha)
-        I = sum(mass for _, mass in self._slopes())
+        I = sum(mass for _, mass in self._quadrature_nodes())
         return power * (1 + s) * (1 + s) / (dr.pi * self.alpha * self.alpha * I)
 
     def G1(self, w: JitVector) -> JitFloat:
-        """Return Smith's 1 / (1 + Λ), Λ = ∫ P₂₂ (y - arctan y) / π ds over y² = s tan²θ - 1 > 0."""
-        # Parameters as wide as w, or Dr.Jit would sum derivatives over all w at each of the nodes
+        """Return Smith's shadowing 1 / (1 + Λ) of the direction `w` at the angle θ to the normal.
+
+        Λ = ∫ P₂₂ (y - arctan y) / π ds over the squared slopes s with y² = s tan²θ - 1 > 0.
+        """
+        # With parameters as wide as w, Dr.Jit sums derivatives over all w once, not for every node
         wide = dr.zeros(type(w.z), dr.width(w.z))
         slopes = ShiftedGamma(self.alpha + wide, self.p + wide)
-        scale = self.alpha * self.alpha * _slope_squared(w)
+        scale = self.alpha * self.alpha * _squared_slope(w)
         above, total = 0, 0
-        for s, mass in slopes._slopes():
+        for s, mass in slopes._quadrature_nodes():
             y = dr.sqrt(dr.maximum(s * scale - 1, 1e-6))
             above, total = above + mass * (y - dr.atan(y)), total + mass
         return 1 / (1 + above / (dr.pi * total))
 
-    def _slopes(self) -> Iterator[tuple[JitFloat, JitFloat]]:
-        """Yield (s/α², its part of the integral I over s/α²) at the nodes of an integral over s.
+    def _quadrature_nodes(self) -> Iterator[tuple[JitFloat, JitFloat]]:
+        """Yield the nodes of a quadrature over squared slopes s: s/α², and its share of I.
 
-        They are Gauss-Legendre nodes in log(1 + s/α²), with s/α between 0 and END.
+        The Gauss-Legendre nodes are spread in log(1 + s/α²), with s/α between 0 and END. The shares
+        are P₂₂ without its normalisation, times the quadrature weight.
         """
         end = log1p(END / self.alpha)
         for point, gauss in zip(POINTS.tolist(), GAUSS.tolist(), strict=True):
@@ -76,9 +83,9 @@ class ShiftedGamma:
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
         """Draw a normal whose squared slope s has a density close to P₂₂.
 
-        The density is a power law up to s = α, mixed with an exponential that equals it there.
+        The density is the sum of a power law up to s = α and an exponential, equal at s = α.
         """
-        share, q, end = self._share(), self._q(), log1p(1 / self.alpha)
+        share, q, end = self._power_law_share(), self._integral_exponent(), log1p(1 / self.alpha)
         near = expm1(log1p(u.x / share * expm1(q * end)) / q) * self.alpha * self.alpha
         far = -self.alpha * dr.log(dr.maximum((1 - u.x) / (1 - share), 1e-12))
         tangent = dr.sqrt(dr.select(u.x < share, near, far))
@@ -88,34 +95,35 @@ class ShiftedGamma:
         return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 
     def pdf(self, wi: JitVector, h: JitVector, cos_d: JitFloat) -> JitFloat:
-        s, share, q = _slope_squared(h), self._share(), self._q()
+        s, share, q = _squared_slope(h), self._power_law_share(), self._integral_exponent()
         alpha_2, end = self.alpha * self.alpha, log1p(1 / self.alpha)
         near = dr.exp((q - 1) * log1p(s / alpha_2)) * q / (alpha_2 * expm1(q * end))
         density = dr.select(s < self.alpha, share * near, 0)
         density += (1 - share) * dr.exp(-s / self.alpha) / self.alpha
         return density / (dr.pi * h.z * h.z * h.z)
 
-    def _share(self) -> JitFloat:
-        """Return the share of samples that `sample` draws by the power law."""
-        q, end = self._q(), log1p(1 / self.alpha)
+    def _power_law_share(self) -> JitFloat:
+        """Return the share of normals that `sample` draws by the power law, below s = α."""
+        q, end = self._integral_exponent(), log1p(1 / self.alpha)
         near = self.alpha * expm1(q * end) / q
         return near / (near + dr.exp((q - 1) * end))
 
-    def _q(self) -> JitFloat:
-        """Return 1 - p, but 0.001 near 0, where the integral is a logarithm.
+    def _integral_exponent(self) -> JitFloat:
+        """Return the exponent 1 - p of the integral over the power law.
 
-        The error is small enough for sampling.
+        Near 0, where the integral is a logarithm, the exponent is rounded to 0.001; the error is
+        small enough for sampling.
         """
         q = 1 - self.p
         return dr.select(abs(q) < 1e-3, 1e-3, q)
 
 
-def _slope_squared(w: JitVector) -> JitFloat:
-    """Return tan²θ of a direction at the angle θ to the normal."""
+def _squared_slope(w: JitVector) -> JitFloat:
+    """Return the squared slope tan²θ of a direction at the angle θ to the normal."""
     return (w.x * w.x + w.y * w.y) / (w.z * w.z)
 
 
-# The ball on the model's page: green car paint
+# The ball in the picture on the model's page: green car paint
 PICTURE = {
     "diffuse_reflectance": [0.02, 0.1, 0.04],
     "specular_reflectance": [0.3, 0.6, 0.35],
@@ -135,10 +143,10 @@ class SGD(FresnelModel):
     def lobes(self) -> tuple[Lobe, ...]:
         slopes = ShiftedGamma(self.alpha, self.p)
 
-        def geometry(wi: JitVector, wo: JitVector) -> JitFloat:
+        def geometry_factor(wi: JitVector, wo: JitVector) -> JitFloat:
             return slopes.G1(wi) * slopes.G1(wo) / (dr.pi * wi.z * wo.z)
 
         sampling = HalfVector(Visible(slopes))
         return lambertian(), *self.make_fresnel_lobes(
-            slopes.D, geometry, sampling, albedo=4 / dr.pi
+            slopes.D, geometry_factor, sampling, albedo=4 / dr.pi
         )

@@ -5,13 +5,13 @@
 
 N, L and V are the normal and the directions of light and view, θ_h and φ_h the angle of the half
 vector to N and its azimuth. This is the distribution STD of [Ribardière et al. 2017]: slopes follow
-Student's t-distribution with 2γ - 2 degrees of freedom. γ = 2 is GGX, γ → ∞ Beckmann. G₂ is Smith's
-height-correlated shadowing [Heitz 2014]. The paper approximates it by fitted rational functions;
-the approximation here has a G₁ within 2e-4 of the integral for every α, γ and direction, and is
-exact at γ = 2. F is Schlick's Fresnel reflectance. Where the widths along x and y differ, tan²θ_h
-(cos²φ_h / α_u² + sin²φ_h / α_v²) takes the place of tan²θ_h / α². It shows metals, paints and
-plastics, polished or rough, brushed or not; no retro-reflection, no scattering between facets.
-Where a highlight is broad, measurements hardly tell α and γ apart.
+Student's t-distribution of width α with 2γ - 2 degrees of freedom. γ = 2 is GGX, γ → ∞ Beckmann. G₂
+is Smith's height-correlated shadowing [Heitz 2014]. The paper approximates it by fitted rational
+functions; the approximation here has a G₁ within 2e-4 of the integral for every α, γ and direction,
+and is exact at γ = 2. F is Schlick's Fresnel reflectance. Where the widths along x and y differ,
+tan²θ_h (cos²φ_h / α_u² + sin²φ_h / α_v²) takes the place of tan²θ_h / α². It suits metals, paints
+and plastics, polished or rough, brushed or not. It has no retro-reflection and no scattering
+between facets. Measurements of a broad highlight hardly distinguish α from γ.
 """
 
 from dataclasses import dataclass
@@ -28,7 +28,11 @@ from brdfkit.model.numerics import expm1, log1p
 
 @dataclass(frozen=True)
 class StudentSlopes:
-    """Facets whose slopes have tails of the exponent γ, and widths `alpha_u` and `alpha_v`."""
+    """A distribution of microfacet normals whose slopes follow Student's t-distribution.
+
+    `alpha_u` and `alpha_v` are the widths of the slopes along x and y, `gamma` is the exponent γ of
+    the tails.
+    """
 
     alpha_u: JitFloat
     alpha_v: JitFloat
@@ -36,23 +40,24 @@ class StudentSlopes:
 
     def D(self, h: JitVector) -> JitFloat:
         x, y, cos_2 = h.x / self.alpha_u, h.y / self.alpha_v, dr.maximum(h.z * h.z, 1e-12)
-        # s is the bracket of the formula times cos²θ_h, which is neither 0 nor infinite anywhere
+        # s is the bracket of the formula for D times cos²θ_h; it is finite and above 0 everywhere
         s = cos_2 + (x * x + y * y) / (self.gamma - 1)
         power = dr.exp((self.gamma - 2) * dr.log(cos_2) - self.gamma * dr.log(s))
         return power / (dr.pi * self.alpha_u * self.alpha_v)
 
     def Lambda(self, w: JitVector) -> JitFloat:
-        """Return Smith's auxiliary function ∫ (t - cotθ)⁺ P(t) dt / cotθ over slopes t towards w.
+        """Return Smith's auxiliary function Λ, which determines the shadowing, at a direction `w`.
 
-        θ is the angle of w to the normal, P Student's density in one dimension. With
+        It is ∫ (t - cotθ)⁺ P(t) dt / cotθ, where t is the slope of a facet towards w, P the
+        one-dimensional density of t, and θ the angle of w to the normal. With
         a = √(γ - 1) α tanθ, v² = 1 / (1 + a²), z² = 1 - v², n = 2γ - 3 and
         c = Γ(γ - 1/2) / (√π Γ(γ - 1)), integration by parts gives
 
             Λ = a zⁿ c/n (1 - n v / W),   1/W = z^(-n-1) ∫ zⁿ dz / √(1 - z²) from 0 to z.
 
-        The approximation W = A v + √(4c² + B v + C v²) has the right value and slope, 2c and 4c²,
-        at v = 0 (grazing), and the right value n + 1 at v = 1. This leaves A free: a linear
-        function of n keeps the error of G₁ within 2e-4.
+        The integral 1/W is approximated by W = A v + √(4c² + B v + C v²). B and C are chosen such
+        that W has its true value 2c and slope 4c² at v = 0 (grazing), and its true value n + 1 at
+        v = 1. A is a linear function of n that keeps the error of G₁ within 2e-4.
         """
         n, c_2 = 2 * self.gamma - 3, self._double_c()
         x, y = self.alpha_u * w.x, self.alpha_v * w.y
@@ -66,9 +71,10 @@ class StudentSlopes:
         return 0.5 * a_z_n * c_2 * (1 / n - v / W)
 
     def _double_c(self) -> JitFloat:
-        """Return 2c = 2 Γ(γ - 1/2) / (√π Γ(γ - 1)), by Brouncker's continued fraction.
+        """Return the constant 2c = 2 Γ(γ - 1/2) / (√π Γ(γ - 1)) of `Lambda`.
 
-        The fraction is taken at γ + 1, where it converges faster.
+        Brouncker's continued fraction gives it at γ + 1, where the fraction converges faster, and
+        the recurrence of Γ leads back to γ.
         """
         x = self.gamma - 1
         s = 8 * x + 6
@@ -76,7 +82,7 @@ class StudentSlopes:
         return 2 / dr.sqrt(dr.pi) * x / (x + 0.5) * dr.sqrt(gammas)
 
     def G2(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        """Return the height-correlated shadowing and masking [Heitz 2014, eq. 99]."""
+        """Return Smith's height-correlated shadowing and masking [Heitz 2014, eq. 99]."""
         return 1 / (1 + self.Lambda(wi) + self.Lambda(wo))
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
@@ -91,7 +97,7 @@ class StudentSlopes:
         return self.D(h) * h.z
 
 
-# The ball on the model's page: a coat with tails longer than GGX's
+# The ball in the picture on the model's page: a coat with tails longer than GGX's
 PICTURE = {
     "diffuse_reflectance": [0.02, 0.02, 0.03],
     "specular_reflectance": [0.8, 0.85, 0.95],
@@ -112,8 +118,8 @@ class StudentT(FresnelModel):
     def lobes(self) -> tuple[Lobe, ...]:
         slopes = StudentSlopes(self.alpha_u, self.alpha_v, self.gamma)
 
-        def geometry(wi: JitVector, wo: JitVector) -> JitFloat:
+        def geometry_factor(wi: JitVector, wo: JitVector) -> JitFloat:
             return slopes.G2(wi, wo) / (4 * wi.z * wo.z)
 
         sampling = HalfVector(Visible(slopes))
-        return lambertian(), *self.make_fresnel_lobes(slopes.D, geometry, sampling)
+        return lambertian(), *self.make_fresnel_lobes(slopes.D, geometry_factor, sampling)

@@ -25,7 +25,7 @@ PARAMETERS = {
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.BSDF`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.BSDF`."""
     import drjit as dr
 
     Base: MitsubaObject = derive_plugin(mi.BSDF, PARAMETERS)
@@ -40,10 +40,10 @@ def define(mi: MitsubaModule) -> type:
         def turn_interaction(
             self, si: MitsubaObject, active: JitMask
         ) -> tuple[MitsubaObject, JitFloat, JitFloat]:
-            """Return the interaction in the material's frame, and cosine and sine of the angle."""
+            """Return `si` in the turned material's frame, and the cosine and sine of the angle."""
             sine, cosine = dr.sincos(self.angle.eval_1(si, active))
             inside = mi.SurfaceInteraction3f(si)
-            inside.wi = turn(si.wi, cosine, -sine)
+            inside.wi = turn_direction(si.wi, cosine, -sine)
             return inside, cosine, sine
 
         def sample(
@@ -56,12 +56,12 @@ def define(mi: MitsubaModule) -> type:
         ) -> tuple[MitsubaObject, JitColour]:
             inside, cosine, sine = self.turn_interaction(si, active)
             drawn, weight = self.bsdf.sample(ctx, inside, sample1, sample2, active)
-            drawn.wo = dr.detach(turn(drawn.wo, cosine, sine))
-            if not dr.is_diff_v(mi.Float):  # Dr.Jit's replace_grad crashes with Python's numbers
+            drawn.wo = dr.detach(turn_direction(drawn.wo, cosine, sine))
+            if not dr.is_diff_v(mi.Float):  # replace_grad of Dr.Jit crashes with Python's numbers
                 return drawn, weight
-            # The direction has no derivatives: it stays where it is while the material turns
+            # The drawn direction has no derivatives: it stays fixed while the material turns
             smooth = active & (drawn.pdf > 0) & mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Smooth)
-            value = self.bsdf.eval(ctx, inside, turn(drawn.wo, cosine, -sine), smooth)
+            value = self.bsdf.eval(ctx, inside, turn_direction(drawn.wo, cosine, -sine), smooth)
             pdf = dr.select(smooth, dr.detach(drawn.pdf), 1)
             # Dr.Jit's stub knows no result of this function
             weight_of_value = dr.replace_grad(weight, value / pdf)  # type: ignore[func-returns-value]
@@ -71,31 +71,31 @@ def define(mi: MitsubaModule) -> type:
             self, ctx: MitsubaObject, si: MitsubaObject, wo: JitVector, active: JitMask = True
         ) -> JitColour:
             inside, cosine, sine = self.turn_interaction(si, active)
-            return self.bsdf.eval(ctx, inside, turn(wo, cosine, -sine), active)
+            return self.bsdf.eval(ctx, inside, turn_direction(wo, cosine, -sine), active)
 
         def pdf(
             self, ctx: MitsubaObject, si: MitsubaObject, wo: JitVector, active: JitMask = True
         ) -> JitFloat:
             inside, cosine, sine = self.turn_interaction(si, active)
-            return self.bsdf.pdf(ctx, inside, turn(wo, cosine, -sine), active)
+            return self.bsdf.pdf(ctx, inside, turn_direction(wo, cosine, -sine), active)
 
         def eval_pdf(
             self, ctx: MitsubaObject, si: MitsubaObject, wo: JitVector, active: JitMask = True
         ) -> tuple[JitColour, JitFloat]:
             inside, cosine, sine = self.turn_interaction(si, active)
-            return self.bsdf.eval_pdf(ctx, inside, turn(wo, cosine, -sine), active)
+            return self.bsdf.eval_pdf(ctx, inside, turn_direction(wo, cosine, -sine), active)
 
         def eval_diffuse_reflectance(self, si: MitsubaObject, active: JitMask = True) -> JitColour:
             return self.bsdf.eval_diffuse_reflectance(self.turn_interaction(si, active)[0], active)
 
-    def turn(w: JitVector, cosine: JitFloat, sine: JitFloat) -> JitVector:
-        """Return the direction `w` turned about z, counterclockwise."""
+    def turn_direction(w: JitVector, cosine: JitFloat, sine: JitFloat) -> JitVector:
+        """Return the direction `w`, turned about the normal (z) counterclockwise."""
         return mi.Vector3f(cosine * w.x - sine * w.y, sine * w.x + cosine * w.y, w.z)
 
     return TangentRotation
 
 
 def example() -> dict[str, Any]:
-    """Return brushed metal, for the checks."""
+    """Return a BSDF of brushed metal, turned by 0.5 rad, to test the plugin."""
     brushed = {"type": "ward", "alpha_u": 0.4, "alpha_v": 0.1, "specular_reflectance": 0.5}
     return {"type": "tangent_rotation", "angle": 0.5, "bsdf": brushed}

@@ -5,10 +5,10 @@
 
 N, L, V and H are the normal, the directions of light and view, and the half vector at the angle θ_h
 to N. [Torrance & Sparrow 1967]; [Kurt 2007, eqs. 3.25-3.27], with Schlick's Fresnel reflectance F
-(3.16). The constant of the distribution D [Ramamoorthi & Hanrahan 2001] normalises D only for small
-m: ∫ D cosθ_h dω is 0.974 at m = 0.2 and 0.548 at m = 1, so that rough surfaces are too dark, never
-too bright. It shows metals and plastics of one roughness and their off-specular peaks; no long
-tails, no anisotropy.
+(eq. 3.16). The constant of the distribution D [Ramamoorthi & Hanrahan 2001] normalises D only for
+small m: ∫ D cosθ_h dω is 0.974 at m = 0.2 and 0.548 at m = 1, so that rough surfaces are too dark,
+never too bright. It suits metals and plastics of one roughness with off-specular peaks, and has no
+long tails and no anisotropy.
 """
 
 from dataclasses import dataclass
@@ -26,39 +26,42 @@ from brdfkit.model.numerics import log1p
 
 @dataclass(frozen=True)
 class GaussianAngle:
-    """A distribution of normals whose inclination θ_h has the density θ_h exp(-θ_h²/m²)."""
+    """A distribution of microfacet normals whose angle θ_h to the surface normal is Gaussian.
+
+    θ_h has a density proportional to θ_h exp(-θ_h²/m²); `m` is its rms value [rad].
+    """
 
     m: JitFloat
 
     def D(self, h: JitVector) -> JitFloat:
-        x = _angle(h) / self.m
+        x = _angle_to_normal(h) / self.m
         return dr.exp(-x * x) / (dr.pi * self.m * self.m)
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
-        theta = self.m * dr.sqrt(-log1p(-u.x * self._share()))
+        theta = self.m * dr.sqrt(-log1p(-u.x * self._share_above()))
         sin_theta, cos_theta = dr.sincos(theta)
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
         return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 
     def pdf(self, wi: JitVector, h: JitVector, cos_d: JitFloat) -> JitFloat:
-        # D θ/sinθ, and θ/sinθ = 1 at the normal
-        return self.D(h) * _angle(h) / (_sine(h) * self._share())
+        # The density is D θ_h / sinθ_h, divided by the share; θ_h / sinθ_h is 1 at the normal
+        return self.D(h) * _angle_to_normal(h) / (_sine_to_normal(h) * self._share_above())
 
-    def _share(self) -> JitFloat:
-        """Return the share of the Gaussian in the plane that lies within the radius π/2."""
+    def _share_above(self) -> JitFloat:
+        """Return the share of the Gaussian that lies at θ_h < π/2, above the surface."""
         end = dr.pi / 2 / self.m
         return 1 - dr.exp(-end * end)
 
 
-def _sine(h: JitVector) -> JitFloat:
+def _sine_to_normal(h: JitVector) -> JitFloat:
     return dr.sqrt(dr.maximum(h.x * h.x + h.y * h.y, 1e-14))
 
 
-def _angle(h: JitVector) -> JitFloat:
-    return dr.atan2(_sine(h), h.z)
+def _angle_to_normal(h: JitVector) -> JitFloat:
+    return dr.atan2(_sine_to_normal(h), h.z)
 
 
-# The ball on the model's page: glazed porcelain
+# The ball in the picture on the model's page: glazed porcelain
 PICTURE = {
     "diffuse_reflectance": [0.7, 0.7, 0.72],
     "specular_reflectance": 1.0,
@@ -73,10 +76,10 @@ class TorranceSparrow(FresnelModel):
     alpha = shape(0.2, (0.001, 1.0), "m: rms inclination of the facets [rad]", log=True, width=1)
     f0 = shape(0.5, (0.0, 1.0), "F₀: Fresnel reflectance at normal incidence")
 
-    def geometry(self, wi: JitVector, wo: JitVector) -> JitFloat:
+    def geometry_factor(self, wi: JitVector, wo: JitVector) -> JitFloat:
         return v_groove(wi, wo, half_vector(wi, wo)) / (4 * wi.z * wo.z)
 
     def lobes(self) -> tuple[Lobe, ...]:
         angles = GaussianAngle(self.alpha)
         sampling = HalfVector(Visible(angles))
-        return lambertian(), *self.make_fresnel_lobes(angles.D, self.geometry, sampling)
+        return lambertian(), *self.make_fresnel_lobes(angles.D, self.geometry_factor, sampling)

@@ -18,7 +18,7 @@ from brdfkit.model import Model, follows, option, shape, weight
 from brdfkit.model.lobes import HalfVector, Lobe, lambertian, make_factored_lobe
 from brdfkit.model.microfacet import Beckmann, Visible
 
-# The ball on the model's page: satin paint
+# The ball in the picture on the model's page: satin paint
 PICTURE = {
     "diffuse_reflectance": [0.08, 0.3, 0.28],
     "specular_reflectance": 0.08,
@@ -33,16 +33,16 @@ class WardDuer(Model):
     alpha_u = shape(0.2, (0.001, 1.0), "α_u: width of the slopes along x", log=True, width=1)
     alpha_v = follows("alpha_u", alpha_u, "α_v: width of the slopes along y")
 
-    def facets(self, h: JitVector, cos_d: JitFloat) -> JitFloat:
+    def facet_factor(self, h: JitVector, cos_d: JitFloat) -> JitFloat:
         gauss = Beckmann(self.alpha_u, self.alpha_v).gauss(h)
         return gauss / (dr.pi * self.alpha_u * self.alpha_v)
 
-    def geometry(self, wi: JitVector, wo: JitVector) -> JitFloat:
+    def geometry_factor(self, wi: JitVector, wo: JitVector) -> JitFloat:
         if self.form == "printed":
             return 1 / (4 * wi.z * wo.z)
-        # 1 + L·V = 2 cos²θ_d, which loses no digits to cancellation
+        # cos²θ_d stands for (1 + L·V) / 2, which would lose digits to cancellation
         return dr.square(2 * cos_theta_d(wi, wo) / dr.square(wi.z + wo.z))
 
     def lobes(self) -> tuple[Lobe, ...]:
         sampling = HalfVector(Visible(Beckmann(self.alpha_u, self.alpha_v)))
-        return lambertian(), make_factored_lobe(self.facets, self.geometry, sampling)
+        return lambertian(), make_factored_lobe(self.facet_factor, self.geometry_factor, sampling)

@@ -43,17 +43,16 @@ PARAMETERS = MAP_PARAMETERS | {
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.Emitter`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.Emitter`."""
     Base: MitsubaObject = environment_emitter(mi, PARAMETERS)
 
     class KdtreeEnvmap(Base):
         def make_sampler(self, brightness: FloatArray) -> Blocks:
-            chosen = self.criterion, self.distribution, self.lookup
-            return Blocks(brightness, self.blocks, *chosen)
+            return Blocks(brightness, self.blocks, self.criterion, self.distribution, self.lookup)
 
     return KdtreeEnvmap
 
 
 def example() -> dict[str, Any]:
-    """Return a small sky with a sun, for the checks."""
+    """Return an emitter with a small sky and a sun, to test the plugin."""
     return {"type": "kdtree_envmap", "bitmap": make_small_sky(), "blocks": 64}

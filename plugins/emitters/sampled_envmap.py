@@ -28,11 +28,11 @@ from brdfkit.lighting.sampling.power_map import cell_power, pixel_power
 from brdfkit.mitsuba_bridge.arrays import Integers, Rows, find_cell
 from brdfkit.mitsuba_bridge.properties.declarations import word
 
-# The map samplers below have the methods that `lighting/sampling/__init__.py` lists
+# `lighting/sampling/__init__.py` lists the methods that the three map samplers below share
 
 
 class Mip:
-    """A sampler with Mitsuba's `Hierarchical2D0` of the power of pixels, bilinear between them."""
+    """A sampler of map points by mip levels: Mitsuba's `Hierarchical2D0` of the pixels' power."""
 
     def __init__(self, brightness: FloatArray) -> None:
         import mitsuba as mi
@@ -55,7 +55,7 @@ class Mip:
 
 
 class Cdf:
-    """A sampler with Mitsuba's `DiscreteDistribution2D` of the power of cells."""
+    """A sampler of map points by cumulative sums: `DiscreteDistribution2D` of the cells' power."""
 
     def __init__(self, brightness: FloatArray) -> None:
         import mitsuba as mi
@@ -63,13 +63,15 @@ class Cdf:
         power = cell_power(brightness).astype(np.float32)
         self.rows, self.columns = power.shape
         self.table = mi.DiscreteDistribution2D(power)
-        self.nbytes = 4 * (power.size + self.rows)  # sums of every row, and of all rows
+        self.nbytes = 4 * (
+            power.size + self.rows
+        )  # the cumulative sums within every row, and over all rows
 
     def sample(self, u: JitVector, active: JitMask) -> tuple[JitFloat, JitFloat, JitFloat]:
         import mitsuba as mi
 
-        corner, probability, rest = self.table.sample(u, active)
-        point = mi.Point2f(corner) + rest
+        corner, probability, remainder = self.table.sample(u, active)
+        point = mi.Point2f(corner) + remainder
         return point.x, point.y, probability * (self.rows * self.columns)
 
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
@@ -80,11 +82,11 @@ class Cdf:
 
 
 class Alias:
-    """A sampler with alias tables of the rows and of the cells of each row.
+    """A sampler of map points by alias tables: one of the rows, and one of the cells of each row.
 
-    Every entry of a table is drawn equally often. It stands for itself if a second number is below
-    its threshold, and otherwise for one other entry, its alias. A single table of all cells would
-    use up the bits of a random number in single precision.
+    It draws every entry of a table equally often, then keeps the entry if a second random number
+    is below its threshold, and takes its alias, another entry, if not. A single table of all cells
+    would need random numbers with more bits than single precision has.
     """
 
     def __init__(self, brightness: FloatArray) -> None:
@@ -99,8 +101,8 @@ class Alias:
     def sample(self, u: JitVector, active: JitMask) -> tuple[JitFloat, JitFloat, JitFloat]:
         import mitsuba as mi
 
-        row, y = self.by_row.draw(u.y, 0, self.rows, active)
-        column, x = self.by_cell.draw(u.x, row * self.columns, self.columns, active)
+        row, y = self.by_row.draw_entry(u.y, 0, self.rows, active)
+        column, x = self.by_cell.draw_entry(u.x, row * self.columns, self.columns, active)
         density = self.densities.at(row * self.columns + column, active=active)
         return mi.Float(column) + x, mi.Float(row) + y, density
 
@@ -110,18 +112,19 @@ class Alias:
 
 
 class AliasTable:
-    """Alias tables in a row, with the `thresholds` (n,) and `aliases` (n,) of their entries."""
+    """Several alias tables, one after another: `thresholds` (n,) and `aliases` (n,) of entries."""
 
     def __init__(self, thresholds: FloatArray, aliases: IntArray) -> None:
         self.thresholds, self.aliases = Rows(thresholds), Integers(aliases)
         self.nbytes = 8 * len(thresholds)
 
-    def draw(
+    def draw_entry(
         self, u: JitFloat, first: JitInt, count: int, active: JitMask
     ) -> tuple[JitInt, JitFloat]:
-        """Draw an entry of the table of `count` entries that begins at `first`.
+        """Draw an entry of the table of `count` entries that begins at `first`, by the number `u`.
 
-        Return the index of the entry within its table, and a new random number made from `u`.
+        Returns the index of the entry within its table, and a random number that is independent of
+        it, made from the remaining digits of `u`.
         """
         import drjit as dr
         import mitsuba as mi
@@ -136,10 +139,11 @@ class AliasTable:
 
 
 def make_alias_table(weights: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Return thresholds (n,) and aliases (n,) of `weights` (n,) ≥ 0; equal weights if all are 0.
+    """Return an alias table of `weights` (n,) ≥ 0: thresholds (n,) and aliases (n,).
 
-    Light entries, below the mean, are filled up by heavy ones, in order. Cumulative sums of the
-    deficits below the mean and of the excesses above it tell which entry fills which.
+    An entry lighter than the mean is filled up to the mean by heavier entries, in order; cumulative
+    sums of the deficits and excesses show which heavy entry that is. If all weights are 0, they
+    count as equal.
 
     >>> [part.tolist() for part in make_alias_table(np.array([1.0, 3.0]))]
     [[0.5, 1.0], [1, 1]]
@@ -156,7 +160,7 @@ def make_alias_table(weights: FloatArray) -> tuple[FloatArray, IntArray]:
     thresholds[light] = share[light]
     turn = np.searchsorted(excess, deficit - (1 - share[light]), side="right")
     aliases[light] = heavy[np.minimum(turn, last)]
-    # A heavy entry whose excess ends within a light entry is short, and the next heavy one fills it
+    # A heavy entry that gives away more than its excess is filled up by the next heavy entry
     by = np.searchsorted(deficit, excess, side="right")
     short = np.flatnonzero((by < len(light)) & (np.arange(last + 1) < last))
     thresholds[heavy[short]] = 1 - (deficit[by[short]] - excess[short])
@@ -169,7 +173,7 @@ PARAMETERS = MAP_PARAMETERS | {"sampler": word(SAMPLERS, "how points of the map 
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.Emitter`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.Emitter`."""
     Base: MitsubaObject = environment_emitter(mi, PARAMETERS)
 
     class SampledEnvmap(Base):
@@ -180,5 +184,5 @@ def define(mi: MitsubaModule) -> type:
 
 
 def example() -> dict[str, Any]:
-    """Return a small sky with a sun, for the checks."""
+    """Return an emitter with a small sky and a sun, to test the plugin."""
     return {"type": "sampled_envmap", "bitmap": make_small_sky()}

@@ -52,7 +52,7 @@ PARAMETERS = {
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.SamplingIntegrator`."""
     Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class ConvexDirect(Base):
@@ -61,7 +61,7 @@ def define(mi: MitsubaModule) -> type:
             self.casters = Casters(self.concavity, self.resolution)
 
         def occluders(self, scene: MitsubaObject) -> Occluders | None:
-            """Return the `Occluders` of the scene's meshes, None if no mesh encloses a volume."""
+            """Return the convex parts that cast the shadows, None if no mesh encloses a volume."""
             return self.casters.find(scene)[0]
 
         def sample(
@@ -81,12 +81,12 @@ def define(mi: MitsubaModule) -> type:
                 radiance += mi.unpolarized_spectrum(emitter.eval(si, active))
 
             bsdf = si.bsdf()
-            radiance += self.light_by_emitters(scene, si, bsdf, sampler.next_2d(), hit)
+            radiance += self.reflect_emitter_sample(scene, si, bsdf, sampler.next_2d(), hit)
             samples = sampler.next_1d(), sampler.next_2d()
-            radiance += self.light_by_bsdf(scene, si, bsdf, *samples, hit)
+            radiance += self.reflect_bsdf_sample(scene, si, bsdf, *samples, hit)
             return mi.depolarizer(dr.select(active, radiance, 0)), active, []
 
-        def light_by_emitters(
+        def reflect_emitter_sample(
             self,
             scene: MitsubaObject,
             si: MitsubaObject,
@@ -94,7 +94,7 @@ def define(mi: MitsubaModule) -> type:
             sample: JitVector,
             active: JitMask,
         ) -> JitColour:
-            """Return the reflected light of one direction that the lights draw, with its weight."""
+            """Return the reflected light from one direction that the emitters draw."""
             active = active & mi.has_flag(bsdf.flags(), mi.BSDFFlags.Smooth)
             ds, light = scene.sample_emitter_direction(si, sample, False, active)
             active = active & (ds.pdf > 0)
@@ -108,7 +108,7 @@ def define(mi: MitsubaModule) -> type:
             visible = self.casters.visible(scene, si.spawn_ray_to(ds.p), active)
             return dr.select(visible, reflected, 0)
 
-        def light_by_bsdf(
+        def reflect_bsdf_sample(
             self,
             scene: MitsubaObject,
             si: MitsubaObject,
@@ -117,7 +117,7 @@ def define(mi: MitsubaModule) -> type:
             sample2: JitVector,
             active: JitMask,
         ) -> JitColour:
-            """Return the environment's reflected light of one direction that the BSDF draws."""
+            """Return reflected light of the environment from one direction that the BSDF draws."""
             environment = scene.environment()
             if environment is None:
                 return mi.UnpolarizedSpectrum(0)
@@ -140,11 +140,11 @@ def define(mi: MitsubaModule) -> type:
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
-    """Return a scene for the checks, and the radiance (3,) of each pixel, albedo · (1 - F) L.
+    """Return a test scene, and the radiance (3,) that every pixel of its picture should have.
 
-    It shows the ground below the centre of a cube, under a sky of constant radiance L. F is the
-    cosine-weighted share of the sky that the lower face of the cube hides: the form factor of four
-    rectangles with a corner above the point.
+    The camera looks at the ground below the centre of a cube, under a sky of constant radiance L.
+    The ground has the radiance albedo · (1 - F) L, where F is the form factor of the cube's lower
+    face, made of four rectangles with a corner above the point.
     """
     import mitsuba as mi
 

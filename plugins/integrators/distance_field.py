@@ -93,12 +93,12 @@ PARAMETERS = {
     "far": plain_number(0.0, (0, 1e9), "length of rays [unit]; 0: by the size of the field"),
     "precision": plain_number(0.0, (0, 1e3), "radius of the thinnest rays [unit]; 0: by the size"),
 }
-# Defaults in radii of a sphere about the field; the length of rays is at least 1000 units
+# Defaults of `far` and `precision` in radii of a sphere about the field; `far` is at least 1000
 RAY_LENGTH, PRECISION = 1e3, 1e-4
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.SamplingIntegrator`."""
     import drjit as dr
 
     Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
@@ -113,8 +113,8 @@ def define(mi: MitsubaModule) -> type:
             self.precision: float = self.precision or PRECISION * size
             self.parts = match_bsdfs(self.tree, self.bsdfs, NORMAL_STEP * self.precision)
             self.values = differentiable_parameters(self.tree)
-            how = "shadow", "direction", "epsilon", "rays", "shading", "samples", "far"
-            self.light = DirectLight(**{name: getattr(self, name) for name in how})
+            settings = "shadow", "direction", "epsilon", "rays", "shading", "samples", "far"
+            self.light = DirectLight(**{name: getattr(self, name) for name in settings})
             self.parameters_changed([])
 
         def traverse(self, callback: MitsubaObject) -> None:
@@ -136,7 +136,7 @@ def define(mi: MitsubaModule) -> type:
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             require_vectorised("distance_field")
-            # Lamps and the sky in the background
+            # Directly visible lamps and sky
             background = scene.ray_intersect(mi.Ray3f(ray), active)
             emitter, radiance = background.emitter(scene), mi.UnpolarizedSpectrum(0)
             if emitter is not None:
@@ -145,21 +145,22 @@ def define(mi: MitsubaModule) -> type:
             # The field in front of them
             end = dr.minimum(background.t, self.far)
             point = find_visible_point(self.now, ray, end, self.precision, active)
-            light = dr.select(point.found, self.reflected(scene, point, sampler), radiance)
+            light = dr.select(point.found, self.reflect_light(scene, point, sampler), radiance)
 
-            # Derivatives of silhouettes: the field just beside the ray, which would cover it
+            # A silhouette that passes just beside the ray contributes derivatives: if it moved, the
+            # field would cover the ray
             if dr.grad_enabled(self.now.distance(ray(0))):
                 end = dr.minimum(point.si.t, end)
                 miss = find_near_miss(self.now, ray, end, self.precision, active)
                 with dr.suspend_grad():
-                    front = self.reflected(scene, miss.seen, sampler)
+                    front = self.reflect_light(scene, miss.seen, sampler)
                 light = miss.add_derivatives(light, front)
             return mi.depolarizer(light), active, []
 
-        def reflected(
+        def reflect_light(
             self, scene: MitsubaObject, point: VisiblePoint, sampler: MitsubaObject
         ) -> JitColour:
-            """Return the light that a `VisiblePoint` sends to the camera."""
+            """Return the light of all lamps and the sky that a `VisiblePoint` reflects."""
             light = mi.UnpolarizedSpectrum(0)
             bsdf = self.parts.bsdf(self.now, self.larger, point.si.p)
             for lamp in find_lamps(scene):
@@ -176,9 +177,10 @@ def define(mi: MitsubaModule) -> type:
 
 
 def read_field(filename: str, field: str) -> Node:
-    """Return the field of a file, or of a text as `field.to_json()` makes it.
+    """Read a distance field from the file `filename`, or from the text `field`, which is JSON.
 
-    Raises `BrdfkitError` if both or neither are given, and for a field whose steps are not safe.
+    Raises `BrdfkitError` if both or neither are given, and for a field that is not safe to march
+    along, because some of its values exceed the true distance.
     """
     if bool(filename) == bool(field):
         raise BrdfkitError(
@@ -194,14 +196,15 @@ def read_field(filename: str, field: str) -> Node:
 
 
 def example() -> dict[str, Any]:
-    """Return a plane, for the checks."""
+    """Return an integrator whose field is a plane, to test the plugin."""
     return {"type": "distance_field", "field": '{"kind": "plane"}'}
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
-    """Return a scene for the checks, and the radiance (3,) of each pixel, albedo / π · π (r/d)² L.
+    """Return a test scene, and the radiance (3,) that every pixel of its picture should have.
 
-    It shows a matte ground below a lamp with the radiance L, which nothing hides.
+    A spherical lamp with the radiance L and the radius r, at the distance d above a matte ground,
+    gives it the radiance albedo · (r/d)² L.
     """
     import mitsuba as mi
 

@@ -20,8 +20,8 @@ has such peaks when the scene is loaded, σ and σ RGB are the means of the func
 values at both ends of a part [Engel et al. 2001]; steps as long as voxels are enough then. This
 does not apply to functions of gradient magnitudes or of labels.
 
-[Max 1995]; [Lesar 2018, eq. 6.3]. It shows CT and MRI scans and smoke without a source of light.
-The derivatives by both volumes are exact derivatives of the sum over the parts.
+[Max 1995]; [Lesar 2018, eq. 6.3]. It renders CT scans, MRI scans and smoke without a source of
+light. The derivatives by both volumes are exact derivatives of the sum over the parts.
 """
 
 from collections.abc import Sequence
@@ -58,32 +58,35 @@ PARAMETERS = {
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.SamplingIntegrator`."""
     Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class EmissionAbsorption(Base):
         def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
-            self.has_colours = hasattr(self.extinction, "optics")
-            self.sees_between = self.has_colours and self.extinction.is_missed_by(self.steps)
+            self.has_colours = hasattr(self.extinction, "eval_extinction_and_colour")
+            self.uses_means = self.has_colours and self.extinction.misses_peaks(self.steps)
             self.white = make_white_light()
             self.light: Any = make_rgb_emission() if self.has_colours else None
 
-        def end(self, it: MitsubaObject, active: JitMask) -> JitVector:
-            """Return the integrals that `optics` needs at an end of a part, if it needs any."""
-            return self.extinction.integrals(it, active) if self.sees_between else ()
+        def eval_end(self, it: MitsubaObject, active: JitMask) -> JitVector:
+            """Return the transfer function's integrals at one end of a part, if `uses_means`."""
+            return self.extinction.eval_integrals(it, active) if self.uses_means else ()
 
-        def optics(
+        def eval_extinction_and_emission(
             self, front: JitVector, it: MitsubaObject, back: JitVector, active: JitMask
         ) -> tuple[JitFloat, JitColour]:
-            """Return extinction σ and emission e of a part of a ray, with its middle `it`."""
+            """Return the mean extinction σ and emission e of a part of a ray.
+
+            `front` and `back` are the integrals at its ends, `it` is its middle.
+            """
             e = mi.unpolarized_spectrum(self.emission.eval(it, active)) * self.white(it)
             if not self.has_colours:
                 return self.extinction.eval_1(it, active), e
-            if self.sees_between:
-                sigma, glow = self.extinction.mean_optics(front, back)
+            if self.uses_means:
+                sigma, glow = self.extinction.average_extinction_and_colour(front, back)
             else:
-                sigma, rgb = self.extinction.optics(it, active)
+                sigma, rgb = self.extinction.eval_extinction_and_colour(it, active)
                 glow = sigma * rgb
             return sigma, e + self.light(glow, it)
 
@@ -96,7 +99,7 @@ def define(mi: MitsubaModule) -> type:
             medium: MitsubaObject = None,
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
-            # The part of the ray within the volume, cut into steps
+            # The part of the ray within the volume is cut into steps
             end, behind = light_behind(scene, ray, active)
             near, far = intersect_box(ray, self.extinction)
             far = dr.minimum(far, end)
@@ -105,12 +108,12 @@ def define(mi: MitsubaModule) -> type:
             first = sampler.next_1d(active) if self.jitter else mi.Float(1)
             parts = self.steps + self.jitter
 
-            def at(t: JitFloat) -> MitsubaObject:
+            def make_point(t: JitFloat) -> MitsubaObject:
                 it = mi.Interaction3f()
                 it.p, it.wavelengths = ray(t), ray.wavelengths
                 return it
 
-            def part(
+            def add_part(
                 i: JitInt,
                 radiance: JitColour,
                 transmittance: JitFloat,
@@ -118,21 +121,23 @@ def define(mi: MitsubaModule) -> type:
                 front: JitVector,
             ) -> tuple[JitFloat, ...]:
                 stop = dr.minimum(near + (mi.Float(i) + first) * step, far)
-                back = self.end(at(stop), inside)
-                sigma, e = self.optics(front, at((start + stop) / 2), back, inside)
+                back = self.eval_end(make_point(stop), inside)
+                sigma, e = self.eval_extinction_and_emission(
+                    front, make_point((start + stop) / 2), back, inside
+                )
                 length = stop - start
                 depth = sigma * length
                 radiance = radiance + transmittance * e * (mean_transmittance(depth) * length)
                 return i + 1, radiance, transmittance * dr.exp(-depth), stop, back
 
             # Sum up radiance and transmittance, from the nearest part to the farthest
-            start = mi.Float(near), self.end(at(near), inside)
+            start = mi.Float(near), self.eval_end(make_point(near), inside)
             _, radiance, transmittance, *_ = dr.while_loop(
                 (mi.UInt32(0), mi.UnpolarizedSpectrum(0), mi.Float(1), *start),
                 lambda i, radiance, transmittance, *_: (
                     inside & (i < parts) & (transmittance > OPAQUE_TRANSMITTANCE)
                 ),
-                part,
+                add_part,
                 max_iterations=parts,
             )
             radiance = dr.select(active, radiance + transmittance * behind, 0)
@@ -142,14 +147,15 @@ def define(mi: MitsubaModule) -> type:
 
 
 def mean_transmittance(depth: JitFloat) -> JitFloat:
-    """Return (1 - exp(-depth)) / depth, along a homogeneous medium of this optical `depth`."""
+    """Return the mean transmittance (1 - exp(-depth)) / depth up to this optical `depth`."""
     return dr.select(depth > 0, -expm1(-depth) / dr.select(depth > 0, depth, 1), 1)
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
-    """Return a scene for the checks, and the radiance (3,) of each of its pixels.
+    """Return a test scene, and the radiance (3,) that every pixel of its picture should have.
 
-    All rays cross one unit of a homogeneous volume, with e (1 - exp(-σ)) / σ + exp(-σ) L_behind.
+    All rays cross one unit of a homogeneous volume, so that the radiance is
+    e (1 - exp(-σ)) / σ + exp(-σ) L_behind.
     """
     sigma, e, behind = 2.0, np.array([0.9, 0.5, 0.1]), 0.3
     scene = {

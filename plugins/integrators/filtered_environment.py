@@ -2,20 +2,20 @@
 
     {"type": "filtered_environment", "method": "gmm"}
 
-The light is filtered once, at `resolution` texels across a hemisphere. After that, the mean of the
-light over a lobe is one look-up, and every pixel adds up some of these means:
+The light is filtered once, at `resolution` texels across a hemisphere. After that, one look-up
+gives the mean light over a lobe, and every pixel is a sum of such means:
 
     L(o) ≈ π c E + Σ (f(i, o) - c) cosθ / (N p(i)) · L about i        filtered_sampling
     L(o) ≈ d(o) E + Σ w_k(o) · L about μ_k(o)                         the other methods
 
 o is the direction of view, f the BRDF and c its constant part, E the irradiance divided by π, d the
-diffuse albedo, and w_k the weights of lobes about the directions μ_k. `filtered_sampling` draws
-N = `samples` directions i from the BSDF; the lower their density p, the wider the lobe about each
+diffuse albedo, and w_k the weights of lobes about the directions μ_k. `filtered_sampling` draws N =
+`samples` directions i from the BSDF; the lower their density p, the wider the lobe about each
 [Colbert & Křivánek 2007]. It works with any BSDF at once. The other methods first fit spherical
 Gaussians to each BSDF, which takes seconds, and interpolate them between views [Ergun 2015, chapter
 8]: `gmm` fits a mixture of `lobes`, and is the most exact; `warped` fits one lobe; `kde` and
-`elliptic` replace it by sharper lobes, spread over a circle or an ellipse. These methods support no
-textures and no mirrors, and run in RGB and mono variants.
+`elliptic` replace this lobe by several sharper ones, spread over a circle or an ellipse. These
+methods support no textures and no mirrors, and run in RGB and mono variants.
 
 With `filter` = "lobes", levels of the light are convolved with von Mises-Fisher lobes; with "mips"
 they are boxes of texels, like the mip levels of graphics hardware, chosen by [Ergun 2015, eq. 8.9].
@@ -80,7 +80,7 @@ PARAMETERS = {
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.SamplingIntegrator`."""
     Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class FilteredEnvironment(Base):
@@ -108,15 +108,17 @@ def define(mi: MitsubaModule) -> type:
             hit = active & si.is_valid()
             if self.shadows != "none":
                 directions = unshadowed.light_directions(sampler.sample_count())
-                light = ShadowedLight(unshadowed, si, self.visible(scene, si, hit), directions)
+                light = ShadowedLight(
+                    unshadowed, si, self.make_visibility_test(scene, si, hit), directions
+                )
             reflected = self.shading.radiance(scene, sampler, si, light, hit)
             behind = mi.unpolarized_spectrum(environment.eval(si, active & ~hit))
             return mi.depolarizer(dr.select(hit, reflected, behind)), active, []
 
-        def visible(
+        def make_visibility_test(
             self, scene: MitsubaObject, si: MitsubaObject, active: JitMask
         ) -> Callable[[JitVector], JitMask]:
-            """Return a function that tells whether light from a direction reaches the points."""
+            """Return a function that tests whether light from a direction reaches the points."""
             return lambda w: self.casters.visible(scene, si.spawn_ray(w), active)
 
     return FilteredEnvironment
@@ -125,7 +127,7 @@ def define(mi: MitsubaModule) -> type:
 def _choose_shading(
     mi: MitsubaModule, method: str, samples: int, lobes: int
 ) -> FilteredSampling | LobeLight:
-    """Return the object that computes the light on surfaces, by the name of the `method`."""
+    """Return the object that computes the reflected light by the method with this name."""
     if method == METHODS[0]:
         return FilteredSampling(samples)
     if mi.is_spectral:
@@ -137,7 +139,7 @@ def _choose_shading(
 
 
 def _require_one_environment(mi: MitsubaModule, scene: MitsubaObject) -> MitsubaObject:
-    """Return the environment of a `scene`; raise `BrdfkitError` for none or other lights."""
+    """Return a scene's environment, or raise `BrdfkitError` without one or with other lights."""
     require_vectorised("filtered_environment")
     if scene.environment() is None:
         raise BrdfkitError(
@@ -145,14 +147,14 @@ def _require_one_environment(mi: MitsubaModule, scene: MitsubaObject) -> Mitsuba
         )
     if len(scene.emitters()) > 1:
         raise BrdfkitError(
-            "filtered_environment: the scene has lamps besides its environment; take them out, or "
-            "render it with path."
+            "filtered_environment: the scene has lamps besides its environment; remove them, or "
+            "render it with the integrator path."
         )
     return scene.environment()
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
-    """Return a scene for the checks, a matte wall in even light, and its radiance (3,)."""
+    """Return a test scene, a matte wall in even light, and the radiance (3,) of its picture."""
     import mitsuba as mi
 
     albedo, radiance = 0.4, 0.7

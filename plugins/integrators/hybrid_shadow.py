@@ -12,9 +12,9 @@ Any shape casts shadows in this way, with or without triangles, and the time dep
 on meshes. The borders of shadows are jagged, like the texels, and off by some pixels; shadows
 thinner than a texel are lost, and surfaces at grazing angles to the light are torn. If the camera
 is in a shadow, the whole picture is wrong, as with depth-pass in `shadow_volume`. [Ergun 2008,
-section 2.3] rejects the technique for such faults; this plugin shows them. There is no indirect
-light, and no derivative of the shadows. Lights must be point, spot or directional lights, cameras
-perspective; others are refused.
+section 2.3] rejects the technique for such faults; the plugin exists to show them. There is no
+indirect light, and no derivative of the shadows. Lights must be point, spot or directional lights,
+cameras perspective; others are refused.
 """
 
 from collections.abc import Callable, Sequence
@@ -34,19 +34,18 @@ PARAMETERS = {
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.SamplingIntegrator`."""
     Base: MitsubaObject = derive_shadow_integrator(mi, PARAMETERS)
 
     class HybridShadows(Base):
-        def shadow_of(
+        def prepare_shadows(
             self, scene: MitsubaObject, sensor: MitsubaObject
         ) -> Callable[[MitsubaObject], Any]:
-            how = {"resolution": self.resolution, "jump": self.jump}
-            return partial(hybrid_shadow, scene, sensor, **how)
+            return partial(hybrid_shadow, scene, sensor, resolution=self.resolution, jump=self.jump)
 
     return HybridShadows
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
-    """Return the scene of `make_shadow_scene` for the checks, and its radiance (3,)."""
+    """Return a test scene with a shadow, and the radiance (3,) that its picture should have."""
     return make_shadow_scene({"type": "hybrid_shadow", "resolution": 64})

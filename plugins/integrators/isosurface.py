@@ -66,16 +66,16 @@ PARAMETERS = {
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.SamplingIntegrator`."""
     Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class Isosurface(Base):
-        def f(self, p: JitVector, active: JitMask = True) -> JitFloat:
-            """Return F, which is above 0 inside the surface, at points."""
+        def value_above_level(self, p: JitVector, active: JitMask = True) -> JitFloat:
+            """Return F = V(p) - `level`, which is above 0 inside the surface."""
             it = mi.Interaction3f()
             it.p = p
-            if hasattr(self.volume, "rgba"):
-                return self.volume.rgba(it, active)[1] - self.level
+            if hasattr(self.volume, "eval_rgba"):
+                return self.volume.eval_rgba(it, active)[1] - self.level
             return self.volume.eval_1(it, active) - self.level
 
         def sample(
@@ -92,36 +92,41 @@ def define(mi: MitsubaModule) -> type:
             far = dr.minimum(far, end)
             crossed = active & (far > near)
             t, hit = find_first_crossing(
-                lambda t: self.f(ray(t), crossed), near, far, self.steps, crossed
+                lambda t: self.value_above_level(ray(t), crossed), near, far, self.steps, crossed
             )
-            si = self.surface(ray, dr.select(hit, t, 0), near, hit)
-            lit = direct_light(scene, si, self.bsdf, sampler, self.is_free, hit)
+            si = self.make_surface_interaction(ray, dr.select(hit, t, 0), near, hit)
+            lit = direct_light(scene, si, self.bsdf, sampler, self.is_unblocked, hit)
             return mi.depolarizer(dr.select(active, dr.select(hit, lit, behind), 0)), active, []
 
-        def surface(
+        def make_surface_interaction(
             self, ray: MitsubaObject, t: JitFloat, near: JitFloat, hit: JitMask
         ) -> MitsubaObject:
-            """Return the `mi.SurfaceInteraction3f` where a ray meets the surface, at `t`."""
+            """Return the surface interaction where a ray meets the isosurface, at the distance `t`.
+
+            `near` is the distance at which the ray enters the box of the volume.
+            """
             on_face = t <= near
             with dr.suspend_grad():
                 step = 0.02 / dr.norm(dr.select(hit, voxels_per_length(ray.d, self.volume), 1))
-                slope = (self.f(ray(t + step)) - self.f(ray(t - step))) / (2 * step)
-            t = reattach(lambda t: self.f(ray(t)), t, dr.select(on_face, 0, slope))
-            outwards = -gradient(self.f, ray(t), self.volume)
+                slope = (
+                    self.value_above_level(ray(t + step)) - self.value_above_level(ray(t - step))
+                ) / (2 * step)
+            t = reattach(lambda t: self.value_above_level(ray(t)), t, dr.select(on_face, 0, slope))
+            outwards = -gradient(self.value_above_level, ray(t), self.volume)
             flat = dr.squared_norm(outwards) == 0
             n = dr.normalize(dr.select(flat, -ray.d, outwards))
             n = dr.select(on_face, face_normal(ray(t), self.volume), n)
             return make_interaction(ray, t, ray(t), bend_to_viewer(n, ray.d), hit)
 
-        def is_free(self, ray: MitsubaObject, active: JitMask) -> JitMask:
-            """Return whether the surface does not block a ray between its origin and its end."""
+        def is_unblocked(self, ray: MitsubaObject, active: JitMask) -> JitMask:
+            """Return whether a ray up to `ray.maxt` does not meet the isosurface."""
             if not self.shadows:
                 return active
             near, far = intersect_box(ray, self.volume)
             far = dr.minimum(far, ray.maxt)
             crossed = active & (far > near)
             _, _, above = find_first_above(
-                lambda t: self.f(ray(t), crossed), near, far, self.steps, crossed
+                lambda t: self.value_above_level(ray(t), crossed), near, far, self.steps, crossed
             )
             return active & ~(crossed & (above > 0))
 
@@ -129,7 +134,7 @@ def define(mi: MitsubaModule) -> type:
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
-    """Return a scene for the checks, a matte plane under an even sky, and its radiance (3,)."""
+    """Return a test scene, a matte plane under an even sky, and its radiance (3,)."""
     import mitsuba as mi
 
     albedo, radiance = [0.6, 0.5, 0.2], 0.7

@@ -2,17 +2,17 @@
 
     L = A RGB + (1 - A) L_behind,   (RGB, A) = T(v),   v = max V(t) along the ray
 
-T is the transfer function of a `volume` of the type `transfer_function`, as in angiography and PET.
-For a colour map alone, with A = 1, use
-`TransferFunction.from_colormap(name, range, opacity=[(0, 1), (1, 1)])`. Any other volume is shown
-in grey: L = v. L_behind is the emission of the first surface, which ends the ray, or of the
-environment.
+Angiography and PET use such pictures. T is the transfer function of a `volume` of the type
+`transfer_function`: a colour RGB and an opacity A for each value v. For a colour map alone, with
+A = 1, use `TransferFunction.from_colormap(name, range, opacity=[(0, 1), (1, 1)])`. Any other volume
+is shown in grey: L = v. L_behind is the emission of the first surface, which ends the ray, or of
+the environment.
 
 The ray is cut into `steps` equal parts within the box of the volume. Each part is read at one
 point, at a random share of its length that is the same for all parts; then the largest value is
-refined in the neighbourhood of its point. It is never above the true maximum, and approaches it as
-the steps become shorter than the voxels. Each ray has its own maximum, and a pixel is the mean of
-its rays, over all passes.
+refined in the neighbourhood of its point. The result is never above the true maximum, and
+approaches it as the steps become shorter than the voxels. Each ray has its own maximum, and a pixel
+is the mean of its rays, over all passes.
 
 [Lesar 2018, eq. 6.1]. Derivatives flow from the colour to the largest value, and from there to the
 values of the grid about it.
@@ -48,24 +48,24 @@ PARAMETERS = {
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.SamplingIntegrator`."""
     Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class MaximumIntensity(Base):
         def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             self.light = make_rgb_emission()
-            self.has_colours = hasattr(self.volume, "optics")
+            self.has_colours = hasattr(self.volume, "eval_extinction_and_colour")
 
-        def value(self, it: MitsubaObject, active: JitMask) -> JitFloat:
+        def eval_value(self, it: MitsubaObject, active: JitMask) -> JitFloat:
             if self.has_colours:
-                return self.volume.places(it, active)[0]
+                return self.volume.eval_arguments(it, active)[0]
             return self.volume.eval_1(it, active)
 
-        def colour(self, it: MitsubaObject, active: JitMask) -> tuple[JitVector, JitFloat]:
-            """Return RGB in linear sRGB, and A."""
+        def eval_colour(self, it: MitsubaObject, active: JitMask) -> tuple[JitVector, JitFloat]:
+            """Return the colour RGB in linear sRGB and the opacity A at a point."""
             if self.has_colours:
-                return self.volume.rgba(it, active)
+                return self.volume.eval_rgba(it, active)
             return mi.Color3f(self.volume.eval_1(it, active)), 1
 
         def sample(
@@ -81,17 +81,22 @@ def define(mi: MitsubaModule) -> type:
             far = dr.minimum(far, end)
             inside = active & (far > near)
 
-            def at(t: JitFloat) -> MitsubaObject:
+            def make_point(t: JitFloat) -> MitsubaObject:
                 it = mi.Interaction3f()
                 it.p, it.wavelengths = ray(t), ray.wavelengths
                 return it
 
             place = sampler.next_1d(active) if self.jitter else mi.Float(0.5)
             t = find_largest(
-                lambda t: self.value(at(t), inside), near, far, self.steps, place, inside
+                lambda t: self.eval_value(make_point(t), inside),
+                near,
+                far,
+                self.steps,
+                place,
+                inside,
             )
-            it = at(t)
-            rgb, a = self.colour(it, inside)
+            it = make_point(t)
+            rgb, a = self.eval_colour(it, inside)
             radiance = dr.select(inside, a * self.light(rgb, it) + (1 - a) * behind, behind)
             return mi.depolarizer(dr.select(active, radiance, 0)), active, []
 
@@ -99,9 +104,10 @@ def define(mi: MitsubaModule) -> type:
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
-    """Return a scene for the checks, and the radiance (3,) of each of its pixels.
+    """Return a test scene, and the radiance (3,) that every pixel of its picture should have.
 
-    The values of its volume rise to the middle voxel, whose A RGB + (1 - A) L_behind is visible.
+    The largest value of the volume is in its middle voxel, so that A RGB + (1 - A) L_behind of this
+    value is visible.
     """
     import mitsuba as mi
 

@@ -52,21 +52,21 @@ PARAMETERS = {
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.SamplingIntegrator`."""
     Base: MitsubaObject = derive_shadow_integrator(mi, PARAMETERS)
 
     class ShadowMapped(Base):
-        def shadow_of(
+        def prepare_shadows(
             self, scene: MitsubaObject, sensor: MitsubaObject
         ) -> Callable[[MitsubaObject], LightShadow]:
-            return partial(self.make_shadow, scene, sensor)
+            return partial(self.make_light_shadow, scene, sensor)
 
-        def make_shadow(
+        def make_light_shadow(
             self, scene: MitsubaObject, sensor: MitsubaObject, emitter: MitsubaObject
         ) -> LightShadow:
-            """Return the `LightShadow` of an `emitter` of the scene."""
+            """Render the shadow maps of an `emitter` and return them as a `LightShadow`."""
             names = {kind: getattr(self, kind) for kind in FILES}
-            settings = [n for kind, name in names.items() for n in find_settings(kind, name)]
+            settings = [s for kind, name in names.items() for s in find_settings(kind, name)]
             return LightShadow(
                 scene,
                 Placement.from_scene(scene, sensor, emitter),
@@ -81,5 +81,5 @@ def define(mi: MitsubaModule) -> type:
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
-    """Return the scene of `make_shadow_scene` for the checks, and its radiance (3,)."""
+    """Return a test scene with a shadow, and the radiance (3,) that its picture should have."""
     return make_shadow_scene({"type": "shadow_map", "resolution": 64})

@@ -55,20 +55,20 @@ PARAMETERS = {
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.SamplingIntegrator`."""
     Base: MitsubaObject = derive_shadow_integrator(mi, PARAMETERS)
 
     class ShadowVolumes(Base):
-        def shadow_of(
+        def prepare_shadows(
             self, scene: MitsubaObject, sensor: MitsubaObject
         ) -> Callable[[MitsubaObject], LightVolumes]:
             meshes = [Mesh.from_shape(shape) for shape in scene.shapes()]
-            return partial(self.make_shadow, meshes, sensor)
+            return partial(self.make_light_volumes, meshes, sensor)
 
-        def make_shadow(
+        def make_light_volumes(
             self, meshes: Sequence[Mesh], sensor: MitsubaObject, emitter: MitsubaObject
         ) -> LightVolumes:
-            """Return the `LightVolumes` of an `emitter` of the scene."""
+            """Make the shadow volumes of all meshes for one `emitter` of the scene."""
             return LightVolumes(
                 meshes,
                 Light.from_emitter(emitter),
@@ -87,5 +87,5 @@ def define(mi: MitsubaModule) -> type:
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
-    """Return the scene of `make_shadow_scene` for the checks, and its radiance (3,)."""
+    """Return a test scene with a shadow, and the radiance (3,) that its picture should have."""
     return make_shadow_scene({"type": "shadow_volume"})

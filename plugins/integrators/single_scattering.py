@@ -67,8 +67,9 @@ from brdfkit.volumes.light import emitters
 from brdfkit.volumes.light.medium import Medium
 from brdfkit.volumes.light.vertex import Vertex, medium_interaction
 
-ROULETTE_DEPTH = 5  # scatterings after which dark paths end at random
-SMALLEST_CHANCE = 0.05  # for a path to survive, and for a sample to be chosen from two
+ROULETTE_DEPTH = 5  # number of scatterings after which dark paths end at random
+# The least probability that a path survives, and that a sample is chosen from two
+SMALLEST_CHANCE = 0.05
 
 PARAMETERS = {
     "extinction": volume(1.0, "σ: collisions per unit of length", coloured=False),
@@ -82,7 +83,7 @@ PARAMETERS = {
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.SamplingIntegrator`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.SamplingIntegrator`."""
     Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class SingleScattering(Base):
@@ -106,12 +107,12 @@ def define(mi: MitsubaModule) -> type:
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             require_vectorised(self.name)
 
-            def goes_on(
+            def continues(
                 depth: JitInt, ray: MitsubaObject, throughput: JitColour, *_: Any
             ) -> JitMask:
                 return active & (depth < self.max_depth) & dr.any(throughput != 0)
 
-            def step(
+            def trace_segment(
                 depth: JitInt,
                 ray: MitsubaObject,
                 throughput: JitColour,
@@ -119,26 +120,28 @@ def define(mi: MitsubaModule) -> type:
                 density: JitFloat,
                 sampler: MitsubaObject,
             ) -> tuple[Any, ...]:
-                going = goes_on(depth, ray, throughput)
-                light, vertex, weight = self.segment(scene, ray, density, sampler, going)
+                going = continues(depth, ray, throughput)
+                light, vertex, weight = self.follow_segment(scene, ray, density, sampler, going)
                 radiance += throughput * light
                 throughput *= weight
-                radiance += throughput * self.direct(scene, vertex, sampler)
+                radiance += throughput * self.scatter_direct_light(scene, vertex, sampler)
                 wo, weight, density = vertex.sample(sampler)
                 ray = dr.select(vertex.active, vertex.interaction.spawn_ray(wo), ray)
-                throughput = roulette(depth, throughput * weight, sampler)
+                throughput = apply_roulette(depth, throughput * weight, sampler)
                 return depth + 1, ray, throughput, radiance, density, sampler
 
             one, zero = mi.UnpolarizedSpectrum(1), mi.UnpolarizedSpectrum(0)
             state = mi.UInt32(1), mi.Ray3f(ray), one, zero, mi.Float(0), sampler
             if self.max_depth > 1:
-                state = dr.while_loop(state, goes_on, step, max_iterations=self.max_depth - 1)
+                state = dr.while_loop(
+                    state, continues, trace_segment, max_iterations=self.max_depth - 1
+                )
             _, ray, throughput, radiance, density, _ = state
             going = active & dr.any(throughput != 0)
-            radiance += throughput * self.last_segment(scene, ray, density, sampler, going)
+            radiance += throughput * self.add_last_segment(scene, ray, density, sampler, going)
             return mi.depolarizer(dr.select(active, radiance, 0)), active, []
 
-        def segment(
+        def follow_segment(
             self,
             scene: MitsubaObject,
             ray: MitsubaObject,
@@ -146,21 +149,22 @@ def define(mi: MitsubaModule) -> type:
             sampler: MitsubaObject,
             active: JitMask,
         ) -> tuple[JitColour, Vertex, JitColour]:
-            """Follow rays to a collision and to their end.
+            """Follow one segment of each path, both to a collision in the medium and to its end.
 
-            Return the light of emitters, one of the two ends as the vertex where the path
-            continues, and the weight of the path after it.
+            Returns the light that the segment adds, the `Vertex` where the path continues (at the
+            collision, or at the surface at the end), and the factor of the path's throughput.
             """
             si = scene.ray_intersect(ray, active)
             share, collided, t = self.medium.split_light(ray, si.t, sampler, active)
             light = share * emitters.evaluate_hit(scene, ray, si, density, active)
 
-            # The path continues from one of two ends: the collision, or a surface behind it
+            # The path continues from the collision, or from the surface behind the medium
             passed = dr.select(si.is_valid(), dr.detach(share), 0)
             in_medium = active & (sampler.next_1d(active) * (collided + passed) < collided)
             mei = medium_interaction(ray, t)
             sigma, albedo, own = self.medium.coefficients(mei, in_medium)
-            # `one` has the derivatives of σ T at a collision and of T at a surface
+            # `one` has the value 1, and the derivatives of log(σ T) at a collision or of log T at a
+            # surface, where T is the transmittance
             depth = self.medium.sample_depth(ray, dr.select(in_medium, t, si.t), sampler, active)
             log_sigma = dr.log(dr.select(in_medium, sigma, 1))
             # Dr.Jit's stub knows no result of this function
@@ -173,30 +177,37 @@ def define(mi: MitsubaModule) -> type:
             vertex = Vertex(self.phase, mei, in_medium, si, on_surface)
             return light, vertex, weight * dr.select(in_medium, albedo, 1)
 
-        def direct(self, scene: MitsubaObject, vertex: Vertex, sampler: MitsubaObject) -> JitColour:
-            """Return the light of emitters that is scattered into the rays at a vertex.
+        def scatter_direct_light(
+            self, scene: MitsubaObject, vertex: Vertex, sampler: MitsubaObject
+        ) -> JitColour:
+            """Return the light that a vertex scatters directly from the emitters into the path.
 
-            With several emitters there are two samples, one from each half, of which one is
-            followed.
+            With several emitters, two of them are sampled, one from each half of the list, and the
+            shadow ray to one of these samples is followed.
             """
             u = sampler.next_2d(vertex.active)
             if len(scene.emitters()) > 1:
                 halves = [mi.Point2f((u.x + k) / 2, u.y) for k in range(2)]
-                first, second = (self.unshadowed(scene, vertex, half) for half in halves)
-                ray, light, lit = choose_brighter(first, second, sampler.next_1d(vertex.active))
+                first, second = (
+                    self.sample_unshadowed_light(scene, vertex, half) for half in halves
+                )
+                ray, light, lit = choose_brighter_sample(
+                    first, second, sampler.next_1d(vertex.active)
+                )
             else:
-                ray, light, lit = self.unshadowed(scene, vertex, u)
+                ray, light, lit = self.sample_unshadowed_light(scene, vertex, u)
             with dr.suspend_grad():
                 lit = lit & ~scene.ray_test(ray, lit)
             share = self.medium.transmittance(ray, ray.maxt, sampler, lit)
             return dr.select(lit, light * share, 0)
 
-        def unshadowed(
+        def sample_unshadowed_light(
             self, scene: MitsubaObject, vertex: Vertex, u: JitVector
         ) -> tuple[MitsubaObject, JitColour, JitMask]:
-            """Return the ray to a sample of the emitters, its scattered light, and if it exists.
+            """Sample the emitters, and return a shadow ray, the scattered light and a mask.
 
-            The light is computed as if nothing were in its way.
+            The light is the one that arrives if nothing blocks the ray; the mask is False where the
+            emitters have no sample.
             """
             it = vertex.interaction
             ds, light, there = emitters.sample_emitters(scene, it, u, vertex.active)
@@ -204,7 +215,7 @@ def define(mi: MitsubaModule) -> type:
             weight = dr.select(ds.delta, 1, emitters.power_heuristic(ds.pdf, dr.detach(pdf)))
             return emitters.ray_to(it, ds), value * light * weight, there
 
-        def last_segment(
+        def add_last_segment(
             self,
             scene: MitsubaObject,
             ray: MitsubaObject,
@@ -212,7 +223,7 @@ def define(mi: MitsubaModule) -> type:
             sampler: MitsubaObject,
             active: JitMask,
         ) -> JitColour:
-            """Return the light that rays receive without a further scattering."""
+            """Return the light that the last segment of a path adds, without scattering."""
             si = scene.ray_intersect(ray, active)
             comes = active & emitters.is_emitter_hit(scene, si)
             light = emitters.evaluate_hit(scene, ray, si, density, comes)
@@ -225,14 +236,15 @@ def define(mi: MitsubaModule) -> type:
     return SingleScattering
 
 
-def choose_brighter(
+def choose_brighter_sample(
     first: tuple[MitsubaObject, JitColour, JitMask],
     second: tuple[MitsubaObject, JitColour, JitMask],
     u: JitFloat,
 ) -> tuple[MitsubaObject, JitColour, JitMask]:
-    """Choose one of two samples (ray, light, mask), mostly the brighter one, by the number `u`.
+    """Choose one of two samples (ray, light, mask) at random, mostly the brighter one.
 
-    Its light is weighted to have the mean of both.
+    The light is divided by the probability of the choice, which keeps the mean of both samples
+    unbiased. `u` is a uniform random number.
     """
     brightness = [dr.detach(dr.max(light)) for _, light, _ in (first, second)]
     both = brightness[0] + brightness[1]
@@ -243,11 +255,11 @@ def choose_brighter(
     return ray, light / (2 * dr.select(is_first, chance, 1 - chance)), mask
 
 
-def roulette(depth: JitInt, throughput: JitColour, sampler: MitsubaObject) -> JitColour:
+def apply_roulette(depth: JitInt, throughput: JitColour, sampler: MitsubaObject) -> JitColour:
     """Return the throughput of paths after Russian roulette, which ends dark paths at random.
 
-    A path that is still as bright as at its start always continues. Otherwise few samples would
-    stand for very many in white clouds, where paths are long, and most pictures would miss them.
+    Paths whose throughput is still 1 always continue. If they could end, too, pictures of white
+    clouds, where paths are long, would depend on a few very bright samples.
     """
     chance = dr.clip(dr.max(dr.detach(throughput)), SMALLEST_CHANCE, 1)
     chance = dr.select(depth < ROULETTE_DEPTH, 1, chance)
@@ -255,9 +267,9 @@ def roulette(depth: JitInt, throughput: JitColour, sampler: MitsubaObject) -> Ji
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
-    """Return a scene for the checks, and the radiance (3,) of each of its pixels.
+    """Return a test scene, and the radiance (3,) that every pixel of its picture should have.
 
-    It shows a homogeneous cube in the light of the sun, which is behind the camera.
+    The camera looks at a homogeneous cube, with the sun behind the camera.
     """
     sigma, albedo, g, irradiance = 2.0, 0.5, -0.3, np.array([0.9, 0.6, 0.3])
     colour = {"type": "rgb", "value": irradiance.tolist()}

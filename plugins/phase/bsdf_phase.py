@@ -7,7 +7,7 @@ f is a BSDF, ωi and ωo are the directions of light. n is the normal of the sur
 differences over one voxel of the grid to each side. Where it is 0, light is scattered evenly in all
 directions. A BSDF that does not transmit scatters on both sides of the surface of equal density.
 
-It shows skin and bone of CT scans with highlights, without extracting a surface. p integrates to
+CT scans of skin and bone get highlights in this way, without extracting a surface. p integrates to
 the albedo of the BSDF, at most 1, and a medium scatters its own albedo times this: give the colour
 to one of the two albedos, and 1 to the other. p is not reciprocal, because of the cosine.
 Directions are drawn as the BSDF draws them. Textures are read at u = v = 0. Tangents are arbitrary,
@@ -36,11 +36,11 @@ PARAMETERS = {
     "bsdf": bsdf("f, by default white and matte; in a scene file it needs this name"),
     "density": volume(1.0, "ρ, which has the gradient: the same grid as the medium's"),
 }
-ROUNDING = 1e-5  # changes of ρ below this share of ρ are rounding
+ROUNDING = 1e-5  # changes of ρ below this share of ρ count as rounding errors
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.PhaseFunction`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.PhaseFunction`."""
     Base: MitsubaObject = derive_plugin(mi.PhaseFunction, PARAMETERS)
 
     class BsdfPhase(Base):
@@ -67,9 +67,9 @@ def define(mi: MitsubaModule) -> type:
             sample2: JitVector,
             active: JitMask = True,
         ) -> tuple[JitVector, JitColour, JitFloat]:
-            si, there = self.surface(interaction, active)
+            si, there = self.make_surface_interaction(interaction, active)
             drawn, _ = self.bsdf.sample(self.context, si, sample1, sample2, active & there)
-            lost = there & (drawn.pdf <= 0)  # below the surface, for instance
+            lost = there & (drawn.pdf <= 0)  # such as directions below the surface
             even = mi.warp.square_to_uniform_sphere(sample2)
             # Neither the direction nor its density in the weight has derivatives
             wo = dr.detach(dr.select(drawn.pdf > 0, si.to_world(drawn.wo), even))
@@ -84,16 +84,19 @@ def define(mi: MitsubaModule) -> type:
             wo: JitVector,
             active: JitMask = True,
         ) -> tuple[JitColour, JitFloat]:
-            si, there = self.surface(interaction, active)
+            si, there = self.make_surface_interaction(interaction, active)
             value, pdf = self.bsdf.eval_pdf(self.context, si, si.to_local(wo), active & there)
             value, even = mi.unpolarized_spectrum(value), 1 / (4 * dr.pi)
             return mi.depolarizer(dr.select(there, value, even)), dr.select(there, pdf, even)
 
-        def surface(
+        def make_surface_interaction(
             self, interaction: MitsubaObject, active: JitMask
         ) -> tuple[MitsubaObject, JitMask]:
-            """Return the interaction on the surface of equal density, and whether it exists."""
-            gradient, there = self.gradient(interaction, active)
+            """Return an interaction on the surface of equal density through a point, and a mask.
+
+            The mask is False where the density is constant, so that there is no surface.
+            """
+            gradient, there = self.density_gradient(interaction, active)
             n = dr.normalize(dr.select(there, -gradient, mi.Vector3f(0, 0, 1)))
             if self.one_sided:
                 n = dr.mulsign(n, dr.dot(n, interaction.wi))
@@ -103,10 +106,10 @@ def define(mi: MitsubaModule) -> type:
             si.wi = si.to_local(interaction.wi)
             return si, there
 
-        def gradient(
+        def density_gradient(
             self, interaction: MitsubaObject, active: JitMask
         ) -> tuple[JitVector, JitMask]:
-            """Return ∇ρ, and whether it is more than rounding."""
+            """Return the gradient ∇ρ of the density, and whether it exceeds rounding errors."""
             it = mi.Interaction3f()
             it.time, it.wavelengths = interaction.time, interaction.wavelengths
             change, total = mi.Vector3f(0), mi.Float(0)
@@ -126,7 +129,7 @@ def define(mi: MitsubaModule) -> type:
 
 
 def example() -> dict[str, Any]:
-    """Return a white BSDF in a density that falls along z, for the checks."""
+    """Return a phase function of a white BSDF in a density that falls along z, to test it."""
     import mitsuba as mi
     import numpy as np
 

@@ -18,7 +18,7 @@ EXPONENT = 8
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.PhaseFunction`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.PhaseFunction`."""
     Base: MitsubaObject = define_even_and_forward(mi, EXPONENT)
 
     class MieHazy(Base):

@@ -27,24 +27,24 @@ PARAMETERS = {
 
 
 def density(k: JitFloat, mu: JitFloat) -> JitFloat:
-    """Return the phase function p(μ) [sr⁻¹] at the cosine `mu`."""
+    """Return Schlick's phase function p(μ) [sr⁻¹] at the cosine `mu` of the deflection angle."""
     return (1 - k * k) / (4 * dr.pi * dr.square(1 - k * mu))
 
 
-def cosine(k: JitFloat, u: JitFloat) -> JitFloat:
-    """Return the cosine μ below which the share `u` of the scattered light lies."""
+def draw_cosine(k: JitFloat, u: JitFloat) -> JitFloat:
+    """Draw the cosine μ of the deflection angle by the uniform random number `u`."""
     return (2 * u + k - 1) / (2 * k * u - k + 1)
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.PhaseFunction`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.PhaseFunction`."""
     Base: MitsubaObject = derive_phase_function(mi, PARAMETERS)
 
     class Schlick(Base):
         def density(self, mu: JitFloat) -> JitFloat:
             return density(self.k, mu)
 
-        def cosine(self, lobe: JitFloat, u: JitFloat) -> JitFloat:
-            return cosine(self.k, u)
+        def draw_cosine(self, lobe: JitFloat, u: JitFloat) -> JitFloat:
+            return draw_cosine(self.k, u)
 
     return Schlick

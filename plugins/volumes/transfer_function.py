@@ -1,14 +1,15 @@
-"""Transfer function: a volume of colours and extinctions, looked up from the values of another one.
+"""Transfer function: a volume that maps the values of another volume to extinctions and colours.
 
     values v, and where the function has them, gradient magnitudes g → RGB, A
     output = extinction: σ_t = extinction · A(v, g)        output = colour: RGB(v, g)
 
-`transfer` is the name of a preset, such as "ct_bone", a file that `TransferFunction.save` wrote, or
-the text of such a file, from `to_json()`. A preset over shares of the range, such as for MRI, is
-scaled to the smallest and largest value. `values` is a gridvolume with `"raw": True`. If the
+A is the opacity in [0, 1], and σ_t the extinction per unit of length. `transfer` is the name of a
+preset, such as "ct_bone", a file that `TransferFunction.save` wrote, or the text of such a file,
+from `to_json()`. A preset that is defined on shares of the range of values, such as those for MRI,
+is scaled to the smallest and largest value. `values` is a gridvolume with `"raw": True`. If the
 function depends on gradient magnitudes, these are the second channel of the grid
-(`Volume.gradient_magnitude`). Labels need `"filter_type": "nearest"`. Values are interpolated
-before they are looked up.
+(`Volume.gradient_magnitude`). A grid of labels needs `"filter_type": "nearest"`. Values are
+interpolated before they are looked up.
 
 `Volume.scene_dict(transfer)` writes all of this. For Mitsuba's own integrators, a scan is the
 medium
@@ -63,7 +64,7 @@ PARAMETERS = {
 
 
 def define(mi: MitsubaModule) -> type:
-    """Return the class derived from `mi.Volume`, for the current variant."""
+    """Return the plugin's class for Mitsuba's current variant: a `mi.Volume`."""
     Base: MitsubaObject = derive_plugin(mi.Volume, PARAMETERS)
 
     class TransferFunctionVolume(Base):
@@ -71,7 +72,7 @@ def define(mi: MitsubaModule) -> type:
             require_vectorised("transfer_function")
             values = props.get("values", 0)
             if "to_world" not in props and isinstance(values, mi.Volume):
-                props["to_world"] = find_box(mi, values)
+                props["to_world"] = find_box_transform(mi, values)
             super().__init__(props)
             to_world = np.array(props.get("to_world", mi.ScalarTransform4f()).matrix)
             self.to_local = mi.Transform4f(np.linalg.inv(to_world))
@@ -88,56 +89,63 @@ def define(mi: MitsubaModule) -> type:
             self.lookup.update()
             self.__dict__.pop("majorants", None)
 
-        def optics(self, it: MitsubaObject, active: JitMask = True) -> tuple[JitFloat, JitColour]:
-            """Return σ_t, and RGB in linear sRGB, from one look-up."""
-            rgb, a = self.rgba(it, active)
+        def eval_extinction_and_colour(
+            self, it: MitsubaObject, active: JitMask = True
+        ) -> tuple[JitFloat, JitColour]:
+            """Return the extinction σ_t at the point `it`, and the colour RGB in linear sRGB."""
+            rgb, a = self.eval_rgba(it, active)
             return self.lookup.extinction * a, rgb
 
-        def is_missed_by(self, steps: int) -> bool:
-            """Return whether rays with this number of `steps` would miss peaks of the function.
+        def misses_peaks(self, steps: int) -> bool:
+            """Return whether a ray cut into `steps` parts would step over peaks of the function.
 
-            Then `integrals` and `mean_optics` include them. False for functions of labels or
-            gradient magnitudes.
+            If so, integrators should use `average_extinction_and_colour`, which includes the peaks.
+            The result is False for functions of labels or gradient magnitudes, which have no
+            averages.
             """
             data = read_grid(self.values)
             if data is None or self.function.gradients is not None:
                 return False
             low, high = self.function.range
-            change = typical_difference(data) * max(
-                1, max(data.shape) / steps
-            )  # of the values within a step
+            voxels_per_step = max(1, max(data.shape) / steps)
+            change = typical_difference(data) * voxels_per_step  # of the values within a step
             reach = change / (high - low) * self.lookup.integrals.steps
             thin = has_peaks(np.array(self.lookup.table), reach)
             return thin and is_trilinear(self.values, data, self.to_local)
 
-        def integrals(self, it: MitsubaObject, active: JitMask = True) -> JitVector:
-            """Return the function's integrals up to the value at `it`, an end for `mean_optics`.
+        def eval_integrals(self, it: MitsubaObject, active: JitMask = True) -> JitVector:
+            """Return the integrals of the transfer function from its lowest value to that at `it`.
 
-            The function must depend on values alone.
+            `average_extinction_and_colour` takes them at both ends of a part of a ray. The function
+            must depend on values alone.
             """
             return self.lookup.integrals_at(self.values.eval_1(it, active))
 
-        def mean_optics(self, front: JitVector, back: JitVector) -> tuple[JitFloat, JitColour]:
-            """Return the means of σ_t and of σ_t RGB between two ends."""
+        def average_extinction_and_colour(
+            self, front: JitVector, back: JitVector
+        ) -> tuple[JitFloat, JitColour]:
+            """Return the means of σ_t and of σ_t RGB between two points, from their integrals."""
             rgb, a = self.lookup.mean_between(front, back)
             return self.lookup.extinction * a, self.lookup.extinction * rgb
 
-        def rgba(self, it: MitsubaObject, active: JitMask = True) -> tuple[JitVector, JitFloat]:
-            """Return RGB in linear sRGB, and A."""
-            return self.lookup(self.places(it, active), active)
+        def eval_rgba(
+            self, it: MitsubaObject, active: JitMask = True
+        ) -> tuple[JitVector, JitFloat]:
+            """Return the colour RGB in linear sRGB and the opacity A at the point `it`."""
+            return self.lookup(self.eval_arguments(it, active), active)
 
-        def places(self, it: MitsubaObject, active: JitMask = True) -> Sequence[JitFloat]:
-            """Return [value], or [value, gradient magnitude], where the function is looked up."""
+        def eval_arguments(self, it: MitsubaObject, active: JitMask = True) -> Sequence[JitFloat]:
+            """Return the function's arguments at a point: value, perhaps gradient magnitude."""
             if self.function.gradients is None:
                 return [self.values.eval_1(it, active)]
             return self.values.eval_n(it, active)
 
         def eval_1(self, it: MitsubaObject, active: JitMask = True) -> JitFloat:
-            sigma, rgb = self.optics(it, active)
+            sigma, rgb = self.eval_extinction_and_colour(it, active)
             return sigma if self.output == "extinction" else mi.luminance(rgb)
 
         def eval(self, it: MitsubaObject, active: JitMask = True) -> JitColour:
-            sigma, rgb = self.optics(it, active)
+            sigma, rgb = self.eval_extinction_and_colour(it, active)
             if self.output == "extinction":
                 return mi.UnpolarizedSpectrum(sigma)
             return self.spectrum(rgb, it)
@@ -153,13 +161,13 @@ def define(mi: MitsubaModule) -> type:
 
         @cached_property
         def spectrum(self) -> Callable[..., JitColour]:
-            """A function (rgb, it) → spectrum, for reflectances or emission, as RGB means."""
+            """The function (RGB, point) → spectrum for reflectances, or for emission."""
             emits = self.function.colour == "emission"
             return make_rgb_emission() if emits else make_rgb_spectrum()
 
         @cached_property
         def majorants(self) -> FloatArray:
-            """Upper bounds of σ_t (kz, ky, kx), one for each of as many equal blocks of the box."""
+            """The upper bounds of σ_t (kz, ky, kx) in equal blocks of the volume's box."""
             rows = self.lookup.table_over_values()[:, 3] * self.lookup.extinction[0]
             data = read_grid(self.values)
             if data is None:
@@ -169,17 +177,17 @@ def define(mi: MitsubaModule) -> type:
     return TransferFunctionVolume
 
 
-def find_box(mi: MitsubaModule, values: MitsubaObject) -> MitsubaObject:
-    """Return the transform from the unit cube to the box of a volume along the world's axes."""
+def find_box_transform(mi: MitsubaModule, values: MitsubaObject) -> MitsubaObject:
+    """Return the transform from the unit cube to the axis-aligned bounding box of a volume."""
     box = values.bbox()
     return mi.ScalarTransform4f().translate(box.min).scale(box.extents())
 
 
 def read_function(transfer: str, values: MitsubaObject) -> TransferFunction:
-    """Return the `TransferFunction` of a preset, a file or a text, scaled to a volume of `values`.
+    """Read a `TransferFunction` from a preset, file or text, and scale it to a volume of `values`.
 
-    Raises `BrdfkitError` where there is none, and for values without the gradient magnitudes that
-    the function needs.
+    Raises `BrdfkitError` if `transfer` is none of these, and for values without the gradient
+    magnitudes that the function needs.
     """
     if transfer.lstrip().startswith("{"):
         function = files.from_json(TransferFunction, transfer, "transfer_function: transfer")
@@ -197,7 +205,7 @@ def read_function(transfer: str, values: MitsubaObject) -> TransferFunction:
 
 
 def example() -> dict[str, Any]:
-    """Return a hill of values in the middle of the cube, for the checks."""
+    """Return a transfer function over a grid with one high voxel, to test the plugin."""
     import mitsuba as mi
 
     values = np.pad(np.full((1, 1, 1, 1), 2.0, np.float32), ((1, 1), (1, 1), (1, 1), (0, 0)))

@@ -70,7 +70,7 @@ def test_values_in_the_forward_convention(name, llvm_variant):
 
 @pytest.mark.quick
 def test_the_inverse_of_schlicks_distribution():
-    found = schlick.cosine(0.8112, XI)
+    found = schlick.draw_cosine(0.8112, XI)
     expected = [0.031905, 0.523553, 0.811200, 0.932840, 0.977101]
     np.testing.assert_allclose(found, expected, atol=6e-7)
 
@@ -84,7 +84,7 @@ def test_mie_by_quadrature_and_its_samples(module):
     p = 2 * np.pi * weight * phase_functions.density(module.EXPONENT, mu)
     assert [p.sum(), p @ mu] == pytest.approx([1, mean], abs=1e-12)
     u = (np.arange(100_000) + 0.5) / 100_000
-    drawn = [phase_functions.cosine(module.EXPONENT, half, u) for half in (0.25, 0.75)]
+    drawn = [phase_functions.draw_cosine(module.EXPONENT, half, u) for half in (0.25, 0.75)]
     np.testing.assert_allclose(np.quantile(drawn, XI), quantiles, atol=1e-5)
 
 

@@ -375,7 +375,7 @@ def test_mean_cosine_of_schlick():
         assert 2 * np.pi * p @ weight == pytest.approx(1, abs=1e-12)
         assert 2 * np.pi * (p * mu) @ weight == pytest.approx(mean, abs=1e-12)
         u = np.linspace(0, 1, 11)
-        turned = np.array(schlick.cosine(k, u))
+        turned = np.array(schlick.draw_cosine(k, u))
         below = [2 * np.pi * p[mu < end] @ weight[mu < end] for end in turned]
         assert below == pytest.approx(u, abs=0.02)
 

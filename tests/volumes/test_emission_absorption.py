@@ -190,7 +190,7 @@ def test_gradients_by_a_transfer_function(llvm_variant, points, step):
     emission = {"type": "gridvolume", "grid": mi.VolumeGrid(e)}
     glow = {"extinction": coloured(mi, values, function), "emission": emission}
     loaded = scene(mi, {**glow, "steps": 16})
-    assert loaded.integrator().sees_between == (points == THIN)
+    assert loaded.integrator().uses_means == (points == THIN)
     parameters = mi.traverse(loaded)
     leaves = {}
     keys = "extinction.table", "extinction.extinction", "extinction.values.data", "emission.data"

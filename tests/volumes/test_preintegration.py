@@ -30,7 +30,7 @@ def missed(mi, values, function, steps=9, **settings):
     values = np.asarray(values, np.float32).reshape(*np.shape(values), 1)
     grid = {"type": "gridvolume", "grid": mi.VolumeGrid(values), **settings}
     entries = {"type": "transfer_function", "values": grid, "transfer": function.to_json()}
-    return mi.load_dict(entries).is_missed_by(steps)
+    return mi.load_dict(entries).misses_peaks(steps)
 
 
 def test_which_functions_are_missed(llvm_variant):
@@ -51,7 +51,7 @@ def test_which_functions_are_missed(llvm_variant):
     grid = {"type": "gridvolume", "grid": mi.VolumeGrid(two)}
     text = peak.over_gradients([(0, 0), (1, 1)]).to_json()
     both = {"type": "transfer_function", "values": grid, "transfer": text}
-    assert not mi.load_dict(both).is_missed_by(9)
+    assert not mi.load_dict(both).misses_peaks(9)
 
 
 def test_typical_differences():

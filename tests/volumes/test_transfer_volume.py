@@ -46,7 +46,7 @@ def looked_up(mi, loaded, points):
     """RGBA (n, 4) of a volume at `points` (n, 3)."""
     it = dr.zeros(mi.Interaction3f, len(points))
     it.p = mi.Point3f(np.ascontiguousarray(points.T, np.float32))
-    sigma, rgb = loaded.optics(it)
+    sigma, rgb = loaded.eval_extinction_and_colour(it)
     return np.vstack([rgb, np.array(sigma) / loaded.function.extinction]).T
 
 

@@ -23,9 +23,9 @@ from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 def derive_shadow_integrator(mi: MitsubaModule, parameters: dict[str, Any]) -> Any:
     """Return the base class of integrators that find all shadows before each picture.
 
-    A derived class has `shadow_of(scene, sensor)`: a function from an emitter of the scene to a
-    shadow for `direct_light`. The function raises `Empty` where the light reaches nothing that the
-    camera sees.
+    A derived class adds the method `prepare_shadows(scene, sensor)`. It returns a function that
+    makes the shadow of an emitter, for `direct_light`, or raises `Empty` if the emitter lights
+    nothing that the camera sees.
     """
 
     Base: Any = derive_plugin(mi.SamplingIntegrator, parameters)
@@ -48,8 +48,8 @@ def derive_shadow_integrator(mi: MitsubaModule, parameters: dict[str, Any]) -> A
         ) -> Any:
             require_vectorised(self.name)
             sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
-            shadow_of = self.shadow_of(scene, sensor)
-            self.lights = [(each, find_shadow(shadow_of, each)) for each in scene.emitters()]
+            make_shadow = self.prepare_shadows(scene, sensor)
+            self.lights = [(each, find_shadow(make_shadow, each)) for each in scene.emitters()]
             try:
                 return super().render(scene, sensor, seed, spp, develop, evaluate)
             finally:
@@ -81,10 +81,10 @@ class NoShadow:
         return 1
 
 
-def find_shadow(shadow_of: Callable[[Any], Any], emitter: MitsubaObject) -> Any:
+def find_shadow(make_shadow: Callable[[Any], Any], emitter: MitsubaObject) -> Any:
     """Return the shadow of an emitter, or `NoShadow` if it is `Empty`."""
     try:
-        return shadow_of(emitter)
+        return make_shadow(emitter)
     except Empty:
         return NoShadow()
 

@@ -19,7 +19,7 @@ def derive_phase_function(mi: MitsubaModule, parameters: dict[str, Any]) -> Any:
     """Return a class derived from `mi.PhaseFunction` with `parameters` as in `derive_plugin`.
 
     A derived class adds `density(mu)`, p(μ) [sr⁻¹] at the cosine μ of the scattering angle, 1 for
-    straight on, and `cosine(lobe, u)`, a random μ for two numbers from 0 to 1.
+    straight on, and `draw_cosine(lobe, u)`, a random μ for two numbers from 0 to 1.
     """
 
     Base: Any = derive_plugin(mi.PhaseFunction, parameters)
@@ -37,7 +37,7 @@ def derive_phase_function(mi: MitsubaModule, parameters: dict[str, Any]) -> Any:
             sample2: JitVector,
             active: JitMask = True,
         ) -> tuple[JitVector, JitColour, JitFloat]:
-            mu = self.cosine(sample1, sample2.x)
+            mu = self.draw_cosine(sample1, sample2.x)
             radius = dr.safe_sqrt(1 - mu * mu)
             sin_phi, cos_phi = dr.sincos(2 * dr.pi * sample2.y)
             local = mi.Vector3f(radius * cos_phi, radius * sin_phi, mu)
@@ -64,7 +64,7 @@ def density(n: float, mu: JitFloat) -> JitFloat:
     return (1 + (n + 1) * (0.5 + 0.5 * mu) ** n) / (8 * dr.pi)
 
 
-def cosine(n: float, lobe: JitFloat, u: JitFloat) -> JitFloat:
+def draw_cosine(n: float, lobe: JitFloat, u: JitFloat) -> JitFloat:
     """Draw a μ from one half of p, which `lobe` chooses, by inverting its integral at `u`."""
     return 2 * dr.select(lobe < 0.5, u, u ** (1 / (n + 1))) - 1
 
@@ -78,7 +78,7 @@ def define_even_and_forward(mi: MitsubaModule, n: float) -> Any:
         def density(self, mu: JitFloat) -> JitFloat:
             return density(n, mu)
 
-        def cosine(self, lobe: JitFloat, u: JitFloat) -> JitFloat:
-            return cosine(n, lobe, u)
+        def draw_cosine(self, lobe: JitFloat, u: JitFloat) -> JitFloat:
+            return draw_cosine(n, lobe, u)
 
     return EvenAndForward

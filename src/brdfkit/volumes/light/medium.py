@@ -90,7 +90,7 @@ class Medium:
         albedo, light = mi.unpolarized_spectrum(self.albedo.eval(it, active)), 0
         if self.colour is None:
             return self.sigma(it.p, active), albedo, light
-        sigma, rgb = self.extinction.optics(it, active)
+        sigma, rgb = self.extinction.eval_extinction_and_colour(it, active)
         if self.colour == "albedo":
             albedo = albedo * self.reflectance(rgb, it)
         else:
