@@ -19,9 +19,9 @@ from brdfkit.core.geometry.directions import to_half_difference
 from brdfkit.fitting.ranking import Ranked, Ranking, ranking
 from brdfkit.fitting.ranking.appearance import Appearance
 from brdfkit.fitting.ranking.cross_validation import Validated
-from brdfkit.fitting.ranking.held_out import SAMPLE_LIMIT, HeldOut, number_blocks, number_regions
-from brdfkit.fitting.ranking.ranked import rows_of
-from brdfkit.fitting.ranking.ties import compare_with_best, is_tied, paired_standard_error
+from brdfkit.fitting.ranking.held_out import SAMPLE_LIMIT, HeldOut, assign_blocks, assign_regions
+from brdfkit.fitting.ranking.ranked import rank_results
+from brdfkit.fitting.ranking.ties import compare_with_best, compute_paired_standard_error, is_tied
 from brdfkit.images.ball import draw_pixels
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import Model, labels, weight
@@ -94,23 +94,23 @@ def test_the_uncertainty_is_that_of_the_paired_difference():
     """Where errors differ by as much in each block, it is 0, however these differ."""
     shares = np.full(50, 1 / 50)
     errors = np.random.default_rng(0).random(50) * shares
-    assert paired_standard_error(0.1 * shares, shares) == pytest.approx(0, abs=1e-12)
+    assert compute_paired_standard_error(0.1 * shares, shares) == pytest.approx(0, abs=1e-12)
     others = np.roll(errors, 7)
     spread = np.std(others - errors, ddof=1) * np.sqrt(50)
-    assert paired_standard_error(others - errors, shares) == pytest.approx(spread)
+    assert compute_paired_standard_error(others - errors, shares) == pytest.approx(spread)
 
 
 @pytest.mark.parametrize("anisotropic", [False, True])
 def test_blocks_cover_all_directions_and_folds_share_them(anisotropic):
     wi, wo = random_pairs(40_000, seed=0, max_degrees=80)
-    blocks = number_blocks(wi, wo, anisotropic)
+    blocks = assign_blocks(wi, wo, anisotropic)
     theta_h, theta_d, _ = to_half_difference(wi, wo)
     assert set(blocks) == set(range(blocks.max() + 1))
-    np.testing.assert_array_equal(number_blocks(wo, wi, anisotropic), blocks)  # reciprocity
+    np.testing.assert_array_equal(assign_blocks(wo, wi, anisotropic), blocks)  # reciprocity
     turned = [w @ [[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]] for w in (wi, wo)]
     mirrored = [w * [1, -1, 1] for w in (wi, wo)]
     for pair in (turned, mirrored):
-        same = (number_blocks(*pair, anisotropic) == blocks).all()
+        same = (assign_blocks(*pair, anisotropic) == blocks).all()
         assert same == (not anisotropic)
     for block in range(0, blocks.max() + 1, 7):
         assert np.ptp(theta_d[blocks == block]) <= np.radians(15)
@@ -175,7 +175,7 @@ def test_wrong_arguments_are_refused(wrong, said):
 
 
 def test_by_default_all_models_and_some_sums_are_ranked():
-    ranked = ranking.candidates()
+    ranked = ranking.list_default_models()
     assert set(bk.models()) - {"mixture"} <= set(ranked)
     assert all(labels.is_label(label) for label in ranked)
 
@@ -194,7 +194,7 @@ def red():
 
 def test_the_picture_error_is_the_rms_over_the_peak_of_what_a_screen_shows(red):
     truth, appearance = red
-    assert appearance.picture_error(truth.eval) < 1e-9
+    assert appearance.compute_picture_error(truth.eval) < 1e-9
     pixels, total, every = appearance.pixels, 0.0, []
     values = truth.eval(pixels.wi, pixels.wo)
     for number, share in enumerate(pixels.weights):
@@ -203,7 +203,7 @@ def test_the_picture_error_is_the_rms_over_the_peak_of_what_a_screen_shows(red):
         srgb = np.where(x < 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
         total += share * (srgb**2).mean()
         every.append(srgb)
-    black = appearance.picture_error(lambda wi, wo: 0 * truth.eval(wi, wo))
+    black = appearance.compute_picture_error(lambda wi, wo: 0 * truth.eval(wi, wo))
     rms = np.sqrt(total / pixels.weights.sum())
     assert black == pytest.approx(rms / np.percentile(every, 99.9), rel=1e-9)
 
@@ -225,7 +225,7 @@ def test_a_rim_of_another_colour_is_doubtful(red, rim, said):
         grazing = np.maximum(1 - wi[:, 2:], 1 - wo[:, 2:]) ** 12
         return truth.eval(wi, wo) + grazing * np.array(rim)
 
-    assert appearance.find_doubt(brdf) == said
+    assert appearance.find_implausibility(brdf) == said
 
 
 def row(model, error, psnr, parameters, **how):
@@ -293,7 +293,7 @@ def test_a_model_is_beaten_only_in_both_error_and_picture():
             ("pretty", 3.0, 1, 0.01),
         ]
     }
-    rows = {one.model: one for one in rows_of(found, shares)}
+    rows = {one.model: one for one in rank_results(found, shares)}
     assert rows["tied"].tied
     assert [name for name, one in rows.items() if one.pareto] == ["best", "tied", "pretty"]
     assert rows["pretty"].psnr == pytest.approx(40)
@@ -310,7 +310,7 @@ def pixels_held_out():
 
 def test_a_region_of_the_ball_is_held_out_under_all_lights(pixels_held_out):
     pixels = pixels_held_out.pixels
-    regions = number_regions(pixels)
+    regions = assign_regions(pixels)
     folds = pixels_held_out.folds[-len(regions) :]
     wo = pixels.wo.reshape(-1, pixels.pairs, 3)
     wo = wo[np.arange(len(wo)), wo[..., 2].argmin(axis=1)]
@@ -328,7 +328,7 @@ def test_a_fit_does_not_see_the_pixels_that_it_is_held_to(pixels_held_out):
     """And the errors of all are those that the fit minimises."""
     out, model = pixels_held_out.folds == 2, bk.models()["ward"]
     whole = pixels_held_out.regress(model, pixels_held_out.folds >= 0, starts=2)
-    squares = pixels_held_out.square_differences(model, whole, pixels_held_out.folds >= 0)
+    squares = pixels_held_out.compute_squared_differences(model, whole, pixels_held_out.folds >= 0)
     assert pixels_held_out.importance @ squares == pytest.approx(whole.loss**2, rel=1e-6)
 
     one = pixels_held_out.regress(model, ~out, starts=2)
@@ -343,7 +343,8 @@ def test_a_fit_does_not_see_the_pixels_that_it_is_held_to(pixels_held_out):
     assert one.shapes == again.shapes
     np.testing.assert_array_equal(one.weights, again.weights)
     held_to = [
-        these.square_differences(model, one, out).mean() for these in (pixels_held_out, spoilt)
+        these.compute_squared_differences(model, one, out).mean()
+        for these in (pixels_held_out, spoilt)
     ]
     assert held_to[1] > 10 * held_to[0]
 
@@ -355,7 +356,7 @@ def test_a_fit_does_not_see_the_pixels_that_it_is_held_to(pixels_held_out):
 def cli(tmp_path, monkeypatch):
     """Runs the command line where two.npz is a file, with two candidates."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(ranking, "candidates", lambda: ["ggx", "lambert"])
+    monkeypatch.setattr(ranking, "list_default_models", lambda: ["ggx", "lambert"])
     bk.save(measured(bk.models()["ggx"](), n=300), "paint.npz")
     return lambda *words: CliRunner().invoke(main, words)
 

@@ -356,7 +356,9 @@ def test_settings_that_no_option_tells_are_named(material):
 
 
 def test_the_page_says_which_model_was_chosen_and_why(here, monkeypatch):
-    monkeypatch.setattr("brdfkit.fitting.ranking.ranking.candidates", lambda: ["lambert", "ward"])
+    monkeypatch.setattr(
+        "brdfkit.fitting.ranking.ranking.list_default_models", lambda: ["lambert", "ward"]
+    )
     done = cli("report", "paint.npz", "--spp", SPP, "--size", SIZE, "-m", "best")
     assert done.exit_code == 0, done.stderr
     best = "no other model has a lesser error or a better picture"

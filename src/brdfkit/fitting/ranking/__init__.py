@@ -1,10 +1,10 @@
-"""`rank`: which model suits a measured material, by its error where no fit saw it and its picture.
+"""`rank`: which models suit a measured material, by cross-validation and by pictures of their fits.
 
-`held_out.py` draws the samples, cuts the directions into blocks and these into folds.
-`cross_validation.py` fits a model to all folds but one, and takes its error on that one;
-`appearance.py` looks at the fit to all of them. `ranking.py` does this for many models. `ranked.py`
-makes rows of what came out, by the `ties.py` of their errors, `choice.py` chooses one and says why,
-and `result.py` shows them all.
+`held_out.py` divides samples into blocks of directions, and blocks into folds.
+`cross_validation.py` fits a model to all folds but one and computes its error on that one;
+`appearance.py` compares the fit to all samples with the material. `ranking.py` does this for many
+models. `ranked.py` sorts the results into rows, and `ties.py` decides which errors are tied.
+`choice.py` chooses the recommended model, and `result.py` prints the ranking.
 """
 
 from brdfkit.fitting.ranking.ranked import Ranked as Ranked

@@ -1,8 +1,8 @@
-"""Compares a fit with the measured material by a picture, and by its colour at grazing angles.
+"""Compares a fit with its measured material by a picture, and by its colour at grazing angles.
 
-Measurements end some degrees above the horizon, where a fit goes on by its formula. There light is
-reflected at the surface more and more, without a colour: what is seen lies between a colour of the
-material and grey, in the eye's measure. A fit that is elsewhere has a coloured rim.
+Measurements end some degrees above the horizon, and beyond these a fit extrapolates by its formula.
+There the colour of a real material approaches grey, because Fresnel reflection at the surface has
+no colour. A fit with a colour that is no mixture of the material's own and grey has a coloured rim.
 """
 
 import math
@@ -22,24 +22,25 @@ from brdfkit.regression.albedo import ISOTROPIC_AZIMUTHS, make_albedo_pixels
 Array = NDArray[np.float64]
 Brdf = Callable[[Array, Array], Array]  # (wi, wo) → (n, channels)
 
-# Angles of incidence of the material's colours, as far as it was measured; and of a fit's that is
-# compared to them [degrees]
-ANGLES, GRAZING = (15.0, 30.0, 45.0, 60.0, 75.0), 85.0
-# Of each pixel, by the light and as many by the material: more of them tell models apart no better
+ANGLES = 15.0, 30.0, 45.0, 60.0, 75.0  # incidences [degrees] that give the material's own colours
+GRAZING = 85.0  # angle of incidence [degrees] at which the colour of a fit is judged
+# Number of directions of light in each pixel that are drawn by the light, and as many by the
+# material. More directions do not distinguish models better
 DIRECTIONS = 16
-# So far from all mixtures with grey, of so many for each colour, a colour is another [ΔE2000]: fits
-# that look right have up to 3.9, those with a coloured rim 5.8 to 18
-OTHER, MIXTURES = 5.0, 21
-DARKEST = 1 / 255  # the least brightness of a picture, where a material is black
-GAIN = 1.05  # times the light that arrives: fits of bright metals, whose measurements reach 1
+# Largest difference ΔE2000 of a plausible colour from all mixtures of the material's colours with
+# grey: fits that look right have at most 3.9, and fits with a coloured rim 5.8 to 18
+OTHER = 5.0
+MIXTURES = 21  # number of mixtures of each colour with grey
+DARKEST = 1 / 255  # least brightness by which an error is divided, for black materials
+GAIN = 1.05  # largest plausible albedo: measurements of bright metals reach 1, and fits a bit more
 
 
 class Appearance:
-    """The pixels and colours of a measured material, with which its fits are compared.
+    """A picture and colours of a measured material, with which its fits are compared.
 
-    `data`: the `Measured`; `samples`: those of it that are fitted; directions at or beyond
-    `max_angle` [degrees] to the normal are not in the picture. `seed`: not that of the pixels to
-    which a `Picture` fits.
+    `data` is the `Measured`, `samples` are those that are fitted, and directions at or beyond
+    `max_angle` [degrees] to the normal are not in the picture. `seed` should not be the one that
+    drew the pixels of a `Picture` loss, because fits are judged by other pixels than these.
     """
 
     def __init__(self, data: Measured, samples: Samples, max_angle: float, seed: int):
@@ -50,27 +51,27 @@ class Appearance:
         angles = [angle for angle in ANGLES if angle <= end] or [end]
         self.albedos = make_albedo_pixels(tuple(angles), self.azimuths).look(brdf)
 
-    def picture_error(self, brdf: Brdf) -> float:
-        """Return the RMS difference of a BRDF's sRGB pixels from the measured ones.
+    def compute_picture_error(self, brdf: Brdf) -> float:
+        """Return the RMS difference of a BRDF's picture from the measured one, in sRGB values.
 
-        It is divided by the brightest measured pixel.
+        It is divided by the brightness of the brightest measured pixel.
         """
         pixels, shown = self.pixels, to_srgb(self.pixels.values)
         apart = to_srgb(np.nan_to_num(pixels.look(brdf))) - shown
         error = math.sqrt(np.average((apart**2).mean(axis=1), weights=pixels.weights))
         return error / max(find_peak(shown[None]), DARKEST)
 
-    def find_doubt(self, brdf: Brdf) -> str:
-        """Return a clause on an implausible albedo or colour of a BRDF at 85°, or "" for none."""
+    def find_implausibility(self, brdf: Brdf) -> str:
+        """Return a clause if the albedo or the colour of a BRDF at 85° is implausible, else ""."""
         (albedo,) = make_albedo_pixels((GRAZING,), self.azimuths).look(brdf)
         if (albedo > GAIN * np.maximum(self.albedos.max(axis=0), 1)).any():
             return f"more light is reflected at {GRAZING:g}° than arrives"
-        if len(albedo) == 3 and self._difference(albedo) > OTHER:
+        if len(albedo) == 3 and self._find_colour_difference(albedo) > OTHER:
             return f"the colour at {GRAZING:g}° is not the material's"
         return ""
 
-    def _difference(self, colour: Array) -> float:
-        """Return the ΔE2000 of a colour (3,) from the nearest mixture of material and grey."""
+    def _find_colour_difference(self, colour: Array) -> float:
+        """Return ΔE2000 between a colour (3,) and the nearest mixture of the material with grey."""
         luminance = colour @ LUMINANCE
         own = np.maximum(self.albedos, 0)
         own = own / np.maximum(own @ LUMINANCE, 1e-9)[:, None]

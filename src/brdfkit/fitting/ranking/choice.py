@@ -1,9 +1,9 @@
-"""Chooses the model that is recommended, and says why.
+"""Chooses the model that a ranking recommends, and explains the choice.
 
-The choice starts from the Pareto set: the models that no other beats in both error and picture.
-It keeps the models whose pictures look as good as the best one, then the models that are tied for
-the least error, and takes the one with the fewest parameters. A model with a doubtful extrapolation
-is taken only if no other can be.
+The choice starts from the Pareto set: the models that no other model surpasses in both error and
+picture. It keeps those whose pictures are as good as the best one, then those whose errors are tied
+for the least, and takes the one with the fewest parameters. A model with implausible values at
+grazing angles is only chosen if there is no other.
 """
 
 from collections.abc import Sequence
@@ -11,20 +11,22 @@ from dataclasses import dataclass
 
 from brdfkit.fitting.ranking.ranked import Ranked
 
-# Pictures that are worse than the best by less [dB] may be better when pixels are drawn anew; and
-# all that are as near as eight bits round to [dB] look the same
-NEAR, ROUNDED = 0.5, 59.0
-# Number of other models of the Pareto set that are described
-LINES = 3
+# Pictures within this PSNR of the best [dB] count as equally good: other random pixels may reverse
+# their order
+NEAR = 0.5
+ROUNDED = 59.0  # pictures with a higher PSNR [dB] than this differ by less than 8-bit rounding
+LINES = 3  # number of alternatives to the recommended model that are described
 
 
 @dataclass(frozen=True)
 class Choice:
-    """How one of the rows of a `Ranking` was chosen.
+    """The steps in which one row of a `Ranking` was chosen, as lists of the rows that remained.
 
-    `pareto`: rows that no other beats; `sound`: those of them without a doubt, or else others that
-    are tied, or all of them where each has one; `near`: of these, those whose picture is as good as
-    the best; `tied`: of these, those with the least error.
+    `pareto`: rows that no other row surpasses in both error and picture.
+    `sound`: those of them whose fits are plausible at grazing angles; if there are none, plausible
+        rows with a tied error, and if there are none either, all of `pareto`.
+    `near`: those of `sound` whose picture is as good as the best.
+    `tied`: those of `near` whose error is tied for the least.
     """
 
     pareto: list[Ranked]
@@ -33,8 +35,8 @@ class Choice:
     tied: list[Ranked]
 
     @classmethod
-    def of(cls, rows: Sequence[Ranked]) -> "Choice":
-        """Return the choice from rows, of which at least one has to be a model that was fitted."""
+    def from_rows(cls, rows: Sequence[Ranked]) -> "Choice":
+        """Choose from rows, at least one of which must be a fitted model."""
         pareto = [row for row in rows if row.pareto]
         certain = [row for row in rows if not row.doubt and not row.message]
         sound = [row for row in certain if row.pareto] or [row for row in certain if row.tied]
@@ -69,20 +71,20 @@ class Choice:
         equals = f"the {len(self.tied)} that are tied in error and whose {pictures}"
         return f"{among} it has the fewest parameters of {equals}"
 
-    def others(self, rows: Sequence[Ranked]) -> str:
-        """Return a sentence on the models next to the recommended one, or "" for none."""
+    def describe_alternatives(self, rows: Sequence[Ranked]) -> str:
+        """Return a sentence on the best models besides the recommended one, or "" for none."""
         own = self.row
         others = [row for row in self.pareto if row is not own]
         if not others:
             after = [row for row in rows if row is not own and not row.message]
-            return f"Next is {_compare(after[0], own)}." if after else ""
-        lines = [_compare(row, own) for row in others[:LINES]]
+            return f"Next is {_describe_alternative(after[0], own)}." if after else ""
+        lines = [_describe_alternative(row, own) for row in others[:LINES]]
         if len(others) > LINES:
             lines.append(f"and {len(others) - LINES} more")
         return f"No other model beats these either: {'; '.join(lines)}."
 
 
-def _compare(row: Ranked, own: Ranked) -> str:
+def _describe_alternative(row: Ranked, own: Ranked) -> str:
     """Compare a row with the recommended one, `own`, in words."""
     more = row.parameters - own.parameters
     number = f"{abs(more)} {'more' if more > 0 else 'fewer'}" if more else "as many"

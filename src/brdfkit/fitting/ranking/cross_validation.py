@@ -1,4 +1,4 @@
-"""Cross-validates a model: fits it to all folds but one, and takes its error on that one."""
+"""Cross-validates a model: fits it to all folds but one, and computes its error on that one."""
 
 from __future__ import annotations
 
@@ -16,17 +16,20 @@ from brdfkit.model import Model
 from brdfkit.model.evaluation import make_model
 from brdfkit.regression.albedo import Albedo, TargetAlbedo
 
-# Number of starts of the fits without one fold; the first is where the fit to all samples ended
+# Number of starts of each fit without one fold; the first start is the result of the fit to all
+# samples
 STARTS = 2
 
 
 @dataclass(frozen=True, eq=False)
 class Validated:
-    """A model's fit to all samples, and its squared errors where it was not fitted.
+    """The result of cross-validating a model: its held-out errors, and its fit to all samples.
 
-    `errors` (blocks,) are the squared errors of the blocks, whose sum is E². The others belong to
-    the fit to all samples: `albedo`, `picture` and `doubt` as in `Ranked`, the number of searched
-    `parameters`, the Bayesian information criterion `bic` and the time in `seconds`.
+    `errors`: squared errors (blocks,) of the blocks of directions, held out of the fit; sum E².
+    `albedo`, `picture`, `doubt`: properties of the fit to all samples, as in `Ranked`.
+    `parameters`: number of searched parameters.
+    `bic`: Bayesian information criterion of the fit to all samples.
+    `seconds`: wall-clock time of that fit.
     """
 
     errors: FloatArray
@@ -49,7 +52,8 @@ def cross_validate(
 ) -> Validated:
     """Cross-validate a model class; `report` is called with the number of finished fits.
 
-    The fit to all samples keeps the `light`; `appearance` renders the material and judges the fit.
+    The fit to all samples should keep the albedos `light` of the material; `appearance` judges its
+    picture and its colour at grazing angles.
     """
     settings = {"anisotropic": anisotropic, "seed": seed}
     report(0)
@@ -66,8 +70,8 @@ def cross_validate(
     return Validated(
         errors,
         albedo,
-        appearance.picture_error(brdf),
-        appearance.find_doubt(brdf) or next(iter(albedo.warnings()), ""),
+        appearance.compute_picture_error(brdf),
+        appearance.find_implausibility(brdf) or next(iter(albedo.warnings()), ""),
         certainty.parameters,
         certainty.compute_bic(whole.loss),
         seconds,
@@ -81,7 +85,7 @@ def compute_held_out_errors(
     settings: dict[str, Any],
     report: Callable[[int], object] = lambda done: None,
 ) -> FloatArray:
-    """Return the squared errors (blocks,) of a model class where it was not fitted.
+    """Return the squared errors (blocks,) of a model in the blocks that were held out of each fit.
 
     Their sum is E². The fits begin at the shape parameters `first`, with `settings` of `regress`;
     `report` is called with the number of finished fits.
@@ -90,6 +94,6 @@ def compute_held_out_errors(
     for fold in range(held_out.folds.max() + 1):
         out = held_out.folds == fold
         part = held_out.regress(model, ~out, starts=STARTS, first=first, **settings)
-        errors[out] = held_out.square_differences(model, part, out)
+        errors[out] = held_out.compute_squared_differences(model, part, out)
         report(1 + fold)
     return held_out.sum_by_block(errors)

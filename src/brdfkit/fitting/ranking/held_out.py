@@ -1,9 +1,9 @@
-"""Divides samples and pixels into blocks, which cross-validation holds out of a fit.
+"""Divides samples and pixels into blocks, which cross-validation holds out of a fit as a whole.
 
 Neighbouring samples are alike, so a model that follows the noise of one sample also predicts the
-next one; it does not predict a whole block of directions that it was not fitted to. Direction pairs
-whose values are equal by symmetry are in one block. Where the azimuth hardly matters, a block spans
-all azimuths. Pixels that show the same region of the ball are in one block, under every light.
+next one, but not a whole block of directions. Direction pairs with equal values by symmetry are in
+one block. A block spans all azimuths if the material is isotropic. Pixels that show the same region
+of the ball are in one block, under every light.
 """
 
 from __future__ import annotations
@@ -25,21 +25,20 @@ from brdfkit.regression.losses.loss import sum_squared_differences
 from brdfkit.regression.problem.subset import draw_subset
 from brdfkit.regression.regression import Solution
 
-# Larger measurements are represented by this number of samples, drawn at random
+# Of larger measurements this number of samples is drawn at random
 SAMPLE_LIMIT = 8_000
-# Numbers of rings of theta_h, narrow at the highlight; of bands of theta_d; of steps of
-# |cosθ_i - cosθ_o|
-RINGS, BANDS, STEPS = 8, 6, 5
-# Numbers of rings of the ball's disc, equal in area, and of sectors of each ring
-DISC_RINGS, DISC_SECTORS = 4, 12
+RINGS = 8  # intervals of the half angle theta_h, which are narrow at the highlight
+BANDS = 6  # equal intervals of the difference angle theta_d, between half vector and incidence
+STEPS = 5  # equal intervals of |cosθ_i - cosθ_o|
+DISC_RINGS, DISC_SECTORS = 4, 12  # rings of equal area on the ball's disc, and sectors of each
 
 
 @dataclass(frozen=True, eq=False)
 class HeldOut:
-    """Samples divided into blocks and folds; with a `Picture` loss, pixels behind the samples.
+    """Samples, and for a `Picture` loss also pixels, divided into blocks and folds.
 
-    A fit uses the rows outside of one fold. `importance`, `blocks` and `folds` (n,) have a number
-    for each sample and then for each pixel: how much it counts in E², its block and its fold.
+    Each fit leaves out one fold. `importance`, `blocks` and `folds` (n,) contain a number for each
+    sample and then for each pixel: its weight in E², its block and its fold.
     """
 
     samples: Samples
@@ -59,17 +58,20 @@ class HeldOut:
         rng: np.random.Generator,
         pixels: Pixels | None = None,
     ) -> HeldOut:
-        """Divide `Samples`, and for a `Picture` loss `Pixels`, at random into blocks and folds."""
-        of_samples = _loss_of_samples(loss)
+        """Divide `Samples`, and `Pixels` for a `Picture` loss, into blocks and random folds.
+
+        Large measurements are represented by a random part of their samples.
+        """
+        of_samples = _find_sample_loss(loss)
         if len(samples.wi) > SAMPLE_LIMIT:
             black = sum_squared_differences(of_samples, np.zeros_like(samples.values), samples)
             parts = of_samples.importance(samples) * black
             samples, _ = draw_subset(samples, parts, SAMPLE_LIMIT, rng)
-        blocks = number_blocks(samples.wi, samples.wo, anisotropic)
+        blocks = assign_blocks(samples.wi, samples.wo, anisotropic)
         own = assign_folds(blocks, folds, rng, "samples")
         importance = of_samples.importance(samples)
         if pixels is not None:
-            regions = number_regions(pixels)
+            regions = assign_regions(pixels)
             own = np.concatenate([own, assign_folds(regions, folds, rng, "pixels")])
             blocks = np.concatenate([blocks, regions + blocks.max() + 1])
             of_pixels = pixels.weights / (pixels.weights.sum() * pixels.values.shape[1])
@@ -78,43 +80,46 @@ class HeldOut:
         return cls(samples, pixels, loss, importance, blocks, own)
 
     def regress(self, model: type[Model], rows: BoolArray, **settings: Any) -> Solution:
-        """Fit a model class to the `rows` of a mask (n,), with the settings of `regress`."""
-        of_samples, of_pixels = self._split(rows)
+        """Fit a model class to the samples and pixels in the mask `rows` (n,).
+
+        `settings` are further arguments of `brdfkit.regression.regress`.
+        """
+        of_samples, of_pixels = self._split_mask(rows)
         pixels = self.pixels and self.pixels.at(of_pixels)
         return regress(model, self.samples.at(of_samples), self.loss, pixels=pixels, **settings)
 
-    def square_differences(
+    def compute_squared_differences(
         self, model: type[Model], solution: Solution, rows: BoolArray
     ) -> FloatArray:
-        """Return the squared differences between a model's `Solution` and the measurement.
+        """Return the squared differences of a model's `Solution` from the measurement.
 
-        They are summed over the channels, for the `rows` of a mask (n,).
+        They are sums over the channels, for the samples and pixels in the mask `rows` (n,).
         """
-        of_samples, of_pixels = self._split(rows)
+        of_samples, of_pixels = self._split_mask(rows)
         samples = self.samples.at(of_samples)
         values = solution.eval(model, samples)
-        squares = sum_squared_differences(_loss_of_samples(self.loss), values, samples)
+        squares = sum_squared_differences(_find_sample_loss(self.loss), values, samples)
         if self.pixels is None or not isinstance(self.loss, Picture):
             return squares
         pixels = self.pixels.at(of_pixels)
         brdf = make_model(model, solution.shapes, solution.weights).eval
         apart = sum_squared_differences(
-            self.loss.pixel_loss, pixels.look(brdf), _as_samples(pixels)
+            self.loss.pixel_loss, pixels.look(brdf), _to_samples_at_normal(pixels)
         )
         return np.concatenate([squares, apart])
 
     def sum_by_block(self, values: FloatArray) -> FloatArray:
-        """Return the sums (blocks,) of `values` (n,), each times its importance."""
+        """Return the sums (blocks,) of `values` (n,) over each block, weighted by `importance`."""
         sums: FloatArray = np.bincount(self.blocks, self.importance * values).astype(float)
         return sums
 
-    def _split(self, rows: BoolArray) -> list[BoolArray]:
+    def _split_mask(self, rows: BoolArray) -> list[BoolArray]:
         """Split a mask (n,) into the mask of the samples and the mask of the pixels."""
         return np.split(rows, [len(self.samples.wi)])
 
 
-def _loss_of_samples(loss: Loss | Picture) -> Loss:
-    """Return the loss by which samples count: the log loss beside a `Picture`, else `loss`."""
+def _find_sample_loss(loss: Loss | Picture) -> Loss:
+    """Return the loss of the samples: `loss` itself, or the log loss if `loss` is a `Picture`."""
     if not isinstance(loss, Picture):
         return loss
     log = losses.named["log"]
@@ -122,42 +127,48 @@ def _loss_of_samples(loss: Loss | Picture) -> Loss:
     return log
 
 
-def number_blocks(wi: FloatArray, wo: FloatArray, anisotropic: bool) -> IntArray:
-    """Return the number (n,) of the block of each direction pair (n, 3), in the order of theta_h.
+def assign_blocks(wi: FloatArray, wo: FloatArray, anisotropic: bool) -> IntArray:
+    """Return the block (n,) to which each direction pair `wi`, `wo` (n, 3) belongs.
 
-    Blocks are about 15° wide, and narrower where theta_h is small.
+    Blocks are numbered in the order of the half angle theta_h. They are about 15° wide, and
+    narrower where theta_h is small.
     """
     theta_h, theta_d, phi_d = to_half_difference(wi, wo)
     ring = np.floor(RINGS * np.sqrt(theta_h / (np.pi / 2)))
     band = np.floor(BANDS * theta_d / (np.pi / 2))
     if anisotropic:
         phi_h = half_azimuth(wi, wo)
-        # The difference vector's azimuth about the normal, up to an exchange of wi and wo
+        # The azimuth of the difference vector about the normal, modulo π, so that exchanging wi and
+        # wo does not change it
         turned = np.mod(phi_d + phi_h, np.pi)
-        others = [_sector(phi_h / (2 * np.pi), 2 * ring + 1), _sector(turned / np.pi, band + 1)]
+        others = [
+            _find_sector(phi_h / (2 * np.pi), 2 * ring + 1),
+            _find_sector(turned / np.pi, band + 1),
+        ]
     else:
         others = [np.floor(STEPS * np.abs(wi[:, 2] - wo[:, 2]))]
-    return _number(ring, band, *others)
+    return _number_groups(ring, band, *others)
 
 
-def number_regions(pixels: Pixels) -> IntArray:
-    """Return the number (n,) of the region of the ball that each of the `Pixels` shows.
+def assign_regions(pixels: Pixels) -> IntArray:
+    """Return the region of the ball (n,) that each of the `Pixels` shows.
 
     Regions are numbered from the middle of the ball's disc outwards.
     """
-    # The direction to the eye in the frame of the point; unused pairs are along the normal
+    # A pixel has one direction to the eye, in the frame of its point of the ball; pairs that only
+    # fill up the array point along the normal, so the lowest direction is not one of them
     wo = pixels.wo.reshape(-1, pixels.pairs, 3)
     x, y, z = wo[np.arange(len(wo)), wo[..., 2].argmin(axis=1)].T
     ring = np.minimum(np.floor(DISC_RINGS * (1 - z**2)), DISC_RINGS - 1)
-    return _number(ring, _sector(np.arctan2(y, x) / (2 * np.pi) % 1, DISC_SECTORS))
+    return _number_groups(ring, _find_sector(np.arctan2(y, x) / (2 * np.pi) % 1, DISC_SECTORS))
 
 
 def assign_folds(blocks: IntArray, folds: int, rng: np.random.Generator, what: str) -> IntArray:
-    """Return the fold (n,) of each sample or pixel, from the number (n,) of its block.
+    """Return the fold (n,) of each sample or pixel from its block (n,).
 
-    Of each `folds` consecutive blocks, every one is in another fold. So each fold has its share of
-    the highlight and of grazing angles. `what` names the samples or pixels in errors. Raises
-    `BrdfkitError` for fewer blocks than folds.
+    Each group of `folds` consecutive blocks is distributed at random over all folds, so that every
+    fold gets its share of the highlight and of grazing angles. `what`, "samples" or "pixels", is
+    for the error message. Raises `BrdfkitError` if there are fewer blocks than folds.
     """
     count = blocks.max() + 1
     if count < folds:
@@ -169,19 +180,19 @@ def assign_folds(blocks: IntArray, folds: int, rng: np.random.Generator, what: s
     return np.concatenate([rng.permutation(folds) for _ in range(rounds)])[:count][blocks]
 
 
-def _as_samples(pixels: Pixels) -> Samples:
-    """Return `Pixels` as samples at the normal, for a loss that does not use directions."""
+def _to_samples_at_normal(pixels: Pixels) -> Samples:
+    """Return the values of `Pixels` as samples, for a loss that does not use their directions."""
     up = np.broadcast_to((0.0, 0.0, 1.0), (len(pixels.values), 3))
     return Samples(up, up, pixels.values, np.ones(len(up), bool), pixels.weights)
 
 
-def _number(*keys: FloatArray) -> IntArray:
-    """Return the rank (n,) of each row among the different rows of the `keys` (n,)."""
+def _number_groups(*keys: FloatArray) -> IntArray:
+    """Number the groups of rows with equal `keys` (n,), sorted by the keys; return them as (n,)."""
     ranks: IntArray = np.unique(np.stack(keys, axis=1), axis=0, return_inverse=True)[1].ravel()
     return ranks
 
 
-def _sector(share: FloatArray, count: float | FloatArray) -> FloatArray:
-    """Return which of `count` sectors of a circle holds the point at a `share` of its length."""
+def _find_sector(share: FloatArray, count: float | FloatArray) -> FloatArray:
+    """Return which of `count` sectors of a circle contains the point at a `share` of its turn."""
     sector: FloatArray = np.floor(share * count)
     return sector

@@ -1,4 +1,4 @@
-"""`Ranked`, a row of a ranking; and the rows of all models, in the order of their errors."""
+"""`Ranked`, a row of a ranking, and `rank_results`, which sorts the rows of all models."""
 
 import math
 from collections.abc import Mapping
@@ -12,43 +12,44 @@ from brdfkit.fitting.ranking.cross_validation import Validated
 from brdfkit.fitting.ranking.ties import compare_with_best, is_tied
 from brdfkit.regression.albedo import Albedo
 
-# A smaller difference of pictures is rounding
+# Smaller errors of a picture are rounding errors
 ROUNDING = 1e-6
 
 
 @dataclass(frozen=True)
 class Ranked:
-    """How well one model predicts what it was not fitted to, or why it cannot be fitted.
+    """How well one model predicts directions that it was not fitted to, or why it cannot be fitted.
 
     Attributes
     ----------
     model : str
         The model's label.
     error : float
-        E of the ranking's loss where the model was not fitted; nan where it cannot be.
+        Error E of the ranking's loss in directions held out of the fit; nan for a failed fit.
     behind : float
-        By how much E is larger than the best model's.
+        Difference of `error` from the best model's error, at least 0.
     uncertainty : float
-        The standard error of `behind`, of the differences in each block of directions.
+        Standard error of `behind`, from its spread over the blocks of directions.
     albedo : Albedo, optional
-        The light that the fit to all samples that were drawn reflects, beside the data's.
+        Albedos of the fit to all drawn samples, and of the data.
     picture : float
-        RMS difference of pictures of a ball, of the fit to all samples that were drawn and of the
-        measurement, as a screen shows them, over the brightest of the measurement's, as in
-        `Rendering.psnr`; nan where there is no fit.
+        RMS difference, in sRGB, of a ball's picture with the fit to all drawn samples from the
+        picture with the measurement, divided by the brightest measured pixel; nan for a failed
+        fit.
     pareto : bool
-        Whether no other model has a better picture and an error that is less by more than the
-        noise.
+        Whether no other model has both a better picture and an error that is smaller by more than
+        the noise.
     doubt : str
-        A clause on the light of the fit to all samples, or on what it does at 85° that the material
-        hardly does; or nothing.
+        A clause on implausible albedos of the fit to all drawn samples, or on its implausible
+        colour at 85°; empty if it is plausible.
     parameters : int
-        How many numbers were sought: the weights of each channel, and the shape parameters.
+        Number of searched parameters: the weights of each channel, and the shape parameters.
     bic : float
-        The Bayesian criterion of the fit to all samples that were drawn, N ln(E²) + k ln N: less
-        is better. It takes N samples for independent, which neighbours are not.
+        Bayesian information criterion of the fit to all N drawn samples, N ln(E²) + k ln N with
+        k parameters: the less the better. It assumes that samples are independent, but neighbours
+        are not.
     seconds : float
-        Wall-clock time of that fit.
+        Wall-clock time of the fit to all drawn samples.
     message : str
         One sentence on why the model cannot be fitted.
     """
@@ -68,17 +69,17 @@ class Ranked:
 
     @property
     def tied(self) -> bool:
-        """Whether the model is no worse than the best by its error, within the noise."""
+        """Whether the model's error is as small as the best model's, within the noise."""
         return is_tied(self.error, self.behind, self.uncertainty)
 
     @property
     def psnr(self) -> float:
-        """The picture's peak signal-to-noise ratio [dB], at most 120."""
+        """Peak signal-to-noise ratio [dB] of the picture, at most 120."""
         return to_decibels(self.picture)
 
 
 def to_decibels(error: float) -> float:
-    """The PSNR [dB] of the error of a picture, over the peak; at most 120.
+    """Convert the RMS error of a picture, divided by its peak, to a PSNR [dB] of at most 120.
 
     >>> to_decibels(0.1)
     20.0
@@ -86,9 +87,12 @@ def to_decibels(error: float) -> float:
     return -20 * math.log10(max(error, ROUNDING))
 
 
-def rows_of(results: Mapping[str, Any], shares: FloatArray) -> tuple[Ranked, ...]:
-    """The `Ranked` of every model, the best first; `results`: by label what came out, a `Validated`
-    or an error; `shares` (blocks,): how much each block counts."""
+def rank_results(results: Mapping[str, Any], shares: FloatArray) -> tuple[Ranked, ...]:
+    """Return a `Ranked` for every model, the one with the least error first and failures last.
+
+    `results` has a `Validated` or a `BrdfkitError` by the model's label; `shares` (blocks,) are the
+    weights of the blocks of directions.
+    """
     fitted = {label: one for label, one in results.items() if not isinstance(one, BrdfkitError)}
     best = min(fitted.values(), key=lambda one: one.errors.sum())
     rows = []

@@ -1,4 +1,4 @@
-"""`rank`: ranks models by their errors on samples left out of the fit, and by pictures."""
+"""`rank`: ranks models by their errors in directions held out of the fit, and by pictures."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from brdfkit.core.progress_bar import Progress
 from brdfkit.fitting.ranking.appearance import Appearance
 from brdfkit.fitting.ranking.cross_validation import cross_validate
 from brdfkit.fitting.ranking.held_out import HeldOut
-from brdfkit.fitting.ranking.ranked import rows_of
+from brdfkit.fitting.ranking.ranked import rank_results
 from brdfkit.fitting.ranking.result import Ranking
 from brdfkit.fitting.settings import LossLike, ModelLike, require_material_first
 from brdfkit.images.ball import draw_pixels
@@ -24,8 +24,7 @@ from brdfkit.model import Model, labels
 from brdfkit.regression import Picture, to_loss
 from brdfkit.regression.albedo import TargetAlbedo
 
-# The sums that are ranked by default: the best of docs/leaderboard.md with few and with more
-# parameters
+# Sums of two models that are ranked by default, because they fit best in docs/leaderboard.md
 SUMS = "ggx+ggx", "abc+ggx", "abc+student_t"
 
 
@@ -42,26 +41,26 @@ def rank(
 ) -> Ranking:
     """Rank models by cross-validation on a measured material, and by pictures of their fits.
 
-    The directions are cut into blocks, and these are dealt into folds. Every model is fitted to all
-    folds but one and tested on that one, for each fold in turn. A model is tied with the best if
-    its error is no larger within twice the standard error of their difference over the blocks. A
-    picture of a ball with each fit is compared to that of the measurement, too.
+    The directions are divided into blocks, and these into folds. Every model is fitted to all folds
+    but one and tested on that one, for each fold in turn. A model is tied with the best if the
+    difference of their errors is at most twice its standard error, which is estimated from the
+    blocks. Besides, a picture of a ball with each fit is compared to one with the measurement.
 
-    Models that no other beats both in error, by more than the noise, and in the picture form the
-    Pareto set. The recommended model is the one with the fewest parameters among those of this set
-    whose pictures are within 0.5 dB of the best and, of these, whose errors are tied for the least.
-    A model that reflects more light at 85° than falls on it, or has a colour there that is no
-    mixture of the material's own with grey, is recommended only if all of the set do so.
+    The Pareto set contains the models that no other surpasses in both picture and error, by more
+    than the noise. Of this set, the models are kept whose pictures are within 0.5 dB of the best,
+    and of these the ones whose errors are tied for the least. The one with the fewest parameters is
+    recommended. A model that reflects more light at 85° than arrives, or whose colour there is no
+    mixture of the material's own colours with grey, is only recommended if there is no other.
 
-    Large measurements are judged by a part of their samples. A model that cannot be fitted does not
-    stop the others; Ctrl-C ends with the models that are finished.
+    Of a large measurement a part of the samples is used. A model that cannot be fitted does not
+    stop the others; Ctrl-C returns the models that are finished.
 
     Parameters
     ----------
     material : Measured, str or Path
         The measured material, or its name or path.
     models : str, Path, class or several, optional
-        The models, as for `fit`. By default all, and the two-lobe sums that fit best most often.
+        The models, as for `fit`. By default all, and the sums of two that fit best most often.
     loss : str, Loss, Picture or callable, default "cbrt"
         The error to minimise and to rank by, as for `fit`. Under a `Picture` regions of the ball
         are held out, too; this takes several times as long, and leaves out the models that may be
@@ -73,7 +72,7 @@ def rank(
     max_angle : float, default 80
         Largest angle to the normal [degrees, above 0 to 90]; samples at or beyond it are left out.
     seed : int, default 0
-        Seed of the folds, the part and the starts; equal seeds give equal rankings.
+        Seed of the folds, the drawn samples and the starts; equal seeds give equal rankings.
     progress : callable, optional
         Called with (fits done, fits in all).
 
@@ -94,7 +93,7 @@ def rank(
     """
     began = time.perf_counter()
     require_material_first("rank(material, models)", material)
-    data, classes = to_measured(material), _find_classes(models)
+    data, classes = to_measured(material), _find_model_classes(models)
     folds, seed = to_whole_number("folds", folds, 2), to_whole_number("seed", seed, 0)
     chosen = to_loss(loss)
     anisotropic = data.anisotropic if anisotropic is None else anisotropic
@@ -111,11 +110,12 @@ def rank(
     try:
         for number, (label, model) in enumerate(classes.items()):
 
-            def step(done: int, before: int = number * fits) -> None:
+            def report_model(done: int, before: int = number * fits) -> None:
+                """Report the finished fits of all models; `done` are those of this model."""
                 report(before + done, len(classes) * fits)
 
             try:
-                results[label] = cross_validate(model, held_out, *how, step)
+                results[label] = cross_validate(model, held_out, *how, report_model)
             except BrdfkitError as error:
                 results[label] = error
     except KeyboardInterrupt:
@@ -123,19 +123,19 @@ def rank(
             raise
     if all(isinstance(one, BrdfkitError) for one in results.values()):
         raise next(iter(results.values()))
-    rows = rows_of(results, held_out.sum_by_block(np.ones(len(held_out.blocks))))
+    rows = rank_results(results, held_out.sum_by_block(np.ones(len(held_out.blocks))))
     return Ranking(data.name, chosen.name, rows, len(classes), time.perf_counter() - began)
 
 
-def candidates() -> list[str]:
-    """Return the labels of the models that `rank` takes by default."""
+def list_default_models() -> list[str]:
+    """Return the labels of the models that `rank` compares by default."""
     return [*(name for name in labels.models() if name != "mixture"), *SUMS]
 
 
-def _find_classes(models: Any) -> dict[str, type[Model]]:
-    """Return the classes of models by their labels; a model that is named twice counts once."""
+def _find_model_classes(models: Any) -> dict[str, type[Model]]:
+    """Return the classes of models by label; a model that is named twice counts once."""
     if models is None:
-        models = candidates()
+        models = list_default_models()
     several = isinstance(models, Iterable) and not isinstance(models, str)
     classes = [labels.model(labels.load_files(m)) for m in (models if several else [models])]
     if not classes:

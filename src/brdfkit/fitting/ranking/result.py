@@ -1,4 +1,4 @@
-"""`Ranking`, what `rank` returns: a row for every model; prints as a table, with the choice."""
+"""`Ranking`, the result of `rank`: a row for every model; prints as a table with sentences."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ COLUMNS = (
 
 @dataclass(frozen=True, repr=False)
 class Ranking(Shown):
-    """Models ranked on one measured material; prints as a table. Made by `rank`.
+    """Models ranked on one measured material, made by `rank`; prints as a table with sentences.
 
     Attributes
     ----------
@@ -37,11 +37,11 @@ class Ranking(Shown):
     loss : str
         Name of the loss.
     rows : tuple of Ranked
-        The models, the least held-out error first; those that cannot be fitted last.
+        Rows of the models, the least held-out error first, and models that cannot be fitted last.
     requested : int
-        How many models were asked for; more than there are rows after Ctrl-C.
+        Number of requested models; larger than the number of rows after Ctrl-C.
     seconds : float
-        Wall-clock time.
+        Wall-clock time of the ranking.
     """
 
     material: str
@@ -52,23 +52,26 @@ class Ranking(Shown):
 
     @property
     def best(self) -> str:
-        """The recommended model: of those that no other beats in both error and picture, and whose
-        picture is within 0.5 dB of the best, the one with the fewest parameters of those that are
-        tied for the least error."""
+        """Label of the recommended model.
+
+        Of the models that no other surpasses in both error and picture, those are kept whose
+        pictures are within 0.5 dB of the best, and of these the ones whose errors are tied for the
+        least. The one with the fewest parameters is recommended.
+        """
         return self._choice.row.model
 
     @property
     def why(self) -> str:
-        """Why it is recommended, in a few words."""
+        """The reason for the recommendation, as a clause."""
         return self._choice.why
 
     @property
     def reason(self) -> str:
-        """Why it is recommended, in words, and how near the others are."""
+        """Sentences on the recommended model, the reason for it, and its alternatives."""
         choice = self._choice
         though = f", though {choice.row.doubt}" if choice.row.doubt else ""
         recommended = f"{choice.row.model} is recommended{though}: {choice.why}."
-        said = " ".join(filter(None, [recommended, choice.others(self.rows)]))
+        said = " ".join(filter(None, [recommended, choice.describe_alternatives(self.rows)]))
         if len(self.rows) == self.requested:
             return said
         ranked = f"{len(self.rows)} of {self.requested} models are ranked"
@@ -76,14 +79,13 @@ class Ranking(Shown):
 
     @property
     def suits(self) -> str:
-        """Which materials the recommended model is meant for, as its page says; or nothing."""
+        """A sentence on the materials for which the recommended model is meant, or "" for none."""
         sentence = read_page(labels.model(self.best)).shows
         return f"{self.best}: {sentence}" if sentence else ""
 
     @property
     def doubts(self) -> list[str]:
-        """Sentences on the fits that do at 85° what the material hardly does: where measurements
-        end, a formula goes on."""
+        """Sentences on the models whose fits have implausible values at grazing angles."""
         models: dict[str, list[str]] = {}
         for row in self.rows:
             if row.doubt:
@@ -92,35 +94,36 @@ class Ranking(Shown):
 
     @property
     def problems(self) -> list[str]:
-        """The sentences on the models that cannot be fitted."""
+        """Sentences on the models that cannot be fitted."""
         return [row.message for row in self.rows if row.message]
 
     @property
     def _choice(self) -> Choice:
-        return Choice.of(self.rows)
+        """The steps in which the recommended model is chosen."""
+        return Choice.from_rows(self.rows)
 
     def table(self) -> list[tuple[str, ...]]:
-        """The rows of the models that could be fitted as texts, under `COLUMNS`."""
+        """Return the texts of the table, under the heads `COLUMNS`, without models that failed."""
         own = self._choice.row
         return [_format_row(row, row is own) for row in self.rows if not row.message]
 
     def document(self) -> Document:
-        """The models in their order, which is recommended, and why."""
+        """Return the table of the models with sentences on the recommended one and on failures."""
         said = [Paragraph(text) for text in (self.reason, *self.doubts, self.suits) if text]
         failed = [Paragraph(problem, BAD) for problem in self.problems]
         return Document(
             f"{self.material}: {self.loss} loss where the models were not fitted",
-            (Table(tuple(map(_stress, self.table())), COLUMNS), *said, *failed),
+            (Table(tuple(map(_make_cells, self.table())), COLUMNS), *said, *failed),
         )
 
 
-def _stress(texts: tuple[str, ...]) -> tuple[Cell, ...]:
-    """Return a row of cells, in bold where the model is recommended."""
+def _make_cells(texts: tuple[str, ...]) -> tuple[Cell, ...]:
+    """Return the cells of a row from their texts, bold in the row of the recommended model."""
     return tuple(Cell(text, STRONG if texts[-1] == TAKE else "") for text in texts)
 
 
 def _format_row(row: Ranked, recommended: bool) -> tuple[str, ...]:
-    """Return the texts of a row; `recommended` is whether its model is the one to take."""
+    """Return the texts of a row, with the verdict "take" if it is the `recommended` one."""
     behind = "-"
     if row.behind:
         least = (row.error - row.behind) or math.nan

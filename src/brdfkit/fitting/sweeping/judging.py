@@ -59,4 +59,4 @@ class Judge:
 
     def psnr_of(self, fit: Fit) -> float:
         """Return the PSNR [dB] of a ball's picture, compared with the measurement, as in `rank`."""
-        return to_decibels(self.appearance.picture_error(fit.model.rgb.eval))
+        return to_decibels(self.appearance.compute_picture_error(fit.model.rgb.eval))

@@ -10,7 +10,7 @@ from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import to_angles
 from brdfkit.fitting.compare import choose_losses_to_show, compare, format_error
-from brdfkit.fitting.ranking.held_out import number_blocks
+from brdfkit.fitting.ranking.held_out import assign_blocks
 from brdfkit.fitting.ranking.result import TAKE
 from brdfkit.fitting.ranking.ties import compare_with_best, is_tied
 from brdfkit.materials.measured import Measured
@@ -74,7 +74,7 @@ def compute_fit_errors(material: Measured, fits: Sequence[Fit], loss: str) -> li
             f"{material.name}: no measured value is above 0, by which a fit could be off by a "
             "factor; a report needs some."
         )
-    blocks = number_blocks(samples.wi, samples.wo, material.anisotropic)
+    blocks = assign_blocks(samples.wi, samples.wo, material.anisotropic)
     by_sample = losses.named.by_sample[loss]
     weight = by_sample.importance(samples)
     sums, factors = [], []
