@@ -45,7 +45,7 @@ from brdfkit.mitsuba_bridge.channels import make_rgb_emission, make_white_light
 from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import count, derive_plugin, flag, volume
 from brdfkit.model.numerics import expm1
-from brdfkit.volumes.rays.box import intersect_box, light_behind
+from brdfkit.volumes.rays.box import evaluate_light_behind, intersect_box
 
 OPAQUE_TRANSMITTANCE = 1e-4
 
@@ -100,7 +100,7 @@ def define(mi: MitsubaModule) -> type:
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             # The part of the ray within the volume is cut into steps
-            end, behind = light_behind(scene, ray, active)
+            end, behind = evaluate_light_behind(scene, ray, active)
             near, far = intersect_box(ray, self.extinction)
             far = dr.minimum(far, end)
             inside = active & (far > near)

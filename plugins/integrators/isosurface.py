@@ -45,16 +45,20 @@ from brdfkit.mitsuba_bridge.properties.declarations import (
 )
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 from brdfkit.mitsuba_bridge.surface_points import make_interaction
-from brdfkit.volumes.light.surface_light import direct_light
+from brdfkit.volumes.light.surface_light import sample_direct_light
 from brdfkit.volumes.rays.box import (
-    bend_to_viewer,
+    bend_normal_to_viewer,
+    compute_gradient,
+    count_voxels_per_length,
+    evaluate_light_behind,
     face_normal,
-    gradient,
     intersect_box,
-    light_behind,
-    voxels_per_length,
 )
-from brdfkit.volumes.rays.search import find_first_above, find_first_crossing, reattach
+from brdfkit.volumes.rays.search import (
+    attach_crossing_derivatives,
+    find_first_crossing,
+    find_first_positive_step,
+)
 
 PARAMETERS = {
     "volume": volume(1.0, "the values, or a transfer_function", False, least=-np.inf),
@@ -87,7 +91,7 @@ def define(mi: MitsubaModule) -> type:
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             require_vectorised("isosurface")
-            end, behind = light_behind(scene, ray, active)
+            end, behind = evaluate_light_behind(scene, ray, active)
             near, far = intersect_box(ray, self.volume)
             far = dr.minimum(far, end)
             crossed = active & (far > near)
@@ -95,7 +99,7 @@ def define(mi: MitsubaModule) -> type:
                 lambda t: self.value_above_level(ray(t), crossed), near, far, self.steps, crossed
             )
             si = self.make_surface_interaction(ray, dr.select(hit, t, 0), near, hit)
-            lit = direct_light(scene, si, self.bsdf, sampler, self.is_unblocked, hit)
+            lit = sample_direct_light(scene, si, self.bsdf, sampler, self.is_unblocked, hit)
             return mi.depolarizer(dr.select(active, dr.select(hit, lit, behind), 0)), active, []
 
         def make_surface_interaction(
@@ -107,16 +111,20 @@ def define(mi: MitsubaModule) -> type:
             """
             on_face = t <= near
             with dr.suspend_grad():
-                step = 0.02 / dr.norm(dr.select(hit, voxels_per_length(ray.d, self.volume), 1))
+                step = 0.02 / dr.norm(
+                    dr.select(hit, count_voxels_per_length(ray.d, self.volume), 1)
+                )
                 slope = (
                     self.value_above_level(ray(t + step)) - self.value_above_level(ray(t - step))
                 ) / (2 * step)
-            t = reattach(lambda t: self.value_above_level(ray(t)), t, dr.select(on_face, 0, slope))
-            outwards = -gradient(self.value_above_level, ray(t), self.volume)
+            t = attach_crossing_derivatives(
+                lambda t: self.value_above_level(ray(t)), t, dr.select(on_face, 0, slope)
+            )
+            outwards = -compute_gradient(self.value_above_level, ray(t), self.volume)
             flat = dr.squared_norm(outwards) == 0
             n = dr.normalize(dr.select(flat, -ray.d, outwards))
             n = dr.select(on_face, face_normal(ray(t), self.volume), n)
-            return make_interaction(ray, t, ray(t), bend_to_viewer(n, ray.d), hit)
+            return make_interaction(ray, t, ray(t), bend_normal_to_viewer(n, ray.d), hit)
 
         def is_unblocked(self, ray: MitsubaObject, active: JitMask) -> JitMask:
             """Return whether a ray up to `ray.maxt` does not meet the isosurface."""
@@ -125,7 +133,7 @@ def define(mi: MitsubaModule) -> type:
             near, far = intersect_box(ray, self.volume)
             far = dr.minimum(far, ray.maxt)
             crossed = active & (far > near)
-            _, _, above = find_first_above(
+            _, _, above = find_first_positive_step(
                 lambda t: self.value_above_level(ray(t), crossed), near, far, self.steps, crossed
             )
             return active & ~(crossed & (above > 0))

@@ -36,8 +36,8 @@ from brdfkit.core.array_types import (
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import count, derive_plugin, flag, volume
-from brdfkit.volumes.rays.box import intersect_box, light_behind
-from brdfkit.volumes.rays.search import find_largest
+from brdfkit.volumes.rays.box import evaluate_light_behind, intersect_box
+from brdfkit.volumes.rays.search import find_distance_of_maximum
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
 PARAMETERS = {
@@ -76,7 +76,7 @@ def define(mi: MitsubaModule) -> type:
             medium: MitsubaObject = None,
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
-            end, behind = light_behind(scene, ray, active)
+            end, behind = evaluate_light_behind(scene, ray, active)
             near, far = intersect_box(ray, self.volume)
             far = dr.minimum(far, end)
             inside = active & (far > near)
@@ -87,7 +87,7 @@ def define(mi: MitsubaModule) -> type:
                 return it
 
             place = sampler.next_1d(active) if self.jitter else mi.Float(0.5)
-            t = find_largest(
+            t = find_distance_of_maximum(
                 lambda t: self.eval_value(make_point(t), inside),
                 near,
                 far,

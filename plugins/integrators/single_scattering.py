@@ -65,7 +65,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import (
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 from brdfkit.volumes.light import emitters
 from brdfkit.volumes.light.medium import Medium
-from brdfkit.volumes.light.vertex import Vertex, medium_interaction
+from brdfkit.volumes.light.vertex import Vertex, make_medium_interaction
 
 ROULETTE_DEPTH = 5  # number of scatterings after which dark paths end at random
 # The least probability that a path survives, and that a sample is chosen from two
@@ -95,7 +95,7 @@ def define(mi: MitsubaModule) -> type:
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
             if not mi.variant().startswith("scalar"):
-                self.medium.update_majorants(self.majorants == "local")
+                self.medium.recompute_majorants(self.majorants == "local")
 
         def sample(
             self,
@@ -155,17 +155,21 @@ def define(mi: MitsubaModule) -> type:
             collision, or at the surface at the end), and the factor of the path's throughput.
             """
             si = scene.ray_intersect(ray, active)
-            share, collided, t = self.medium.split_light(ray, si.t, sampler, active)
-            light = share * emitters.evaluate_hit(scene, ray, si, density, active)
+            share, collided, t = self.medium.estimate_passed_and_collided_light(
+                ray, si.t, sampler, active
+            )
+            light = share * emitters.evaluate_emitter_hit(scene, ray, si, density, active)
 
             # The path continues from the collision, or from the surface behind the medium
             passed = dr.select(si.is_valid(), dr.detach(share), 0)
             in_medium = active & (sampler.next_1d(active) * (collided + passed) < collided)
-            mei = medium_interaction(ray, t)
-            sigma, albedo, own = self.medium.coefficients(mei, in_medium)
+            mei = make_medium_interaction(ray, t)
+            sigma, albedo, own = self.medium.evaluate_coefficients(mei, in_medium)
             # `one` has the value 1, and the derivatives of log(σ T) at a collision or of log T at a
             # surface, where T is the transmittance
-            depth = self.medium.sample_depth(ray, dr.select(in_medium, t, si.t), sampler, active)
+            depth = self.medium.estimate_optical_depth(
+                ray, dr.select(in_medium, t, si.t), sampler, active
+            )
             log_sigma = dr.log(dr.select(in_medium, sigma, 1))
             # Dr.Jit's stub knows no result of this function
             one = dr.replace_grad(mi.Float(1), log_sigma - depth)  # type: ignore[func-returns-value]
@@ -198,7 +202,7 @@ def define(mi: MitsubaModule) -> type:
                 ray, light, lit = self.sample_unshadowed_light(scene, vertex, u)
             with dr.suspend_grad():
                 lit = lit & ~scene.ray_test(ray, lit)
-            share = self.medium.transmittance(ray, ray.maxt, sampler, lit)
+            share = self.medium.estimate_transmittance(ray, ray.maxt, sampler, lit)
             return dr.select(lit, light * share, 0)
 
         def sample_unshadowed_light(
@@ -213,7 +217,7 @@ def define(mi: MitsubaModule) -> type:
             ds, light, there = emitters.sample_emitters(scene, it, u, vertex.active)
             value, pdf = vertex.eval_pdf(ds.d)
             weight = dr.select(ds.delta, 1, emitters.power_heuristic(ds.pdf, dr.detach(pdf)))
-            return emitters.ray_to(it, ds), value * light * weight, there
+            return emitters.spawn_ray_to_emitter(it, ds), value * light * weight, there
 
         def add_last_segment(
             self,
@@ -226,8 +230,8 @@ def define(mi: MitsubaModule) -> type:
             """Return the light that the last segment of a path adds, without scattering."""
             si = scene.ray_intersect(ray, active)
             comes = active & emitters.is_emitter_hit(scene, si)
-            light = emitters.evaluate_hit(scene, ray, si, density, comes)
-            light *= self.medium.transmittance(ray, si.t, sampler, comes)
+            light = emitters.evaluate_emitter_hit(scene, ray, si, density, comes)
+            light *= self.medium.estimate_transmittance(ray, si.t, sampler, comes)
             own = self.medium.colour == "emission"
             if self.emits or own:
                 light += self.medium.sample_emission(ray, si.t, sampler, active, own)

@@ -46,12 +46,12 @@ from brdfkit.mitsuba_bridge.channels import make_rgb_emission, make_rgb_spectrum
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 from brdfkit.mitsuba_bridge.properties.declarations import derive_plugin, text, volume, word
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
-from brdfkit.volumes.light.majorants import read_grid
-from brdfkit.volumes.rays.voxel_steps import is_trilinear, typical_difference
+from brdfkit.volumes.light.majorants import read_grid_values
+from brdfkit.volumes.rays.voxel_steps import is_trilinear, rms_neighbour_difference
 from brdfkit.volumes.transfer import files
-from brdfkit.volumes.transfer.block_bounds import block_ranges, bound_between
+from brdfkit.volumes.transfer.block_bounds import bound_piecewise_linear, find_block_ranges
 from brdfkit.volumes.transfer.lookup import TransferLookup
-from brdfkit.volumes.transfer.preintegration import has_peaks
+from brdfkit.volumes.transfer.preintegration import has_narrow_peaks
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 from brdfkit.volumes.transfer.windows import scale_to_values
 
@@ -103,14 +103,14 @@ def define(mi: MitsubaModule) -> type:
             The result is False for functions of labels or gradient magnitudes, which have no
             averages.
             """
-            data = read_grid(self.values)
+            data = read_grid_values(self.values)
             if data is None or self.function.gradients is not None:
                 return False
             low, high = self.function.range
             voxels_per_step = max(1, max(data.shape) / steps)
-            change = typical_difference(data) * voxels_per_step  # of the values within a step
+            change = rms_neighbour_difference(data) * voxels_per_step  # of the values within a step
             reach = change / (high - low) * self.lookup.integrals.steps
-            thin = has_peaks(np.array(self.lookup.table), reach)
+            thin = has_narrow_peaks(np.array(self.lookup.table), reach)
             return thin and is_trilinear(self.values, data, self.to_local)
 
         def eval_integrals(self, it: MitsubaObject, active: JitMask = True) -> JitVector:
@@ -119,7 +119,7 @@ def define(mi: MitsubaModule) -> type:
             `average_extinction_and_colour` takes them at both ends of a part of a ray. The function
             must depend on values alone.
             """
-            return self.lookup.integrals_at(self.values.eval_1(it, active))
+            return self.lookup.integrate_to_value(self.values.eval_1(it, active))
 
         def average_extinction_and_colour(
             self, front: JitVector, back: JitVector
@@ -151,7 +151,7 @@ def define(mi: MitsubaModule) -> type:
             return self.spectrum(rgb, it)
 
         def max(self) -> float:
-            rows = self.lookup.table_over_values()
+            rows = self.lookup.reduce_table_to_values()
             if self.output == "colour":
                 return float(rows[:, :3].max())
             return float(self.majorants.max())
@@ -168,11 +168,13 @@ def define(mi: MitsubaModule) -> type:
         @cached_property
         def majorants(self) -> FloatArray:
             """The upper bounds of σ_t (kz, ky, kx) in equal blocks of the volume's box."""
-            rows = self.lookup.table_over_values()[:, 3] * self.lookup.extinction[0]
-            data = read_grid(self.values)
+            rows = self.lookup.reduce_table_to_values()[:, 3] * self.lookup.extinction[0]
+            data = read_grid_values(self.values)
             if data is None:
                 return rows.max(keepdims=True).reshape(1, 1, 1)
-            return bound_between(rows, *map(self.lookup.to_rows, block_ranges(data)))
+            return bound_piecewise_linear(
+                rows, *map(self.lookup.find_table_rows, find_block_ranges(data))
+            )
 
     return TransferFunctionVolume
 
@@ -190,7 +192,7 @@ def read_function(transfer: str, values: MitsubaObject) -> TransferFunction:
     magnitudes that the function needs.
     """
     if transfer.lstrip().startswith("{"):
-        function = files.from_json(TransferFunction, transfer, "transfer_function: transfer")
+        function = files.parse_json(TransferFunction, transfer, "transfer_function: transfer")
     else:
         function = TransferFunction.load(resolve_file(transfer))
     channels = 1 if function.gradients is None else 2
@@ -200,7 +202,7 @@ def read_function(transfer: str, values: MitsubaObject) -> TransferFunction:
             f"transfer_function: the function {function.name} is one of {CHANNELS[channels]}, and "
             f"the volume's number of channels is {count}; it should be {channels}."
         )
-    data = read_grid(values)
+    data = read_grid_values(values)
     return function if data is None else scale_to_values(function, data)
 
 

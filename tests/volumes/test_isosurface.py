@@ -6,7 +6,7 @@ import pytest
 from scipy.optimize import brentq
 
 from brdfkit.volumes import TransferFunction, Volume
-from brdfkit.volumes.rays.search import find_first_above, find_first_crossing
+from brdfkit.volumes.rays.search import find_first_crossing, find_first_positive_step
 
 SUN = {"type": "directional", "direction": [0, 0, -1], "irradiance": 2.0}
 SKY = {"type": "constant", "radiance": 0.5}
@@ -78,7 +78,7 @@ def test_the_depth_has_no_bias(mi):
     edge = mi.Float(truth)
     f = lambda t: dr.exp(t - edge) - 1  # noqa: E731
     args = mi.Float(dr.zeros(mi.Float, 4000)), mi.Float(depth), 10, mi.Bool(True)
-    found = np.array(find_first_above(f, *args)[1]) - truth
+    found = np.array(find_first_positive_step(f, *args)[1]) - truth
     assert found.min() > 0
     assert found.mean() == pytest.approx(depth / n / 2, rel=0.05)
     refined, there = find_first_crossing(f, *args)

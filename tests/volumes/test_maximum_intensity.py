@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from brdfkit.volumes import TransferFunction, Volume
-from brdfkit.volumes.rays.search import find_largest
+from brdfkit.volumes.rays.search import find_distance_of_maximum
 
 
 @pytest.fixture
@@ -62,7 +62,7 @@ def test_the_largest_value_is_found_from_below(mi):
     near, far, place = mi.Float(np.zeros(400)), mi.Float(np.ones(400)), mi.Float(rng.random(400))
     missing = []
     for steps in (4, 32, 256):
-        found = value(find_largest(value, near, far, steps, place, mi.Bool(True)))
+        found = value(find_distance_of_maximum(value, near, far, steps, place, mi.Bool(True)))
         missing.append(truth - np.array(found))
         assert missing[-1].min() > -1e-5, steps
     means = [m.mean() for m in missing]

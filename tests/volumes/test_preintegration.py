@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from brdfkit.volumes import TransferFunction, Volume
-from brdfkit.volumes.rays.voxel_steps import typical_difference
+from brdfkit.volumes.rays.voxel_steps import rms_neighbour_difference
 from brdfkit.volumes.transfer.lookup import TransferLookup
 
 RNG = np.random.default_rng(8)
@@ -18,7 +18,7 @@ def test_means_between_two_values(llvm_variant):
     reach = np.repeat([1e-5, 0.01, 1.0, 50.0], 30)
     front = RNG.uniform(-3, 6, 120).astype(np.float32)
     back = (front + RNG.uniform(-reach, reach)).astype(np.float32)
-    rgb, a = lookup.mean_between(*(lookup.integrals_at(mi.Float(v)) for v in (front, back)))
+    rgb, a = lookup.mean_between(*(lookup.integrate_to_value(mi.Float(v)) for v in (front, back)))
     share = (np.arange(10_000) + 0.5) / 10_000
     rgba = HILLS(front[:, None] + share * (back - front)[:, None].astype(float))
     rgba[..., :3] *= rgba[..., 3:]
@@ -57,5 +57,5 @@ def test_which_functions_are_missed(llvm_variant):
 def test_typical_differences():
     """Of white noise: √2 times its deviation, in a grid of which not every voxel is asked, too."""
     noise = RNG.normal(0, 3, (60, 300, 200))
-    assert typical_difference(noise) == pytest.approx(3 * np.sqrt(2), rel=0.01)
-    assert typical_difference(Volume(np.ones((1, 1, 1))).values) == 0
+    assert rms_neighbour_difference(noise) == pytest.approx(3 * np.sqrt(2), rel=0.01)
+    assert rms_neighbour_difference(Volume(np.ones((1, 1, 1))).values) == 0

@@ -9,9 +9,9 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes.light.majorants import Majorants
 from brdfkit.volumes.light.tracking import (
     FAINT,
+    estimate_passed_and_collided_light,
     estimate_transmittance,
     sample_collision,
-    split_light,
 )
 
 N = 1 << 17
@@ -48,7 +48,7 @@ def require_mean(found, expected, rounding=0.0):
 def test_collisions_in_a_linear_medium(bounds, llvm_variant):
     mi = llvm_variant
     majorants = Majorants(np.broadcast_to(bounds, (np.size(bounds), 1, 1)), TALL)
-    majorants.require(linear)
+    majorants.require_extinction_below(linear)
     t, lookups = sample_collision(linear, majorants, along_z(mi), 0, dr.inf, sampler(mi))
     t, lookups = np.array(t), np.array(lookups)
     require_mean(np.isinf(t), THROUGH, 1e-6)
@@ -62,7 +62,7 @@ def test_collisions_in_a_linear_medium(bounds, llvm_variant):
     )
     require_mean(np.array(share), THROUGH, 1e-6)
     assert np.std(np.array(share)) < np.sqrt(THROUGH * (1 - THROUGH))  # of tracking's 0 and 1
-    share, collided, t, _ = split_light(
+    share, collided, t, _ = estimate_passed_and_collided_light(
         linear, majorants, along_z(mi), 0, dr.inf, sampler(mi, seed=2)
     )
     share, collided, t = np.array(share), np.array(collided), np.array(t)
@@ -76,8 +76,8 @@ def test_an_extinction_above_its_majorant(llvm_variant):
     """Found before a picture; else it makes what it spoils no number."""
     mi, low = llvm_variant, Majorants([[[1.5]]], TALL)
     with pytest.raises(BrdfkitError, match=r"extinction is 3\.2.* its majorant 1\.5.*raise"):
-        low.require(linear)
-    for track in (sample_collision, estimate_transmittance, split_light):
+        low.require_extinction_below(linear)
+    for track in (sample_collision, estimate_transmittance, estimate_passed_and_collided_light):
         found, *_ = track(linear, low, along_z(mi), 0, dr.inf, sampler(mi))
         assert np.isnan(np.array(found)).any()
         below, *_ = track(linear, low, along_z(mi), 0, 1.8, sampler(mi))  # z < 0.8
@@ -116,7 +116,7 @@ def turned(llvm_variant):
 def test_bounds_of_a_grid_bound_what_lies_between_voxels(size, turned):
     sigma, voxels, to_world = turned
     majorants = Majorants.from_grid(voxels, size, to_world)
-    majorants.require(sigma)
+    majorants.require_extinction_below(sigma)
     assert majorants.shape == tuple(-(-n // size) for n in voxels.shape[::-1])
     assert majorants.values.max() == voxels.max()
     if size <= 2:
@@ -162,7 +162,7 @@ def test_rays_that_miss_or_are_not_asked(llvm_variant):
     for track, expected in (
         (sample_collision, np.inf),
         (estimate_transmittance, 1.0),
-        (split_light, 1.0),
+        (estimate_passed_and_collided_light, 1.0),
     ):
         rays = majorants, beside, 0, 9, sampler(mi, 3), asked
         found, *_, lookups = track(lambda p, active: 0 * p.x, *rays)
@@ -182,7 +182,9 @@ def test_what_collides_has_a_place(llvm_variant):
             return mi.Float(0.5 if self.calls % 2 == 0 else 1.0)
 
     even = Majorants([[[20.0]]])
-    found = split_light(lambda p, active: mi.Float(7), even, along_z(mi), 0, dr.inf, HalfAndOne())
+    found = estimate_passed_and_collided_light(
+        lambda p, active: mi.Float(7), even, along_z(mi), 0, dr.inf, HalfAndOne()
+    )
     _, collided, t, _ = found
     assert collided[0] > 0
     assert np.isfinite(t[0])

@@ -59,7 +59,7 @@ def test_two_dimensions():
     full = TF([0, 1], rgba, gradients=[0, 4])
     by_value = 0.75 * rgba[:, 0] + 0.25 * rgba[:, 1]
     np.testing.assert_allclose(full(0.25, 3), [0.25, 0.75] @ by_value)
-    with pytest.raises(BrdfkitError, match="is one of gradient magnitudes, too; give them"):
+    with pytest.raises(BrdfkitError, match="depends on gradient magnitudes; give them"):
         edges(v)
 
 
@@ -160,7 +160,7 @@ def test_presets_of_slicer(tmp_path):
     assert (plain.gradients, plain.value_unit) == (None, "")
     assert plain.extinction == pytest.approx(np.log(2))
     for part, sentence in {
-        "": r"holds 2 presets; name one: .*presets\.xml#CT-A",
+        "": r"has 2 presets; name one: .*presets\.xml#CT-A",
         "#CT-B": "no preset 'CT-B'; did you mean CT-A",
     }.items():
         with pytest.raises(BrdfkitError, match=sentence):
@@ -173,7 +173,7 @@ GOOD = {"kind": "brdfkit transfer function", "points": [[0, 0, 0, 0, 0], [1, 1, 
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("{", "is no JSON"),
+        ("{", "is no valid JSON"),
         ("[]", "is no transfer function"),
         (json.dumps({**GOOD, "colr": "albedo"}), "no field 'colr'; did you mean colour"),
         (json.dumps({**GOOD, "points": [[1, 0, 0, 0]]}), "rows of five numbers"),
@@ -181,9 +181,9 @@ GOOD = {"kind": "brdfkit transfer function", "points": [[0, 0, 0, 0, 0], [1, 1, 
         (json.dumps({**GOOD, "extinction": -1}), "extinction = -1 should be a number above 0"),
         (json.dumps({**GOOD, "colour": "opacity"}), "no meaning of RGB 'opacity'"),
         (json.dumps({**GOOD, "gradient_ramp": [[1, 0], [0, 1]]}), "gradients are out of order"),
-        (json.dumps({**GOOD, "gradient_ramp": [[1, 0], [0]]}), "a ramp is points"),
-        (json.dumps({**GOOD, "gradient_ramp": {"a": 1}}), "a ramp is points"),
-        (json.dumps({**GOOD, "gradient_ramp": [[0, 0], [10**400, 1]]}), "a ramp is points"),
+        (json.dumps({**GOOD, "gradient_ramp": [[1, 0], [0]]}), "a ramp needs points"),
+        (json.dumps({**GOOD, "gradient_ramp": {"a": 1}}), "a ramp needs points"),
+        (json.dumps({**GOOD, "gradient_ramp": [[0, 0], [10**400, 1]]}), "a ramp needs points"),
         (json.dumps({**GOOD, "points": [[10**400] * 5] * 2}), "rows of five numbers"),
         (json.dumps({**GOOD, "extinction": 10**400}), "should be a number above 0"),
         (json.dumps({"kind": GOOD["kind"]}), "values should be two or more numbers"),
@@ -200,7 +200,7 @@ def test_bad_json(tmp_path, text, sentence):
     ("xml", "sentence"),
     [
         ("<MRML", "is no XML"),
-        ("<MRML/>", "holds no <VolumeProperty>"),
+        ("<MRML/>", "has no <VolumeProperty>"),
         (SLICER.replace("8 0 0 100", "9 0 0 100"), "CT-A: scalarOpacity should be the count"),
         (SLICER.replace("100 0.9", "90 0.9"), "values of scalarOpacity are out of order"),
         (SLICER.replace("300 1 0.5 0", "300 1 x 0"), "CT-A: colorTransfer should be the count"),
@@ -223,7 +223,7 @@ def test_bad_presets_of_slicer(tmp_path, xml, sentence):
         (lambda: TF([0], np.zeros((1, 4))), "should be two or more numbers"),
         (lambda: TF([0, np.nan], np.zeros((2, 4))), "should be two or more numbers"),
         (lambda: TF([0, 1], np.zeros((2, 3))), r"shape \(2, 3\); it should be \(2, 4\)"),
-        (lambda: TF([0, 1], np.full((2, 4), 1.5)), "as albedo they are 0 to 1"),
+        (lambda: TF([0, 1], np.full((2, 4), 1.5)), "as albedo the numbers should be 0 to 1"),
         (lambda: TF([0, 1], np.full((2, 4), 1.5), colour="emission"), "A at most 1"),
         (lambda: TF([0, 1], np.zeros((2, 4)), extinction=0), "should be a number above 0"),
         (lambda: TF.from_opacity([0, 1], np.zeros((2, 4)), unit_distance=0), "unit_distance = 0"),
@@ -231,7 +231,7 @@ def test_bad_presets_of_slicer(tmp_path, xml, sentence):
         (lambda: TF.load("ct_bon"), "did you mean ct_bone"),
         (lambda: RAMP.save("a.txt"), r"are written as \.json"),
         (lambda: RAMP.scaled_to(1, 1), "does not rise"),
-        (lambda: RAMP.over_gradients([1, 2]), "a ramp is points"),
+        (lambda: RAMP.over_gradients([1, 2]), "a ramp needs points"),
     ],
 )
 def test_what_is_no_transfer_function(make, sentence):

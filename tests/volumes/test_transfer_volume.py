@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from brdfkit.volumes import TransferFunction, Volume
-from brdfkit.volumes.transfer.block_bounds import block_ranges, bound_between
+from brdfkit.volumes.transfer.block_bounds import bound_piecewise_linear, find_block_ranges
 from brdfkit.volumes.transfer.lookup import TransferLookup
 
 RNG = np.random.default_rng(6)
@@ -156,7 +156,7 @@ def test_the_largest_value_between_two_places():
     """Against the function at very many places; its corners are among them."""
     rows = RNG.random(37)
     low, high = np.sort(RNG.uniform(-3, 40, (2, 300)), axis=0)
-    found = bound_between(rows, low, high)
+    found = bound_piecewise_linear(rows, low, high)
     for a, b, largest in zip(low, high, found, strict=True):
         places = np.unique(np.clip([*np.linspace(a, b, 50), *range(37)], a, b))
         truth = np.interp(places, np.arange(37), rows).max()
@@ -167,7 +167,7 @@ def test_the_largest_value_between_two_places():
 def test_the_bounds_of_blocks_hold(mi, filter_type):
     """At random points, of which many come near; after the table was changed, too."""
     values = np.cumsum(RNG.normal(0, 20, (17, 16, 25)), axis=0)
-    low, _ = block_ranges(values)
+    low, _ = find_block_ranges(values)
     assert low.shape == (2, 2, 3)
     loaded = mi.load_dict(volume(mi, values, HILLS, {"filter_type": filter_type}))
     points = RNG.random((20_000, 3))
@@ -229,7 +229,7 @@ def test_mitsuba_renders_a_transfer_function(mi):
     ("given", "said"),
     [
         ({"transfer": "ct_bon"}, "no transfer function 'ct_bon'; did you mean ct_bone"),
-        ({"transfer": "{"}, "transfer_function: transfer: is no JSON"),
+        ({"transfer": "{"}, "transfer_function: transfer: is no valid JSON"),
         ({"transfer": '{"kind": 1}'}, 'transfer_function: transfer: .*its "kind" should be'),
         ({"transfer": "mri_edges"}, "mri_edges is one of values and gradient magnitudes, and the"),
         ({"output": "opacity"}, "output = opacity should be one of extinction, colour"),

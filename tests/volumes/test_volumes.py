@@ -80,17 +80,17 @@ def test_resizing_keeps_means_places_and_labels():
         (np.ones((0, 2, 2)), {}, r"have the shape \(0, 2, 2\)"),
         (np.ones((2, 2)), {}, r"have the shape \(2, 2\)"),
         (np.ones((2, 2, 2), complex), {}, "complex128, where real numbers"),
-        (np.full((2, 2, 2), 0.5), {"labels": True}, "no whole numbers, and so no labels"),
+        (np.full((2, 2, 2), 0.5), {"labels": True}, "not whole numbers, so they cannot be labels"),
         (np.ones((2, 2, 2)), {"to_world": np.zeros((4, 4))}, "no invertible 4×4 matrix"),
         (np.ones((2, 2, 2)), {"to_world": np.diag([1e200, 1, 1, 1])}, "no invertible 4×4 matrix"),
         (np.ones((2, 2, 2)), {"to_world": np.diag([1e-200, 1, 1, 1])}, "no invertible 4×4 matrix"),
-        (np.full((2, 2, 2), 3e9, np.float32), {"labels": True}, "no whole numbers"),
+        (np.full((2, 2, 2), 3e9, np.float32), {"labels": True}, "not whole numbers"),
         (np.ones((2, 2, 2)), {"to_world": np.eye(3)}, "no invertible 4×4 matrix"),
         (np.ones((2, 2, 2)), {"to_world": np.diag([1, 1, 1, 2])}, "no invertible 4×4 matrix"),
         (np.full((2, 2, 2), 1e60), {}, "8 of 8 voxels are not finite"),
         (np.full((2, 2, 2), 1e-60), {}, "all voxels are 0"),
-        (np.reshape([-3e38, 3e38], (1, 1, 2)), {}, "too large or too near to each other"),
-        (np.reshape([1e-42, 2e-42], (1, 1, 2)), {}, "too large or too near to each other"),
+        (np.reshape([-3e38, 3e38], (1, 1, 2)), {}, "too large or too close together"),
+        (np.reshape([1e-42, 2e-42], (1, 1, 2)), {}, "too large or too close together"),
     ],
 )
 def test_what_is_no_volume(given, how, sentence):
@@ -213,8 +213,14 @@ def test_gradient_magnitudes_of_many_layers_are_those_of_one_piece():
 
 @pytest.mark.quick
 def test_made_volumes_fill_their_cube():
-    assert set(made.list_names()) == {"marschner_lobb", "shepp_logan", "slab", "smoke", "sphere"}
-    for name in made.list_names():
+    assert set(made.list_volume_names()) == {
+        "marschner_lobb",
+        "shepp_logan",
+        "slab",
+        "smoke",
+        "sphere",
+    }
+    for name in made.list_volume_names():
         volume = bk.volumes.load(name, size=(12, 16, 20))
         assert (volume.size, volume.name) == ((12, 16, 20), name)
         np.testing.assert_allclose(volume.bounds, [[-1, -1, -1], [1, 1, 1]], atol=1e-12)
@@ -275,7 +281,7 @@ def test_info(tmp_path, monkeypatch):
     tissues = np.repeat(np.arange(4, dtype=np.uint8), 250)
     tissues.tofile("tissues_10x10x10_uint8.raw")
     told = run("info", "tissues_10x10x10_uint8.raw", "--downsample", 2)
-    assert "4 different values, all whole, of which means were taken" in told.output
+    assert "4 different values, all whole, and was averaged" in told.output
     (tmp_path / "tissues_10x10x10_uint8.raw").unlink()
     for words, sentence in {
         ("car_paint", "--labels"): "car_paint is no volume",
@@ -304,6 +310,8 @@ def test_a_summary_of_a_known_volume():
     clipped = np.minimum(np.arange(1000).reshape(10, 10, 10), 900).astype(np.uint16)
     (told,) = summarise(bk.volumes.Volume(clipped)).findings()
     assert "perhaps clipped" in told
-    assert summarise(bk.volumes.Volume(np.ones((2, 2, 2)))).findings() == ("of one value all over",)
+    assert summarise(bk.volumes.Volume(np.ones((2, 2, 2)))).findings() == (
+        "all voxels have the same value",
+    )
     flipped = bk.volumes.Volume(voxels, np.diag([-1, -1, 1, 1]), axes="RAS")
     assert summarise(flipped).directions == ("left", "back", "head")

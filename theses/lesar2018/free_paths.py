@@ -127,7 +127,7 @@ def bound_claim():
     """A majorant that is below σ."""
     came = printed_scheme(LOW)
     try:
-        Majorants([[[LOW]]], TALL).require(sigma)
+        Majorants([[[LOW]]], TALL).require_extinction_below(sigma)
         said = "nothing is said"
     except BrdfkitError:
         said = "brdfkit refuses the majorant"

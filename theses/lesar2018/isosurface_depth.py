@@ -6,7 +6,7 @@ from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section, Table
-from brdfkit.volumes.rays.search import find_first_above, find_first_crossing
+from brdfkit.volumes.rays.search import find_first_crossing, find_first_positive_step
 
 SECONDS = 1
 LENGTH, RADIUS = 2.0, 0.5  # of rays, from the middle of the edge; of the sphere
@@ -57,7 +57,7 @@ def on_sphere(n, rng):
         return RADIUS - (side * side + z * z) ** 0.5
 
     far, active = near + LENGTH, mi.Bool(True)
-    _, t, _ = find_first_above(f, near, far, n, active)
+    _, t, _ = find_first_positive_step(f, near, far, n, active)
     refined, _ = find_first_crossing(f, near, far, n, active)
     inside = np.array(t, float) < LENGTH / 2 + 0.9 * RADIUS  # others were missed
     off = np.array(t, float) - truth

@@ -8,7 +8,7 @@ from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 from brdfkit.theses.page import Picture, Section
 from brdfkit.volumes.made import make
-from brdfkit.volumes.rays.search import find_largest
+from brdfkit.volumes.rays.search import find_distance_of_maximum
 
 SECONDS = 3
 VOXELS, RAYS, ITERATIONS = 48, 400, 64
@@ -68,7 +68,7 @@ def refined(volume, o, d, rng):
         return grid.eval_1(it)
 
     near, place = mi.Float(np.full(RAYS, -1.0)), mi.Float(rng.random(RAYS))
-    t = find_largest(value, near, near + 2, STEPS, place, mi.Bool(True))
+    t = find_distance_of_maximum(value, near, near + 2, STEPS, place, mi.Bool(True))
     return np.array(value(t), float)
 
 

@@ -94,10 +94,10 @@ def _refuse_misspelt_volume(word: str) -> None:
     from brdfkit.model import labels
     from brdfkit.volumes import made
 
-    known = [*labels.models(), *catalogue.list_materials(), *made.list_names()]
+    known = [*labels.models(), *catalogue.list_materials(), *made.list_volume_names()]
     if word in known or labels.is_label(word) or Path(word).suffix or Path(word).exists():
         return
-    if nearest(word, known) in made.list_names():
+    if nearest(word, known) in made.list_volume_names():
         raise no_such("file, model, material or volume", word, known)
 
 

@@ -1,15 +1,15 @@
-"""Downsampling of voxels: one voxel for each block of them."""
+"""Downsampling of volumes: each cubic block of voxels becomes one larger voxel."""
 
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray, IntArray
 
 
-def reduce_slab(slab: AnyArray, factor: int, labels: bool) -> AnyArray:
-    """Reduce a `slab` (nz, ny, nx) of up to `factor` layers to one layer (my, mx).
+def downsample_slab(slab: AnyArray, factor: int, labels: bool) -> AnyArray:
+    """Downsample a `slab` (nz, ny, nx) of voxels, at most `factor` layers, to one layer (my, mx).
 
-    A block of factor × factor × factor voxels becomes its mean in float32; `labels` become the
-    voxel in the middle of their block.
+    Each block of `factor` voxels along each axis becomes its mean, in float32. If the values are
+    `labels`, which cannot be averaged, it becomes the voxel in its middle.
     """
     if factor == 1:
         return slab[0]
@@ -21,23 +21,30 @@ def reduce_slab(slab: AnyArray, factor: int, labels: bool) -> AnyArray:
     rows, columns = np.arange(0, ny, factor), np.arange(0, nx, factor)
     sums = slab.sum(axis=0, dtype=float)
     sums = np.add.reduceat(np.add.reduceat(sums, rows, axis=0), columns, axis=1)
-    count = nz * np.outer(_lengths(rows, ny), _lengths(columns, nx))
+    count = nz * np.outer(_interval_lengths(rows, ny), _interval_lengths(columns, nx))
     return (sums / count).astype(np.float32)
 
 
-def reduce_transform(to_world: FloatArray, factor: int) -> FloatArray:
-    """Return the transform of voxels that represent blocks of `factor`³ voxels of `to_world`."""
+def downsample_transform(to_world: FloatArray, factor: int) -> FloatArray:
+    """Return the transform (4, 4) from indices of downsampled voxels to the world.
+
+    `to_world` (4, 4) is the transform of the original voxels, `factor` their number along the edge
+    of a downsampled one.
+    """
     to_fine = np.diag([factor, factor, factor, 1.0])
-    to_fine[:3, 3] = (factor - 1) / 2  # the middle of the first block
+    to_fine[:3, 3] = (factor - 1) / 2  # the first block's centre, in indices of original voxels
     return to_world @ to_fine
 
 
-def reduce_shape(shape: tuple[int, int, int], factor: int) -> tuple[int, int, int]:
-    """Return the shape of the blocks of voxels of this `shape`; the last ones may be smaller."""
+def downsample_shape(shape: tuple[int, int, int], factor: int) -> tuple[int, int, int]:
+    """Return the shape (nz, ny, nx) that a grid of this `shape` has after downsampling."""
     nz, ny, nx = (-(-n // factor) for n in shape)
     return nz, ny, nx
 
 
-def _lengths(starts: IntArray, end: int) -> IntArray:
-    """Return the lengths of consecutive intervals with these `starts`, up to `end`."""
+def _interval_lengths(starts: IntArray, end: int) -> IntArray:
+    """Return the lengths (n,) of consecutive intervals from their `starts` (n,) and the last `end`.
+
+    They are the numbers of voxels in blocks, of which the last may be smaller.
+    """
     return np.diff(np.append(starts, end))

@@ -1,4 +1,4 @@
-"""`volumes.load`: reading a volume from a file or folder, within the available memory."""
+"""`volumes.load`: reads a volume from a file or folder, if it fits into the available memory."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from brdfkit.volumes.formats import StoredVolume, VolumeFile
 from brdfkit.volumes.summary.histograms import FEW_VALUES
 from brdfkit.volumes.volume import Volume, require_transform
 
-ROUNDING_WARNING = 1e-6  # share of the range of values above which rounding gives a warning
-LARGEST_DOWNSAMPLE = 64  # that an error proposes
-MEMORY_FACTOR = 1.2  # for the memory that Python and NumPy need besides the voxels
+ROUNDING_WARNING = 1e-6  # rounding errors above this share of the range of values give a warning
+LARGEST_DOWNSAMPLE = 64  # the largest `downsample` that an error about memory proposes
+MEMORY_FACTOR = 1.2  # memory that loading needs, over that of the arrays of voxels
 
 
 def load(
@@ -53,8 +53,8 @@ def load(
     downsample : int, default 1
         Number of voxels along each axis that are averaged to one while the file is read, 1 or more.
     labels : bool, optional
-        Whether the values are labels, which are never averaged. By default the file decides, and a
-        warning says if values are averaged that may be labels.
+        Whether the values are labels, such as numbers of tissues, which are never averaged. By
+        default the file decides, and a warning is given if averaged values may be labels.
     size : int or (int, int, int), optional
         Numbers of voxels along x, y, z, of raw voxels or of a synthetic volume.
     dtype : str or dtype, optional
@@ -81,21 +81,21 @@ def load(
     marschner_lobb: 41×41×41 voxels of 0.04878×0.04878×0.04878 units, float32, 4.4e-05 to 0.999956
     """
     downsample = to_whole_number("downsample", downsample, 1)
-    voxels, steps = _to_triple("size", size, int), _to_triple("spacing", spacing, float)
+    voxels, steps = _parse_triple("size", size, int), _parse_triple("spacing", spacing, float)
     offset = None if offset is None else to_whole_number("offset", offset, 0)
     try:
         text = os.fspath(path)
     except TypeError:
         kind = type(path).__name__
         raise BrdfkitError(
-            f"A volume is a Volume, or the path or name of one, and no {kind}; of an array "
-            "brdfkit.volumes.Volume(array) makes one."
+            f"A volume is a Volume, or the path or name of one, and no {kind}; make a volume of an "
+            "array by brdfkit.volumes.Volume(array)."
         ) from None
     found, part = split_part(text)
-    place = find_file_or_name(found, "volume", made.list_names(), folders=True)
+    place = find_file_or_name(found, "volume", made.list_volume_names(), folders=True)
     if isinstance(place, str):
         if any(setting is not None for setting in (part, labels, dtype, spacing, offset)):
-            raise BrdfkitError(f"{text} is made: it takes size and downsample alone.")
+            raise BrdfkitError(f"{text} is synthetic: it takes only size and downsample.")
         if voxels is not None:
             _require_memory_to_make(place, voxels)
         volume = made.make(place, voxels)
@@ -111,19 +111,20 @@ def load(
 
 
 def looks_like_volume(name: str) -> bool:
-    """Return whether a word of the command line means a volume.
+    """Return whether an argument of the command line, such as a path, means a volume.
 
-    It does if it is the name of a synthetic volume, a folder of a series, or a file with the suffix
-    of a format. A .hdr file that begins like Radiance's maps is not Analyze's, and no volume.
+    It may be the name of a synthetic volume, a folder of DICOM or TIFF files, or a file with the
+    suffix of a volume format. An environment map `.hdr` of Radiance's is no volume, although NIfTI
+    has that suffix as well.
     """
     path, _ = split_part(name)
-    if name in made.list_names() or formats.is_series(path):
+    if name in made.list_volume_names() or formats.is_image_series(path):
         return True
-    return formats.has_format(str(path)) and not _is_radiance(path)
+    return formats.has_format(str(path)) and not _is_radiance_map(path)
 
 
-def _is_radiance(path: Path) -> bool:
-    """Return whether a file is a map in Radiance's format."""
+def _is_radiance_map(path: Path) -> bool:
+    """Return whether a file is an environment map in Radiance's format, which has .hdr as well."""
     if path.suffix.lower() != ".hdr" or not path.is_file():
         return False
     with path.open("rb") as stream:
@@ -131,53 +132,59 @@ def _is_radiance(path: Path) -> bool:
 
 
 def _read_voxels(file: VolumeFile, stored: StoredVolume, downsample: int, warn: bool) -> Volume:
-    """Read the `Volume` of a file; `warn` if values are averaged that may be labels."""
+    """Read the voxels of a file, slab by slab, as a `Volume`.
+
+    A block of `downsample` voxels along each axis becomes one voxel. With `warn`, values that are
+    averaged but may be labels give a warning.
+    """
     require_transform(stored.to_world, file.path)
     _require_memory(file, stored, downsample)
-    shape = downsampling.reduce_shape(stored.shape, downsample)
-    values = np.empty(shape, _loaded_dtype(stored, downsample))
+    shape = downsampling.downsample_shape(stored.shape, downsample)
+    values = np.empty(shape, _choose_loaded_dtype(stored, downsample))
     layers = stored.layers()
-    different: set[float] = set()  # values of one voxel of each block
+    different: set[float] = set()  # different values, among one voxel of each block
     rounding = 0.0
-    ends: list[float] = []  # smallest and largest values of layers
-    # A double beyond float32 becomes infinite, which Volume refuses
+    ends: list[float] = []  # smallest and largest values of each layer
+    # A float64 beyond float32's range becomes infinite, which `Volume` refuses
     with np.errstate(over="ignore", invalid="ignore"):
         for k in range(shape[0]):
             slab = np.stack(list(itertools.islice(layers, downsample)))
-            exact = downsampling.reduce_slab(slab, downsample, stored.labels)
+            exact = downsampling.downsample_slab(slab, downsample, stored.labels)
             values[k] = exact
             if exact.dtype.kind == "f" and exact.dtype.itemsize > values.dtype.itemsize:
                 rounding = max(rounding, float(np.abs(values[k] - exact).max()))
                 ends += [exact.min(), exact.max()]
             if warn and len(different) <= FEW_VALUES:
                 different.update(np.unique(slab[0, ::downsample, ::downsample]).tolist())
-    to_world = downsampling.reduce_transform(stored.to_world, downsample)
-    name = _make_name(file)
+    to_world = downsampling.downsample_transform(stored.to_world, downsample)
+    name = _make_volume_name(file)
     if ends and np.isfinite(rounding) and rounding > ROUNDING_WARNING * (max(ends) - min(ends)):
         warnings.warn(
-            f"{name}: its values, {min(ends):.10g} to {max(ends):.10g}, are kept in single "
-            f"precision, by which they are off by up to {rounding:.2g}; subtract what they have in "
-            "common first.",
+            f"{name}: its values, {min(ends):.10g} to {max(ends):.10g}, are stored in single "
+            f"precision, with errors up to {rounding:.2g}; subtract a constant from them first.",
             stacklevel=3,
         )
     if not stored.labels and _may_be_labels(different, values.size):
         warnings.warn(
-            f"{name} has {len(different)} different values, all whole, of which means were taken: "
-            "if they are labels, load it with labels=True (--labels), else with labels=False.",
+            f"{name} has {len(different)} different values, all whole, and was averaged: if they "
+            "are labels, load it with labels=True (--labels), otherwise with labels=False.",
             stacklevel=3,
         )
     return Volume(values, to_world, name, stored.labels, stored.unit, stored.axes)
 
 
 def _may_be_labels(different: set[float], count: int) -> bool:
-    """Return whether `count` voxels have few `different` values, all of them whole numbers."""
+    """Return whether the `different` values of `count` voxels are few whole numbers, like labels.
+
+    At most one value per eight voxels counts as few.
+    """
     return 1 < len(different) <= min(FEW_VALUES, count / 8) and all(
         float(v).is_integer() for v in different
     )
 
 
-def _loaded_dtype(stored: StoredVolume, downsample: int) -> np.dtype[Any]:
-    """Return the type in which voxels are loaded."""
+def _choose_loaded_dtype(stored: StoredVolume, downsample: int) -> np.dtype[Any]:
+    """Return the type of the loaded voxels: float32 for floats and means, else the file's type."""
     if stored.dtype.kind == "f" or (downsample > 1 and not stored.labels):
         return np.dtype(np.float32)
     return stored.dtype.newbyteorder("=")
@@ -186,11 +193,11 @@ def _loaded_dtype(stored: StoredVolume, downsample: int) -> np.dtype[Any]:
 def _require_memory(file: VolumeFile, stored: StoredVolume, downsample: int) -> None:
     """Raise `BrdfkitError` if loading the voxels needs more memory than is available."""
     available = psutil.virtual_memory().available
-    needed = _memory_needed(stored, downsample)
+    needed = _estimate_memory(stored, downsample)
     if needed <= available:
         return
     larger = range(downsample + 1, LARGEST_DOWNSAMPLE + 1)
-    fits = next((n for n in larger if _memory_needed(stored, n) <= available), None)
+    fits = next((n for n in larger if _estimate_memory(stored, n) <= available), None)
     size = "×".join(map(str, stored.shape[::-1]))
     raise file.error(
         f"its {size} voxels would take about {needed / 1e9:,.2g} GB of memory, of which "
@@ -201,7 +208,7 @@ def _require_memory(file: VolumeFile, stored: StoredVolume, downsample: int) -> 
 
 def _require_memory_to_make(name: str, size: tuple[int, int, int]) -> None:
     """Raise `BrdfkitError` if making a synthetic volume needs more memory than is available."""
-    available, needed = psutil.virtual_memory().available, made.memory_needed(name, size)
+    available, needed = psutil.virtual_memory().available, made.estimate_memory(name, size)
     if needed > available:
         raise BrdfkitError(
             f"{name}: {'×'.join(map(str, size))} voxels would take about {needed / 1e9:,.2g} GB of "
@@ -209,23 +216,26 @@ def _require_memory_to_make(name: str, size: tuple[int, int, int]) -> None:
         )
 
 
-def _memory_needed(stored: StoredVolume, downsample: int) -> float:
-    """Return an upper bound of the memory [bytes] that loading needs."""
-    voxels = math.prod(downsampling.reduce_shape(stored.shape, downsample))
+def _estimate_memory(stored: StoredVolume, downsample: int) -> float:
+    """Return an upper bound of the memory [bytes] that loading a file's voxels needs."""
+    voxels = math.prod(downsampling.downsample_shape(stored.shape, downsample))
     _, ny, nx = stored.shape
     slab = ny * nx * (downsample * stored.dtype.itemsize + np.dtype(float).itemsize)
-    return MEMORY_FACTOR * (voxels * _loaded_dtype(stored, downsample).itemsize + slab)
+    return MEMORY_FACTOR * (voxels * _choose_loaded_dtype(stored, downsample).itemsize + slab)
 
 
-def _make_name(file: VolumeFile) -> str:
-    """Return the name of a volume: its file's without suffixes, and its part's."""
+def _make_volume_name(file: VolumeFile) -> str:
+    """Return a volume's name: its file's name without suffixes, and the part behind '#'."""
     name = file.path.name
     stem = name.removesuffix(".gz")[: -len(Path(name.removesuffix(".gz")).suffix) or None]
     return f"{stem}#{file.part}" if file.part else stem
 
 
-def _to_triple(what: str, given: Any, kind: type[int | float]) -> Any:
-    """Return three numbers above 0 from one or three, or None from None."""
+def _parse_triple(what: str, given: Any, kind: type[int | float]) -> Any:
+    """Convert a user's setting, one or three numbers above 0, to three of the type `kind`.
+
+    None stays None. Errors call the setting `what`.
+    """
     if given is None:
         return None
     numbers = np.ravel(given)
@@ -238,7 +248,7 @@ def _to_triple(what: str, given: Any, kind: type[int | float]) -> Any:
 
 
 def _set_spacing(to_world: FloatArray, spacing: tuple[float, float, float]) -> FloatArray:
-    """Return the transform with another spacing along the same axes."""
+    """Return the transform `to_world` (4, 4) with another voxel `spacing` along the same axes."""
     changed = to_world.copy()
     changed[:3, :3] *= np.array(spacing) / np.linalg.norm(changed[:3, :3], axis=0)
     return changed

@@ -1,4 +1,4 @@
-"""Dictionaries for Mitsuba's `load_dict`: a `Volume` alone, or with a transfer function."""
+"""Conversion of a `Volume`, with or without a transfer function, to a dictionary for Mitsuba."""
 
 from dataclasses import replace
 from typing import Any
@@ -14,21 +14,24 @@ Volume = Any  # the class in `volume.py`, which imports this file
 
 
 def make_scene_dict(volume: Volume, transfer: TransferLike | None) -> dict[str, Any]:
-    """Return the dictionary of a volume; see `Volume.scene_dict`."""
+    """Return a volume as a dictionary for `mitsuba.load_dict`, with a transfer function if given.
+
+    See `Volume.scene_dict`.
+    """
     use_variant()
     if transfer is None:
-        return _make_grid(volume, [volume.values])
+        return _make_grid_dict(volume, [volume.values])
     if not isinstance(transfer, TransferFunction):
         transfer = TransferFunction.load(transfer)
     if volume.unit and transfer.length_unit:
         transfer = transfer.per(volume.unit)
     transfer = scale_to_values(transfer, volume.values)
     if volume.labels and transfer.gradients is None:
-        volume, transfer = _number_labels(volume, transfer)
+        volume, transfer = _renumber_labels(volume, transfer)
     channels = [volume.values]
     if transfer.gradients is not None:
         channels.append(volume.gradient_magnitude)
-    values = _make_grid(volume, channels)
+    values = _make_grid_dict(volume, channels)
     return {
         "type": "transfer_function",
         "values": values,
@@ -37,11 +40,11 @@ def make_scene_dict(volume: Volume, transfer: TransferLike | None) -> dict[str, 
     }
 
 
-def _number_labels(volume: Volume, transfer: TransferFunction) -> tuple[Volume, TransferFunction]:
-    """Number the labels of a volume 1, 2 ... in their order, and convert the function likewise.
+def _renumber_labels(volume: Volume, transfer: TransferFunction) -> tuple[Volume, TransferFunction]:
+    """Replace the labels of a volume by 1, 2 ..., and the values of the transfer function likewise.
 
-    Renderers look functions up in a table, in which labels of atlases, thousands or millions apart,
-    would share a row.
+    Renderers look transfer functions up in a table over values. If labels were thousands or
+    millions apart, as in atlases of the brain, several would share an entry of the table.
     """
     labels, places = np.unique(volume.values, return_inverse=True)
     rgba = transfer([labels[0], *labels])
@@ -49,8 +52,11 @@ def _number_labels(volume: Volume, transfer: TransferFunction) -> tuple[Volume, 
     return replace(volume, values=values), replace(transfer, values=np.arange(len(rgba)), rgba=rgba)
 
 
-def _make_grid(volume: Volume, channels: list[AnyArray]) -> dict[str, Any]:
-    """Return the dictionary of a gridvolume of arrays (nz, ny, nx), in the place of the volume."""
+def _make_grid_dict(volume: Volume, channels: list[AnyArray]) -> dict[str, Any]:
+    """Return the dictionary of a Mitsuba gridvolume with the transform and filter of `volume`.
+
+    Its channels are arrays (nz, ny, nx).
+    """
     import mitsuba as mi
 
     return {

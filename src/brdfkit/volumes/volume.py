@@ -1,4 +1,4 @@
-"""`Volume`: values on a regular grid of voxels, and the place of the grid in the world."""
+"""`Volume`: values on a regular grid of voxels, and the grid's position in the world."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from brdfkit.volumes.rays import reconstruction
 from brdfkit.volumes.transfer import windows
 from brdfkit.volumes.transfer.transfer_function import TransferLike
 
-LARGEST_COORDINATE = 1e15  # in a transform: products of squares have to fit into 32 bits
-LARGEST_VALUE = 1e30  # also of the inverse of the span of values: renderers have 32 bits
+LARGEST_COORDINATE = 1e15  # of a transform, so that products of squares fit into float32
+LARGEST_VALUE = 1e30  # also of 1 / (range of values), because renderers compute in float32
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -33,8 +33,8 @@ class Volume:
         Values (nz, ny, nx), float32 or integers, x fastest as in Mitsuba's grids. float64 is
         converted to float32, booleans to uint8.
     to_world : ndarray
-        Transform (4, 4) from the indices (i, j, k) of a voxel's centre along x, y, z to a point of
-        the world, in the file's unit of length. None is the identity.
+        Transform (4, 4) from the indices (i, j, k) of a voxel along x, y, z to its centre in the
+        world, in the file's unit of length. None is the identity.
     name : str
         The volume's name.
     labels : bool
@@ -100,9 +100,10 @@ class Volume:
 
     @cached_property
     def window(self) -> tuple[float, float]:
-        """The values (low, high) for `TransferFunction.scaled_to`, from the histogram.
+        """The range (low, high) of the matter's values, for `TransferFunction.scaled_to`.
 
-        The background, such as air, is below, and only few bright voxels are above.
+        It is found from the histogram: the background, such as air, lies below, and only a few
+        bright voxels lie above.
         """
         return windows.find_window(self.values)
 
@@ -110,36 +111,40 @@ class Volume:
     def gradient_magnitude(self) -> NDArray[np.float32]:
         """The gradient magnitude ‖∇V‖ (nz, ny, nx) at voxels' centres [value per unit of length].
 
-        It follows from central differences, and from one-sided ones on the outermost voxels.
+        It is computed by central differences, and by one-sided differences at the grid's faces.
         """
         return reconstruction.gradient_magnitude(self.values, self.to_world)
 
     def resized(self, factor: int) -> Volume:
-        """Return the volume with one voxel for each block of factor × factor × factor voxels.
+        """Return the volume downsampled: each block of factor × factor × factor voxels is averaged.
 
-        Its value is the mean of the block, which may be smaller at the upper ends. A block of
-        labels has the value of the voxel in its middle.
+        Blocks at the upper ends of the grid may be smaller. Labels are not averaged: a block gets
+        the label of the voxel in its middle.
         """
         factor = to_whole_number("factor", factor, 1)
         slabs = (self.values[k : k + factor] for k in range(0, len(self.values), factor))
-        values = np.stack([downsampling.reduce_slab(slab, factor, self.labels) for slab in slabs])
-        to_world = downsampling.reduce_transform(self.to_world, factor)
+        values = np.stack(
+            [downsampling.downsample_slab(slab, factor, self.labels) for slab in slabs]
+        )
+        to_world = downsampling.downsample_transform(self.to_world, factor)
         return Volume(values, to_world, self.name, self.labels, self.unit, self.axes)
 
     def __call__(self, points: ArrayLike) -> NDArray:
-        """Return the values (n,) at `points` (n, 3) of the world, trilinear, or nearest for labels.
+        """Return the values (n,) at `points` (n, 3) of the world, by trilinear interpolation.
 
-        Beyond the outermost centres the value is constant; outside the box it is 0.
+        Labels are those of the nearest voxel. Beyond the centres of the outermost voxels the value
+        is constant; outside the box it is 0.
         """
-        return reconstruction.values_at(self, points)
+        return reconstruction.interpolate_values(self, points)
 
     def gradient(self, points: ArrayLike, of_interpolant: bool = False) -> NDArray[np.float64]:
-        """Return ∇V (n, 3) at `points` (n, 3) of the world [value per unit of length].
+        """Return the gradient (n, 3) of the values at `points` (n, 3) of the world.
 
-        By default this is a central difference over a voxel to either side; with `of_interpolant`
-        it is the derivative of the trilinear interpolant, which jumps at the centres of voxels.
+        Its unit is that of values per unit of length. By default it is a central difference over a
+        voxel to either side; with `of_interpolant` it is the derivative of the trilinear
+        interpolant, which jumps at the centres of voxels.
         """
-        return reconstruction.gradient_at(self, points, of_interpolant)
+        return reconstruction.compute_gradients(self, points, of_interpolant)
 
     def scene_dict(self, transfer: TransferLike | None = None) -> dict[str, Any]:
         """Return the dictionary of the volume for `mitsuba.load_dict`, in the current variant.
@@ -147,14 +152,14 @@ class Volume:
         Parameters
         ----------
         transfer : TransferFunction, str or Path, optional
-            The meaning of the values, or a preset's name, or a file, for media and brdfkit's
-            integrators. Its lengths are converted to the volume's unit. None gives values alone.
+            The transfer function, a preset's name, or a file, for media and brdfkit's integrators.
+            Its lengths are converted to the volume's unit. None gives the values alone.
 
         Returns
         -------
         dict
-            A dictionary of the type "transfer_function", or "gridvolume" for values alone, in the
-            place of the volume. Labels are looked up in the nearest voxel.
+            A dictionary of the type "transfer_function", or "gridvolume" for values alone, with the
+            volume's transform to the world. Labels are looked up in the nearest voxel.
 
         Raises
         ------
@@ -179,7 +184,10 @@ class Volume:
 
 
 def require_transform(to_world: ArrayLike, name: object) -> FloatArray:
-    """Return `to_world` as floats; raise `BrdfkitError` unless it is an invertible (4, 4)."""
+    """Return the transform `to_world` as floats; raise `BrdfkitError` unless it can be used.
+
+    It must be an affine, invertible matrix (4, 4) of numbers that renderers can represent.
+    """
     to_world = np.asarray(to_world, float)
     fine = to_world.shape == (4, 4) and np.isfinite(to_world).all()
     fine = fine and (to_world[3] == (0, 0, 0, 1)).all()
@@ -189,13 +197,16 @@ def require_transform(to_world: ArrayLike, name: object) -> FloatArray:
         raise BrdfkitError(
             f"{name}: its transform from voxels to the world is no invertible 4×4 matrix of "
             "numbers below 1e15: the spacing or an axis is 0, not finite, too small or too large; "
-            "mend the header or give the spacing."
+            "correct the header or give the spacing."
         )
     return to_world
 
 
 def _check_values(values: ArrayLike, name: str, labels: bool) -> AnyArray:
-    """Return voxels in a type of `Volume`; raise `BrdfkitError` if they cannot be used."""
+    """Return voxels as a contiguous array of a type that `Volume` allows.
+
+    Raises `BrdfkitError`, which names the volume, if their shape, type or values cannot be used.
+    """
     values = np.asarray(values)
     if values.ndim != 3 or not values.size:
         raise BrdfkitError(
@@ -207,7 +218,7 @@ def _check_values(values: ArrayLike, name: str, labels: bool) -> AnyArray:
     if values.dtype.kind == "f" and not labels:
         with np.errstate(over="ignore"):  # values beyond float32 become infinite
             values = values.astype(np.float32, copy=False)
-    low, high = values.min(), values.max()  # not finite where a value is not
+    low, high = values.min(), values.max()  # not finite if any value is not
     if not (np.isfinite(low) and np.isfinite(high)):
         count = values.size - np.count_nonzero(np.isfinite(values))
         raise BrdfkitError(
@@ -217,23 +228,24 @@ def _check_values(values: ArrayLike, name: str, labels: bool) -> AnyArray:
     span, largest = float(high) - float(low), max(-float(low), float(high))
     if largest > LARGEST_VALUE or 0 < span < 1 / LARGEST_VALUE:
         raise BrdfkitError(
-            f"{name}: its values, {low:g} to {high:g}, are too large or too near to each other for "
+            f"{name}: its values, {low:g} to {high:g}, are too large or too close together for "
             "32 bits; multiply them by a number."
         )
     if low == high == 0:
         raise BrdfkitError(f"{name}: all voxels are 0; check that it is the right file.")
     if labels and values.dtype.kind == "f":
-        return _to_integers(values, name)
+        return _convert_labels(values, name)
     boolean = values.dtype.kind == "b"
     return np.ascontiguousarray(values, np.uint8 if boolean else values.dtype.newbyteorder("="))
 
 
-def _to_integers(values: AnyArray, name: str) -> AnyArray:
+def _convert_labels(values: AnyArray, name: str) -> AnyArray:
     """Convert labels to integers; raise `BrdfkitError` unless they are whole numbers."""
-    with np.errstate(invalid="ignore"):  # values beyond 32 bits change
+    with np.errstate(invalid="ignore"):  # values beyond int32 change, which is found below
         whole = values.astype(np.int32)
     if not (whole == values).all():
         raise BrdfkitError(
-            f"{name}: its values are no whole numbers, and so no labels; leave labels=True away."
+            f"{name}: its values are not whole numbers, so they cannot be labels; load it without "
+            "labels=True."
         )
     return whole

@@ -1,14 +1,15 @@
-"""The file formats of volumes: every file of this folder without an underscore is one.
+"""The file formats of volumes: each module of this folder without an underscore reads one format.
 
-A format's file defines
+Such a module defines
 
-- ``NAME``, the name for display, and ``SUFFIXES``, such as ``(".nrrd", ".nhdr")``;
-- ``sniff(head)``: whether the first 4 kB of a file, unpacked if gzip, look like this format;
-- ``read_header(file)``: reads the header of a `VolumeFile`, and returns a `StoredVolume`, which
-  reads the voxels layer by layer.
+- ``NAME``, the format's name in messages, and ``SUFFIXES``, such as ``(".nrrd", ".nhdr")``;
+- ``sniff(head)``, which returns whether the first 4 kB of a file, unpacked from gzip, look like
+  the format;
+- ``read_header(file)``, which reads the header of a `VolumeFile`, and returns a `StoredVolume`,
+  from which the voxels are read layer by layer.
 
-`_volume_file.py` and `_streams.py` are shared by several formats. The packages nibabel, pynrrd,
-pydicom and tifffile, each for one format, are imported when a file needs them.
+Several formats share `_volume_file.py` and `_streams.py`. The packages nibabel, pynrrd, pydicom and
+tifffile, each for one format, are imported only when a file needs them.
 """
 
 import gzip
@@ -23,7 +24,7 @@ from brdfkit.volumes.formats import _volume_file
 from brdfkit.volumes.formats._volume_file import StoredVolume as StoredVolume
 from brdfkit.volumes.formats._volume_file import VolumeFile as VolumeFile
 
-HEAD = 4096  # bytes that a format's `sniff` gets
+HEAD = 4096  # bytes from the start of a file by which `sniff` recognises a format
 
 
 @cache
@@ -33,55 +34,53 @@ def list_formats() -> tuple[ModuleType, ...]:
 
 
 def has_format(name: str | Path) -> bool:
-    """Return whether a file's name has the suffix of a format."""
+    """Return whether a file's name ends with the suffix of a volume format."""
     return any(str(name).lower().endswith(module.SUFFIXES) for module in list_formats())
 
 
-def is_series(folder: Path) -> bool:
-    """Return whether a folder contains a TIFF file or a DICOM file."""
+def is_image_series(folder: Path) -> bool:
+    """Return whether a path is a folder that contains a TIFF file or a DICOM file."""
     if not folder.is_dir():
         return False
-    sniff = _find_format("dicom").sniff
+    sniff = _find_format_module("dicom").sniff
     return bool(_volume_file.list_tiffs(folder)) or any(
-        sniff(_volume_file.read_head(path, HEAD)) for path in _volume_file.list_files(folder)
+        sniff(_volume_file.read_first_bytes(path, HEAD)) for path in _volume_file.list_files(folder)
     )
 
 
 def read_header(file: VolumeFile) -> StoredVolume:
-    """Read the header of a file, by the format that recognises its content, or else its suffix."""
-    if file.path.is_dir():
-        return _read_as(_find_format(_volume_file.folder_format(file)), file)
-    if not (file.size is file.dtype is file.offset is None):  # settings of raw voxels alone
-        return _read_as(_find_format("raw"), file)
-    head, packed = _read_head(file)
-    sniffed = [module for module in list_formats() if module.sniff(head)]
-    named = [m for m in list_formats() if str(file.path).lower().endswith(m.SUFFIXES)]
-    for module in (*sniffed, *named):
-        if packed and not has_packed(module):
-            raise file.error(f"is {module.NAME} packed by gzip, which is not read; unpack it")
-        return _read_as(module, file)
-    known = ", ".join(f"{module.NAME} ({' '.join(module.SUFFIXES)})" for module in list_formats())
-    raise file.error(f"is in no known format of volumes; read are {known}")
-
-
-def has_packed(module: ModuleType) -> bool:
-    """Return whether files of a format may be packed by gzip as a whole."""
-    return any(suffix.endswith(".gz") for suffix in module.SUFFIXES)
-
-
-def _read_as(module: ModuleType, file: VolumeFile) -> StoredVolume:
-    """Read the header of a file by the module of its format."""
-    stored: StoredVolume = module.read_header(file)
+    """Read a file's header by the module of its format, which `_choose_format` finds."""
+    stored: StoredVolume = _choose_format(file).read_header(file)
     return stored
 
 
-def _find_format(name: str) -> ModuleType:
-    """Return the format module of this name."""
+def _choose_format(file: VolumeFile) -> ModuleType:
+    """Return the module of the format that recognises a file's content, or else its suffix.
+
+    Raises `BrdfkitError` if the file is in no known format.
+    """
+    if file.path.is_dir():
+        return _find_format_module(_volume_file.find_folder_format(file))
+    if not (file.size is file.dtype is file.offset is None):  # only raw voxels need these settings
+        return _find_format_module("raw")
+    head, packed = _read_unpacked_head(file)
+    sniffed = [module for module in list_formats() if module.sniff(head)]
+    named = [m for m in list_formats() if str(file.path).lower().endswith(m.SUFFIXES)]
+    for module in (*sniffed, *named):
+        if packed and not any(suffix.endswith(".gz") for suffix in module.SUFFIXES):
+            raise file.error(f"is {module.NAME} packed by gzip, which is not read; unpack it")
+        return module
+    known = ", ".join(f"{module.NAME} ({' '.join(module.SUFFIXES)})" for module in list_formats())
+    raise file.error(f"is in no known format of volumes; the known formats are {known}")
+
+
+def _find_format_module(name: str) -> ModuleType:
+    """Return the module of this folder that reads the format `name`, such as "dicom"."""
     return next(module for module in list_formats() if module.__name__.endswith(f".{name}"))
 
 
-def _read_head(file: VolumeFile) -> tuple[bytes, bool]:
-    """Return the first bytes of a file, unpacked, and whether they were packed by gzip."""
+def _read_unpacked_head(file: VolumeFile) -> tuple[bytes, bool]:
+    """Return the first `HEAD` bytes of a file, unpacked, and whether gzip had packed the file."""
     try:
         with file.path.open("rb") as stream:
             head = stream.read(HEAD)

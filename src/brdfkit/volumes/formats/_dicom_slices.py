@@ -1,4 +1,4 @@
-"""`Slice`: the header of a DICOM image as plain, checked numbers, and the reading of its pixels."""
+"""Reading of DICOM images, the slices of a volume: checked numbers of a header, and the pixels."""
 
 import warnings
 from dataclasses import dataclass
@@ -14,11 +14,26 @@ from brdfkit.volumes.formats._volume_file import VolumeFile
 
 @dataclass(frozen=True, eq=False)
 class Slice:
-    """An image of a series.
+    """The header of a DICOM image, which is one slice of a volume.
 
-    `series` is the number and the UID of the series. In DICOM's world [mm], `place` (3,) is the
-    image's position, `frame` (2, 3) the directions along a row and along a column, and `spacing`
-    the distances between rows and between columns.
+    Attributes
+    ----------
+    path : Path
+        The image's file.
+    series : (str, str)
+        Number and UID of the series of images to which the slice belongs.
+    shape, dtype : (int, int), dtype
+        Numbers of rows and columns, and the type of the stored pixels.
+    place : ndarray
+        Position (3,) of the first pixel in the patient's coordinates [mm].
+    frame : ndarray
+        Unit vectors (2, 3) along a row and along a column.
+    spacing : (float, float)
+        Distance between rows and distance between columns [mm].
+    slope, intercept : float
+        The value of a voxel, such as HU, is slope × pixel + intercept.
+    thickness : float
+        Thickness of the slice [mm].
     """
 
     path: Path
@@ -34,32 +49,35 @@ class Slice:
 
 
 def read_slice(file: VolumeFile, pydicom: Any, path: Path) -> Slice | None:
-    """Read the `Slice` in a file; return None if it is not a DICOM image."""
+    """Read the header of the DICOM image at `path`; return None if the file is no DICOM image.
+
+    `pydicom` is the imported package; errors name the folder or file that the user loads, `file`.
+    """
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # about values that the standard forbids
+            warnings.simplefilter("ignore")  # pydicom warns of values that the standard forbids
             header = pydicom.dcmread(path, stop_before_pixels=True)
             if "Rows" not in header:
                 return None
-            _require_plain(file, path, header)
-            return _parse_header(path, header)
+            _require_single_grey_image(file, path, header)
+            return _parse_slice_header(path, header)
     except pydicom.errors.InvalidDicomError:
         return None
     except BrdfkitError:
         raise
-    except AttributeError as error:  # a field that the file lacks
+    except AttributeError as error:  # pydicom's header has no attribute for a missing field
         raise file.error(f"{path.name} has no {error.name}; convert it, as by dcm2niix") from error
-    except Exception as error:  # damaged values raise errors of many classes
+    except Exception as error:  # pydicom raises errors of many classes for damaged values
         raise file.error(f"the header of {path.name} is damaged; fetch it again") from error
 
 
 def read_pixels(file: VolumeFile, pydicom: Any, image: Slice) -> AnyArray:
-    """Read the pixels of a `Slice`, without rescaling them."""
+    """Read the pixels (rows, columns) of a slice as stored, before slope and intercept apply."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             pixels: AnyArray = pydicom.dcmread(image.path).pixel_array
-    except Exception as error:  # decoders raise errors of many classes
+    except Exception as error:  # decoders of compressed pixels raise errors of many classes
         reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")[:120]
         raise file.error(f"the pixels of {image.path.name} cannot be read ({reason})") from error
     if pixels.shape != image.shape:
@@ -67,17 +85,20 @@ def read_pixels(file: VolumeFile, pydicom: Any, image: Slice) -> AnyArray:
     return pixels
 
 
-def _require_plain(file: VolumeFile, path: Path, header: Any) -> None:
-    """Raise `BrdfkitError` unless an image is a single frame with one number per pixel."""
+def _require_single_grey_image(file: VolumeFile, path: Path, header: Any) -> None:
+    """Raise `BrdfkitError` unless a DICOM image is a single frame with one grey value per pixel."""
     if int(header.get("NumberOfFrames", 1) or 1) > 1:
         raise file.error(f"{path.name} has many frames (enhanced DICOM); convert it by dcm2niix")
     kind = header.PhotometricInterpretation
     if header.SamplesPerPixel != 1 or kind != "MONOCHROME2":
-        raise file.error(f"{path.name} is {kind} where MONOCHROME2 belongs, one number at a voxel")
+        raise file.error(f"{path.name} is {kind}; only MONOCHROME2, one number per voxel, is read")
 
 
-def _parse_header(path: Path, header: Any) -> Slice:
-    """Return the `Slice` of a header; raise an error if a field is missing or damaged."""
+def _parse_slice_header(path: Path, header: Any) -> Slice:
+    """Convert a header of pydicom's to a `Slice`; raise an error if a field is missing or damaged.
+
+    `read_slice` turns that error, whose class may be any, into a `BrdfkitError`.
+    """
     sign = "ui"[int(header.PixelRepresentation)]
     numbers: dict[str, Any] = {
         "place": np.array(header.ImagePositionPatient, float).reshape(3),

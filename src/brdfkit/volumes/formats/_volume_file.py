@@ -1,4 +1,4 @@
-"""`VolumeFile`, a file with a volume, and `StoredVolume`, the volume that its header describes."""
+"""`VolumeFile`, a file with a volume to be read, and `StoredVolume`, the content of its header."""
 
 import importlib
 from collections.abc import Callable, Iterator
@@ -13,30 +13,31 @@ from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import to_printable
 
-Shape = tuple[int, int, int]  # nz, ny, nx
+Shape = tuple[int, int, int]  # (nz, ny, nx), the numbers of voxels along z, y, x
 
-TIFF = ".tif", ".tiff"
+# Converts DICOM's and ITK's world, x to the left and y to the back, to x right and y front
+LPS_TO_RAS = np.diag([-1.0, -1.0, 1.0, 1.0])
 
 
 def list_files(folder: Path) -> list[Path]:
-    """Return the files of a folder, without hidden ones, sorted by name."""
+    """Return the files of a folder sorted by name, without hidden files."""
     return sorted(p for p in Path(folder).iterdir() if p.is_file() and p.name[0] != ".")
 
 
 def list_tiffs(folder: Path) -> list[Path]:
     """Return the TIFF files of a folder."""
-    return [p for p in list_files(folder) if p.suffix.lower() in TIFF]
+    return [p for p in list_files(folder) if p.suffix.lower() in (".tif", ".tiff")]
 
 
-def folder_format(file: "VolumeFile") -> str:
-    """Return the name of the format of a folder, "tiff" or "dicom"."""
+def find_folder_format(file: "VolumeFile") -> str:
+    """Return the format of the files in a folder, "tiff" or "dicom"."""
     if not list_files(file.path):
-        raise file.error("the folder is empty; name one with a series of DICOM or a stack of TIFF")
+        raise file.error("the folder is empty; name one with DICOM slices or TIFF files")
     return "tiff" if list_tiffs(file.path) else "dicom"
 
 
-def read_head(path: Path, size: int) -> bytes:
-    """Return the first bytes of a file, none if it cannot be read."""
+def read_first_bytes(path: Path, size: int) -> bytes:
+    """Return the first `size` bytes of a file; return b"" if it cannot be read."""
     try:
         with path.open("rb") as stream:
             return stream.read(size)
@@ -44,13 +45,11 @@ def read_head(path: Path, size: int) -> bytes:
         return b""
 
 
-LPS_TO_RAS = np.diag([-1.0, -1.0, 1.0, 1.0])
+def make_grid_transform(directions: ArrayLike, spacing: ArrayLike, origin: ArrayLike) -> FloatArray:
+    """Return the transform (4, 4) from the indices (i, j, k) of voxels to the world.
 
-
-def make_transform(directions: ArrayLike, spacing: ArrayLike, origin: ArrayLike) -> FloatArray:
-    """Return the transform (4, 4) of a grid with axes `directions`, the columns of (3, 3).
-
-    `spacing` and `origin` are (3,).
+    The columns of `directions` (3, 3) are the grid's axes, `spacing` (3,) are the distances between
+    voxels along them, and `origin` (3,) is the centre of the first voxel.
     """
     to_world = np.eye(4)
     to_world[:3, :3] = np.asarray(directions, float) * np.asarray(spacing, float)
@@ -60,10 +59,11 @@ def make_transform(directions: ArrayLike, spacing: ArrayLike, origin: ArrayLike)
 
 @dataclass(frozen=True)
 class VolumeFile:
-    """A file or a folder with a volume.
+    """A file or folder that contains a volume, and the user's settings for reading it.
 
-    `part` is the text behind '#' in the path, or None. `size` (nx, ny, nz), `dtype` and `offset`
-    describe raw data, and are None if the user does not give them.
+    `part` is the text behind '#' in the user's path, which chooses one of several volumes in the
+    file, or None. `size` (nx, ny, nz), `dtype` and `offset` [bytes] describe raw voxels, which have
+    no header; they are None if the user does not give them.
     """
 
     path: Path
@@ -73,15 +73,18 @@ class VolumeFile:
     offset: int | None = None
 
     def error(self, problem: str) -> BrdfkitError:
-        """Return a `BrdfkitError` that names this file.
+        """Return a `BrdfkitError` that names this file and describes the `problem`.
 
         `problem` says what is wrong and what to do, without a full stop. Line breaks and control
-        characters, which may come from quoted headers, are removed.
+        characters, which a quoted header may contain, are removed.
         """
         return BrdfkitError(f"{self.path}: {to_printable(' '.join(problem.split()))}.")
 
     def import_package(self, name: str, brings: str) -> ModuleType:
-        """Import the package `name`, which reads this format; if missing, say how to install it."""
+        """Import the optional package `name`, which reads this file's format.
+
+        If it is missing, the `BrdfkitError` says how to install it by its name on PyPI, `brings`.
+        """
         try:
             return importlib.import_module(name)
         except ImportError as error:
@@ -92,10 +95,11 @@ class VolumeFile:
 
 @dataclass(frozen=True)
 class StoredVolume:
-    """A volume in a file whose header has been read.
+    """A volume whose header has been read from a file, and whose voxels have not.
 
-    `shape` is (nz, ny, nx). `layers()` yields the voxels, arrays (ny, nx) of this `dtype` in the
-    order of z. `to_world`, `labels`, `unit` and `axes` are those of the `Volume`.
+    `shape` is (nz, ny, nx). `layers()` reads the voxels, and yields an array (ny, nx) of this
+    `dtype` for each z. `to_world`, `labels`, `unit` and `axes` have the meaning that they have in
+    `Volume`.
     """
 
     shape: Shape

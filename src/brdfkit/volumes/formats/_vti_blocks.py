@@ -1,7 +1,8 @@
-"""The data of VTK's XML files: text, or bytes that may be packed by zlib, raw or in base64.
+"""Decoding of the data arrays in VTK's XML files: text, or binary data, raw or in base64.
 
-Plain bytes are preceded by their number. Packed bytes are preceded by the number of blocks, the
-size of a block, the size of the last block if it is smaller, and the packed size of each block.
+The number of bytes precedes plain binary data. Data that zlib has packed in blocks are preceded by
+the number of blocks, the size of a block, the size of the last block if it is smaller, and the
+packed size of each block.
 """
 
 from __future__ import annotations
@@ -25,9 +26,11 @@ ZLIB = "vtkZLibDataCompressor"
 
 @dataclass(frozen=True)
 class Encoding:
-    """The encoding of a file's data: `form` is "ascii", "base64" or "raw".
+    """The encoding of a data array in one of VTK's XML files.
 
-    `size_type` is the type of the numbers of bytes, `packed` says whether zlib has packed the data.
+    `form` is "ascii", "base64" or "raw", `byte_order` the order of bytes in a number, and
+    `size_type` the integer type of the byte counts that precede data. `packed` says whether zlib
+    has packed the data.
     """
 
     form: str
@@ -39,9 +42,10 @@ class Encoding:
     def read(
         cls, file: VolumeFile, root: Element, form: str | None, appended: str | None
     ) -> Encoding:
-        """Read the encoding from the root of the XML and the format `form` of the array.
+        """Read the encoding of an array from the attributes of the XML's root element.
 
-        `appended` is the form of appended data.
+        `form` is the array's attribute "format". `appended` is "raw" or "base64", the form of the
+        data at the end of the file, or None if there are none.
         """
         compressor = root.get("compressor")
         if compressor not in (None, ZLIB):
@@ -58,9 +62,9 @@ class Encoding:
 def make_opener(
     file: VolumeFile, start: int, stop: int, encoding: Encoding, shape: Shape, dtype: DType
 ) -> Opener:
-    """Return a function that opens the stream of the voxels between two places of a file.
+    """Return a function that opens a stream of the voxels from byte `start` to `stop` of a file.
 
-    Raises `BrdfkitError` at once if there is no room for the voxels.
+    Raises `BrdfkitError` at once if there are too few bytes for voxels of this `shape` and `dtype`.
     """
     is_text = encoding.form == "ascii"
     smallest = np.dtype(np.uint8) if is_text else dtype  # a number has at least one digit
@@ -79,31 +83,31 @@ def make_opener(
             yield (
                 PackedStream(stream, encoding, size, room)
                 if encoding.packed
-                else skip_size(stream, encoding, size, room)
+                else skip_byte_count(stream, encoding, size, room)
             )
 
     return open_stream
 
 
 class Base64Stream:
-    """A stream of the bytes that are written in base64 in another stream.
+    """A stream of the bytes that another stream has as base64 letters.
 
-    It never reads more letters than the bytes need, because other data may follow. The number of
-    bytes, which is encoded separately, ends with its padding.
+    It never reads more letters than the bytes need, because other data may follow. VTK encodes the
+    byte counts separately from the data, so that padding letters lie between the two.
     """
 
     def __init__(self, text: Any) -> None:
         self.text, self.ready = text, b""
 
     def read(self, size: int) -> bytes:
-        """Read the next `size` bytes, or fewer at the end."""
+        """Read the next `size` decoded bytes, or fewer at the end."""
         triples = -(-(size - len(self.ready)) // 3)
-        data = self.ready + _decode(self._read_letters(4 * max(triples, 0)))
+        data = self.ready + _decode_base64(self._read_base64_letters(4 * max(triples, 0)))
         self.ready = data[size:]
         return data[:size]
 
-    def _read_letters(self, count: int) -> bytes:
-        """Read the next `count` letters, without blanks and line breaks."""
+    def _read_base64_letters(self, count: int) -> bytes:
+        """Read the next `count` base64 letters, and skip blanks and line breaks."""
         parts: list[bytes] = []
         while count > 0 and (data := self.text.read(count)):
             parts += data.split()
@@ -112,19 +116,22 @@ class Base64Stream:
 
 
 class PackedStream:
-    """A stream of `expected` bytes in blocks packed by zlib, within `room` bytes of the file."""
+    """A stream that unpacks a data array of VTK's, `expected` bytes in blocks packed by zlib.
+
+    The packed blocks must fit into `room` bytes of the file; otherwise EOFError is raised.
+    """
 
     def __init__(self, stream: Any, encoding: Encoding, expected: int, room: int) -> None:
         self.stream, self.ready = stream, b""
-        count, block, last = _read_sizes(stream, encoding, 3, room)
-        _require_size((count - bool(last)) * block + last, expected)
-        packed_sizes = _read_sizes(stream, encoding, count, room)
+        count, block, last = _read_byte_counts(stream, encoding, 3, room)
+        _require_byte_count((count - bool(last)) * block + last, expected)
+        packed_sizes = _read_byte_counts(stream, encoding, count, room)
         if sum(packed_sizes) > room:
             raise EOFError
         self.packed_sizes, self.block_size = iter(packed_sizes), min(block, expected)
 
     def read(self, size: int) -> bytes:
-        """Read the next `size` bytes, or fewer at the end."""
+        """Read the next `size` unpacked bytes, or fewer at the end."""
         parts, missing = [self.ready], size - len(self.ready)
         while missing > 0 and (packed := next(self.packed_sizes, 0)):
             unpacker = zlib.decompressobj()
@@ -135,15 +142,21 @@ class PackedStream:
         return data[:size]
 
 
-def skip_size(stream: Any, encoding: Encoding, expected: int, room: int) -> Any:
-    """Read the number of bytes, which should be the `expected` one, and return the stream."""
-    (size,) = _read_sizes(stream, encoding, 1, room)
-    _require_size(size, expected)
+def skip_byte_count(stream: Any, encoding: Encoding, expected: int, room: int) -> Any:
+    """Read the byte count before plain data, and return the stream, now at the first voxel.
+
+    Raises EOFError unless the count is the `expected` one.
+    """
+    (size,) = _read_byte_counts(stream, encoding, 1, room)
+    _require_byte_count(size, expected)
     return stream
 
 
-def _read_sizes(stream: Any, encoding: Encoding, count: int, room: int) -> list[int]:
-    """Read `count` numbers of bytes; raise EOFError if they need more than `room` bytes."""
+def _read_byte_counts(stream: Any, encoding: Encoding, count: int, room: int) -> list[int]:
+    """Read `count` integers, the byte counts that precede the data of an array.
+
+    Raises EOFError if the stream ends before, or if they need more than `room` bytes.
+    """
     needed = count * encoding.size_type.itemsize
     data = stream.read(needed) if needed <= room else b""
     if len(data) < needed:
@@ -152,14 +165,14 @@ def _read_sizes(stream: Any, encoding: Encoding, count: int, room: int) -> list[
     return sizes
 
 
-def _require_size(size: int, expected: int) -> None:
-    """Raise EOFError unless a number of bytes is the `expected` one."""
+def _require_byte_count(size: int, expected: int) -> None:
+    """Raise EOFError unless an array has as many bytes, `size`, as its voxels need, `expected`."""
     if size != expected:
         raise EOFError(f"{size:,} bytes where the extent needs {expected:,}")
 
 
-def _decode(letters: bytes) -> bytes:
-    """Decode base64; raise EOFError if it is damaged."""
+def _decode_base64(letters: bytes) -> bytes:
+    """Decode base64 `letters` to bytes; raise EOFError if they are damaged."""
     try:
         return base64.b64decode(letters, validate=True)
     except ValueError as error:

@@ -16,36 +16,36 @@ from brdfkit.volumes.formats._volume_file import (
     LPS_TO_RAS,
     StoredVolume,
     VolumeFile,
-    make_transform,
+    make_grid_transform,
 )
 
 NAME = "DICOM"
 SUFFIXES = (".dcm", ".dicom", ".ima")
 
-UNEVEN = 0.01  # relative deviation of the distance between slices above which one is missing
-TURNED = 1e-3  # difference of the components of directions above which slices are turned
+UNEVEN = 0.01  # a slice is missing if a distance deviates from the median by a larger share
+TURNED = 1e-3  # slices are not parallel if a component of their unit vectors differs by more
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether the head has DICOM's magic letters."""
+    """Return whether a file's first bytes contain DICOM's magic letters."""
     return head[128:132] == b"DICM"
 
 
 def read_header(file: VolumeFile) -> StoredVolume:
-    """Read the header of a DICOM series, in a folder or a file."""
+    """Read the headers of a DICOM series from the files of a folder, or from a single file."""
     pydicom = file.import_package("pydicom", "pydicom")
     paths = _volume_file.list_files(file.path) if file.path.is_dir() else [file.path]
     images = [image for path in paths if (image := read_slice(file, pydicom, path)) is not None]
     images = _choose_series(file, images)
-    _require_alike(file, images)
+    _require_equal_grids(file, images)
     first = images[0]
     normal = np.cross(*first.frame)
     images.sort(key=lambda image: float(normal @ image.place))
-    step = _find_step(file, images, normal)
+    step = _find_slice_step(file, images, normal)
     rescaled = any((image.slope, image.intercept) != (1, 0) for image in images)
     dtype = np.dtype(np.float32) if rescaled else first.dtype
 
-    def read_layers() -> Iterator[AnyArray]:
+    def read_rescaled_layers() -> Iterator[AnyArray]:
         for image in images:
             values = read_pixels(file, pydicom, image)
             scaled = values * image.slope + image.intercept if rescaled else values
@@ -53,11 +53,11 @@ def read_header(file: VolumeFile) -> StoredVolume:
 
     between_rows, between_columns = first.spacing
     directions = np.column_stack([*first.frame, step])
-    to_world = make_transform(directions, (between_columns, between_rows, 1), images[0].place)
+    to_world = make_grid_transform(directions, (between_columns, between_rows, 1), images[0].place)
     return StoredVolume(
         shape=(len(images), *first.shape),
         dtype=dtype,
-        layers=read_layers,
+        layers=read_rescaled_layers,
         to_world=LPS_TO_RAS @ to_world,
         unit="mm",
         axes="RAS",
@@ -65,9 +65,12 @@ def read_header(file: VolumeFile) -> StoredVolume:
 
 
 def _choose_series(file: VolumeFile, images: list[Slice]) -> list[Slice]:
-    """Return the images of the series that the file's part names, or of the only series."""
+    """Return the images of one series: the number behind '#' in the path, or the only series.
+
+    Raises `BrdfkitError` if there are no images, or if several series fit.
+    """
     if not images:
-        raise file.error("holds no image of DICOM; name the folder of a series")
+        raise file.error("has no DICOM image; name the folder of a series")
     series: dict[tuple[str, str], list[Slice]] = {}
     for image in images:
         series.setdefault(image.series, []).append(image)
@@ -75,31 +78,35 @@ def _choose_series(file: VolumeFile, images: list[Slice]) -> list[Slice]:
     if len(chosen) != 1:
         known = ", ".join(f"{number} ({len(s)} slices)" for (number, _), s in series.items())
         raise file.error(
-            f"holds several series by their numbers, {known}; name one: {file.path.name}#1"
+            f"has several series, with the numbers {known}; name one: {file.path.name}#1"
         )
     return chosen[0]
 
 
-def _require_alike(file: VolumeFile, images: list[Slice]) -> None:
-    """Raise `BrdfkitError` unless the slices can belong to one volume."""
+def _require_equal_grids(file: VolumeFile, images: list[Slice]) -> None:
+    """Raise `BrdfkitError` unless all slices have the same pixel grid and are parallel."""
     first = images[0]
     for what in ("shape", "dtype", "spacing"):
         if any(not np.array_equal(getattr(i, what), getattr(first, what)) for i in images):
             raise file.error(f"its slices differ in {what}; keep those of one volume")
     if any(np.abs(image.frame - first.frame).max() > TURNED for image in images):
-        raise file.error("its slices are turned to each other; keep those of one volume")
+        raise file.error("its slices are not parallel; keep those of one volume")
 
 
-def _find_step(file: VolumeFile, images: list[Slice], normal: FloatArray) -> FloatArray:
-    """Return the vector (3,) [mm] from a slice to the next; a single slice has its thickness."""
+def _find_slice_step(file: VolumeFile, images: list[Slice], normal: FloatArray) -> FloatArray:
+    """Return the mean vector (3,) [mm] from one of the sorted slices to the next.
+
+    A single slice has its thickness along the `normal`. Raises `BrdfkitError` if slices coincide or
+    one is missing.
+    """
     if len(images) == 1:
         return normal * images[0].thickness
     places = np.array([image.place for image in images])
     steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    median = float(np.sort(steps)[(len(steps) - 1) // 2])  # of two steps, the smaller one
+    median = float(np.sort(steps)[(len(steps) - 1) // 2])  # with a gap, the smaller of two steps
     if not steps.min() > 1e-3 * max(median, 1e-6):
         raise file.error(
-            "has several slices at one place, as of several times; keep those of one volume"
+            "has several slices at one place, such as at several times; keep those of one volume"
         )
     uneven = np.abs(steps / median - 1)
     if uneven.max() > UNEVEN:

@@ -1,7 +1,7 @@
-"""MetaImage: `.mha`, or a header `.mhd` beside its data, as ITK writes them.
+"""ITK's format MetaImage: a file `.mha`, or a header `.mhd` beside a file with the voxels.
 
 The rows of ``TransformMatrix`` are the directions of the axes, and x is the fastest axis of the
-voxels. ITK's world, LPS, is converted to RAS.
+voxels. ITK's world, x to the patient's left and y to the back, is converted to right and front.
 """
 
 from pathlib import Path
@@ -19,7 +19,7 @@ from brdfkit.volumes.formats._volume_file import (
     LPS_TO_RAS,
     StoredVolume,
     VolumeFile,
-    make_transform,
+    make_grid_transform,
 )
 
 NAME = "MetaImage"
@@ -32,47 +32,47 @@ TYPES = {
     "MET_USHORT": "u2",
     "MET_INT": "i4",
     "MET_UINT": "u4",
-    "MET_LONG": "i4",  # in MetaIO, on every machine
+    "MET_LONG": "i4",  # MetaIO writes 4 bytes on every machine
     "MET_ULONG": "u4",
     "MET_LONG_LONG": "i8",
     "MET_ULONG_LONG": "u8",
     "MET_FLOAT": "f4",
     "MET_DOUBLE": "f8",
 }
-HEADER_LIMIT = 2**16  # bytes
+HEADER_LIMIT = 2**16  # bytes; in a longer header ElementDataFile is taken to be missing
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether the file begins with fields of a MetaImage."""
+    """Return whether a file begins with a field of MetaImage's header."""
     return head.lstrip().startswith((b"ObjectType", b"NDims")) and b"=" in head[:80]
 
 
 def read_header(file: VolumeFile) -> StoredVolume:
-    """Read the header of a MetaImage."""
+    """Read the header of a MetaImage file."""
     fields, start = _read_fields(file)
     try:
         sizes = [int(n) for n in fields["DimSize"].split()]
-        to_world = _to_world(fields)
+        to_world = _make_grid_to_world(fields)
         code = TYPES.get(fields["ElementType"])
         channels = int(fields.get("ElementNumberOfChannels", 1))
         skip = int(fields.get("HeaderSize", 0))
     except (KeyError, ValueError) as error:
         raise file.error(f"its header is damaged ({error}); fetch it again") from error
     if len(sizes) != 3 or min(sizes) < 1:
-        raise file.error(f"has axes of {tuple(sizes)}; three of 1 or more belong there")
+        raise file.error(f"has the size {tuple(sizes)}; it should be three numbers above 0")
     shape = sizes[2], sizes[1], sizes[0]
     if code is None or channels != 1:
         what = f"{channels} channels of {fields['ElementType']}"
-        raise file.error(f"has {what} at each voxel; one number belongs there")
-    big_endian = _is_true(fields, "BinaryDataByteOrderMSB", "ElementByteOrderMSB")
+        raise file.error(f"has {what} at each voxel; it should be one number")
+    big_endian = _is_field_true(fields, "BinaryDataByteOrderMSB", "ElementByteOrderMSB")
     dtype = np.dtype((">" if big_endian else "<") + code)
-    path, start = _find_data(file, fields["ElementDataFile"], start)
-    if not _is_true(fields, "BinaryData", default="True"):
+    path, start = _find_voxel_file(file, fields["ElementDataFile"], start)
+    if not _is_field_true(fields, "BinaryData", default="True"):
         require_bytes(file, path, start, shape, np.uint8)
         stream = make_text_opener(path, start, dtype)
     else:
-        packed = _is_true(fields, "CompressedData")
-        if skip == -1 and not packed and path.exists():  # the data are the end of the file
+        packed = _is_field_true(fields, "CompressedData")
+        if skip == -1 and not packed and path.exists():  # -1 puts the voxels at the file's end
             start, skip = path.stat().st_size - int(np.prod(shape)) * dtype.itemsize, 0
         start = max(start + max(skip, 0), 0)
         require_bytes(file, path, start, shape, dtype, "zlib" if packed else "")
@@ -88,7 +88,7 @@ def read_header(file: VolumeFile) -> StoredVolume:
 
 
 def _read_fields(file: VolumeFile) -> tuple[dict[str, str], int]:
-    """Return the fields of the header, and the number of its bytes."""
+    """Return the header's fields as {name: value}, and the header's length [bytes]."""
     fields: dict[str, str] = {}
     read = 0
     with file.path.open("rb") as stream:
@@ -103,19 +103,22 @@ def _read_fields(file: VolumeFile) -> tuple[dict[str, str], int]:
     raise file.error("its header has no ElementDataFile at its end; fetch it again")
 
 
-def _to_world(fields: dict[str, str]) -> FloatArray:
-    """Return the transform (4, 4) to ITK's world."""
-    matrix = _first(
+def _make_grid_to_world(fields: dict[str, str]) -> FloatArray:
+    """Return the transform (4, 4) from the indices of voxels to ITK's world."""
+    matrix = _get_first_field(
         fields, "TransformMatrix", "Rotation", "Orientation", default="1 0 0 0 1 0 0 0 1"
     )
-    spacing = _first(fields, "ElementSpacing", "ElementSize", default="1 1 1")
-    origin = _first(fields, "Offset", "Position", "Origin", default="0 0 0")
+    spacing = _get_first_field(fields, "ElementSpacing", "ElementSize", default="1 1 1")
+    origin = _get_first_field(fields, "Offset", "Position", "Origin", default="0 0 0")
     rows, steps, place = (np.array(text.split(), float) for text in (matrix, spacing, origin))
-    return make_transform(rows.reshape(3, 3).T, steps.reshape(3), place.reshape(3))
+    return make_grid_transform(rows.reshape(3, 3).T, steps.reshape(3), place.reshape(3))
 
 
-def _find_data(file: VolumeFile, name: str, start: int) -> tuple[Path, int]:
-    """Return the path of the file with the voxels, and where they begin in it."""
+def _find_voxel_file(file: VolumeFile, name: str, start: int) -> tuple[Path, int]:
+    """Return the path of the file with the voxels, and the byte in it at which they begin.
+
+    `name` is the header's ElementDataFile. For "LOCAL" the voxels follow the header, at `start`.
+    """
     if name.upper() == "LOCAL":
         return file.path, start
     if name.upper().startswith("LIST") or "%" in name:
@@ -123,11 +126,11 @@ def _find_data(file: VolumeFile, name: str, start: int) -> tuple[Path, int]:
     return file.path.parent / name, 0
 
 
-def _is_true(fields: dict[str, str], *names: str, default: str = "False") -> bool:
-    """Return whether the first of several fields that exists says "true"."""
-    return _first(fields, *names, default=default).lower() in ("true", "1", "yes")
+def _is_field_true(fields: dict[str, str], *names: str, default: str = "False") -> bool:
+    """Return whether a header's field is true; `names` are its names in versions of the format."""
+    return _get_first_field(fields, *names, default=default).lower() in ("true", "1", "yes")
 
 
-def _first(fields: dict[str, str], *names: str, default: str) -> str:
-    """Return the first of several fields that exists, or a default."""
+def _get_first_field(fields: dict[str, str], *names: str, default: str) -> str:
+    """Return the value of the first of the `names` that a header has, or the `default`."""
     return next((fields[name] for name in names if name in fields), default)

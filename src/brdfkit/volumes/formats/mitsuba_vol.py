@@ -1,11 +1,11 @@
-"""Mitsuba's `.vol`, version 3: one channel of float32, x fastest, and the box of the volume."""
+"""Mitsuba's format `.vol`, version 3: one channel of float32, x fastest, and the volume's box."""
 
 import struct
 
 import numpy as np
 
 from brdfkit.volumes.formats._streams import make_opener, read_layers, require_bytes
-from brdfkit.volumes.formats._volume_file import StoredVolume, VolumeFile, make_transform
+from brdfkit.volumes.formats._volume_file import StoredVolume, VolumeFile, make_grid_transform
 
 NAME = "Mitsuba's grid"
 SUFFIXES = (".vol",)
@@ -14,25 +14,26 @@ HEADER = struct.Struct("<3sB5i6f")  # VOL, version, encoding, nx, ny, nz, channe
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether the file begins as Mitsuba's grids do."""
+    """Return whether a file begins with the letters of Mitsuba's volume grids."""
     return head.startswith(b"VOL")
 
 
 def read_header(file: VolumeFile) -> StoredVolume:
-    """Read the header of one of Mitsuba's grids."""
+    """Read the header of one of Mitsuba's volume grids."""
     with file.path.open("rb") as stream:
         head = stream.read(HEADER.size)
     if len(head) < HEADER.size or head[:3] != b"VOL":
-        raise file.error("is no grid of Mitsuba's, or cut short; fetch it again")
+        raise file.error("is not a volume grid of Mitsuba's, or is cut short; fetch it again")
     _, version, encoding, nx, ny, nz, channels, *box = HEADER.unpack(head)
     if (version, encoding) != (3, 1):
         raise file.error(
-            f"has version {version} and encoding {encoding}; 3 and 1, float32, are read"
+            f"has version {version} and encoding {encoding}; only version 3 and encoding 1, "
+            "float32, are read"
         )
     if channels != 1:
-        raise file.error(f"has {channels} channels; one number belongs at each voxel")
+        raise file.error(f"has {channels} channels; it should have one number at each voxel")
     if min(nx, ny, nz) < 1:
-        raise file.error(f"its header tells of {nx}×{ny}×{nz} voxels; it is damaged")
+        raise file.error(f"its header states {nx}×{ny}×{nz} voxels; it is damaged")
     shape, dtype = (nz, ny, nx), np.dtype("<f4")
     require_bytes(file, file.path, HEADER.size, shape, dtype)
     low, high = np.reshape(box, (2, 3))
@@ -42,5 +43,5 @@ def read_header(file: VolumeFile) -> StoredVolume:
         shape=shape,
         dtype=dtype,
         layers=lambda: read_layers(file, open_stream, shape, dtype),
-        to_world=make_transform(np.eye(3), spacing, low + spacing / 2),
+        to_world=make_grid_transform(np.eye(3), spacing, low + spacing / 2),
     )

@@ -1,8 +1,8 @@
-"""NRRD: `.nrrd`, or a header `.nhdr` beside its data.
+"""The format NRRD: a file `.nrrd`, or a header `.nhdr` beside a file with the voxels.
 
-The axis x of the voxels is the fastest. ``space directions`` are the axes with their spacing. The
-spaces left-posterior-superior and left-anterior-superior are converted to RAS. Slicer's
-segmentations (``Segment0_ID``) have labels.
+The axis x of the voxels is the fastest. The header's ``space directions`` are the vectors from a
+voxel to its neighbours. The patient's coordinates are converted to x right, y front, z up. Files
+with a field ``Segment0_ID``, Slicer's segmentations, contain labels.
 """
 
 from pathlib import Path
@@ -19,7 +19,12 @@ from brdfkit.volumes.formats._streams import (
     read_layers,
     require_bytes,
 )
-from brdfkit.volumes.formats._volume_file import Shape, StoredVolume, VolumeFile, make_transform
+from brdfkit.volumes.formats._volume_file import (
+    Shape,
+    StoredVolume,
+    VolumeFile,
+    make_grid_transform,
+)
 
 NAME = "NRRD"
 SUFFIXES = (".nrrd", ".nhdr")
@@ -36,7 +41,7 @@ TYPES = {
     "f4": "float",
     "f8": "double",
 }
-SPACES = {  # the signs that turn x, y and z to right, anterior, superior
+SPACES = {  # factors of x, y and z that convert a space to right, anterior, superior
     "right-anterior-superior": (1, 1, 1),
     "ras": (1, 1, 1),
     "left-posterior-superior": (-1, -1, 1),
@@ -49,7 +54,7 @@ TEXT = "ascii", "text", "txt"
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether the file begins as all NRRD files do."""
+    """Return whether a file begins with NRRD's magic letters."""
     return head.startswith(b"NRRD0")
 
 
@@ -58,12 +63,12 @@ def read_header(file: VolumeFile) -> StoredVolume:
     header, start = _read_fields(file)
     sizes = [int(n) for n in header["sizes"]]
     if len(sizes) != 3 or min(sizes) < 1:
-        raise file.error(f"has axes of {tuple(sizes)}; three of 1 or more belong there")
+        raise file.error(f"has the size {tuple(sizes)}; it should be three numbers above 0")
     shape = sizes[2], sizes[1], sizes[0]
     dtype = _find_dtype(file, header)
-    path = _find_data(file, header)
-    stream = _make_opener(file, header, path, start if path == file.path else 0, shape, dtype)
-    to_world, axes = _to_world(file, header)
+    path = _find_voxel_file(file, header)
+    stream = _make_voxel_opener(file, header, path, start if path == file.path else 0, shape, dtype)
+    to_world, axes = _make_grid_to_world(file, header)
     unit = (header.get("space units") or [""])[0]
     return StoredVolume(
         shape=shape,
@@ -77,7 +82,7 @@ def read_header(file: VolumeFile) -> StoredVolume:
 
 
 def _read_fields(file: VolumeFile) -> tuple[dict[str, Any], int]:
-    """Return the fields of the header, and where the data begin behind it."""
+    """Return the header's fields as {name: value}, and the byte at which the voxels begin."""
     nrrd = file.import_package("nrrd", "pynrrd")
     try:
         with file.path.open("rb") as stream:
@@ -92,15 +97,15 @@ def _read_fields(file: VolumeFile) -> tuple[dict[str, Any], int]:
 
 
 def _find_dtype(file: VolumeFile, header: dict[str, Any]) -> DType:
-    """Return the type of the voxels."""
+    """Return the type of the voxels that the header states."""
     for code, names in TYPES.items():
         if header["type"].lower() in names.split(", "):
             return np.dtype((">" if header.get("endian") == "big" else "<") + code)
-    raise file.error(f"its type {header['type']!r} is not read; one number belongs at each voxel")
+    raise file.error(f"its type {header['type']!r} is not read; voxels should be single numbers")
 
 
-def _find_data(file: VolumeFile, header: dict[str, Any]) -> Path:
-    """Return the path of the file with the voxels."""
+def _find_voxel_file(file: VolumeFile, header: dict[str, Any]) -> Path:
+    """Return the path of the file with the voxels, which is the header's own if it names none."""
     name = header.get("data file", header.get("datafile"))
     if name is None:
         return file.path
@@ -109,21 +114,25 @@ def _find_data(file: VolumeFile, header: dict[str, Any]) -> Path:
     return file.path.parent / str(name)
 
 
-def _make_opener(
+def _make_voxel_opener(
     file: VolumeFile, header: dict[str, Any], path: Path, start: int, shape: Shape, dtype: DType
 ) -> Opener:
-    """Return a function that opens the stream of the voxels."""
+    """Return a function that opens the voxels as a stream of bytes, in the header's encoding.
+
+    The voxels, of this `shape` and `dtype`, begin at the byte `start` of `path`, or further on if
+    the header says so. Raises `BrdfkitError` if the file is too small for them.
+    """
     encoding = header["encoding"].lower()
     skip = int(header.get("byte skip", header.get("byteskip", 0)))
     if int(header.get("line skip", header.get("lineskip", 0))):
-        raise file.error("lines are to be skipped before its data, which is not read; remove them")
+        raise file.error("its header has a line skip, which is not read; remove these lines")
     if encoding in TEXT:
-        require_bytes(file, path, start, shape, np.uint8)  # a number has at least one digit
+        require_bytes(file, path, start, shape, np.uint8)  # the text has a digit or more per voxel
         return make_text_opener(path, start, dtype)
     if encoding not in PACKINGS:
         raise file.error(f"its encoding {encoding!r} is not read; save it as raw or gzip")
     packing = PACKINGS[encoding]
-    if skip == -1 and not packing and path.exists():  # the data are the end of the file
+    if skip == -1 and not packing and path.exists():  # -1 puts the voxels at the file's end
         start, skip = path.stat().st_size - int(np.prod(shape)) * dtype.itemsize, 0
     if skip < 0 or start < 0:
         raise file.error("its byte skip is not possible: the file is cut short; fetch it again")
@@ -133,16 +142,19 @@ def _make_opener(
     return make_opener(path, start + skip)
 
 
-def _to_world(file: VolumeFile, header: dict[str, Any]) -> tuple[FloatArray, str]:
-    """Return the transform to the world, and "RAS" if the header says how to convert to it."""
+def _make_grid_to_world(file: VolumeFile, header: dict[str, Any]) -> tuple[FloatArray, str]:
+    """Return the transform (4, 4) from the indices of voxels to the world, and the world's axes.
+
+    The axes are "RAS" if the header names a patient's coordinates, otherwise "".
+    """
     directions = header.get("space directions")
     spacing = header.get("spacings", np.ones(3))
     flips = SPACES.get(header.get("space", "").lower())
     columns = np.eye(3) * spacing if directions is None else np.asarray(directions, float).T
     origin = header.get("space origin", np.zeros(3))
     if columns.shape != (3, 3) or np.shape(origin) != (3,):
-        raise file.error("its space has not three dimensions; save it anew")
-    to_world = make_transform(columns, np.ones(3), origin)
+        raise file.error("its space does not have three dimensions; save it again with three")
+    to_world = make_grid_transform(columns, np.ones(3), origin)
     if flips is None:
         return to_world, ""
     return np.diag([*flips, 1]) @ to_world, "RAS"

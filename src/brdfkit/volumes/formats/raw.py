@@ -1,7 +1,8 @@
-"""Raw voxels without a header: `.raw`, x fastest.
+"""Raw voxels in a file `.raw` without a header, x fastest.
 
-The user gives their size and type, or the name does, as in ``engine_256x256x128_uint8.raw``, the
-convention of the Open SciVis Datasets. If there is a header, `.mhd` or `.nhdr`, users open that.
+Their size and type are arguments of `volumes.load`, or part of the file's name, as in
+``engine_256x256x128_uint8.raw``, the convention of the Open SciVis Datasets. If a header `.mhd` or
+`.nhdr` lies beside the file, users should load the header.
 """
 
 import re
@@ -20,12 +21,15 @@ HEADERS = ".mhd", ".nhdr"
 
 
 def sniff(head: bytes) -> bool:
-    """Return False, because there is no header to recognise."""
+    """Return False, because raw voxels have no header by which to recognise them."""
     return False
 
 
 def read_header(file: VolumeFile) -> StoredVolume:
-    """Return the volume of raw voxels, and check the size of the file."""
+    """Return the volume with the size and type that the user or the file's name gives.
+
+    Raises `BrdfkitError` if neither does, or unless the file is exactly as large as these voxels.
+    """
     in_name = IN_NAME.search(file.path.name)
     size, dtype = file.size, file.dtype
     if in_name and size is None and dtype is None:
@@ -34,11 +38,11 @@ def read_header(file: VolumeFile) -> StoredVolume:
         beside = [file.path.with_suffix(suffix) for suffix in HEADERS]
         header = next((path for path in beside if path.exists()), None)
         raise file.error(
-            f"has no header; open {header.name}, which is one"
+            f"has no header; open its header, {header.name}"
             if header
             else "has no header; give its size=(nx, ny, nz) and dtype, such as 'uint16' or '>i2'"
         )
-    shape, dtype, offset = (size[2], size[1], size[0]), _to_dtype(file, dtype), file.offset or 0
+    shape, dtype, offset = (size[2], size[1], size[0]), _parse_dtype(file, dtype), file.offset or 0
     require_bytes(file, file.path, offset, shape, dtype)
     expected = offset + int(np.prod(shape)) * dtype.itemsize
     present = file.path.stat().st_size
@@ -51,12 +55,12 @@ def read_header(file: VolumeFile) -> StoredVolume:
     return StoredVolume(shape, dtype, lambda: read_layers(file, stream, shape, dtype), np.eye(4))
 
 
-def _to_dtype(file: VolumeFile, given: Any) -> DType:
-    """Return the user's type of voxels; raise `BrdfkitError` if it is not one of real numbers."""
+def _parse_dtype(file: VolumeFile, given: Any) -> DType:
+    """Return the user's `dtype` as NumPy's; raise `BrdfkitError` unless it has real numbers."""
     try:
         dtype: DType = np.dtype(given)
     except TypeError:
         dtype = np.dtype(object)
     if dtype.kind not in "iuf":
-        raise file.error(f"dtype = {given!r} should be one of numbers, such as 'uint16' or '>i2'")
+        raise file.error(f"dtype = {given!r} is no type of numbers, such as 'uint16' or '>i2'")
     return dtype

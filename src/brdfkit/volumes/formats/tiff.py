@@ -1,7 +1,7 @@
 """TIFF stacks: a file of many pages, or a folder of files, sorted by the numbers in their names.
 
-Spacing and unit are those that ImageJ or OME wrote; otherwise a voxel is 1×1×1. The world has the
-axes of the pixels: x right, y down, z through the pages.
+Spacing and unit are read from the metadata of ImageJ or OME; without them a voxel is 1×1×1. The
+world's axes are those of the pixels: x right, y down, z through the pages.
 """
 
 import logging
@@ -16,7 +16,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray
 from brdfkit.volumes.formats import _volume_file
 from brdfkit.volumes.formats._streams import make_opener, read_layers, require_bytes
-from brdfkit.volumes.formats._volume_file import StoredVolume, VolumeFile, make_transform
+from brdfkit.volumes.formats._volume_file import StoredVolume, VolumeFile, make_grid_transform
 
 NAME = "TIFF"
 SUFFIXES = (".tif", ".tiff")
@@ -25,18 +25,18 @@ MICRONS = "µm", "um", "micron", "microns", "\\u00B5m"
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether the file begins as TIFF or BigTIFF does, in either byte order."""
+    """Return whether a file begins like TIFF or BigTIFF, in either byte order."""
     return head[:4] in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 
 
 def read_header(file: VolumeFile) -> StoredVolume:
-    """Read the header of a stack, in a file or a folder."""
+    """Read the header of a TIFF stack, which is a file of many pages or a folder of files."""
     tifffile = file.import_package("tifffile", "tifffile")
     return _read_folder(file, tifffile) if file.path.is_dir() else _read_file(file, tifffile)
 
 
 def _read_file(file: VolumeFile, tifffile: Any) -> StoredVolume:
-    """Read the header of a file of many pages."""
+    """Read the header of a TIFF file with many pages, the layers of a volume."""
     with _open_tiff(file, tifffile, file.path) as tiff:
         series, order = tiff.series[0], tiff.byteorder
         shape, dtype, start = series.shape, series.dtype, series.dataoffset
@@ -51,17 +51,17 @@ def _read_file(file: VolumeFile, tifffile: Any) -> StoredVolume:
     dtype = dtype.newbyteorder(order)
     if start is None:
         stack = _read_pages(file, tifffile, [file.path], shape[1:])
-    else:  # all in one piece, for which ImageJ may list the first page alone
+    else:  # ImageJ may list only the first page of pixels that lie in one piece
         require_bytes(file, file.path, start, shape, dtype)
         stack = read_layers(file, make_opener(file.path, start), shape, dtype)
     return StoredVolume(
-        shape, dtype, lambda: stack, make_transform(np.eye(3), spacing, np.zeros(3)), unit=unit
+        shape, dtype, lambda: stack, make_grid_transform(np.eye(3), spacing, np.zeros(3)), unit=unit
     )
 
 
 def _read_folder(file: VolumeFile, tifffile: Any) -> StoredVolume:
-    """Read the headers of a folder of files with one page each."""
-    paths = sorted(_volume_file.list_tiffs(file.path), key=_sort_key)
+    """Read the headers of the TIFF files in a folder, of which each has one layer of a volume."""
+    paths = sorted(_volume_file.list_tiffs(file.path), key=_natural_sort_key)
     kinds = []
     for path in paths:
         with _open_tiff(file, tifffile, path) as tiff:
@@ -69,10 +69,10 @@ def _read_folder(file: VolumeFile, tifffile: Any) -> StoredVolume:
     shape, dtype, pages = kinds[0]
     other = next((p for p, kind in zip(paths, kinds, strict=True) if kind != kinds[0]), None)
     if other:
-        raise file.error(f"{other.name} is not as large as {paths[0].name}, or of another type")
+        raise file.error(f"{other.name} and {paths[0].name} differ in size or type of pixels")
     if len(shape) != 2 or dtype.kind not in "iuf" or pages != 1:
         raise file.error(
-            f"{paths[0].name} has colours or many pages; a layer of numbers belongs there"
+            f"{paths[0].name} has colours or many pages; it should be one layer of numbers"
         )
     stack = _read_pages(file, tifffile, paths, shape)
     return StoredVolume((len(paths), *shape), dtype, lambda: stack, np.eye(4))
@@ -81,7 +81,10 @@ def _read_folder(file: VolumeFile, tifffile: Any) -> StoredVolume:
 def _read_pages(
     file: VolumeFile, tifffile: Any, paths: list[Path], shape: tuple[int, int]
 ) -> Iterator[AnyArray]:
-    """Yield the pages of the files at `paths`, each of this `shape` (ny, nx)."""
+    """Yield the pixels (ny, nx) of each page of the files at `paths`.
+
+    Raises `BrdfkitError` if a page does not have this `shape`.
+    """
     for path in paths:
         with _open_tiff(file, tifffile, path) as tiff:
             for page in tiff.pages:
@@ -92,10 +95,10 @@ def _read_pages(
 
 @contextmanager
 def _open_tiff(file: VolumeFile, tifffile: Any, path: Path) -> Iterator[Any]:
-    """Open a file by tifffile, and turn errors within the block into a `BrdfkitError`.
+    """Open a file by tifffile, and convert errors of the `with` block to a `BrdfkitError`.
 
-    Errors that tifffile only logs are raised as well: otherwise a truncated chain of pages would be
-    a smaller stack.
+    Errors that tifffile only logs are raised as well: otherwise a file that lost its last pages
+    would be read as a smaller stack.
     """
     log, logged = logging.getLogger("tifffile"), _LogRecorder(logging.ERROR)
     propagate, log.propagate = log.propagate, False
@@ -105,7 +108,7 @@ def _open_tiff(file: VolumeFile, tifffile: Any, path: Path) -> Iterator[Any]:
             yield tiff
         if logged.texts:
             raise ValueError(logged.texts[0])
-    except Exception as error:  # decoders raise errors of many classes
+    except Exception as error:  # tifffile and its decoders raise errors of many classes
         problem = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
         raise file.error(f"{path.name} cannot be read as TIFF ({problem})") from error
     finally:
@@ -114,7 +117,7 @@ def _open_tiff(file: VolumeFile, tifffile: Any, path: Path) -> Iterator[Any]:
 
 
 class _LogRecorder(logging.Handler):
-    """A handler that collects the texts that are logged."""
+    """A logging handler that collects the logged messages in its list `texts`."""
 
     def __init__(self, level: int) -> None:
         super().__init__(level)
@@ -125,7 +128,7 @@ class _LogRecorder(logging.Handler):
 
 
 def _read_spacing(tiff: Any) -> tuple[list[float], str]:
-    """Return the distances between voxels along x, y, z, and their unit."""
+    """Return the distances between voxels along x, y, z, and their unit, from ImageJ's or OME's."""
     if tiff.ome_metadata:
         pixels: Any = re.search(r"<Pixels\b[^>]*>", tiff.ome_metadata)
         sizes = dict(re.findall(r'(PhysicalSize\w+)="([^"]*)"', pixels[0]))
@@ -141,6 +144,6 @@ def _read_spacing(tiff: Any) -> tuple[list[float], str]:
     return [x, y, float(metadata.get("spacing", 1))], "µm" if unit in MICRONS else unit
 
 
-def _sort_key(path: Path) -> list[int | str]:
-    """Return a key that sorts slice_9 before slice_10."""
+def _natural_sort_key(path: Path) -> list[int | str]:
+    """Return a key that sorts file names by their numbers, such as slice_9 before slice_10."""
     return [int(part) if part.isdecimal() else part for part in re.split(r"(\d+)", path.name)]

@@ -1,8 +1,8 @@
-"""VTK's image data in XML: `.vti`, with point or cell data.
+"""VTK's image data in XML, files `.vti` with values at points or in cells.
 
 Points lie at origin + direction · (spacing × index), and cells lie between points, so that a grid
-of n points has n - 1 cells along an axis. ``model.vti#facies`` names one of several arrays. The
-world is the file's own. `_vti_blocks.py` reads the blocks of the data.
+of n points has n - 1 cells along an axis. ``model.vti#facies`` names one of several arrays. World
+coordinates are those of the file. `_vti_blocks.py` decodes the data.
 """
 
 import mmap
@@ -15,7 +15,12 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import no_such
 from brdfkit.volumes.formats._streams import CUT_SHORT, DType, read_layers
-from brdfkit.volumes.formats._volume_file import Shape, StoredVolume, VolumeFile, make_transform
+from brdfkit.volumes.formats._volume_file import (
+    Shape,
+    StoredVolume,
+    VolumeFile,
+    make_grid_transform,
+)
 from brdfkit.volumes.formats._vti_blocks import Encoding, make_opener
 
 NAME = "VTK image data"
@@ -28,7 +33,7 @@ END = b"</DataArray>"
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether the file begins as VTK's XML files of images do."""
+    """Return whether a file begins like VTK's XML files of image data."""
     return b"<VTKFile" in head and b'type="ImageData"' in head
 
 
@@ -38,13 +43,13 @@ def read_header(file: VolumeFile) -> StoredVolume:
         file.path.open("rb") as stream,
         mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as m,
     ):
-        root, bodies, appended = _read_skeleton(file, m)
+        root, bodies, appended = _read_xml_without_data(file, m)
         end = len(m)
     image = root.find("ImageData")
     pieces = [] if image is None else image.findall("Piece")
     if image is None or len(pieces) != 1:
-        raise file.error(f"has {len(pieces)} pieces; one belongs there")
-    array, of_cells = _find_array(file, pieces[0])
+        raise file.error(f"has {len(pieces)} pieces; save it as one")
+    array, of_cells = _find_data_array(file, pieces[0])
     try:
         shape, to_world = _read_grid(image, pieces[0], of_cells)
         dtype = _read_dtype(array)
@@ -55,7 +60,7 @@ def read_header(file: VolumeFile) -> StoredVolume:
     if min(shape) < 1:
         raise file.error(f"has {shape[::-1]} {'cells' if of_cells else 'points'}: no volume")
     if array.get("NumberOfComponents", "1") != "1":
-        raise file.error(f"{array.get('Name')} is no scalar; one number belongs at each voxel")
+        raise file.error(f"{array.get('Name')} is no scalar; voxels should be single numbers")
     where, form = appended or (None, None)
     if array.get("format") == "appended":
         if where is None:
@@ -72,7 +77,10 @@ def read_header(file: VolumeFile) -> StoredVolume:
 def _read_grid(
     image: ElementTree.Element, piece: ElementTree.Element, of_cells: bool
 ) -> tuple[Shape, FloatArray]:
-    """Return the shape (nz, ny, nx) of the voxels, and their transform to the world."""
+    """Return the shape (nz, ny, nx) of the voxels, and the transform of their indices to the world.
+
+    A voxel is a cell of the grid if `of_cells`, otherwise it is centred at a point.
+    """
     sizes: Any = piece.get("Extent", image.get("WholeExtent"))
     extent = np.array(sizes.split(), int).reshape(3, 2)
     spacing, origin = (
@@ -80,7 +88,7 @@ def _read_grid(
         for key, default in (("Spacing", "1 1 1"), ("Origin", "0 0 0"))
     )
     direction = np.array(image.get("Direction", "1 0 0 0 1 0 0 0 1").split(), float)
-    to_world = make_transform(direction.reshape(3, 3), spacing, origin)
+    to_world = make_grid_transform(direction.reshape(3, 3), spacing, origin)
     first = extent[:, 0] + (0.5 if of_cells else 0)  # the middle of a cell lies between points
     to_world[:3, 3] = (to_world @ [*first, 1])[:3]
     points = extent[:, 1] - extent[:, 0] + 1
@@ -89,19 +97,20 @@ def _read_grid(
 
 
 def _read_dtype(array: ElementTree.Element) -> DType:
-    """Return the type of an array; raise AttributeError if it is damaged."""
+    """Return the type of an array's numbers; raise AttributeError if the attribute is damaged."""
     match: Any = re.fullmatch(r"(Int|UInt|Float)(8|16|32|64)", array.get("type", ""))
     kind, bits = match.groups()
     return np.dtype(f"{TYPES[kind]}{int(bits) // 8}")
 
 
-def _read_skeleton(
+def _read_xml_without_data(
     file: VolumeFile, data: mmap.mmap
 ) -> tuple[ElementTree.Element, list[tuple[int, int]], tuple[int, str] | None]:
-    """Parse the XML without its data, since raw data are not XML, and arrays may be gigabytes.
+    """Parse the XML without the data arrays, which may be gigabytes, and raw bytes are not XML.
 
-    Returns the root, the places (start, end) of the arrays' bodies, and the place and form of
-    appended data, None if there are none.
+    Returns the root element; the first and last byte (start, end) of each array's data in the file,
+    whose index is the array's attribute "place"; and, of data appended to the XML, the first byte
+    and the form, "raw" or "base64", or None if there are none.
     """
     appended = APPENDED.search(data)
     head_end = appended.start() if appended else len(data)
@@ -127,8 +136,13 @@ def _read_skeleton(
     return root, bodies, (appended.end(), form) if appended else None
 
 
-def _find_array(file: VolumeFile, piece: ElementTree.Element) -> tuple[ElementTree.Element, bool]:
-    """Return the element of the array to read, and whether its values belong to cells."""
+def _find_data_array(
+    file: VolumeFile, piece: ElementTree.Element
+) -> tuple[ElementTree.Element, bool]:
+    """Return the XML element of the array to read, and whether its values belong to cells.
+
+    The name behind '#' in the user's path chooses the array, otherwise VTK's active scalars do.
+    """
     arrays: dict[str, tuple[ElementTree.Element, bool, bool]] = {}
     for kind in ("PointData", "CellData"):
         data = piece.find(kind)
@@ -138,11 +152,13 @@ def _find_array(file: VolumeFile, piece: ElementTree.Element) -> tuple[ElementTr
             name = array.get("Name", f"{kind} {i}")
             arrays[name] = array, kind == "CellData", name == data.get("Scalars")
     if not arrays:
-        raise file.error("has neither point nor cell data; one array belongs there")
+        raise file.error("has neither point nor cell data; it should have one array")
     if file.part is not None and file.part not in arrays:
         raise no_such("array", file.part, arrays, str(file.path))
     active = [name for name, (*_, is_active) in arrays.items() if is_active] or list(arrays)
     if file.part is None and len(active) > 1:
-        raise file.error(f"holds {', '.join(arrays)}; name one: {file.path.name}#{active[0]}")
+        raise file.error(
+            f"has the arrays {', '.join(arrays)}; name one: {file.path.name}#{active[0]}"
+        )
     array, of_cells, _ = arrays[file.part or active[0]]
     return array, of_cells

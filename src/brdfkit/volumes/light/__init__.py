@@ -1,6 +1,7 @@
-"""Light in volumes: collisions along rays, media, emitters, and surfaces lit within a volume.
+"""Light transport in volumes: collisions along rays, media, emitters, and surfaces in a volume.
 
-`majorants.py` bounds the extinction, `tracking.py` finds where light collides, and `medium.py` puts
-both together with albedo and emission. Paths turn at a `vertex.py` and receive the light of
-`emitters.py`; `surface_light.py` lights a surface that is not a shape of the scene.
+`majorants.py` bounds the extinction, `tracking.py` draws the distances at which light collides, and
+`medium.py` combines both with albedo and emission. `vertex.py` is a point at which a path turns,
+`emitters.py` computes the light that arrives there, and `surface_light.py` the direct light on a
+surface that is not a shape of the scene.
 """

@@ -1,6 +1,6 @@
-"""The light of a scene's emitters, found by rays that hit them or by samples of the emitters.
+"""Light from a scene's emitters, by rays that hit an emitter and by sampled points of emitters.
 
-Both may find the same light, and are weighted by the power heuristic [Veach & Guibas 1995].
+Both methods may find the same light, so the power heuristic weights them [Veach & Guibas 1995].
 """
 
 from typing import Any
@@ -9,20 +9,21 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
 
-replace_grad: Any = dr.replace_grad  # Dr.Jit's stub knows no result of it
+replace_grad: Any = dr.replace_grad  # Dr.Jit's stub does not type its result
 
 
-def evaluate_hit(
+def evaluate_emitter_hit(
     scene: MitsubaObject,
     ray: MitsubaObject,
     si: MitsubaObject,
     density: JitFloat,
     active: JitMask = True,
 ) -> JitColour:
-    """Return the weighted light that rays receive from the emitter at their end `si`.
+    """Return the weighted radiance that rays receive from the emitters that they hit at `si`.
 
-    `density` [sr⁻¹] is the density with which the rays were drawn; it is 0 where samples of the
-    emitters cannot find their light.
+    The power heuristic is the weight. `density` [sr⁻¹] is the density with which the rays'
+    directions were drawn, or 0 where `sample_emitters` cannot find the light, whose weight is
+    then 1.
     """
     import mitsuba as mi
 
@@ -40,10 +41,11 @@ def evaluate_hit(
 def sample_emitters(
     scene: MitsubaObject, it: MitsubaObject, sample: JitVector, active: JitMask
 ) -> tuple[MitsubaObject, JitColour, JitMask]:
-    """Sample the emitters as seen from `it`, by two uniform numbers.
+    """Sample a point of an emitter for each point `it`; `sample` are two uniform random numbers.
 
-    Returns the `mi.DirectionSample3f`, its light over its density as if nothing were in its way,
-    and whether there is a sample. The light has the derivatives of the emission.
+    Returns the `mi.DirectionSample3f`; the radiance divided by the density of the sample, without
+    any occlusion; and a mask of the rays that have a sample. The radiance has the derivatives of
+    the emission.
     """
     import mitsuba as mi
 
@@ -56,10 +58,11 @@ def sample_emitters(
     return ds, dr.select(there, light, 0), there
 
 
-def ray_to(it: MitsubaObject, ds: MitsubaObject) -> MitsubaObject:
-    """Return the ray from `it` to a sample of an emitter; one to the sky has no end.
+def spawn_ray_to_emitter(it: MitsubaObject, ds: MitsubaObject) -> MitsubaObject:
+    """Return the shadow ray from `it` to the sample `ds` of an emitter.
 
-    Mitsuba's sky lies on a sphere about the shapes, beyond which volumes may reach.
+    A ray to an environment map is infinite: Mitsuba puts these emitters on a sphere around the
+    shapes, but volumes may reach beyond it.
     """
     import mitsuba as mi
 
@@ -70,10 +73,14 @@ def ray_to(it: MitsubaObject, ds: MitsubaObject) -> MitsubaObject:
 
 
 def is_emitter_hit(scene: MitsubaObject, si: MitsubaObject) -> JitMask:
-    """Return whether rays that end at `si` end at an emitter."""
-    return si.emitter(scene).flags() != 0  # a missing one has none
+    """Return a mask of the rays whose end, the intersection `si`, is at an emitter."""
+    return si.emitter(scene).flags() != 0  # a missing emitter has no flags
 
 
 def power_heuristic(density: JitFloat, other: JitFloat) -> JitFloat:
-    """Weight a sample drawn with `density` > 0 that another method draws with density `other`."""
+    """Return the power heuristic's weight of samples that another method may draw as well.
+
+    Both densities are per solid angle: `density` > 0 of the method that drew the sample, and
+    `other` of the other method.
+    """
     return 1 / (1 + dr.square(other / density))

@@ -1,7 +1,7 @@
-"""`Majorants`: upper bounds of a volume's extinction, one for each of a few coarse cells.
+"""`Majorants`: upper bounds of a volume's extinction, one for each cell of a coarse grid.
 
-The lower the bounds, the fewer look-ups `tracking.py` needs to find where light collides
-[Szirmay-Kalos et al. 2011]. A single cell is the global majorant.
+The lower the bounds, the fewer look-ups of the extinction `tracking.py` needs to find where light
+collides [Szirmay-Kalos et al. 2011]. A grid of a single cell has the global majorant.
 """
 
 from __future__ import annotations
@@ -23,21 +23,21 @@ from brdfkit.core.array_types import (
 )
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.padding import pad
-from brdfkit.volumes.rays.box import to_cube
+from brdfkit.volumes.rays.box import get_world_to_cube
 from brdfkit.volumes.transfer.block_bounds import reduce_blocks
 
-CELL_VOXELS = 16  # along the edges of a cell
-ROUNDING = 1e-5  # relative error by which an interpolated extinction may exceed its voxels
+CELL_VOXELS = 16  # voxels along each edge of a cell
+ROUNDING = 1e-5  # relative rounding error by which an interpolated extinction may exceed its bound
 
 
 @dataclass(frozen=True, eq=False)
 class Majorants:
-    """Upper bounds of an extinction in the cells of a box, for the current variant of Mitsuba.
+    """Upper bounds of an extinction in the cells of a box, for tracking in Mitsuba.
 
     `values` (nz, ny, nx) are the bounds [1/unit of length], at least 0, x fastest. `cube_to_world`
-    (4, 4) is the transform from the unit cube, which the cells divide, to the world; by default the
-    identity. `array` holds the values as a `mitsuba.Float`. Scalar variants cannot use it. Raises
-    `BrdfkitError` for values that are not bounds.
+    (4, 4) is the transform to the world from the unit cube, which the cells divide; by default the
+    identity. `array` are the values as a `mitsuba.Float`, which scalar variants cannot gather from.
+    Raises `BrdfkitError` if a value is negative or not finite.
 
     >>> Majorants([[[3.25]]])                       # one bound for the whole unit cube
     >>> Majorants.from_grid(extinction)             # one for each 16³ voxels
@@ -64,28 +64,29 @@ class Majorants:
     def from_grid(
         cls, values: ArrayLike, voxels: int = CELL_VOXELS, cube_to_world: ArrayLike | None = None
     ) -> Majorants:
-        """Return the bounds of voxels' values, and of what is interpolated from them linearly.
+        """Return the bounds of an extinction that is interpolated linearly between voxels.
 
         `values` (nz, ny, nx) is the extinction at the centres of the voxels [1/unit of length].
-        `voxels` is the number along the edge of a cell: fewer need fewer look-ups and more steps.
+        `voxels` is their number along the edge of a cell. Smaller cells need fewer look-ups of the
+        extinction, but more steps from cell to cell.
         """
         bounds = np.asarray(values, np.float32)
         for axis, n in enumerate(bounds.shape):
             bounds = reduce_blocks(bounds, axis, -(-n // voxels), np.max)
         return cls(bounds, cube_to_world)
 
-    def require(
+    def require_extinction_below(
         self,
         extinction: Callable[[JitVector, JitMask], JitFloat],
         samples: int = 1 << 18,
         seed: int = 0,
     ) -> None:
-        """Raise `BrdfkitError` if an extinction exceeds its majorant, or is below 0, at a sample.
+        """Raise `BrdfkitError` if an extinction exceeds its majorant, or is negative, at a point.
 
-        `extinction(p, active)` is evaluated at random points `p` of the box. That none fails is not
-        a proof, except for what `from_grid` bounds.
+        `extinction(p, active)` is evaluated at as many random points `p` of the box as `samples`,
+        so that violations between these points go unnoticed.
 
-        >>> Majorants([[[1.5]]]).require(lambda p, active: 0.25 + 3 * p.x)
+        >>> Majorants([[[1.5]]]).require_extinction_below(lambda p, active: 0.25 + 3 * p.x)
         brdfkit.core.errors.BrdfkitError: The extinction is 3.25 at (1, 0.42, 0.8), its ...
         """
         import mitsuba as mi
@@ -99,16 +100,16 @@ class Majorants:
         if (sigma < 0).any():
             place = _format_point(p[int(sigma.argmin())])
             raise BrdfkitError(
-                f"The extinction is {sigma.min():.4g} at {place}, and a volume cannot add "
-                "to light: clip it at 0, as after a step of an optimiser."
+                f"The extinction is {sigma.min():.4g} at {place}, but it cannot be negative: clip "
+                "it at 0, for example after each step of an optimiser."
             )
-        above = ~(sigma <= bound * (1 + ROUNDING))  # also where it is NaN
+        above = ~(sigma <= bound * (1 + ROUNDING))  # negated, so that NaN fails as well
         if above.any():
             worst = int(np.argmax(np.where(above, sigma - bound, 0)))
             raise BrdfkitError(
                 f"The extinction is {sigma[worst]:.4g} at {_format_point(p[worst])}, its majorant "
-                f"{bound[worst]:.4g}: no bound, and pictures would be wrong; raise the majorant; "
-                "of a grid that is turned, mirrored or repeated in its box take the global one."
+                f"{bound[worst]:.4g}: no bound, and pictures would be wrong; raise the majorant, "
+                "or take the global one if the grid is turned, mirrored or repeated in its box."
             )
 
     @property
@@ -119,35 +120,35 @@ class Majorants:
 
     @property
     def world_to_cells(self) -> FloatArray:
-        """The transform (4, 4) from the world to a frame whose unit cubes from 0 are the cells."""
+        """The transform (4, 4) from the world to coordinates in which the cells are unit cubes."""
         return np.diag([*self.shape, 1.0]) @ np.linalg.inv(self.cube_to_world)
 
 
 def _format_point(p: FloatArray) -> str:
-    """Format a point for an error message."""
+    """Format the coordinates of a point (3,) for an error message."""
     return f"({', '.join(f'{c:.3g}' for c in p)})"
 
 
 def compute_majorants(volume: MitsubaObject, scale: JitFloat, local: bool) -> Majorants:
-    """Return the `Majorants` of a volume times a `scale`: one, or one per coarse cell if `local`.
+    """Return the `Majorants` of the extinction that is a Mitsuba volume times a `scale`.
 
-    Those of a gridvolume and of a `transfer_function` follow from their values; any other volume's
-    `max()` is trusted.
+    They have a single cell, or coarse cells if `local`. The bounds of a gridvolume and of the
+    plugin `transfer_function` are computed from voxels; any other volume's `max()` is trusted.
     """
     if hasattr(volume, "majorants"):
         bounds = volume.majorants
-    elif (data := read_grid(volume)) is not None:
+    elif (data := read_grid_values(volume)) is not None:
         bounds = Majorants.from_grid(data).values
     else:
         bounds = np.reshape(volume.max(), (1, 1, 1))
     if not local:
         bounds = bounds.max(keepdims=True)
-    box = np.array(to_cube(volume).matrix, float).reshape(4, 4)
+    box = np.array(get_world_to_cube(volume).matrix, float).reshape(4, 4)
     return Majorants(bounds * scale[0], np.linalg.inv(box))
 
 
-def read_grid(volume: MitsubaObject) -> AnyArray | None:
-    """Return the values (nz, ny, nx) of a gridvolume, None for any other volume."""
+def read_grid_values(volume: MitsubaObject) -> AnyArray | None:
+    """Return the voxels' values (nz, ny, nx) of a Mitsuba gridvolume, None for another volume."""
     import mitsuba as mi
 
     data = mi.traverse(volume).get("data")

@@ -1,13 +1,14 @@
-"""`Medium`: the matter in the box of a volume, and its effect on light along rays.
+"""`Medium`: the participating medium in the box of a volume, and its effect on light along rays.
 
-`tracking.py` draws places without derivatives; light from these places has derivatives. Light f
-from a collision at t, which has the density σ(t) T(t) with T = exp(-τ), has the derivative
+`tracking.py` draws collisions without derivatives; their light gets derivatives here. A collision
+at the distance t has the density σ(t) T(t), with the extinction σ and the transmittance
+T = exp(-τ). The light f from there has the derivative, divided by this density,
 
     ∂(f σ T) / (σ T) = ∂f + f (∂σ(t)/σ(t) - ∂τ),   ∂τ = ∫ ∂σ ds from 0 to t = mean of t ∂σ(ut)
 
-for u uniform in [0, 1), and the transmitted share T has the derivative -T ∂τ. One more look-up, at
-one u, thus makes each unbiased, even where σ meets its majorant and null collisions have no
-derivative. Nothing collides where σ = 0: there only ∂τ is found.
+for u uniform in [0, 1), and T has the derivative -T ∂τ. One additional look-up of σ, at a random u,
+thus gives an unbiased derivative. Where σ = 0 nothing collides, so that the derivative of the light
+by σ is only that of T.
 """
 
 from dataclasses import dataclass
@@ -20,23 +21,36 @@ from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, Mi
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission, make_rgb_spectrum, make_white_light
 from brdfkit.volumes.light.majorants import Majorants, compute_majorants
-from brdfkit.volumes.light.tracking import estimate_transmittance, split_light
+from brdfkit.volumes.light.tracking import (
+    estimate_passed_and_collided_light,
+    estimate_transmittance,
+)
 from brdfkit.volumes.rays.box import intersect_box
 
-replace_grad: Any = dr.replace_grad  # Dr.Jit's stub knows no result of it
+replace_grad: Any = dr.replace_grad  # Dr.Jit's stub does not type its result
 
-TESTED_POINTS = 1 << 14  # at which an extinction is compared to its majorants
-COLLISION_LIMIT = 1e6  # across a box: more take very long, and lose steps to single precision
+TESTED_POINTS = 1 << 14  # random points at which an extinction is compared to its majorants
+# Collisions across a box; more would take very long, with steps below single precision
+COLLISION_LIMIT = 1e6
 
 
 @dataclass(init=False, eq=False)
 class Medium:
-    """The matter that Mitsuba volumes describe, for the current variant.
+    """A participating medium whose extinction, albedo and emission are Mitsuba volumes.
 
-    `extinction` is σ, whose box bounds the medium; a `transfer_function` has RGB as well. `scale`
-    is a factor of σ. `albedo` is α, the share of collisions that scatter light, times RGB where
-    that is an albedo. `emission` is e, the radiance that is added per length. `majorants` are
-    bounds of σ, which `update_majorants` computes.
+    Attributes
+    ----------
+    extinction : mi.Volume
+        The extinction σ, whose box bounds the medium. The plugin `transfer_function` gives RGB as
+        well, as an albedo or an emission.
+    scale : mi.Float
+        A factor of σ.
+    albedo : mi.Volume
+        The share of collisions that scatter light; RGB of a `transfer_function` multiplies it.
+    emission : mi.Volume
+        The radiance that the medium adds per unit of length.
+    majorants : Majorants or None
+        Upper bounds of σ; None before `recompute_majorants` is called.
     """
 
     extinction: Any
@@ -54,7 +68,7 @@ class Medium:
     ) -> None:
         self.extinction, self.scale = extinction, scale
         self.albedo, self.emission, self.majorants = albedo, emission, None
-        # The meaning of RGB if σ is a transfer function
+        # What RGB means if σ is a transfer function: "albedo" or "emission"
         function = getattr(extinction, "function", None)
         self.colour = None if function is None else function.colour
         self.reflectance, self.light, self.white = (
@@ -63,33 +77,36 @@ class Medium:
             make_white_light(),
         )
 
-    def update_majorants(self, local: bool) -> None:
-        """Compute the majorants again, for coarse cells if `local`, otherwise one for all.
+    def recompute_majorants(self, local: bool) -> None:
+        """Compute the majorants of the current extinction, in coarse cells if `local`.
 
         Raises `BrdfkitError` if they do not bound the extinction, or if it is far too large.
         """
         with dr.suspend_grad():
             self.majorants = compute_majorants(self.extinction, self.scale, local)
-            self.majorants.require(self.sigma, TESTED_POINTS)
-        require_unit(self.majorants)
+            self.majorants.require_extinction_below(self.evaluate_extinction, TESTED_POINTS)
+        require_reasonable_extinction(self.majorants)
 
-    def sigma(self, p: JitVector, active: JitMask = True) -> JitFloat:
-        """Return the extinction σ at points `p`."""
+    def evaluate_extinction(self, p: JitVector, active: JitMask = True) -> JitFloat:
+        """Return the extinction σ [1/unit of length] at points `p`."""
         import mitsuba as mi
 
         it = dr.zeros(mi.Interaction3f)
         it.p = p
         return self.scale * self.extinction.eval_1(it, active)
 
-    def coefficients(
+    def evaluate_coefficients(
         self, it: MitsubaObject, active: JitMask
     ) -> tuple[JitFloat, JitColour, JitColour]:
-        """Return σ, α, and the radiance RGB that is emitted per σ and length."""
+        """Return the extinction σ, the albedo and the emitted light at the points `it`.
+
+        The light is the radiance per unit of length, divided by σ, that a transfer function emits.
+        """
         import mitsuba as mi
 
         albedo, light = mi.unpolarized_spectrum(self.albedo.eval(it, active)), 0
         if self.colour is None:
-            return self.sigma(it.p, active), albedo, light
+            return self.evaluate_extinction(it.p, active), albedo, light
         sigma, rgb = self.extinction.eval_extinction_and_colour(it, active)
         if self.colour == "albedo":
             albedo = albedo * self.reflectance(rgb, it)
@@ -97,30 +114,33 @@ class Medium:
             light = self.light(rgb, it)
         return self.scale * sigma, albedo, light
 
-    def split_light(
+    def estimate_passed_and_collided_light(
         self, ray: MitsubaObject, end: JitFloat, sampler: MitsubaObject, active: JitMask
     ) -> tuple[JitFloat, JitFloat, JitFloat]:
-        """Return the shares of light that pass and that collide before `end`, and a collision.
+        """Return the passing share of light, the colliding share, and the distance of a collision.
 
-        The first share has the derivatives of T, and is NaN where σ exceeds its majorant. The
-        collision is a distance.
+        Both shares are random estimates up to the distance `end`. The first has the derivatives of
+        the transmittance, and is NaN where σ exceeds its majorant.
         """
-        near, far = self.clip_to_box(ray, end)
-        share, collided, t, _ = split_light(
-            self.sigma, self.majorants, ray, near, far, sampler, active
+        near, far = self.clip_ray_to_box(ray, end)
+        share, collided, t, _ = estimate_passed_and_collided_light(
+            self.evaluate_extinction, self.majorants, ray, near, far, sampler, active
         )
-        depth = self.sample_depth(ray, end, sampler, active)
+        depth = self.estimate_optical_depth(ray, end, sampler, active)
         return replace_grad(share, -share * depth), collided, t
 
-    def transmittance(
+    def estimate_transmittance(
         self, ray: MitsubaObject, end: JitFloat, sampler: MitsubaObject, active: JitMask
     ) -> JitFloat:
-        """Return a random share of light, whose mean is T from the ray's origin to `end`."""
-        near, far = self.clip_to_box(ray, end)
+        """Return an unbiased random estimate of the transmittance from the ray's origin to `end`.
+
+        It has the derivatives of the transmittance.
+        """
+        near, far = self.clip_ray_to_box(ray, end)
         share, _ = estimate_transmittance(
-            self.sigma, self.majorants, ray, near, far, sampler, active
+            self.evaluate_extinction, self.majorants, ray, near, far, sampler, active
         )
-        return replace_grad(share, -share * self.sample_depth(ray, end, sampler, active))
+        return replace_grad(share, -share * self.estimate_optical_depth(ray, end, sampler, active))
 
     def sample_emission(
         self,
@@ -130,36 +150,41 @@ class Medium:
         active: JitMask,
         with_rgb: bool = False,
     ) -> JitColour:
-        """Return the radiance of e, and of σ RGB if `with_rgb`, up to `end`, by a random place."""
+        """Estimate the radiance that the medium emits along rays up to `end`, at a random distance.
+
+        With `with_rgb` it includes the emission of a transfer function.
+        """
         import mitsuba as mi
 
-        near, far = self.clip_to_box(ray, end)
+        near, far = self.clip_ray_to_box(ray, end)
         length = dr.maximum(far - near, 0)
         t = near + sampler.next_1d(active) * length
         it = dr.zeros(mi.Interaction3f)
         it.p, it.wavelengths = ray(t), ray.wavelengths
         e = mi.unpolarized_spectrum(self.emission.eval(it, active)) * self.white(it)
         if with_rgb:
-            sigma, _, light = self.coefficients(it, active)
+            sigma, _, light = self.evaluate_coefficients(it, active)
             e += sigma * light
-        return length * self.transmittance(ray, t, sampler, active) * e
+        return length * self.estimate_transmittance(ray, t, sampler, active) * e
 
-    def sample_depth(
+    def estimate_optical_depth(
         self, ray: MitsubaObject, end: JitFloat, sampler: MitsubaObject, active: JitMask
     ) -> JitFloat:
-        """Return an estimate of the optical depth of rays up to `end`, by σ at a random place."""
-        near, far = self.clip_to_box(ray, end)
+        """Return an unbiased estimate of the optical depth up to `end`, by σ at a random point."""
+        near, far = self.clip_ray_to_box(ray, end)
         length = dr.maximum(far - near, 0)
-        return length * self.sigma(ray(near + sampler.next_1d(active) * length), active)
+        return length * self.evaluate_extinction(
+            ray(near + sampler.next_1d(active) * length), active
+        )
 
-    def clip_to_box(self, ray: MitsubaObject, end: JitFloat) -> tuple[JitFloat, JitFloat]:
-        """Return where rays enter and leave the box, up to `end`."""
+    def clip_ray_to_box(self, ray: MitsubaObject, end: JitFloat) -> tuple[JitFloat, JitFloat]:
+        """Return the distances at which rays enter and leave the medium's box, at most `end`."""
         near, far = intersect_box(ray, self.extinction)
         return near, dr.minimum(far, end)
 
 
-def require_unit(majorants: Majorants) -> None:
-    """Raise `BrdfkitError` if bounds are so large for their box that no ray would pass it."""
+def require_reasonable_extinction(majorants: Majorants) -> None:
+    """Raise `BrdfkitError` if rays would collide far too often, as with a wrong unit of length."""
     collisions = float(majorants.values.max()) * np.linalg.norm(majorants.cube_to_world[:3, :3])
     if collisions > COLLISION_LIMIT:
         raise BrdfkitError(

@@ -1,8 +1,8 @@
 """Direct light on a surface that is not a shape of the scene, such as an isosurface.
 
 Each sample has two directions, one drawn by the scene's emitters and one by the BSDF, which are
-weighted by the balance heuristic [Veach & Guibas 1995]. The weights have derivatives as well, and
-the direction that the BSDF drew is constant in the world while the surface turns.
+weighted by the balance heuristic [Veach & Guibas 1995]. For derivatives, the weights are
+differentiated as well, and the BSDF's direction counts as constant in world coordinates.
 """
 
 from collections.abc import Callable
@@ -11,12 +11,12 @@ from typing import TypeAlias
 import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
-from brdfkit.volumes.light.emitters import ray_to
+from brdfkit.volumes.light.emitters import spawn_ray_to_emitter
 
 IsFree: TypeAlias = Callable[[MitsubaObject, JitMask], JitMask]
 
 
-def direct_light(
+def sample_direct_light(
     scene: MitsubaObject,
     si: MitsubaObject,
     bsdf: MitsubaObject,
@@ -24,10 +24,11 @@ def direct_light(
     is_free: IsFree,
     active: JitMask,
 ) -> JitColour:
-    """Return the radiance that a surface reflects towards the viewer.
+    """Estimate the direct light that a surface reflects towards the viewer, by two shadow rays.
 
-    `si` is the point, a `mi.SurfaceInteraction3f`. `is_free(ray, active)` returns whether nothing
-    but the scene's shapes, which always block light, may be in a ray's way up to its `maxt`.
+    `si` is the surface's point, a `mi.SurfaceInteraction3f`, with the material `bsdf`.
+    `is_free(ray, active)` returns whether the surface itself leaves a shadow ray free up to its
+    `maxt`; the scene's shapes are tested here.
     """
     sample = sampler.next_2d(active)
     by_emitters = _sample_emitters(scene, si, bsdf, sample, is_free, active)
@@ -43,7 +44,7 @@ def _sample_emitters(
     is_free: IsFree,
     active: JitMask,
 ) -> JitColour:
-    """Return the weighted light of a direction that the emitters draw."""
+    """Return the reflected light from a direction that the scene's emitters draw, weighted."""
     import mitsuba as mi
 
     active = active & mi.has_flag(bsdf.flags(), mi.BSDFFlags.Smooth)
@@ -52,7 +53,7 @@ def _sample_emitters(
     value, pdf = bsdf.eval_pdf(mi.BSDFContext(), si, si.to_local(ds.d), active)
     weight = dr.select(ds.delta, 1, ds.pdf / dr.select(active, ds.pdf + pdf, 1))
     reflected = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * weight
-    return dr.select(active & is_free(ray_to(si, ds), active), reflected, 0)
+    return dr.select(active & is_free(spawn_ray_to_emitter(si, ds), active), reflected, 0)
 
 
 def _sample_bsdf(
@@ -64,7 +65,7 @@ def _sample_bsdf(
     is_free: IsFree,
     active: JitMask,
 ) -> JitColour:
-    """Return the weighted light of a direction that the BSDF draws."""
+    """Return the reflected light from a direction that the BSDF draws, weighted."""
     import mitsuba as mi
 
     context = mi.BSDFContext()
@@ -76,7 +77,7 @@ def _sample_bsdf(
     f = mi.unpolarized_spectrum(f) / dr.detach(dr.select(active, bs.pdf, 1))
     f = dr.select(mirrored, mi.unpolarized_spectrum(value), f)
 
-    # The light from this direction, and its density
+    # Radiance from the direction, and the density with which the emitters would draw it
     ray = si.spawn_ray(wo)
     far = scene.ray_intersect(ray, active)
     emitter = far.emitter(scene)

@@ -1,24 +1,24 @@
-"""Where light collides in a volume, and how much passes through: unbiased, by random look-ups.
+"""Tracking in volumes: unbiased random estimates of collisions and of the transmittance.
 
-A volume with the extinction σ is filled up to its majorant with particles that let light pass.
-Collisions with all particles are drawn one after the other. Each is real with the probability
-σ / majorant (Woodcock tracking), or light loses that share at each of them (ratio tracking, with
-less variance for the same look-ups). What light loses there has collided there, so that one ray
-finds both the share that passes and a collision of the remainder. [Woodcock et al. 1965]; [Novák et
-al. 2014]
+A volume with the extinction σ is filled up to its majorant with fictitious particles that let light
+pass. Collisions with all particles are drawn one after the other along a ray. In Woodcock tracking
+each collision is real with the probability σ / majorant [Woodcock et al. 1965]; in ratio tracking
+light loses that share at each particle, with less variance for the same look-ups of σ [Novák et al.
+2014]. The lost share has collided at the particle, so that one ray yields both the share of light
+that passes and a collision of the rest.
 
-The functions here take
+All functions take
 
 - `extinction(p, active)`: σ [1/unit of length] at a `mitsuba.Point3f`; 0 outside the box;
-- `majorants`: its upper bounds, whose box is the volume's;
-- `ray`, `t_min`, `t_max`: rays, whose directions need not have unit length, and the part of them in
-  which light may collide; distances are in units of the direction's length;
+- `majorants`: upper bounds of σ in the volume's box;
+- `ray`, `t_min`, `t_max`: rays, and the distances between which light may collide, in units of the
+  length of the ray's direction, which need not be 1;
 - `sampler`: a `mitsuba.Sampler`, for one or two random numbers per look-up;
-- `active`: which rays are followed; all light of the others passes.
+- `active`: a mask of the rays that are followed; all light of the other rays passes.
 
-A result is NaN where σ exceeds its majorant, and the last result is always the number of look-ups.
-Rays walk through the cells of the `Majorants` [Amanatides & Woo 1987] with one optical depth after
-another; empty cells cost no look-up. There are no derivatives, and no scalar variants.
+A result is NaN where σ exceeds its majorant, and the last result is the number of look-ups. Rays
+walk through the cells of the `Majorants` [Amanatides & Woo 1987]; empty cells cost no look-up. The
+functions have no derivatives, and do not support scalar variants.
 """
 
 from collections.abc import Callable
@@ -31,8 +31,8 @@ from brdfkit.volumes.light.majorants import ROUNDING, Majorants
 
 Extinction: TypeAlias = Callable[[JitVector, JitMask], JitFloat]
 
-SMALLEST_COMPONENT = 1e-20  # of a direction: none is 0, since the walk divides by it
-FAINT = 0.15  # share of light below which rays end at random; the others continue as strong as this
+SMALLEST_COMPONENT = 1e-20  # replaces a direction's component of 0, by which the walk would divide
+FAINT = 0.15  # share of light below which Russian roulette ends rays
 
 
 def sample_collision(
@@ -44,15 +44,15 @@ def sample_collision(
     sampler: MitsubaObject,
     active: JitMask = True,
 ) -> tuple[JitFloat, JitInt]:
-    """Return the distance of a first collision, of density σ(t) T(t); infinity if light passes.
+    """Draw the distance t of the first collision; it is infinite if light passes the volume.
 
-    T(t) is the transmittance up to t.
+    Its density is σ(t) T(t), where T(t) is the transmittance up to t.
 
     >>> t, lookups = sample_collision(smoke, Majorants.from_grid(values), ray, 0, si.t, sampler)
     """
     import mitsuba as mi
 
-    def meet(
+    def meet_particle(
         share: JitFloat,
         t: JitFloat,
         through: JitFloat,
@@ -64,7 +64,9 @@ def sample_collision(
         return dr.select(real, 0, through), [dr.select(real & tested, t, results[0])]
 
     rays, results = (ray, t_min, t_max, active), [mi.Float(dr.inf)]
-    through, results, lookups = _follow(meet, results, 0, extinction, majorants, rays, sampler)
+    through, results, lookups = _follow_rays(
+        meet_particle, results, 0, extinction, majorants, rays, sampler
+    )
     return dr.select(dr.isnan(through), dr.nan, results[0]), lookups
 
 
@@ -77,22 +79,24 @@ def estimate_transmittance(
     sampler: MitsubaObject,
     active: JitMask = True,
 ) -> tuple[JitFloat, JitInt]:
-    """Return a random share of light, 0 to 1, whose mean is the transmittance T.
+    """Return an unbiased random estimate of the transmittance, 0 to 1, by ratio tracking.
 
     >>> share, _ = estimate_transmittance(smoke, majorants, si.spawn_ray(d), 0, dr.inf, sampler)
     """
 
-    def meet(
+    def meet_particle(
         share: JitFloat, t: JitFloat, through: JitFloat, results: list[JitFloat], *_: Any
     ) -> tuple[JitFloat, list[JitFloat]]:
         return through * dr.maximum(1 - share, 0), results
 
     rays, smallest = (ray, t_min, t_max, active), FAINT * sampler.next_1d(active)
-    through, _, lookups = _follow(meet, [], smallest, extinction, majorants, rays, sampler)
-    return _strengthen_faint(through, smallest), lookups
+    through, _, lookups = _follow_rays(
+        meet_particle, [], smallest, extinction, majorants, rays, sampler
+    )
+    return _apply_russian_roulette(through, smallest), lookups
 
 
-def split_light(
+def estimate_passed_and_collided_light(
     extinction: Extinction,
     majorants: Majorants,
     ray: MitsubaObject,
@@ -103,17 +107,18 @@ def split_light(
 ) -> tuple[JitFloat, JitFloat, JitFloat, JitInt]:
     """Return the share of light that passes, the share that collides, and a collision's distance.
 
-    The shares have the means T and 1 - T, and sum to 1 except for faint rays. The mean of the
-    second times any f(distance) is ∫ σ(t) T(t) f(t) dt. `sample_collision` has the same mean, but a
-    ray either collides or passes there, and does both here. The distance is infinite where nothing
-    collides.
+    The shares have the means T and 1 - T, for the transmittance T, and sum to 1 except after
+    Russian roulette. The mean of the second share times any f(distance) is ∫ σ(t) T(t) f(t) dt. The
+    distance is infinite where nothing collides. In `sample_collision` a ray either collides or
+    passes, while here each ray does both, which has less variance.
 
-    >>> share, collided, t, _ = split_light(smoke, majorants, ray, 0, si.t, sampler)
+    >>> settings = smoke, majorants, ray, 0, si.t, sampler
+    >>> share, collided, t, _ = estimate_passed_and_collided_light(*settings)
     >>> radiance = share * behind + collided * scattered_at(ray(t))
     """
     import mitsuba as mi
 
-    def meet(
+    def meet_particle(
         share: JitFloat,
         t: JitFloat,
         through: JitFloat,
@@ -121,35 +126,35 @@ def split_light(
         sampler: MitsubaObject,
         tested: JitMask,
     ) -> tuple[JitFloat, list[JitFloat]]:
-        # Each collision is chosen with the probability of its part of them all
+        # Reservoir sampling: each collision is chosen in proportion to its share of light
         collided, distance = results
         here = dr.select(tested, dr.maximum(through, FAINT) * dr.minimum(share, 1), 0)
         collided = collided + here
-        # The first one is always chosen, even by a random number that is rounded up to 1
+        # The first collision is always chosen, even if the random number is rounded up to 1
         first = dr.isinf(distance)
         chosen = (here > 0) & (first | (sampler.next_1d(tested) * collided < here))
         return through * dr.maximum(1 - share, 0), [collided, dr.select(chosen, t, distance)]
 
     rays, results = (ray, t_min, t_max, active), [mi.Float(0), mi.Float(dr.inf)]
     smallest = FAINT * sampler.next_1d(active)
-    through, results, lookups = _follow(
-        meet, results, smallest, extinction, majorants, rays, sampler
+    through, results, lookups = _follow_rays(
+        meet_particle, results, smallest, extinction, majorants, rays, sampler
     )
     collided, distance = results
-    return _strengthen_faint(through, smallest), collided, distance, lookups
+    return _apply_russian_roulette(through, smallest), collided, distance, lookups
 
 
-def _strengthen_faint(through: JitFloat, smallest: JitFloat) -> JitFloat:
-    """Return the share of light that passes, unbiased although rays end at the share `smallest`.
+def _apply_russian_roulette(through: JitFloat, smallest: JitFloat) -> JitFloat:
+    """Return the passing share of light, unbiased although rays end at the share `smallest`.
 
-    `smallest` is FAINT times a uniform random number: of rays with a share below FAINT, the part
-    share / FAINT continues, with the share FAINT.
+    `smallest` is FAINT times a uniform random number. A ray whose share is below FAINT thus
+    survives with the probability share / FAINT, and then counts with the share FAINT.
     """
     return dr.select(through <= smallest, 0, dr.select(through < FAINT, FAINT, through))
 
 
-def _follow(
-    meet: Callable[..., tuple[JitFloat, list[JitFloat]]],
+def _follow_rays(
+    meet_particle: Callable[..., tuple[JitFloat, list[JitFloat]]],
     results: list[JitFloat],
     smallest: JitFloat,
     extinction: Extinction,
@@ -157,17 +162,18 @@ def _follow(
     rays: tuple[MitsubaObject, JitFloat, JitFloat, JitMask],
     sampler: MitsubaObject,
 ) -> tuple[JitFloat, list[JitFloat], JitInt]:
-    """Follow rays until no more than the share `smallest` passes.
+    """Follow rays from particle to particle, until only the share `smallest` of light is left.
 
-    `meet(share, t, through, results, sampler, tested)` returns what passes a particle at t that is
-    real with the probability `share`, and the updated list of `results`. Returns the share that
-    passes, the results, and the number of look-ups.
+    `meet_particle(share, t, through, results, sampler, tested)` is called at each particle, at the
+    distance t, which is real with the probability `share`. It returns the light that passes, of the
+    light `through` that arrives, and the updated list of `results`. Returns the light that passes
+    all particles, the results, and the number of look-ups.
     """
     import mitsuba as mi
 
     ray, t_min, t_max, active = rays
 
-    # The ray in coordinates in which cells are unit cubes, and the part of it in the box
+    # Clip the ray to the box, in coordinates in which cells are unit cubes
     transform = mi.Transform4f(majorants.world_to_cells.tolist())
     o: Any = transform @ mi.Point3f(ray.o)
     d: Any = transform @ mi.Vector3f(ray.d)
@@ -177,16 +183,16 @@ def _follow(
     t = dr.maximum(dr.max(dr.minimum(a, b)), t_min)
     t_max = dr.minimum(dr.min(dr.maximum(a, b)), t_max)
 
-    # The first cell, and where the ray leaves it along each axis
+    # The first cell, and the distances at which the ray leaves it along each axis
     last = mi.Vector3i(*(n - 1 for n in majorants.shape))
     cell = dr.clip(mi.Vector3i(dr.floor(o + d * t)), 0, last)
     leave = (mi.Vector3f(cell) + dr.select(d > 0, 1, 0) - o) / d
     towards, apart = mi.Vector3i(dr.sign(d)), dr.abs(1 / d)
 
-    def goes_on(t: JitFloat, depth: JitFloat, through: JitFloat, *_: Any) -> JitMask:
+    def is_followed(t: JitFloat, depth: JitFloat, through: JitFloat, *_: Any) -> JitMask:
         return active & (t < t_max) & (through > smallest)
 
-    def step(
+    def step_to_particle(
         t: JitFloat,
         depth: JitFloat,
         through: JitFloat,
@@ -196,7 +202,7 @@ def _follow(
         lookups: JitInt,
         sampler: MitsubaObject,
     ) -> tuple[Any, ...]:
-        # To a particle after the optical `depth`, or to the end of the cell
+        # Advance by the optical `depth` to a particle, or at most to the end of the cell
         i = dr.clip(cell, 0, last)
         index = mi.UInt32(i.x + (last.x + 1) * (i.y + (last.y + 1) * i.z))
         majorant = dr.gather(mi.Float, majorants.array, index)
@@ -206,15 +212,15 @@ def _follow(
         depth = dr.select(tested, 0, depth - majorant * (exit_at - t))
         t = dr.select(tested, particle, exit_at)
 
-        # Through the particle; an extinction above the majorant visibly spoils the result
+        # Pass the particle; NaN makes an extinction above the majorant visible in pictures
         sigma = extinction(ray.o + ray.d * t, tested)
-        passed, results = meet(sigma / majorant, t, through, results, sampler, tested)
+        passed, results = meet_particle(sigma / majorant, t, through, results, sampler, tested)
         passed = dr.select(sigma <= majorant * (1 + ROUNDING), passed, dr.nan)
         through = dr.select(tested, passed, through)
         depth = dr.select(tested, -dr.log(1 - sampler.next_1d(tested)), dr.maximum(depth, 0))
         lookups = lookups + dr.select(tested, mi.UInt32(1), 0)
 
-        # Into the next cell
+        # Enter the next cell if no particle was met
         crossed = ~tested & (leave <= exit_at)
         cell = dr.select(crossed, cell + towards, cell)
         leave = dr.select(crossed, leave + apart, leave)
@@ -223,5 +229,7 @@ def _follow(
     with dr.suspend_grad():
         depth = -dr.log(1 - sampler.next_1d(active))
         state = (t, depth, mi.Float(1), cell, leave, results, mi.UInt32(0), sampler)
-        _, _, through, _, _, results, lookups, _ = dr.while_loop(state, goes_on, step)
+        _, _, through, _, _, results, lookups, _ = dr.while_loop(
+            state, is_followed, step_to_particle
+        )
     return through, results, lookups

@@ -1,4 +1,4 @@
-"""`Vertex`: the points where paths of light turn, each in a medium or on a surface."""
+"""`Vertex`: points at which paths of light are scattered, each in a medium or on a surface."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -7,15 +7,16 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
 
-replace_grad: Any = dr.replace_grad  # Dr.Jit's stub knows no result of it
+replace_grad: Any = dr.replace_grad  # Dr.Jit's stub does not type its result
 
 
 @dataclass(eq=False)
 class Vertex:
-    """The points where rays are scattered: by a `phase` function in a medium, or by a BSDF.
+    """The points at which rays are scattered, by a phase function in a medium or by a BSDF.
 
-    `in_medium` and `on_surface` are masks of the rays, `mei` and `si` their
-    `mi.MediumInteraction3f` and `mi.SurfaceInteraction3f`.
+    `in_medium` and `on_surface` are masks of the rays that are scattered there. `phase` is the
+    medium's phase function, `mei` the `mi.MediumInteraction3f` in the medium, and `si` the
+    `mi.SurfaceInteraction3f` on the surface.
     """
 
     phase: Any
@@ -26,21 +27,27 @@ class Vertex:
 
     @property
     def active(self) -> JitMask:
-        """Whether light is scattered at all."""
+        """A mask of the rays that are scattered, in the medium or on a surface."""
         return self.in_medium | self.on_surface
 
     @property
     def interaction(self) -> MitsubaObject:
-        """The `mi.Interaction3f` from which rays are sent."""
+        """The points as a `mi.Interaction3f`, from which shadow rays start."""
         import mitsuba as mi
 
         it = dr.zeros(mi.Interaction3f)
-        it.p, it.n = self.either(self.mei.p, self.si.p), self.either(0, self.si.n)
+        it.p, it.n = (
+            self.select_medium_or_surface(self.mei.p, self.si.p),
+            self.select_medium_or_surface(0, self.si.n),
+        )
         it.time, it.wavelengths = self.mei.time, self.mei.wavelengths
         return it
 
     def eval_pdf(self, wo: JitVector) -> tuple[JitColour, JitFloat]:
-        """Return the share of light scattered towards `wo`, cosine included, and its density."""
+        """Evaluate the phase function, or BSDF × cosine, for the direction `wo`, and its density.
+
+        The density is that with which `sample` draws `wo`, per solid angle.
+        """
         import mitsuba as mi
 
         phase = self.phase.eval_pdf(mi.PhaseFunctionContext(), self.mei, wo, self.in_medium)
@@ -48,12 +55,16 @@ class Vertex:
             mi.BSDFContext(), self.si, self.si.to_local(wo), self.on_surface
         )
         values = (mi.unpolarized_spectrum(value) for value in (phase[0], bsdf[0]))
-        return self.either(*values), self.either(phase[1], bsdf[1])
+        return self.select_medium_or_surface(*values), self.select_medium_or_surface(
+            phase[1], bsdf[1]
+        )
 
     def sample(self, sampler: MitsubaObject) -> tuple[JitVector, JitColour, JitFloat]:
-        """Return a direction, its weight, and its density, 0 if samples of emitters cannot find it.
+        """Draw a scattered direction; return it with its weight and its density.
 
-        The weight has derivatives; the direction and the density have none.
+        The weight is the scattered share of light over the density, and has derivatives; the
+        direction and the density have none. The density is 0 where sampling emitters cannot find
+        the same light, as in a mirror.
         """
         import mitsuba as mi
 
@@ -66,23 +77,23 @@ class Vertex:
                 mi.BSDFContext(), self.si, u, v, self.on_surface
             )
             delta = self.on_surface & mi.has_flag(bs.sampled_type, mi.BSDFFlags.Delta)
-            wo = self.either(wo, self.si.to_world(bs.wo))
-            pdf = self.either(pdf, bs.pdf)
+            wo = self.select_medium_or_surface(wo, self.si.to_world(bs.wo))
+            pdf = self.select_medium_or_surface(pdf, bs.pdf)
             drawn = self.active & (pdf > 0)
             weights = (mi.unpolarized_spectrum(w) for w in (weight, weight_of_bsdf))
-            weight = dr.select(drawn, self.either(*weights), 0)
+            weight = dr.select(drawn, self.select_medium_or_surface(*weights), 0)
         value, _ = self.eval_pdf(wo)
         smooth = drawn & ~delta
         attached = dr.select(smooth, value / dr.select(smooth, pdf, 1), weight)
         return wo, replace_grad(weight, attached), dr.select(smooth, pdf, 0)
 
-    def either(self, in_medium: Any, on_surface: Any) -> Any:
-        """Select one of two values, for rays in the medium or on a surface."""
+    def select_medium_or_surface(self, in_medium: Any, on_surface: Any) -> Any:
+        """Select the first value for rays in the medium, and the second on a surface."""
         return dr.select(self.in_medium, in_medium, on_surface)
 
 
-def medium_interaction(ray: MitsubaObject, t: JitFloat) -> MitsubaObject:
-    """Return the `mi.MediumInteraction3f` of rays at the distance `t`."""
+def make_medium_interaction(ray: MitsubaObject, t: JitFloat) -> MitsubaObject:
+    """Return the `mi.MediumInteraction3f` at the distance `t` along rays."""
     import mitsuba as mi
 
     mei = dr.zeros(mi.MediumInteraction3f)

@@ -1,8 +1,8 @@
-"""Synthetic volumes: every file of this folder makes one, which users load by the file's name.
+"""Synthetic volumes: each module of this folder makes one, which users load by the module's name.
 
-A file defines ``SIZE``, the default number of voxels along each axis; ``BYTES``, the memory per
-voxel while it is made; and ``make(size)``, which returns the `Volume` of `size` (nx, ny, nz)
-voxels.
+A module defines ``SIZE``, the default number of voxels along each axis; ``BYTES``, the memory per
+voxel that making the volume needs; and ``make(size)``, which returns the `Volume` of `size`
+(nx, ny, nz) voxels.
 """
 
 import importlib
@@ -15,23 +15,23 @@ from brdfkit.volumes.volume import Volume
 
 
 @cache
-def list_names() -> tuple[str, ...]:
+def list_volume_names() -> tuple[str, ...]:
     """Return the names of the synthetic volumes."""
     return find_module_names(__path__)
 
 
-def memory_needed(name: str, size: tuple[int, int, int]) -> int:
-    """Return the memory [bytes] that is needed to make a volume of this name and `size`."""
+def estimate_memory(name: str, size: tuple[int, int, int]) -> int:
+    """Return the memory [bytes] that making the synthetic volume `name` in this `size` needs."""
     return math.prod(size) * int(_load_module(name).BYTES)
 
 
 def make(name: str, size: tuple[int, int, int] | None = None) -> Volume:
-    """Make the volume of this name, with `size` (nx, ny, nz) voxels or its default size."""
+    """Make the synthetic volume `name`, with `size` (nx, ny, nz) voxels or its default size."""
     module = _load_module(name)
     volume: Volume = module.make(size or (module.SIZE,) * 3)
     return volume
 
 
 def _load_module(name: str) -> Any:
-    """Return the module that makes the volume of this name."""
+    """Import the module that makes the synthetic volume `name`."""
     return importlib.import_module(f"{__name__}.{name}")

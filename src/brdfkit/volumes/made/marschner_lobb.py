@@ -10,22 +10,22 @@ below the Nyquist frequency.
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.volumes.made._grid import Size, fill_cube, voxel_centres
+from brdfkit.volumes.made._cube_grid import Size, make_cube_transform, voxel_centres
 from brdfkit.volumes.volume import Volume
 
 SIZE = 40
-BYTES = 13  # per voxel while the volume is made
+BYTES = 13  # memory per voxel that `make` needs
 FREQUENCY, ALPHA = 6.0, 0.25
 
 
 def make(size: Size) -> Volume:
-    """Make the signal at the centres of `size` voxels."""
-    to_world = fill_cube(size, 1.0)
-    values = evaluate(*voxel_centres(size, to_world)).astype(np.float32)
+    """Make the volume of the Marschner-Lobb signal, with `size` (nx, ny, nz) voxels."""
+    to_world = make_cube_transform(size, 1.0)
+    values = evaluate_signal(*voxel_centres(size, to_world)).astype(np.float32)
     return Volume(values, to_world, "marschner_lobb")
 
 
-def evaluate(x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
-    """Evaluate ρ at points whose coordinates broadcast."""
+def evaluate_signal(x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
+    """Evaluate the Marschner-Lobb signal ρ at points (x, y, z), whose coordinates broadcast."""
     rings = np.cos(2 * np.pi * FREQUENCY * np.cos(np.pi * np.hypot(x, y) / 2))
     return (1 - np.sin(np.pi * z / 2) + ALPHA * (1 + rings)) / (2 * (1 + ALPHA))

@@ -1,18 +1,18 @@
 """The Shepp-Logan head phantom in three dimensions: ten ellipsoids on [-1, 1]³ whose values add up.
 
 The cross-sections through the ellipsoids' centres are ellipses of the two-dimensional phantom
-[Shepp & Logan 1974]. Half axes and places along z are from M. Schabel's phantom3d. The contrasts
-are from [Toft 1996], which make the inner parts visible: a skull of 1, a brain of 0.2. An
+[Shepp & Logan 1974]. The half axes and centres along z are from M. Schabel's phantom3d, the values
+from [Toft 1996], whose contrast makes the inner parts visible: a skull of 1, a brain of 0.2. An
 ellipsoid has a value, half axes a, b, c and a centre, and is turned by φ about z.
 """
 
 import numpy as np
 
-from brdfkit.volumes.made._grid import Size, fill_cube, voxel_centres
+from brdfkit.volumes.made._cube_grid import Size, make_cube_transform, voxel_centres
 from brdfkit.volumes.volume import Volume
 
 SIZE = 64
-BYTES = 14  # per voxel while the volume is made
+BYTES = 14  # memory per voxel that `make` needs
 ELLIPSOIDS = (  # value, a, b, c, x, y, z, φ [degrees]
     (1.0, 0.69, 0.92, 0.81, 0.0, 0.0, 0.0, 0),
     (-0.8, 0.6624, 0.874, 0.78, 0.0, -0.0184, 0.0, 0),
@@ -28,8 +28,8 @@ ELLIPSOIDS = (  # value, a, b, c, x, y, z, φ [degrees]
 
 
 def make(size: Size) -> Volume:
-    """Make the phantom at the centres of `size` voxels."""
-    to_world = fill_cube(size, 1.0)
+    """Make the volume of the Shepp-Logan phantom, with `size` (nx, ny, nz) voxels."""
+    to_world = make_cube_transform(size, 1.0)
     x, y, z = voxel_centres(size, to_world)
     values = np.zeros(size[::-1], np.float32)
     for value, a, b, c, x0, y0, z0, degrees in ELLIPSOIDS:

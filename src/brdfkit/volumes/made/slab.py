@@ -7,17 +7,17 @@ half a voxel at both faces, where it is constant.
 
 import numpy as np
 
-from brdfkit.volumes.made._grid import Size, fill_cube, voxel_centres
+from brdfkit.volumes.made._cube_grid import Size, make_cube_transform, voxel_centres
 from brdfkit.volumes.volume import Volume
 
 SIZE = 64
-BYTES = 5  # per voxel while the volume is made
+BYTES = 5  # memory per voxel that `make` needs
 FIRST, SLOPE = 0.25, 1.5
 
 
 def make(size: Size) -> Volume:
-    """Make the slab of `size` voxels."""
-    to_world = fill_cube(size, 1.0)
+    """Make the slab with `size` (nx, ny, nz) voxels."""
+    to_world = make_cube_transform(size, 1.0)
     _, _, z = voxel_centres(size, to_world)
     values = np.broadcast_to(FIRST + SLOPE * (z + 1), size[::-1]).astype(np.float32)
     return Volume(values, to_world, "slab")

@@ -1,1 +1,1 @@
-"""Rays through volumes: their box, values between voxels, crossings and largest values."""
+"""Rays through volumes: the volume's box, values between voxels, isosurfaces, largest values."""

@@ -1,4 +1,4 @@
-"""Rays at the box of a volume, what lies behind it, and normals of surfaces within it."""
+"""Geometry of rays and a volume's box: intersections, light from behind, normals and gradients."""
 
 from collections.abc import Callable
 
@@ -6,13 +6,14 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
 
-SMALLEST_COSINE = 1e-3  # between a bent normal and the direction to the eye
+SMALLEST_COSINE = 1e-3  # between a normal that has been bent to the viewer and the viewer
 
 
-def to_cube(volume: MitsubaObject) -> MitsubaObject:
-    """Return the transform from the world to the unit cube that is the volume's box.
+def get_world_to_cube(volume: MitsubaObject) -> MitsubaObject:
+    """Return the transform from the world to the unit cube that the volume fills.
 
-    A volume with a `to_local` may be oblique; the box of any other is along the world's axes.
+    It is the attribute `to_local` of brdfkit's volumes, whose box may be oblique. Mitsuba's own
+    volumes only tell their bounding box along the world's axes.
     """
     import mitsuba as mi
 
@@ -25,34 +26,42 @@ def to_cube(volume: MitsubaObject) -> MitsubaObject:
 def intersect_box(ray: MitsubaObject, volume: MitsubaObject) -> tuple[JitFloat, JitFloat]:
     """Return the distances at which a ray enters and leaves a volume's box.
 
-    The second is smaller than the first if the ray misses the box.
+    The second distance is smaller than the first one if the ray misses the box.
     """
     import mitsuba as mi
 
-    o, d = to_cube(volume) @ mi.Point3f(ray.o), to_cube(volume) @ mi.Vector3f(ray.d)
+    o, d = (
+        get_world_to_cube(volume) @ mi.Point3f(ray.o),
+        get_world_to_cube(volume) @ mi.Vector3f(ray.d),
+    )
     inverse = dr.rcp(d)
     a, b = -o * inverse, (1 - o) * inverse
     return dr.maximum(dr.max(dr.minimum(a, b)), 0), dr.min(dr.maximum(a, b))
 
 
-def light_behind(
+def evaluate_light_behind(
     scene: MitsubaObject, ray: MitsubaObject, active: JitMask
 ) -> tuple[JitFloat, JitColour]:
-    """Return the distance of the first surface, and its emission or that of the environment."""
+    """Return the distance of the first surface along a ray, and the light emitted from there.
+
+    Where there is no surface, the light is that of the environment map.
+    """
     import mitsuba as mi
 
     si = scene.ray_intersect(mi.Ray3f(ray), active)
     emitter = si.emitter(scene)
-    if emitter is None:  # only in scalar variants; elsewhere a missing emitter emits 0
+    if emitter is None:  # in scalar variants; in others a missing emitter evaluates to 0
         return si.t, mi.UnpolarizedSpectrum(0)
     return si.t, mi.unpolarized_spectrum(emitter.eval(si, active))
 
 
-def gradient(f: Callable[[JitVector], JitFloat], p: JitVector, volume: MitsubaObject) -> JitVector:
-    """Return ∇f at points `p`, by the differences between a voxel ahead and a voxel behind."""
+def compute_gradient(
+    f: Callable[[JitVector], JitFloat], p: JitVector, volume: MitsubaObject
+) -> JitVector:
+    """Return the gradient ∇f at points `p`, by central differences over a voxel to either side."""
     import mitsuba as mi
 
-    to_world, size = to_cube(volume).inverse(), volume.resolution()
+    to_world, size = get_world_to_cube(volume).inverse(), volume.resolution()
     slopes = mi.Normal3f()
     for axis in range(3):
         step = mi.Vector3f(0)
@@ -63,26 +72,30 @@ def gradient(f: Callable[[JitVector], JitFloat], p: JitVector, volume: MitsubaOb
 
 
 def face_normal(p: JitVector, volume: MitsubaObject) -> JitVector:
-    """Return the outward normal of the face of a volume's box on which the points `p` lie."""
+    """Return the outward unit normal of the box's face on which the points `p` lie."""
     import mitsuba as mi
 
-    beside = to_cube(volume) @ p - 0.5
+    beside = get_world_to_cube(volume) @ p - 0.5
     largest = dr.max(dr.abs(beside))
     normal = mi.Normal3f(dr.select(dr.abs(beside) == largest, dr.sign(beside), 0))
-    return mi.Vector3f(dr.normalize(to_cube(volume).inverse() @ normal))
+    return mi.Vector3f(dr.normalize(get_world_to_cube(volume).inverse() @ normal))
 
 
-def bend_to_viewer(n: JitVector, d: JitVector) -> JitVector:
-    """Bend the normal `n` towards the viewer where a ray of direction `d` would see its back.
+def bend_normal_to_viewer(n: JitVector, d: JitVector) -> JitVector:
+    """Bend normals `n` towards the viewer where rays of direction `d` would meet their back.
 
-    Normals by differences lean past the silhouette, where one-sided materials would be black.
+    Near silhouettes, normals from central differences may face away from the viewer, and one-sided
+    materials would be black there.
     """
     behind = dr.maximum(dr.dot(n, d) + SMALLEST_COSINE, 0)
     return dr.normalize(n - d * behind)
 
 
-def voxels_per_length(d: JitVector, volume: MitsubaObject) -> JitVector:
-    """Return how many voxels a ray of direction `d` passes per unit of length, along each axis."""
+def count_voxels_per_length(d: JitVector, volume: MitsubaObject) -> JitVector:
+    """Return the number of voxels that rays of direction `d` pass per unit of length on each axis.
+
+    The numbers have signs, since they are components along the axes of the grid.
+    """
     import mitsuba as mi
 
-    return (to_cube(volume) @ mi.Vector3f(d)) * mi.Vector3f(volume.resolution())
+    return (get_world_to_cube(volume) @ mi.Vector3f(d)) * mi.Vector3f(volume.resolution())

@@ -1,8 +1,8 @@
-"""Values of a volume between its voxels, trilinear or nearest, and gradients by two rules.
+"""Reconstruction of a volume between its voxels: values, trilinear or nearest, and gradients.
 
-This is the reference for renderers, in NumPy and double precision. Indices are places in the grid:
-the centre of voxel (i, j, k) lies at these whole numbers, and the box of the volume reaches from
--½ to n - ½ along an axis of n voxels.
+This is the reference for renderers, in NumPy and double precision. Indices are coordinates of the
+grid, also between voxels: the centre of voxel (i, j, k) has these whole numbers, and the box of the
+volume reaches from -½ to n - ½ along an axis of n voxels.
 """
 
 import math
@@ -16,47 +16,65 @@ from brdfkit.core.geometry.multilinear import find_bracket, list_corners
 
 Volume = Any  # the class in `volume.py`, which imports this file
 
-LAYERS = 16  # whose gradients are computed at a time
+LAYERS = 16  # layers whose gradients are computed at a time, to save memory
 
 
-def values_at(volume: Volume, points: ArrayLike) -> AnyArray:
-    """Return the values (n,) at `points` (n, 3) of the world; 0 outside the box."""
-    indices = _to_indices(volume, points)
+def interpolate_values(volume: Volume, points: ArrayLike) -> AnyArray:
+    """Return the volume's values (n,) at `points` (n, 3) of the world; 0 outside its box.
+
+    Labels are taken from the nearest voxel, other values interpolated trilinearly.
+    """
+    indices = _convert_to_indices(volume, points)
     if volume.labels:
         nearest = np.rint(indices).astype(int)
         k, j, i = (np.clip(nearest[:, axis], 0, volume.size[axis] - 1) for axis in (2, 1, 0))
         values = volume.values[k, j, i]
     else:
-        values = _interpolate(volume, indices)
-    return np.where(_is_inside(volume, indices), values, 0)
+        values = _interpolate_trilinearly(volume, indices)
+    return np.where(_is_inside_box(volume, indices), values, 0)
 
 
-def gradient_at(volume: Volume, points: ArrayLike, of_interpolant: bool) -> AnyArray:
-    """Return ∇V (n, 3) at `points` (n, 3) of the world; see `Volume.gradient`."""
-    indices = _to_indices(volume, points)
-    by_index = _slopes(volume, indices) if of_interpolant else _differences(volume, indices)
+def compute_gradients(volume: Volume, points: ArrayLike, of_interpolant: bool) -> AnyArray:
+    """Return the gradients (n, 3) of a volume's values at `points` (n, 3) of the world.
+
+    They are derivatives of the trilinear interpolant if `of_interpolant`, otherwise central
+    differences.
+    """
+    indices = _convert_to_indices(volume, points)
+    by_index = (
+        _interpolant_slopes(volume, indices)
+        if of_interpolant
+        else _central_differences(volume, indices)
+    )
     # The chain rule converts derivatives along the grid's axes to those along the world's
     return by_index @ np.linalg.inv(volume.to_world[:3, :3])
 
 
 def gradient_magnitude(values: AnyArray, to_world: FloatArray) -> NDArray[np.float32]:
-    """Return ‖∇V‖ (nz, ny, nx) at the centres of voxels, by central differences."""
+    """Return the gradient magnitude (nz, ny, nx) at the voxels' centres, by central differences.
+
+    `to_world` (4, 4) is the transform from indices of voxels to the world.
+    """
     result = np.empty(values.shape, np.float32)
     to_indices = np.linalg.inv(to_world[:3, :3])
     metric = to_indices @ to_indices.T  # diagonal, unless the axes are oblique to each other
-    # Squares of large values exceed 32 bits; division by a power of two is exact
+    # A unit keeps squares of large values within float32; division by a power of two is exact
     largest = max(1.0, float(values.max()), -float(values.min()))
     unit = np.float32(2.0 ** math.floor(math.log2(largest)))
     for k in range(0, len(values), LAYERS):
         before, behind = min(k, 1), k + LAYERS + 1
         slab = values[k - before : behind].astype(np.float32) / unit
-        square = _squared_length(slab, metric)[before : before + LAYERS]
+        square = _squared_gradient_lengths(slab, metric)[before : before + LAYERS]
         result[k : k + LAYERS] = unit * np.sqrt(np.maximum(square, 0))
     return result
 
 
-def _squared_length(values: AnyArray, metric: FloatArray) -> FloatArray:
-    """Return g · metric · g at each voxel, with the differences g along x, y, z."""
+def _squared_gradient_lengths(values: AnyArray, metric: FloatArray) -> FloatArray:
+    """Return the squared gradient magnitude gᵀ M g at each voxel of a slab of `values`.
+
+    g are the central differences along the grid's axes, and the `metric` M (3, 3) converts their
+    squares to the world.
+    """
     slopes = [
         np.gradient(values, axis=axis) if values.shape[axis] > 1 else np.zeros_like(values)
         for axis in (2, 1, 0)
@@ -66,32 +84,39 @@ def _squared_length(values: AnyArray, metric: FloatArray) -> FloatArray:
     return sum(products, np.zeros((), np.float32))
 
 
-def _to_indices(volume: Volume, points: ArrayLike) -> FloatArray:
-    """Convert `points` (n, 3) of the world to places in the grid (n, 3), along x, y, z."""
+def _convert_to_indices(volume: Volume, points: ArrayLike) -> FloatArray:
+    """Convert `points` (n, 3) of the world to fractional indices (n, 3) of the grid, x first."""
     points = np.atleast_2d(np.asarray(points, float))
     to_indices = np.linalg.inv(volume.to_world)
     return points @ to_indices[:3, :3].T + to_indices[:3, 3]
 
 
-def _interpolate(volume: Volume, indices: FloatArray) -> FloatArray:
-    """Return the trilinear interpolant (n,), which is constant beyond the outermost centres."""
+def _interpolate_trilinearly(volume: Volume, indices: FloatArray) -> FloatArray:
+    """Interpolate the volume trilinearly at `indices` (n, 3) of the grid; return the values (n,).
+
+    Beyond the centres of the outermost voxels the values are constant.
+    """
     axes = [find_bracket(indices[:, axis], volume.size[axis]) for axis in (2, 1, 0)]
     parts = (share * volume.values[cells].astype(float) for cells, share in list_corners(axes))
     return sum(parts, np.zeros(()))
 
 
-def _differences(volume: Volume, indices: FloatArray) -> FloatArray:
-    """Return the central differences (n, 3), half of V(p + e) - V(p - e) along each axis e."""
+def _central_differences(volume: Volume, indices: FloatArray) -> FloatArray:
+    """Return the central differences (n, 3) of the interpolated values along the grid's axes.
+
+    They are (V(p + e) - V(p - e)) / 2 for the values V at `indices` p (n, 3), and each unit step e.
+    """
     steps = np.eye(3)
-    ahead = [_interpolate(volume, indices + step) for step in steps]
-    behind = [_interpolate(volume, indices - step) for step in steps]
+    ahead = [_interpolate_trilinearly(volume, indices + step) for step in steps]
+    behind = [_interpolate_trilinearly(volume, indices - step) for step in steps]
     return (np.stack(ahead, axis=1) - np.stack(behind, axis=1)) / 2
 
 
-def _slopes(volume: Volume, indices: FloatArray) -> FloatArray:
+def _interpolant_slopes(volume: Volume, indices: FloatArray) -> FloatArray:
     """Return the derivatives (n, 3) of the trilinear interpolant along the axes of the grid.
 
-    Along an axis it is linear, so its slope is the difference between the two ends of the cell.
+    Between two voxels the interpolant is linear along an axis, so that its slope is the difference
+    between the two values there.
     """
     result = np.zeros_like(indices)
     for axis, n in enumerate(volume.size):
@@ -99,11 +124,13 @@ def _slopes(volume: Volume, indices: FloatArray) -> FloatArray:
         ends = [indices.copy(), indices.copy()]
         ends[0][:, axis], ends[1][:, axis] = low, low + 1
         moves = (indices[:, axis] > 0) & (indices[:, axis] < n - 1)  # constant beyond the centres
-        slope = _interpolate(volume, ends[1]) - _interpolate(volume, ends[0])
+        slope = _interpolate_trilinearly(volume, ends[1]) - _interpolate_trilinearly(
+            volume, ends[0]
+        )
         result[:, axis] = np.where(moves, slope, 0)
     return result
 
 
-def _is_inside(volume: Volume, indices: FloatArray) -> BoolArray:
-    """Return whether places in the grid (n, 3) are inside the volume's box."""
+def _is_inside_box(volume: Volume, indices: FloatArray) -> BoolArray:
+    """Return a mask (n,) of the `indices` (n, 3) of the grid that lie in the volume's box."""
     return np.all((indices >= -0.5) & (indices <= np.array(volume.size) - 0.5), axis=1)

@@ -1,7 +1,7 @@
-"""Searches along a ray: where a function first rises above 0, and where it is largest.
+"""Searches along rays: for the distance at which a function exceeds 0, and for its maximum.
 
-Functions f(t) take distances along rays. A ray is cut into `steps` equal parts between `near` and
-`far`; what is thinner than a part may be missed. The searches have no derivatives.
+A function f(t) takes distances t along rays. Between `near` and `far` it is evaluated at equal
+steps, so that features thinner than a step may be missed. The searches have no derivatives.
 """
 
 from collections.abc import Callable
@@ -11,22 +11,23 @@ import drjit as dr
 from brdfkit.core.array_types import JitFloat, JitInt, JitMask
 from brdfkit.core.jit.loops import record_loops
 
-HALVINGS = 8  # of a part: a crossing is then linear, and a largest value is found to 1/256 part
+HALVINGS = 8  # of a step in which a crossing or maximum lies, down to 1/256 of the step
 
 
 @record_loops
-def find_first_above(
+def find_first_positive_step(
     f: Callable[[JitFloat], JitFloat], near: JitFloat, far: JitFloat, steps: int, active: JitMask
 ) -> tuple[JitInt, JitFloat, JitFloat]:
-    """Find the first of `steps` + 1 even places from `near` to `far` where f is above 0.
+    """Find the first of `steps` + 1 equally spaced distances from `near` to `far` where f > 0.
 
-    Returns its number, its distance and f there, which is not above 0 if there is no such place.
+    Returns its number from 0, the distance, and the value of f there. If f is nowhere above 0, they
+    are those of the last distance.
     """
     import mitsuba as mi
 
     step = (far - near) / steps
 
-    def part(i: JitInt, t: JitFloat, above: JitFloat) -> tuple[JitInt, JitFloat, JitFloat]:
+    def step_ahead(i: JitInt, t: JitFloat, above: JitFloat) -> tuple[JitInt, JitFloat, JitFloat]:
         t = near + mi.Float(i + 1) * step
         return i + 1, t, f(t)
 
@@ -34,7 +35,7 @@ def find_first_above(
         return dr.while_loop(
             (mi.UInt32(0), mi.Float(near), mi.Float(f(near))),
             lambda i, t, above: active & (i < steps) & (above <= 0),
-            part,
+            step_ahead,
         )
 
 
@@ -42,19 +43,19 @@ def find_first_above(
 def find_first_crossing(
     f: Callable[[JitFloat], JitFloat], near: JitFloat, far: JitFloat, steps: int, active: JitMask
 ) -> tuple[JitFloat, JitMask]:
-    """Find the distance where f first rises above 0, and whether it does.
+    """Find the distance at which f first rises above 0; return it, and a mask of the rays found.
 
-    The place of `find_first_above` is too deep by half a part on average. Here the part before it
-    is halved, until less than 1e-6 of the ray is left. If f is above 0 at `near`, that is the
-    distance. `reattach` gives the distance its derivatives.
+    The step before the first value above 0 is halved `HALVINGS` times, then the crossing is
+    interpolated linearly. If f is above 0 at `near` already, the distance is `near`.
+    `attach_crossing_derivatives` gives the distance its derivatives.
     """
     import mitsuba as mi
 
-    i, t, above = find_first_above(f, near, far, steps, active)
+    i, t, above = find_first_positive_step(f, near, far, steps, active)
     found = active & (above > 0)
     refined = found & (i > 0)
 
-    def halve(
+    def halve_step(
         n: JitInt, outside: JitFloat, inside: JitFloat, below: JitFloat, above: JitFloat
     ) -> tuple[JitInt, JitFloat, JitFloat, JitFloat, JitFloat]:
         t = (outside + inside) / 2
@@ -69,17 +70,19 @@ def find_first_crossing(
         _, outside, inside, below, above = dr.while_loop(
             (mi.UInt32(0), before, t, f(before), above),
             lambda n, *_: refined & (n < HALVINGS),
-            halve,
+            halve_step,
         )
         share = below / dr.select(refined, below - above, -1)
         return dr.select(refined, dr.lerp(outside, inside, share), t), found
 
 
-def reattach(f: Callable[[JitFloat], JitFloat], t: JitFloat, slope: JitFloat) -> JitFloat:
-    """Return the distance `t` of a crossing with its derivatives: dt = -df / slope.
+def attach_crossing_derivatives(
+    f: Callable[[JitFloat], JitFloat], t: JitFloat, slope: JitFloat
+) -> JitFloat:
+    """Return the distance `t` at which f crosses 0 with its derivatives: dt = -df / slope.
 
-    `slope` is df/dt at the crossing, without derivatives. Where it is not above 0, the ray grazes
-    the surface, and t has no derivatives.
+    `slope` is df/dt at the crossing, without derivatives. Where it is 0 or less, the ray grazes the
+    surface f = 0, and t gets no derivatives.
     """
     here = f(dr.detach(t))
     change = (here - dr.detach(here)) / dr.select(slope > 0, slope, 1)
@@ -87,7 +90,7 @@ def reattach(f: Callable[[JitFloat], JitFloat], t: JitFloat, slope: JitFloat) ->
 
 
 @record_loops
-def find_largest(
+def find_distance_of_maximum(
     f: Callable[[JitFloat], JitFloat],
     near: JitFloat,
     far: JitFloat,
@@ -97,21 +100,25 @@ def find_largest(
 ) -> JitFloat:
     """Find the distance from `near` to `far` at which f is largest.
 
-    f is evaluated at both ends and in each part at the share `place` of it, then ever nearer on
-    both sides of the largest value. The result is thus a value on the ray, never more than the
-    largest. It needs no derivatives, as the largest value changes like the values at its place.
+    f is evaluated at both ends, and once in each step, at the share `place` of the step. Then the
+    surroundings of the largest value are searched at ever smaller distances. The distance needs no
+    derivatives: the derivative of a maximum is that of f at a constant distance.
     """
     import mitsuba as mi
 
     step = (far - near) / steps
 
-    def part(i: JitInt, best: JitFloat, largest: JitFloat) -> tuple[JitInt, JitFloat, JitFloat]:
+    def sample_step(
+        i: JitInt, best: JitFloat, largest: JitFloat
+    ) -> tuple[JitInt, JitFloat, JitFloat]:
         t = near + (mi.Float(i) + place) * step
         here = f(t)
         better = here > largest
         return i + 1, dr.select(better, t, best), dr.select(better, here, largest)
 
-    def halve(i: JitInt, best: JitFloat, largest: JitFloat) -> tuple[JitInt, JitFloat, JitFloat]:
+    def search_nearby(
+        i: JitInt, best: JitFloat, largest: JitFloat
+    ) -> tuple[JitInt, JitFloat, JitFloat]:
         reach = step * dr.exp2(-mi.Float(i))
         for side in (-1, 1):
             t = dr.clip(best + side * reach, near, far)
@@ -123,6 +130,6 @@ def find_largest(
     with dr.suspend_grad():
         ends = f(near), f(far)
         state = mi.UInt32(0), dr.select(ends[0] > ends[1], near, far), dr.maximum(*ends)
-        _, best, largest = dr.while_loop(state, lambda i, *_: active & (i < steps), part)
+        _, best, largest = dr.while_loop(state, lambda i, *_: active & (i < steps), sample_step)
         state = mi.UInt32(1), best, largest
-        return dr.while_loop(state, lambda i, *_: active & (i <= HALVINGS), halve)[1]
+        return dr.while_loop(state, lambda i, *_: active & (i <= HALVINGS), search_nearby)[1]

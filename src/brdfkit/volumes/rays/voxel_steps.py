@@ -1,4 +1,4 @@
-"""Changes of a gridvolume's values from a voxel to the next, to choose how rays sample it."""
+"""Differences between neighbouring voxels of a gridvolume, to choose how rays sample the volume."""
 
 from collections.abc import Iterator
 
@@ -7,30 +7,31 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, MitsubaObject
 
-COMPARED_VOXELS = 1_000_000  # about, evenly spread
-SHARE = 0.25  # of the way from one voxel to the next, where the volume is tested
+COMPARED_VOXELS = 1_000_000  # approximate number of voxels that are compared, evenly spread
+SHARE = 0.25  # of the way from one voxel to the next, at which `is_trilinear` evaluates the volume
 
 
-def typical_difference(data: AnyArray) -> float:
-    """Return the root mean square difference of neighbouring values (nz, ny, nx)."""
-    squares = [np.square(ahead - here, dtype=float) for _, here, ahead in _neighbours(data)]
+def rms_neighbour_difference(data: AnyArray) -> float:
+    """Return the root mean square difference between neighbours of the voxels (nz, ny, nx)."""
+    squares = [np.square(ahead - here, dtype=float) for _, here, ahead in _pair_neighbours(data)]
     return float(np.sqrt(np.mean(np.concatenate([s.ravel() for s in squares] or [[0.0]]))))
 
 
 def is_trilinear(volume: MitsubaObject, data: AnyArray, to_local: MitsubaObject) -> bool:
-    """Return whether a volume interpolates between its voxels, which no property of it tells.
+    """Return whether a Mitsuba volume interpolates between its voxels, whose values are `data`.
 
-    It is evaluated between the two neighbours that differ most; True if all values are equal.
-    `data` are its values (nz, ny, nx), `to_local` is the transform from the world to its cube.
+    Mitsuba does not expose this property, so the volume is evaluated between the two neighbours
+    that differ most. The answer is True if all values are equal. `data` has the shape
+    (nz, ny, nx), and `to_local` is the transform from the world to the volume's unit cube.
     """
     import mitsuba as mi
 
-    ways = [(np.abs(ahead - here), axis) for axis, here, ahead in _neighbours(data)]
+    ways = [(np.abs(ahead - here), axis) for axis, here, ahead in _pair_neighbours(data)]
     steps, axis = max(ways, key=lambda way: way[0].max(), default=(np.zeros((1, 1, 1)), 0))
     largest = float(steps.max())
     if not largest:
         return True
-    first = _stride(data) * np.array(np.unravel_index(steps.argmax(), steps.shape))
+    first = _comparison_stride(data) * np.array(np.unravel_index(steps.argmax(), steps.shape))
     second = first + np.eye(3, dtype=int)[axis]
     kji = (1 - SHARE) * first + SHARE * second
     place = (kji[::-1] + 0.5) / data.shape[::-1]
@@ -40,9 +41,12 @@ def is_trilinear(volume: MitsubaObject, data: AnyArray, to_local: MitsubaObject)
     return bool(abs(float(volume.eval_1(it)[0]) - expected) < SHARE / 2 * largest)
 
 
-def _neighbours(data: AnyArray) -> Iterator[tuple[int, AnyArray, AnyArray]]:
-    """Yield (axis, values, values of the next voxels) for each axis that has two voxels or more."""
-    k = _stride(data)
+def _pair_neighbours(data: AnyArray) -> Iterator[tuple[int, AnyArray, AnyArray]]:
+    """Yield (axis, values, values of the next voxels along it) for each axis with 2 voxels or more.
+
+    The values are an evenly spread part of the voxels `data` (nz, ny, nx).
+    """
+    k = _comparison_stride(data)
     for axis, n in enumerate(data.shape):
         if n > 1:
             along = np.moveaxis(data, axis, 0)
@@ -50,6 +54,6 @@ def _neighbours(data: AnyArray) -> Iterator[tuple[int, AnyArray, AnyArray]]:
             yield axis, here[::k, ::k, ::k], ahead[::k, ::k, ::k]
 
 
-def _stride(data: AnyArray) -> int:
-    """Return every how many voxels along an axis are compared."""
+def _comparison_stride(data: AnyArray) -> int:
+    """Return the step between compared voxels, the same along all axes."""
     return int(np.ceil((data.size / COMPARED_VOXELS) ** (1 / 3)))

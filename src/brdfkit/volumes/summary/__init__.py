@@ -1,1 +1,1 @@
-"""Summaries of volumes for `brdfkit info`: histograms, text and a figure."""
+"""Summaries of volumes for `brdfkit info`: their properties, likely defects, and histograms."""

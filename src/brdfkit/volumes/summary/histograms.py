@@ -1,4 +1,4 @@
-"""Histograms of a volume's values and of values × gradient magnitudes, as numbers and as text."""
+"""Histograms of a volume's values, and of values and gradient magnitudes, as numbers and text."""
 
 from collections.abc import Iterator
 
@@ -7,27 +7,30 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, IntArray
 from brdfkit.volumes.volume import Volume
 
-PARTS = 48  # of the range of values
-STEPS = 24  # of the range of gradient magnitudes
-SAMPLED_VOXELS = 2_000_000  # of the joint histogram, evenly spread
-FEW_VALUES = 64  # so few different whole numbers may be labels
+PARTS = 48  # bins of the range of values
+STEPS = 24  # bins of the range of gradient magnitudes
+SAMPLED_VOXELS = 2_000_000  # voxels in the joint histogram at most, evenly spread
+FEW_VALUES = 64  # a volume with at most so many different whole numbers may contain labels
 
 
-def count_values(volume: Volume) -> IntArray:
-    """Count the voxels (PARTS,) in equal parts of the range of values."""
-    return np.histogram(volume.values, PARTS, _range(volume))[0]
+def count_voxels_by_value(volume: Volume) -> IntArray:
+    """Return the histogram of a volume's values: the numbers of voxels (PARTS,) in equal bins."""
+    return np.histogram(volume.values, PARTS, _histogram_range(volume))[0]
 
 
-def count_jointly(volume: Volume, steepest: float) -> IntArray:
-    """Count the voxels (STEPS, PARTS) by gradient magnitude, up to `steepest`, and by value."""
+def count_voxels_by_gradient(volume: Volume, steepest: float) -> IntArray:
+    """Return the joint histogram (STEPS, PARTS) of gradient magnitudes and values.
+
+    The bins of gradient magnitudes reach from 0 to `steepest`, the largest one.
+    """
     step = -(-volume.values.size // SAMPLED_VOXELS)
     gradients, values = volume.gradient_magnitude.ravel()[::step], volume.values.ravel()[::step]
-    ends = (0, steepest or 1), _range(volume)
+    ends = (0, steepest or 1), _histogram_range(volume)
     return np.histogram2d(gradients, values, (STEPS, PARTS), ends)[0].astype(int)
 
 
-def count_different(values: AnyArray) -> int:
-    """Count the different values; return 0 unless they are of integer type."""
+def count_different_values(values: AnyArray) -> int:
+    """Count the different values of voxels; return 0 if they are not of integer type."""
     if values.dtype.kind == "f":
         return 0
     low, high = int(values.min()), int(values.max())
@@ -38,27 +41,30 @@ def count_different(values: AnyArray) -> int:
     return int(occurs.sum())
 
 
-def bars(numbers: AnyArray) -> str:
-    """Return numbers as bars of text, by their logarithm; a blank for 0.
+def format_bars(numbers: AnyArray) -> str:
+    """Draw numbers as a bar chart of text, with logarithmic heights; 0 is a blank.
 
-    >>> bars(np.array([0, 1, 10, 100]))
+    >>> format_bars(np.array([0, 1, 10, 100]))
     ' ▂▅█'
     """
-    return "".join(_levels(numbers, " ▁▂▃▄▅▆▇█"))
+    return "".join(_choose_letters(numbers, " ▁▂▃▄▅▆▇█"))
 
 
-def shades(numbers: AnyArray) -> str:
-    """Return numbers as shades of text, by their logarithm; a blank for 0."""
-    return "".join(_levels(numbers, " ░▒▓█"))
+def format_shades(numbers: AnyArray) -> str:
+    """Draw numbers as a line of shaded letters, on a logarithmic scale; 0 is a blank."""
+    return "".join(_choose_letters(numbers, " ░▒▓█"))
 
 
-def _levels(numbers: AnyArray, letters: str) -> Iterator[str]:
-    """Yield the letter of each number, from the first letter for 0 to the last for the largest."""
+def _choose_letters(numbers: AnyArray, letters: str) -> Iterator[str]:
+    """Yield a letter for each number, from the first letter for 0 to the last for the largest.
+
+    In between, letters are chosen by the logarithm of the number.
+    """
     height = np.log1p(numbers) / max(np.log1p(np.max(numbers)), 1e-9)
     return (letters[int(i)] for i in np.ceil(height * (len(letters) - 1)))
 
 
-def _range(volume: Volume) -> tuple[float, float]:
-    """Return the range of values; one value has a range of width 1."""
+def _histogram_range(volume: Volume) -> tuple[float, float]:
+    """Return the range (low, high) of a histogram of values; width 1 if all values are equal."""
     low, high = volume.range
     return (low, high) if low < high else (low - 0.5, high + 0.5)

@@ -1,4 +1,4 @@
-"""The figure of a `VolumeSummary`: three slices and two histograms, with a transfer function."""
+"""The figure of a `VolumeSummary`: three slices and two histograms, and a transfer function."""
 
 from typing import Any
 
@@ -16,32 +16,32 @@ VolumeSummary = Any  # the class in `summary.py`, which imports this file
 Reach = tuple[float, float, float, float]  # first and last value, first and last gradient
 
 SIZE = 10.4, 7.2  # inches
-COLOUR = "#0072b2"
-POINTS = 400  # along each axis of a drawn transfer function
-LEVELS = 0.01, 0.25, 0.5, 0.75  # values of A that are drawn as lines
-VEIL = 0.85  # opacity of the function's colours where A is 1
-PLANES = (("x", "y", "z"), ("x", "z", "y"), ("y", "z", "x"))  # across, up, and through
+COLOUR = "#0072b2"  # blue, of the histogram of values
+POINTS = 400  # samples along each axis of a drawn transfer function
+LEVELS = 0.01, 0.25, 0.5, 0.75  # values of A whose contour lines are drawn
+VEIL = 0.85  # opacity of the transfer function's colours over the histogram where A is 1
+PLANES = (("x", "y", "z"), ("x", "z", "y"), ("y", "z", "x"))  # axes to the right, up, and normal
 
 
 def draw(summary: VolumeSummary, transfer: TransferFunction | None = None) -> Figure:
     """Draw a `VolumeSummary` as a matplotlib `Figure`, with an optional `TransferFunction`."""
     if transfer is not None:
-        transfer = _fit_to_volume(transfer, summary.data)
+        transfer = _scale_to_volume(transfer, summary.data)
     figure = Figure(figsize=SIZE, layout="constrained")
     above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.3, 1))[:, 0]
     for axes, (across, up, through) in zip(above.subplots(1, 3), PLANES, strict=True):
         _draw_slice(axes, summary, "xyz".index(across), "xyz".index(up), "xyz".index(through))
     if summary.labels:
-        draw_values(below.subplots(), summary, transfer)
+        _draw_value_histogram(below.subplots(), summary, transfer)
         return figure
     left, right = below.subplots(1, 2)
-    draw_values(left, summary, transfer)
-    draw_gradients(right, summary, transfer)
+    _draw_value_histogram(left, summary, transfer)
+    _draw_gradient_histogram(right, summary, transfer)
     return figure
 
 
 def _draw_slice(axes: Axes, summary: VolumeSummary, across: int, up: int, through: int) -> None:
-    """Draw the middle slice along the axis `through`, and say where the other two axes point."""
+    """Draw the middle slice, normal to the axis `through`, and label the other two axes."""
     middle = summary.size[through] // 2
     voxels = np.take(summary.data.values, middle, axis=2 - through)  # (up, across): z is slowest
     colours = "tab20" if summary.labels else "gray"
@@ -51,7 +51,7 @@ def _draw_slice(axes: Axes, summary: VolumeSummary, across: int, up: int, throug
         vmin=summary.least,
         vmax=summary.largest,
         origin="lower",
-        extent=(*span(summary.data, across), *span(summary.data, up)),
+        extent=(*_find_axis_span(summary.data, across), *_find_axis_span(summary.data, up)),
         interpolation="nearest",
     )
     unit = f" [{summary.unit}]" if summary.unit else ""
@@ -60,8 +60,11 @@ def _draw_slice(axes: Axes, summary: VolumeSummary, across: int, up: int, throug
     axes.set_title(f"slice {middle} along {'xyz'[through]}", fontsize=10)
 
 
-def span(volume: Any, axis: int) -> tuple[float, float]:
-    """Return where the grid's `axis` begins and ends in the world; it may run downwards."""
+def _find_axis_span(volume: Any, axis: int) -> tuple[float, float]:
+    """Return the world coordinates between which the grid's `axis` runs.
+
+    They fall if the axis points against the world's nearest axis.
+    """
     start, along = volume.cube_to_world[:3, 3], volume.cube_to_world[:3, axis]
     length = np.linalg.norm(along)
     one_way = np.sign(along[np.abs(along).argmax()])
@@ -69,23 +72,23 @@ def span(volume: Any, axis: int) -> tuple[float, float]:
     return begin, begin + one_way * length
 
 
-def draw_values(
+def _draw_value_histogram(
     axes: Axes, summary: VolumeSummary, transfer: TransferFunction | None = None
 ) -> None:
-    """Draw the histogram of values, with A of a function of values above and its colours below."""
+    """Draw the histogram of values, and over it the curve and colours of a transfer function."""
     edges = np.linspace(summary.least, max(summary.largest, summary.least + 1e-9), PARTS + 1)
     axes.stairs(summary.counts, edges, fill=True, color=COLOUR)
     axes.set(yscale="log", xlabel="value", ylabel="voxels")
     axes.set_title(f"{summary.name}".replace("$", r"\$"), fontsize=10)
     axes.spines[["top", "right"]].set_visible(False)
     if transfer is not None and transfer.gradients is None:
-        _draw_curve(axes, transfer, (edges[0], edges[-1]))
+        _draw_alpha_curve(axes, transfer, (edges[0], edges[-1]))
 
 
-def draw_gradients(
+def _draw_gradient_histogram(
     axes: Axes, summary: VolumeSummary, transfer: TransferFunction | None = None
 ) -> None:
-    """Draw the histogram of value × gradient, and a transfer function over it."""
+    """Draw the joint histogram of values and gradient magnitudes, and a transfer function on it."""
     unit = f" per {summary.unit}" if summary.unit else ""
     axes.set(xlabel="value", ylabel=f"gradient magnitude{unit}")
     if not summary.joint.max() > 0 or summary.least == summary.largest:
@@ -101,17 +104,17 @@ def draw_gradients(
     )
     axes.figure.colorbar(picture, ax=axes, label="voxels")
     if transfer is not None:
-        _draw_function(axes, transfer, reach)
+        _draw_transfer_function(axes, transfer, reach)
 
 
-def _fit_to_volume(transfer: TransferFunction, volume: Any) -> TransferFunction:
-    """Scale a function to the volume's values and unit of length, as renderers do."""
+def _scale_to_volume(transfer: TransferFunction, volume: Any) -> TransferFunction:
+    """Convert a transfer function to the volume's values and unit of length, as renderers do."""
     transfer = scale_to_values(transfer, volume.values)
     return transfer.per(volume.unit) if volume.unit and transfer.length_unit else transfer
 
 
-def _draw_curve(axes: Axes, transfer: TransferFunction, reach: tuple[float, float]) -> None:
-    """Draw A of a function of values, on a second axis, and its colours below."""
+def _draw_alpha_curve(axes: Axes, transfer: TransferFunction, reach: tuple[float, float]) -> None:
+    """Draw A of a transfer function over values, on a second axis, and its colours below."""
     values = np.linspace(*reach, POINTS)
     rgba = transfer(values)
     own = axes.twinx()
@@ -125,8 +128,11 @@ def _draw_curve(axes: Axes, transfer: TransferFunction, reach: tuple[float, floa
     own.set(xlim=reach, ylim=(-0.1, 1.05), ylabel="A")
 
 
-def _draw_function(axes: Axes, transfer: TransferFunction, reach: Reach) -> None:
-    """Draw the colours of a function and lines of equal A, over values × gradients."""
+def _draw_transfer_function(axes: Axes, transfer: TransferFunction, reach: Reach) -> None:
+    """Draw a transfer function over values and gradient magnitudes: colours, and contours of A.
+
+    `reach` are the ends of both axes.
+    """
     low, high, _, steepest = reach
     values, gradients = np.linspace(low, high, POINTS), np.linspace(0, steepest, POINTS)
     if transfer.gradients is None:

@@ -1,4 +1,4 @@
-"""`summarise`: the content of a volume, its orientation and likely defects, for `brdfkit info`."""
+"""`summarise` describes a volume, its orientation and its likely defects, for `brdfkit info`."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -11,17 +11,18 @@ from brdfkit.core.array_types import IntArray
 from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.core.documents.parts import BAD
 from brdfkit.volumes.summary import histograms
-from brdfkit.volumes.summary.histograms import FEW_VALUES, PARTS, STEPS, bars, shades
+from brdfkit.volumes.summary.histograms import FEW_VALUES, PARTS, STEPS, format_bars, format_shades
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 from brdfkit.volumes.volume import Volume
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+# Names of the directions of the world's axes x, y and z, (negative, positive)
 PATIENT = (("left", "right"), ("back", "front"), ("feet", "head"))
 WORLD = (("-x", "+x"), ("-y", "+y"), ("-z", "+z"))
-LINES = 4  # of text for the histogram of value × gradient magnitude
-# Tolerances: a larger value is a finding
+LINES = 4  # lines of text for the histogram of values and gradient magnitudes
+# Larger values of these are reported as defects, or in the text
 UNEVEN_SPACING = 3.0  # the largest spacing over the smallest
 TURNED_DEGREES = 1.0  # angle between the grid's axes and the world's
 CLIPPED_SHARE = 0.01  # share of the voxels that have the largest value
@@ -30,7 +31,7 @@ DPI, WIDTH = 75, 760  # resolution and width [pixels] of the picture in a notebo
 
 @dataclass(frozen=True, repr=False)
 class VolumeSummary(Shown):
-    """The content of a volume, which prints as text; `summarise` makes it.
+    """The properties of a volume, which print as text; `summarise` makes it.
 
     Attributes
     ----------
@@ -57,7 +58,7 @@ class VolumeSummary(Shown):
     different : int
         Number of different values, if they are of integer type; otherwise 0.
     counts : tuple of int
-        Numbers of voxels in equal parts of the range of values.
+        Histogram of the values: the numbers of voxels in equal bins of their range.
     steepest : float
         The largest gradient magnitude.
     data : Volume
@@ -85,44 +86,45 @@ class VolumeSummary(Shown):
 
     @cached_property
     def joint(self) -> IntArray:
-        """The numbers of voxels (m, n) by gradient magnitude and by value, the smallest first."""
-        return histograms.count_jointly(self.data, self.steepest)
+        """The joint histogram (m, n) of gradient magnitudes and values, both from low to high."""
+        return histograms.count_voxels_by_gradient(self.data, self.steepest)
 
     def rows(self) -> dict[str, str]:
-        """Return the lines of the summary's text by their headings."""
-        unit = f" {self.unit}" if self.unit else " (no unit is told)"
+        """Return the lines of the summary's text as {heading: text}."""
+        unit = f" {self.unit}" if self.unit else " (unknown unit)"
         turned = f"; turned by {self.turned:.1f}°" if self.turned > TURNED_DEGREES else ""
         corners = zip(self.low, self.high, strict=True)
         values = self.data.values
         rows = {
-            "size": f"{_times(self.size)} voxels of {self.kind}, {values.nbytes / 1e6:,.4g} MB",
-            "spacing": f"{_times(self.spacing)}{unit}",
-            "axes": f"{_arrows(self.directions)}{turned}",
+            "size": f"{_format_size(self.size)} voxels of {self.kind}, "
+            f"{values.nbytes / 1e6:,.4g} MB",
+            "spacing": f"{_format_size(self.spacing)}{unit}",
+            "axes": f"{_format_directions(self.directions)}{turned}",
             "box": ", ".join(f"{low:.6g} to {high:.6g}" for low, high in corners),
             "values": f"{self.least:.6g} to {self.largest:.6g}, mean {self.mean:.4g}, "
             f"median {self.median:.4g}",
-            "histogram": f"|{bars(np.array(self.counts))}| logarithmic",
+            "histogram": f"|{format_bars(np.array(self.counts))}| logarithmic",
         }
         if self.labels:
-            return rows | {"labels": f"{self.different}, never interpolated"}
+            return rows | {"labels": f"{self.different} different ones, never interpolated"}
         steps = self.joint.reshape(LINES, STEPS // LINES, PARTS).sum(axis=1)
         for i in reversed(range(LINES)):
             reach = f"{i / LINES * self.steepest:.3g} to {(i + 1) / LINES * self.steepest:.3g}"
-            rows[f"gradients {reach}"] = f"|{shades(steps[i])}|"
+            rows[f"gradients {reach}"] = f"|{format_shades(steps[i])}|"
         return rows
 
     def findings(self) -> tuple[str, ...]:
-        """Return a sentence on each likely defect."""
+        """Return a sentence for each likely defect of the volume."""
         sentences = []
         if not self.labels and 0 < self.different <= FEW_VALUES:
             sentences.append(
-                f"only {self.different} different values, all whole: perhaps labels, which are not "
-                "to be interpolated; load it with labels=True (--labels)"
+                f"only {self.different} different values, all whole: perhaps labels, which must "
+                "not be interpolated; then load it with labels=True (--labels)"
             )
         ratio = max(self.spacing) / min(self.spacing)
         if ratio > UNEVEN_SPACING:
             sentences.append(
-                f"voxels are {ratio:.3g} times as long as wide: details differ by direction"
+                f"voxels are {ratio:.3g} times as long as wide: resolution depends on the direction"
             )
         share = float((self.data.values == self.data.values.max()).mean())
         if self.different > FEW_VALUES and share > CLIPPED_SHARE:
@@ -130,11 +132,11 @@ class VolumeSummary(Shown):
                 f"{100 * share:.3g} % of the voxels have the largest value: perhaps clipped"
             )
         if self.least == self.largest:
-            sentences.append("of one value all over")
+            sentences.append("all voxels have the same value")
         return tuple(sentences)
 
     def picture(self, transfer: TransferFunction | None = None) -> "Figure":
-        """Draw three slices through the middle, and histograms of values and value × gradient.
+        """Draw three slices through the middle, a histogram of values, and one with gradients.
 
         A transfer function is drawn over the histograms.
 
@@ -145,7 +147,7 @@ class VolumeSummary(Shown):
         return draw(self, transfer)
 
     def document(self) -> Document:
-        """Return the summary with its picture as a `Document`."""
+        """Return the summary with its picture as a `Document`, for terminals and notebooks."""
         return Document(
             self.name,
             (
@@ -156,14 +158,14 @@ class VolumeSummary(Shown):
         )
 
     def _draw(self) -> bytes:
-        """Return the picture as a PNG file."""
+        """Return the picture as the bytes of a PNG file."""
         from brdfkit.core.figures import to_png  # imports matplotlib: slow
 
         return to_png(self.picture(), DPI)
 
 
 def summarise(volume: Volume) -> VolumeSummary:
-    """Summarise the content of a volume and its orientation.
+    """Return the `VolumeSummary` of a volume, with its statistics and orientation.
 
     >>> summarise(volumes.load("slab")).directions
     ('+x', '+y', '+z')
@@ -185,15 +187,18 @@ def summarise(volume: Volume) -> VolumeSummary:
         largest=volume.range[1],
         mean=float(values.mean(dtype=float)),
         median=float(np.median(values)),
-        different=histograms.count_different(values),
-        counts=tuple(histograms.count_values(volume).tolist()),
+        different=histograms.count_different_values(values),
+        counts=tuple(histograms.count_voxels_by_value(volume).tolist()),
         steepest=float(volume.gradient_magnitude.max()),
         data=volume,
     )
 
 
 def find_directions(volume: Volume) -> tuple[tuple[str, ...], float]:
-    """Return where the grid's axes point in the world, and the largest angle to its axes [°]."""
+    """Name the direction of the world in which each of the grid's axes points, such as "+x".
+
+    Also returns the largest angle [°] between an axis of the grid and the world's nearest axis.
+    """
     axes = volume.to_world[:3, :3] / np.linalg.norm(volume.to_world[:3, :3], axis=0)
     main = np.abs(axes).argmax(axis=0)
     words = PATIENT if volume.axes == "RAS" else WORLD
@@ -203,15 +208,15 @@ def find_directions(volume: Volume) -> tuple[tuple[str, ...], float]:
 
 
 def may_be_labels(volume: Volume) -> bool:
-    """Return whether a volume that is not marked as labels has few values, of integer type."""
-    return not volume.labels and 0 < histograms.count_different(volume.values) <= FEW_VALUES
+    """Return whether a volume's values may be labels: few whole numbers, not marked as labels."""
+    return not volume.labels and 0 < histograms.count_different_values(volume.values) <= FEW_VALUES
 
 
-def _times(numbers: Iterable[float]) -> str:
-    """Format numbers with × between them."""
+def _format_size(numbers: Iterable[float]) -> str:
+    """Format numbers with × between them, such as the size of a grid."""
     return " × ".join(f"{n:.6g}" for n in numbers)
 
 
-def _arrows(names: Iterable[str]) -> str:
-    """Format where the axes x, y, z point."""
+def _format_directions(names: Iterable[str]) -> str:
+    """Format the names of the directions in which the grid's axes point, such as "x → right"."""
     return ", ".join(f"{axis} → {name}" for axis, name in zip("xyz", names, strict=True))

@@ -1,7 +1,8 @@
-"""Transfer functions: what a volume's values mean to light, in files, presets and renderers.
+"""Transfer functions, which map a volume's values to colour and extinction.
 
-`transfer_function.py` is one; `conversions.py` makes it of opacities (`opacity.py`), colour maps
-(`colour_maps.py`) and boundaries (`boundaries.py`), and `files.py` and `slicer_presets.py` read it.
-`windows.py` scales it to a volume. For renderers, `lookup.py` is its texture, `preintegration.py`
-its means between two values, and `block_bounds.py` its bounds within blocks of voxels.
+`transfer_function.py` defines the class. `conversions.py` makes transfer functions from opacities
+(`opacity.py`), colour maps (`colour_maps.py`) and boundaries between materials (`boundaries.py`).
+`files.py` and `slicer_presets.py` read files, and `windows.py` scales a transfer function to a
+volume. For renderers, `lookup.py` makes a texture, `preintegration.py` computes means between two
+values, and `block_bounds.py` upper bounds in blocks of voxels.
 """

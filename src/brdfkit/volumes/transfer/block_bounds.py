@@ -1,4 +1,4 @@
-"""Upper bounds of a transfer function within blocks of voxels, for tracking collisions."""
+"""Upper bounds of a transfer function in blocks of voxels, as majorants for tracking collisions."""
 
 from collections.abc import Callable
 
@@ -6,16 +6,16 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray
 
-BLOCK_VOXELS = 8  # along the side of a block, about
-NEARBY = 0.01  # voxels from the edge of a block within which rounding decides on a point's block
-SLACK = 1e-3  # steps of the table, for the single precision of kernels; and 1e-6 of the bound
+BLOCK_VOXELS = 8  # approximate number of voxels along the edge of a block
+NEARBY = 0.01  # voxels by which blocks overlap, since rounding may put a point in the next block
+SLACK = 1e-3  # steps of a table by which a renderer's single precision may miss a value
 
 
-def block_ranges(values: AnyArray) -> tuple[AnyArray, AnyArray]:
-    """Return the smallest and the largest value (kz, ky, kx) of a volume within each block.
+def find_block_ranges(values: AnyArray) -> tuple[AnyArray, AnyArray]:
+    """Return the smallest and the largest value of a volume in each block, two arrays (kz, ky, kx).
 
-    The box of `values` (nz, ny, nx) is divided into equal blocks of about BLOCK_VOXELS voxels.
-    Between the centres of voxels, values are trilinear or those of the nearest voxel.
+    The box of the volume with voxels `values` (nz, ny, nx) is divided into equal blocks, about
+    BLOCK_VOXELS voxels along each edge. Interpolated values between voxels are included.
     """
     low = high = values
     for axis, n in enumerate(values.shape):
@@ -30,32 +30,35 @@ def block_ranges(values: AnyArray) -> tuple[AnyArray, AnyArray]:
 def reduce_blocks(
     values: AnyArray, axis: int, count: int, reduce: Callable[..., AnyArray]
 ) -> AnyArray:
-    """Reduce each of `count` equal blocks along an axis by np.min or np.max.
+    """Reduce voxels `values` to their minimum or maximum in `count` equal blocks along an axis.
 
-    A block includes the centres on both sides of its ends, between which values are interpolated.
+    `reduce` is np.min or np.max. A block includes the voxels on both sides of its ends, between
+    which values are interpolated.
     """
     n = values.shape[axis]
-    edges = np.arange(count + 1) * n / count - 0.5  # in voxels, whose centres are whole numbers
+    edges = np.arange(count + 1) * n / count - 0.5  # a voxel's centre has a whole number
     first = np.clip(np.floor(edges[:-1] - NEARBY), 0, n - 1).astype(int)
     last = np.clip(np.ceil(edges[1:] + NEARBY), 0, n - 1).astype(int)
     blocks = (values.take(range(a, b + 1), axis) for a, b in zip(first, last, strict=True))
     return np.stack([reduce(block, axis) for block in blocks], axis)
 
 
-def bound_between(rows: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
-    """Return the largest value of a piecewise linear function between `low` and `high`.
+def bound_piecewise_linear(rows: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+    """Return an upper bound of a piecewise linear function in each interval from `low` to `high`.
 
-    `rows` (n,) are its values at 0, 1 ... n - 1; it is constant beyond. `low` and `high` have one
-    shape. The bound is exact except for the SLACK.
+    `rows` (n,) are the function's values at 0, 1 ... n - 1, beyond which it is constant. `low` and
+    `high` have one shape, which the result has as well. The intervals are widened by SLACK, and the
+    bound is 1e-6 above the largest value.
 
-    >>> bound_between(np.array([0.0, 4.0, 2.0]), np.array([0.5, 1.5]), np.array([1.2, 9.0]))
+    >>> low, high = np.array([0.5, 1.5]), np.array([1.2, 9.0])
+    >>> bound_piecewise_linear(np.array([0.0, 4.0, 2.0]), low, high)
     array([4.000004, 3.002003])
     """
     n = len(rows)
     low, high = np.clip(low - SLACK, 0, n - 1), np.clip(high + SLACK, 0, n - 1)
     at_ends = np.maximum(*(np.interp(x, np.arange(n), rows) for x in (low, high)))
 
-    # Row k holds the largest of 2^k values from each one on; two of them cover all rows between
+    # powers[k] are the largest of 2^k consecutive rows; two such maxima cover any interval
     powers = [rows]
     while 2 ** len(powers) <= n:
         half = 2 ** (len(powers) - 1)

@@ -1,10 +1,10 @@
-"""Transfer functions of boundaries between materials: triangles over values × gradient magnitudes.
+"""Transfer functions that show boundaries between materials, as triangles over value and gradient.
 
-Across a boundary that a scanner blurs, values v change from one material's to the other's, and
-their gradient magnitude g is largest near the mean f of both. A shell of constant thickness about
-the surface v = f is thus where |v - f| < thickness · g [Levoy 1988]. A triangle that ends at a
-`steepest` g omits what passes through the same values faster, such as skin to air [Kniss et al.
-2002].
+Across a boundary that a scanner blurs, the value v changes from one material's to the other's, and
+its gradient magnitude g is largest near the mean f of both. The points with
+|v - f| < thickness · g thus are a shell of constant thickness around the surface v = f
+[Levoy 1988], and a triangle in the plane of v and g. The triangle ends at a `steepest` g, to omit
+boundaries that pass through the same values faster, such as from skin to air [Kniss et al. 2002].
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from brdfkit.core.arguments import to_pair, to_positive
 from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
-VALUES, GRADIENTS = 129, 33  # size of the grid that holds the triangles
-FADE = 0.25  # share of the steepest gradient within which a boundary fades above it
+VALUES, GRADIENTS = 129, 33  # size of the grid over values and gradients that has the triangles
+FADE = 0.25  # a boundary fades to 0 above its steepest gradient, within this share of it
 
 
-def from_boundaries(
+def convert_boundaries(
     cls: Any,
     boundaries: ArrayLike,
     thickness: float,
@@ -29,27 +29,33 @@ def from_boundaries(
     extinction: float,
     colour: str,
 ) -> Any:
-    """Return the transfer function, of the class `cls`, of `boundaries`; see `Conversions`."""
+    """Make a transfer function, of the class `cls`, that shows boundaries between materials.
+
+    See `Conversions.from_boundaries` for the arguments.
+    """
     thickness, (low, high) = to_positive("thickness", thickness), to_pair("values", values)
     v = np.linspace(low, high, VALUES)
-    rows = _check_rows(boundaries)
+    rows = _check_boundaries(boundaries)
     g = np.linspace(0, (1 + FADE) * rows[:, 1].max(), GRADIENTS)[:, None]
     triangles = []
     for level, steepest, *_, a in rows:
         near = 1 - np.abs(v - level) / np.maximum(thickness * g, 1e-12 * (high - low))
         ends = (1 + FADE - g / steepest) / FADE
         triangles.append(a * np.clip(near, 0, 1) * np.clip(ends, 0, 1) * (g > 0))
-    shares = np.array(triangles)  # (k, m, n)
-    shares[..., [0, -1]] = 0  # beyond its ends a function is constant
-    # Where nothing shows, colours still change gradually, because textures are interpolated
+    shares = np.array(triangles)  # (boundaries, gradients, values)
+    shares[..., [0, -1]] = 0  # the function continues its ends, so that they must show nothing
+    # Colours change gradually even where A is 0, because textures interpolate them into A > 0
     weights = shares + 1e-6 / (1e-3 + np.abs(v - rows[:, 0, None, None]) / (high - low))
     rgb = np.einsum("kmn,kc->mnc", weights / weights.sum(axis=0), rows[:, 2:5])
     rgba = np.dstack([rgb, 1 - np.prod(1 - shares, axis=0)])
     return cls(v, rgba, extinction, colour, g[:, 0], name="boundaries")
 
 
-def _check_rows(boundaries: ArrayLike) -> FloatArray:
-    """Return the rows (k, 6) of boundaries as floats; raise `BrdfkitError` if they are wrong."""
+def _check_boundaries(boundaries: ArrayLike) -> FloatArray:
+    """Return the rows (k, 6) of `boundaries` as floats; raise `BrdfkitError` if they are invalid.
+
+    A row is (value, steepest gradient magnitude, R, G, B, A).
+    """
     try:
         rows = np.array(boundaries, float)
     except (TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""Transfer functions of Matplotlib's colour maps, and the search of control points."""
+"""Transfer functions from Matplotlib's colour maps, and helpers for control points."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from brdfkit.core.colours import from_srgb
 from brdfkit.core.errors import BrdfkitError, no_such
 
 
-def to_rising(given: ArrayLike, what: str) -> FloatArray:
-    """Return numbers as floats (n,); raise `BrdfkitError` unless there are two or more that rise.
+def require_rising(given: ArrayLike, what: str) -> FloatArray:
+    """Return control points' places as floats (n,); raise `BrdfkitError` unless they rise.
 
-    The error calls them `what`.
+    Two or more are needed, and neighbours may be equal. The error calls them `what`.
     """
     try:
         points = np.array(given, float)
@@ -35,13 +35,16 @@ def to_rising(given: ArrayLike, what: str) -> FloatArray:
     return points
 
 
-def bracket_points(x: FloatArray, points: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
-    """Return the indices of the points below and above `x` (...), and the upper one's share.
+def find_bracketing_points(
+    x: FloatArray, points: FloatArray
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """Find the control points between which to interpolate at `x`: their indices, and a weight.
 
-    The share has the shape (..., 1). If several points are at one place, the last counts from there
-    on. Beyond the ends, x counts as the end.
+    `points` (n,) rise. Returns the indices of the point below and of the point above each x, both
+    of the shape of `x`, and the weight (..., 1) of the upper one. Of several points at one place,
+    the last one counts at the place itself. Beyond the ends, the nearest end has the weight 1.
 
-    >>> bracket_points(np.array([0.5, 9.0]), np.array([0.0, 2.0]))
+    >>> find_bracketing_points(np.array([0.5, 9.0]), np.array([0.0, 2.0]))
     (array([0, 0]), array([1, 1]), array([[0.25],
            [1.  ]]))
     """
@@ -51,7 +54,7 @@ def bracket_points(x: FloatArray, points: FloatArray) -> tuple[IntArray, IntArra
     return low, low + 1, np.clip(ahead, 0, 1)[..., None]
 
 
-def from_colormap(
+def convert_colormap(
     cls: Any,
     colormap: Any,
     values: tuple[float, float],
@@ -59,16 +62,19 @@ def from_colormap(
     extinction: float,
     colour: str,
 ) -> Any:
-    """Return the transfer function, of the class `cls`, of a colour map; see `Conversions`."""
+    """Make a transfer function, of the class `cls`, with the colours of a Matplotlib colour map.
+
+    See `Conversions.from_colormap` for the arguments.
+    """
     low, high = to_pair("values", values)
     name, shares, rgba = _read_colormap(colormap, opacity)
     return cls(low + (high - low) * shares, rgba, extinction, colour, name=name)
 
 
 def _read_colormap(colormap: Any, opacity: ArrayLike) -> tuple[str, FloatArray, FloatArray]:
-    """Return the name of a colour map, its points (n,) from 0 to 1, and their RGBA (n, 4).
+    """Return the name of a colour map, control points (n,) from 0 to 1, and their RGBA (n, 4).
 
-    RGB is linear sRGB; A is interpolated in `opacity`, rows (point, A).
+    RGB is linear sRGB; A is interpolated between the rows (point, A) of `opacity`.
     """
     import matplotlib
 
@@ -80,11 +86,11 @@ def _read_colormap(colormap: Any, opacity: ArrayLike) -> tuple[str, FloatArray, 
     ramp = np.asarray(opacity, float)
     if ramp.ndim != 2 or ramp.shape[1] != 2:
         raise BrdfkitError("opacity should be points (share of the range, A), (k, 2).")
-    at = to_rising(ramp[:, 0], "the shares of opacity")
+    at = require_rising(ramp[:, 0], "the shares of opacity")
     before_steps = np.nextafter(at[1:][np.diff(at) == 0], -np.inf)
     corners = np.clip(np.concatenate([at, before_steps]), 0, 1)
-    shares = np.union1d(np.linspace(0, 1, colormap.N), corners)  # points of the map and of the ramp
-    low, high, t = bracket_points(shares, at)
+    shares = np.union1d(np.linspace(0, 1, colormap.N), corners)
+    low, high, t = find_bracketing_points(shares, at)
     alpha = (1 - t[:, 0]) * ramp[low, 1] + t[:, 0] * ramp[high, 1]
     rgb = from_srgb(colormap(shares)[:, :3])
     return str(colormap.name), shares, np.column_stack([rgb, alpha])

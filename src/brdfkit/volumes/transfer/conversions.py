@@ -1,4 +1,4 @@
-"""`Conversions`: transfer functions from colour maps, opacities and boundaries, and their files."""
+"""`Conversions`: the methods of `TransferFunction` that make it from other data or a file."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import Any, Self
 
 from brdfkit.core.array_types import ArrayLike
 from brdfkit.volumes.transfer import files
-from brdfkit.volumes.transfer.boundaries import from_boundaries
-from brdfkit.volumes.transfer.colour_maps import from_colormap
-from brdfkit.volumes.transfer.opacity import from_opacity
+from brdfkit.volumes.transfer.boundaries import convert_boundaries
+from brdfkit.volumes.transfer.colour_maps import convert_colormap
+from brdfkit.volumes.transfer.opacity import convert_opacities
 
 
 class Conversions:
-    """The methods of `TransferFunction` that make it from other data, or read and write files."""
+    """Base class with the methods of `TransferFunction` for other data, files and presets."""
 
     @classmethod
     def from_colormap(
@@ -34,7 +34,7 @@ class Conversions:
         values : (float, float), default (0.0, 1.0)
             The values that have the map's first and last colour.
         opacity : array (k, 2), default ((0.0, 0.0), (1.0, 1.0))
-            Points (share of the way from the first value to the last, A).
+            Points (share, A): the share of the way from the first to the last value, and A there.
         extinction : float, default 1.0
             σ_t where A is 1 [1/unit of length].
         colour : str, default "emission"
@@ -55,7 +55,7 @@ class Conversions:
         >>> TransferFunction.from_colormap("magma", (0, 255), extinction=0.1).range
         (0.0, 255.0)
         """
-        return from_colormap(cls, colormap, values, opacity, extinction, colour)
+        return convert_colormap(cls, colormap, values, opacity, extinction, colour)
 
     @classmethod
     def from_opacity(
@@ -99,7 +99,7 @@ class Conversions:
         >>> half.extinction    # a layer of thickness 2 transmits half of the light
         0.34657359027997264
         """
-        return from_opacity(cls, values, rgba, unit_distance, colour)
+        return convert_opacities(cls, values, rgba, unit_distance, colour)
 
     @classmethod
     def from_boundaries(
@@ -113,8 +113,8 @@ class Conversions:
     ) -> Self:
         """Make a transfer function that shows the boundaries between materials as thin shells.
 
-        Each boundary is a triangle over values and gradient magnitudes, not a product of two ramps,
-        so that steeper boundaries through the same values, such as skin to air, do not show.
+        Each boundary is a triangle in the plane of values and gradient magnitudes, so that steeper
+        boundaries through the same values, such as from skin to air, do not show.
 
         Parameters
         ----------
@@ -147,7 +147,7 @@ class Conversions:
         >>> edges.gradient_range
         (0.0, 50.0)
         """
-        return from_boundaries(cls, boundaries, thickness, values, extinction, colour)
+        return convert_boundaries(cls, boundaries, thickness, values, extinction, colour)
 
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Self:
@@ -174,7 +174,7 @@ class Conversions:
         >>> TransferFunction.load("ct_bone").value_unit
         'HU'
         """
-        return files.load(cls, path)
+        return files.load_transfer_function(cls, path)
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write the function to a .json file, which `load` reads.
@@ -193,7 +193,7 @@ class Conversions:
         --------
         >>> TransferFunction.load("ct_bone").save("bone.json")    # doctest: +SKIP
         """
-        files.save(self, path)
+        files.save_transfer_function(self, path)
 
     def to_json(self) -> str:
         """Return the text that `save` writes, for the parameter `transfer` of Mitsuba's plugins.
@@ -207,4 +207,4 @@ class Conversions:
         --------
         >>> volume = {"type": "transfer_function", "transfer": glass.to_json()}    # doctest: +SKIP
         """
-        return files.to_json(self)
+        return files.format_json(self)

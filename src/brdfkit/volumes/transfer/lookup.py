@@ -1,4 +1,4 @@
-"""`TransferLookup`: a transfer function as a texture for renderers, differentiable throughout."""
+"""`TransferLookup`: a transfer function as a differentiable texture for renderers."""
 
 import warnings
 from collections.abc import Sequence
@@ -12,20 +12,30 @@ from brdfkit.core.array_types import AnyArray, FloatArray, JitColour, JitFloat, 
 from brdfkit.volumes.transfer.preintegration import Preintegration
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
-MIN_STEPS = 2**12  # of a table over values; a jump of the function is one step wide
-MAX_STEPS = 2**15  # or up to twice as many
+MIN_STEPS = 2**12  # of a table over values, in which a jump of the function is one step wide
+MAX_STEPS = 2**15  # the search for a number of steps starts here at most, and ends at twice this
 
 
 @dataclass(init=False, eq=False)  # `dr.freeze` finds the arrays of a dataclass
 class TransferLookup:
-    """A `TransferFunction` in the memory of Mitsuba's current variant.
+    """A transfer function as a texture of Mitsuba's current variant, for look-ups in kernels.
 
-    `function` is its source. `table` is a `mi.TensorXf` of RGBA (n, 4) at even steps of the values,
-    or (m, n, 4) at even steps of gradient magnitudes as well. Optimisers may change it; its numbers
-    should stay ≥ 0, and A ≤ 1. `extinction` is a `mi.Float`, σ_t where A is 1 [1/unit of length].
-    `axes` are (low, scale, first) for values, and for gradient magnitudes. `texture` is the table
-    as a `mi.Texture1f` or `mi.Texture2f`. `integrals` are its `Preintegration`, None for a function
-    of gradient magnitudes.
+    Attributes
+    ----------
+    function : TransferFunction
+        The function that is looked up.
+    table : mi.TensorXf
+        RGBA (n, 4) at even steps of the values, or (m, n, 4) at even steps of gradient magnitudes
+        as well. Optimisers may change the table; its numbers should stay ≥ 0, and A ≤ 1.
+    extinction : mi.Float
+        σ_t where A is 1 [1/unit of length].
+    axes : list
+        (low, scale, first) for values, and for gradient magnitudes if the function depends on
+        them: (x - low) · scale + first is the coordinate of x in the texture.
+    texture : mi.Texture1f or mi.Texture2f
+        The table as a texture.
+    integrals : Preintegration or None
+        Integrals of the table over values; None for a function of gradient magnitudes.
     """
 
     function: TransferFunction
@@ -38,12 +48,12 @@ class TransferLookup:
     def __init__(self, function: TransferFunction) -> None:
         import mitsuba as mi
 
-        self.function, n = function, 1 + choose_steps(function.values)
+        self.function, n = function, 1 + choose_table_steps(function.values)
         self.table = mi.TensorXf(function.table(n))
         self.extinction = mi.Float(function.extinction)
         ranges: list[Any] = [function.range, function.gradient_range]
         sizes = self.table.shape[-2::-1]  # n, and m if the function depends on gradients
-        # The ends of the range are centres of texels: (place - low) · scale + first
+        # The ends of the range are the centres of the first and last texel
         self.axes = [
             (mi.Float(low), mi.Float((size - 1) / size / (high - low)), 0.5 / size)
             for (low, high), size in zip(ranges[: len(sizes)], sizes, strict=True)
@@ -52,7 +62,7 @@ class TransferLookup:
         self.update()
 
     def update(self) -> None:
-        """Update what depends on `table` and `extinction`, after they were assigned."""
+        """Compute the texture and the integrals again, after `table` was changed."""
         import mitsuba as mi
 
         kind: Any = mi.Texture1f if len(self.axes) == 1 else mi.Texture2f
@@ -62,7 +72,7 @@ class TransferLookup:
     def __call__(
         self, places: Sequence[JitFloat], active: JitMask = True
     ) -> tuple[JitColour, JitFloat]:
-        """Return RGB in linear sRGB, and A, at `places`, [value] or [value, ‖∇V‖]."""
+        """Look up linear RGB, and A, at `places`: [value] or [value, gradient magnitude]."""
         import mitsuba as mi
 
         at = [
@@ -73,36 +83,40 @@ class TransferLookup:
         r, g, b, a = self.texture.eval(point(*at), active)
         return mi.Color3f(r, g, b), a
 
-    def integrals_at(self, value: JitFloat) -> tuple[JitFloat, JitVector, JitVector]:
-        """Return the integrals up to a value, an end for `mean_between`."""
+    def integrate_to_value(self, value: JitFloat) -> tuple[JitFloat, JitVector, JitVector]:
+        """Return the integrals of the function up to a value, for `mean_between` two values."""
         low, scale, _ = self.axes[0]
-        return self.integrals.at((value - low) * scale * (self.integrals.steps + 1))
+        return self.integrals.integrate_to((value - low) * scale * (self.integrals.steps + 1))
 
     def mean_between(self, front: Any, back: Any) -> tuple[JitColour, JitFloat]:
-        """Return the means of A RGB and of A between two values, as `integrals_at` gives them."""
+        """Return the means of A · RGB and of A between two values on a ray.
+
+        `front` and `back` are the results of `integrate_to_value` for both values.
+        """
         import mitsuba as mi
 
         r, g, b, a = self.integrals.mean(front, back)
         return mi.Color3f(r, g, b), a
 
-    def table_over_values(self) -> AnyArray:
-        """Return the table (n, 4), for each value the largest over all gradient magnitudes."""
+    def reduce_table_to_values(self) -> AnyArray:
+        """Return RGBA (n, 4) over values, the largest over all gradient magnitudes if there are."""
         table = np.array(self.table)
         return table if table.ndim == 2 else table.max(axis=0)
 
-    def to_rows(self, values: AnyArray) -> AnyArray:
-        """Return the places of `values` in the table: 0 is its first row, n - 1 its last one."""
+    def find_table_rows(self, values: AnyArray) -> AnyArray:
+        """Return the fractional rows of the table at which `values` lie, from 0 to n - 1."""
         low, high = self.function.range
         return np.clip((values - low) / (high - low), 0, 1) * (self.table.shape[-2] - 1)
 
 
-def choose_steps(values: FloatArray) -> int:
-    """Return the number of even steps, `MIN_STEPS` or more, that best meet rising `values` (k,).
+def choose_table_steps(values: FloatArray) -> int:
+    """Choose the number of even steps of a table, so that control points lie on or near its rows.
 
-    Corners of a function, and labels, then lie on rows of its table. Values that are closer to each
-    other get more steps, up to a limit beyond which a warning says that they share a row.
+    `values` (k,), rising, are the control points of a transfer function, such as labels. There are
+    at least MIN_STEPS; closer values need more, up to a limit beyond which a warning says that
+    values share a row.
 
-    >>> choose_steps(np.array([0.0, 7.0, 29.0]))
+    >>> choose_table_steps(np.array([0.0, 7.0, 29.0]))
     4118
     """
     places = (values - values[0]) / (values[-1] - values[0])
@@ -110,12 +124,12 @@ def choose_steps(values: FloatArray) -> int:
     gap = gaps[gaps > 0].min()
     if gap < 0.5 / MAX_STEPS:
         warnings.warn(
-            f"values of the transfer function are {gap:.1g} of its range apart; what is between "
-            f"them is not seen below {0.5 / MAX_STEPS:.1g}: number labels anew, or cut the range.",
+            f"values of the transfer function are only {gap:.1g} of its range apart, too close for "
+            f"its table, which resolves {0.5 / MAX_STEPS:.1g}: renumber labels, or cut the range.",
             stacklevel=2,
         )
     least = int(np.clip(np.ceil(1 / gap), MIN_STEPS, MAX_STEPS))
-    if np.ptp(gaps) == 0:  # even values, such as labels, meet a multiple of their number
+    if np.ptp(gaps) == 0:  # even values lie on rows if the steps are a multiple of their gaps
         return (len(values) - 1) * -(-least // (len(values) - 1))
     counts = np.arange(least, 2 * least)
     worst = np.zeros(len(counts))

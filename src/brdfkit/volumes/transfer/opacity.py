@@ -1,7 +1,8 @@
-"""Opacity and extinction: a layer of thickness d transmits 1 - a = exp(-σ_t d) of the light.
+"""Conversion of opacity to extinction, and of transfer functions in which A is an opacity.
 
-VTK, Slicer and ParaView state the opacity `a` of a layer of their ScalarOpacityUnitDistance d. For
-samples at another distance s their renderers compute 1 - (1 - a)^(s / d), which is the same.
+A layer of thickness d with the opacity a transmits the share 1 - a = exp(-σ_t d) of the light. VTK,
+Slicer and ParaView state a for d = ScalarOpacityUnitDistance. For samples at another distance s
+their renderers use the opacity 1 - (1 - a)^(s / d), which follows from the same σ_t.
 """
 
 from __future__ import annotations
@@ -14,12 +15,12 @@ import numpy as np
 from brdfkit.core.arguments import to_positive
 from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 
-OPAQUE = 0.9999  # largest opacity: that of 1 would have an infinite σ_t
-TOLERANCE = 1e-5  # error of σ_t between points, relative to its largest value
+OPAQUE = 0.9999  # larger opacities count as this one, since 1 would need an infinite σ_t
+TOLERANCE = 1e-5  # largest error of σ_t between control points, relative to the largest σ_t
 
 
 def to_extinction(opacity: ArrayLike, distance: float) -> AnyArray:
-    """Return σ_t [1/unit of length] of a layer of thickness `distance` with this `opacity`.
+    """Return the extinction [1/unit of length] of a layer of thickness `distance` by its `opacity`.
 
     >>> float(to_extinction(0.5, 2.0))
     0.34657359027997264
@@ -32,9 +33,14 @@ def to_opacity(sigma: ArrayLike, distance: float) -> AnyArray:
     return -np.expm1(-np.asarray(sigma) * distance)
 
 
-def from_opacity(cls: Any, values: ArrayLike, rgba: ArrayLike, distance: float, colour: str) -> Any:
-    """Return the transfer function, of the class `cls`, of points whose A are opacities."""
-    opacities = cls(values, rgba, colour=colour)  # checks its arguments
+def convert_opacities(
+    cls: Any, values: ArrayLike, rgba: ArrayLike, distance: float, colour: str
+) -> Any:
+    """Make a transfer function, of the class `cls`, from points whose A are opacities of a layer.
+
+    See `Conversions.from_opacity` for the arguments.
+    """
+    opacities = cls(values, rgba, colour=colour)  # the class checks the arguments
     points, coefficients = _refine_points(opacities, to_positive("unit_distance", distance))
     largest = float(coefficients[:, 3].max()) or 1.0
     coefficients[:, 3] /= largest
@@ -42,10 +48,11 @@ def from_opacity(cls: Any, values: ArrayLike, rgba: ArrayLike, distance: float, 
 
 
 def _refine_points(function: Any, distance: float) -> tuple[FloatArray, FloatArray]:
-    """Return points (k,) and their R, G, B and σ_t (k, 4), for a function whose A are opacities.
+    """Return control points (k,), and R, G, B and σ_t there (k, 4), of a function with opacities.
 
-    Linear interpolation between them gives σ_t with an error below the TOLERANCE. A segment is
-    divided into even steps h of σ_t, whose error is at most h² d / 8.
+    Its σ_t is not linear between its own points, so that segments are divided until linear
+    interpolation has an error below the TOLERANCE. Even steps h of σ_t have an error of at most
+    h² d / 8, for the `distance` d.
     """
     values, rgba, opacities = function.values, function.rgba, function.rgba[:, 3]
     sigma = to_extinction(opacities, distance)
@@ -55,7 +62,7 @@ def _refine_points(function: Any, distance: float) -> tuple[FloatArray, FloatArr
         a, b = opacities[i : i + 2]
         parts = math.ceil(abs(sigma[i + 1] - sigma[i]) / longest)
         shares, steps = np.ones(1), sigma[i + 1 : i + 2]
-        if parts > 1 and values[i] < values[i + 1]:  # otherwise it is a straight line, or a step
+        if parts > 1 and values[i] < values[i + 1]:  # a flat segment or a jump stays as it is
             steps = np.linspace(sigma[i], sigma[i + 1], parts + 1)
             shares = np.clip((to_opacity(steps, distance) - a) / (b - a), 0, 1)
             shares, steps = np.append(shares, 1), np.append(steps, sigma[i + 1])

@@ -1,13 +1,12 @@
-"""Pre-integrated transfer functions: their means between the values at two places of a ray.
+"""Pre-integrated transfer functions: their means between the values at two points of a ray.
 
-Between the places, the value v is assumed to change linearly from v₀ to v₁. The mean of A is then
+Between the points, the value v is assumed to change linearly from v₀ to v₁. The mean of A is then
 
     (S(v₁) - S(v₀)) / (v₁ - v₀),   S(v) = ∫ A dv
 
-and the mean of A RGB likewise. Even a thin peak of the function thus counts, which samples a step
-apart would miss [Engel et al. 2001]. Where the function changes little within a step, samples are
-better, because they follow values that go up and down from voxel to voxel, and a straight line does
-not.
+and the mean of A · RGB likewise. Even a narrow peak of the function thus counts, which samples at
+the two points would miss [Engel et al. 2001]. Where the function is smooth, samples are better,
+because they follow values that rise and fall between the points.
 """
 
 from dataclasses import dataclass
@@ -18,16 +17,16 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, JitFloat, JitVector
 
-THIN = 0.1  # deviation from the mean, over the largest value, above which a table has peaks
+THIN = 0.1  # a table has narrow peaks if it deviates from its moving mean by more of its maximum
 
 
 @dataclass(init=False, eq=False)  # `dr.freeze` finds the arrays of a dataclass
 class Preintegration:
-    """The integrals of a table over values, differentiable by its numbers.
+    """The integrals of a transfer function's table over values, differentiable by its entries.
 
-    `steps` is the number of steps of the table. `rows` are A R, A G, A B and A at the ends of the
-    steps, flat, and linear between them. `sums` are their integrals S from the first row to each,
-    flat; a step has the width 1.
+    `steps` is the number of steps of the table. `rows` are A·R, A·G, A·B and A at the ends of the
+    steps, as a flat array, between which they are linear. `sums`, flat as well, are their integrals
+    S from the first row up to each row, where a step has the width 1.
     """
 
     steps: int
@@ -46,10 +45,11 @@ class Preintegration:
         self.sums = dr.custom(Cumulative, self.rows) - (self.rows + first) / 2  # trapezoids
         dr.make_opaque(self.rows, self.sums)
 
-    def at(self, x: JitFloat) -> tuple[JitFloat, JitVector, JitVector]:
-        """Return (x, row, S) at a value `x`, in steps from the first one; `mean` takes two of them.
+    def integrate_to(self, x: JitFloat) -> tuple[JitFloat, JitVector, JitVector]:
+        """Integrate the table up to `x`, a value in steps from the first one; return (x, row, S).
 
-        Beyond the ends of the table, the row and S are those of the end.
+        `row` are the A·RGB and A at x, and S their integrals; `mean` takes two such results. Beyond
+        the ends of the table, row and S are those of the end.
         """
         import mitsuba as mi
 
@@ -64,10 +64,10 @@ class Preintegration:
         return x, row, before + share * (low + row) / 2
 
     def mean(self, front: Any, back: Any) -> JitVector:
-        """Return the means (4) of the rows between two values, each as `at` gives it.
+        """Return the means (4) of A·RGB and A between two values, results of `integrate_to`.
 
-        If the values are less than a step apart, this is the mean of both rows, since rounding
-        would spoil the difference of S.
+        If the values are less than a step apart, it is the mean of both rows, since the difference
+        of the integrals would be lost in rounding.
         """
         (x0, row0, s0), (x1, row1, s1) = front, back
         within0, within1 = (dr.clip(x, 0, self.steps) for x in (x0, x1))
@@ -78,35 +78,39 @@ class Preintegration:
 
 
 class Cumulative(dr.CustomOp):
-    """Cumulative sums of rows, in NumPy.
+    """A differentiable operation of Dr.Jit for the cumulative sums of a flat array's rows of four.
 
-    In Dr.Jit 1.5, derivatives through slices of tensors, `dr.concat` and `dr.cumsum` are sometimes
-    zero. For the same reason rows are gathered.
+    It is computed in NumPy, because derivatives through `dr.cumsum`, `dr.concat` and slices of
+    tensors are sometimes zero in Dr.Jit 1.5.
     """
 
     def eval(self, rows: JitFloat) -> JitFloat:
-        return accumulate(rows)
+        return accumulate_rows(rows)
 
     def forward(self) -> None:
-        self.set_grad_out(accumulate(self.grad_in("rows")))
+        self.set_grad_out(accumulate_rows(self.grad_in("rows")))
 
     def backward(self) -> None:
-        self.set_grad_in("rows", accumulate(self.grad_out(), -1))
+        self.set_grad_in("rows", accumulate_rows(self.grad_out(), -1))
 
 
-def accumulate(flat: JitFloat, way: int = 1) -> JitFloat:
-    """Return the sums of each row of four and all rows before it, or behind it if `way` is -1."""
+def accumulate_rows(flat: JitFloat, way: int = 1) -> JitFloat:
+    """Return the cumulative sums of a flat array's rows of four; from the last row if `way` is -1.
+
+    The reversed sums are the derivative of the sums, for `Cumulative.backward`.
+    """
     rows = np.array(flat, float).reshape(-1, 4)
     return type(flat)(np.cumsum(rows[::way], axis=0)[::way].astype(np.float32).ravel())
 
 
-def has_peaks(table: AnyArray, reach: float) -> bool:
-    """Return whether a `table` (n, 4) of RGBA has peaks or jumps within a `reach` [steps].
+def has_narrow_peaks(table: AnyArray, reach: float) -> bool:
+    """Return whether a `table` (n, 4) of RGBA has peaks or jumps that samples would miss.
 
-    A table has peaks if it deviates from its own moving mean over the reach by more than THIN.
+    `reach` is the distance of samples in steps of the table. The table has peaks if it deviates
+    from its moving mean over the reach by more than THIN of its largest value.
 
     >>> peak = np.ones((100, 4)) * (np.arange(100) == 50)[:, None]
-    >>> has_peaks(peak, 4.0), has_peaks(np.linspace(0, 1, 400).reshape(100, 4), 4.0)
+    >>> has_narrow_peaks(peak, 4.0), has_narrow_peaks(np.linspace(0, 1, 400).reshape(100, 4), 4.0)
     (True, False)
     """
     from scipy.ndimage import uniform_filter1d

@@ -1,4 +1,4 @@
-"""`TransferFunction`: the colour and extinction that a volume's values stand for.
+"""`TransferFunction`: maps a volume's values to colour and extinction.
 
 At a point with the value v and the gradient magnitude g, the function has RGB and A. They mean
 
@@ -6,12 +6,12 @@ At a point with the value v and the gradient magnitude g, the function has RGB a
     albedo = RGB                where colour = "albedo": light is scattered, σ_s = σ_t · RGB
     emission = σ_t · RGB        where colour = "emission": radiance that is added per unit of length
 
-With "emission", RGB is the radiance of a piece so thick that it is opaque, the colour of what is
-called compositing elsewhere. RGB is linear sRGB. A is not an opacity: a layer of thickness d that
-transmits 1 - a of the light has σ_t = -ln(1 - a) / d (`opacity.py`).
+With "emission", RGB is the radiance of a layer so thick that it is opaque, like the colour in
+volume rendering by compositing. RGB is linear sRGB. A is not an opacity: a layer of thickness d
+that transmits the share 1 - a of the light has σ_t = -ln(1 - a) / d (`opacity.py`).
 
-[Lesar 2018, chapter 6] leaves the meaning open; value × gradient magnitude is from [Kniss et al.
-2002].
+[Lesar 2018, chapter 6] leaves the meaning of RGBA open; functions of value and gradient magnitude
+are from [Kniss et al. 2002].
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from numpy.typing import NDArray
 from brdfkit.core.arguments import to_pair, to_positive, to_whole_number
 from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.volumes.transfer.colour_maps import bracket_points, to_rising
+from brdfkit.volumes.transfer.colour_maps import find_bracketing_points, require_rising
 from brdfkit.volumes.transfer.conversions import Conversions
 
 COLOURS = "albedo", "emission"  # the meanings of RGB
-# Units of the values of functions for any data
+# Values of `value_unit` for functions that are scaled to a volume: to its window, or full range
 WINDOW_SHARES, RANGE_SHARES = "share of the window", "share of the range"
-METRES = {  # in a unit of length, by the names that files give it
+METRES = {  # lengths of the units of length [m], by the names that files use
     "m": 1.0,
     "cm": 1e-2,
     "mm": 1e-3,
@@ -43,10 +43,11 @@ METRES = {  # in a unit of length, by the names that files give it
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TransferFunction(Conversions):
-    """RGBA over a volume's values, or over values × gradient magnitudes, linear between points.
+    """A function from a volume's values, or values and gradient magnitudes, to RGBA.
 
-    Beyond the first and the last point the function is constant. Two points at one value are a
-    jump. Raises `BrdfkitError` if points are out of order or numbers out of range.
+    It is linear between its control points, and constant beyond the first and the last one. Two
+    points at one value are a jump. Raises `BrdfkitError` if points are out of order or numbers out
+    of range.
 
     Attributes
     ----------
@@ -89,11 +90,11 @@ class TransferFunction(Conversions):
     def __post_init__(self) -> None:
         if self.colour not in COLOURS:
             raise no_such("meaning of RGB", self.colour, COLOURS, self.name)
-        values = to_rising(self.values, f"{self.name}: values")
+        values = require_rising(self.values, f"{self.name}: values")
         shape: tuple[int, ...] = (len(values), 4)
         gradients = self.gradients
         if gradients is not None:
-            gradients = to_rising(gradients, f"{self.name}: gradients")
+            gradients = require_rising(gradients, f"{self.name}: gradients")
             shape = (len(gradients), *shape)
         extinction = to_positive(f"{self.name}: extinction", self.extinction)
         checked = {
@@ -123,21 +124,21 @@ class TransferFunction(Conversions):
         Raises `BrdfkitError` if the gradients are missing.
         """
         values = np.asarray(values, float)
-        low, high, t = bracket_points(values, self.values)
+        low, high, t = find_bracketing_points(values, self.values)
         if self.gradients is None:
             return (1 - t) * self.rgba[low] + t * self.rgba[high]
         if gradients is None:
-            raise BrdfkitError(f"{self.name}: is one of gradient magnitudes, too; give them.")
-        below, above, s = bracket_points(np.asarray(gradients, float), self.gradients)
+            raise BrdfkitError(f"{self.name}: depends on gradient magnitudes; give them, too.")
+        below, above, s = find_bracketing_points(np.asarray(gradients, float), self.gradients)
         lower = (1 - t) * self.rgba[below, low] + t * self.rgba[below, high]
         upper = (1 - t) * self.rgba[above, low] + t * self.rgba[above, high]
         return (1 - s) * lower + s * upper
 
     def table(self, n: int = 1024, m: int = 64) -> NDArray[np.float32]:
-        """Return RGBA (n, 4), or (m, n, 4), at even steps over the ranges, both ends included.
+        """Tabulate RGBA at `n` evenly spaced values, and at `m` gradient magnitudes if it has them.
 
-        A texture of it has its first and last centres at the ends of the range. Details narrower
-        than a step are lost.
+        The shape is (n, 4) or (m, n, 4). The table includes both ends of the ranges, which are thus
+        the centres of a texture's first and last texel. Details narrower than a step are lost.
         """
         values = np.linspace(*self.range, to_whole_number("n", n, 2))
         if self.gradient_range is None:
@@ -146,9 +147,10 @@ class TransferFunction(Conversions):
         return self(values, gradients[:, None]).astype(np.float32)
 
     def over_gradients(self, ramp: ArrayLike) -> TransferFunction:
-        """Return the function with A times a `ramp` (m, 2) of points (gradient magnitude, factor).
+        """Return the function with A multiplied by a piecewise linear function of gradients.
 
-        ``[(0, 0), (50, 1)]`` shows where the value changes, and hides uniform regions.
+        `ramp` (m, 2) are its points (gradient magnitude, factor). ``[(0, 0), (50, 1)]`` hides
+        uniform regions, and shows regions in which the value changes.
         """
         try:
             points = np.asarray(ramp, float)
@@ -156,8 +158,8 @@ class TransferFunction(Conversions):
             points = np.empty(0)
         if points.ndim != 2 or points.shape[1] != 2 or self.gradients is not None:
             raise BrdfkitError(
-                f"{self.name}: a ramp is points (gradient magnitude, factor), (m, 2), and the "
-                "function one of values alone."
+                f"{self.name}: a ramp needs points (gradient magnitude, factor), (m, 2), and a "
+                "function of values alone."
             )
         rgba = np.repeat(self.rgba[None], len(points), axis=0)
         rgba[..., 3] *= points[:, 1:]
@@ -213,7 +215,10 @@ TransferLike: TypeAlias = TransferFunction | str | PathLike[str]
 
 
 def _check_rgba(given: ArrayLike, shape: tuple[int, ...], colour: str, name: str) -> AnyArray:
-    """Return RGBA as floats; raise `BrdfkitError` if its shape or a number is wrong."""
+    """Return RGBA as floats; raise `BrdfkitError` unless it has this `shape` and valid numbers.
+
+    The valid range depends on `colour`, the meaning of RGB; errors name the function, `name`.
+    """
     try:
         rgba = np.array(given, float)
     except (TypeError, ValueError):
@@ -226,5 +231,7 @@ def _check_rgba(given: ArrayLike, shape: tuple[int, ...], colour: str, name: str
     largest = [1, 1, 1, 1] if colour == "albedo" else [np.inf, np.inf, np.inf, 1]
     if not (np.isfinite(rgba).all() and (rgba >= 0).all() and (rgba <= largest).all()):
         reach = "0 to 1" if colour == "albedo" else "at least 0, and A at most 1"
-        raise BrdfkitError(f"{name}: rgba has a number out of range; as {colour} they are {reach}.")
+        raise BrdfkitError(
+            f"{name}: rgba has a number out of range; as {colour} the numbers should be {reach}."
+        )
     return rgba

@@ -1,25 +1,25 @@
-"""The window of a volume's values, from the faintest matter to the brightest."""
+"""The window of a volume: the range of values of its matter, without the background."""
 
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.volumes.transfer.transfer_function import RANGE_SHARES, WINDOW_SHARES, TransferFunction
 
-SAMPLED_VOXELS = 2_000_000  # at most, evenly spread
-PARTS = 256  # of the histogram in which the background is found
-MIN_VOXELS = 1000  # fewer have no reliable histogram
+SAMPLED_VOXELS = 2_000_000  # voxels in a histogram at most, evenly spread
+PARTS = 256  # bins of the histogram in which the background is found
+MIN_VOXELS = 1000  # fewer voxels do not have a reliable histogram
 OUTLIERS = 0.1  # percentile at either end beyond which voxels are ignored
-# A background is a peak below the first share of the range, and ends below the second
+# The background's peak lies below the first share of the range of values, its end below the second
 PEAK, FOOT = 0.15, 0.4
-FALL = 0.25  # share of the peak's height below which the background ends
-FIRST, LAST = 2.0, 99.0  # percentiles of the matter
+FALL = 0.25  # the histogram at the background's end is lower than this share of the peak
+FIRST, LAST = 2.0, 99.0  # percentiles of the matter's values at the ends of the window
 
 
 def find_window(values: AnyArray) -> tuple[float, float]:
-    """Return (low, high) of `values` (nz, ny, nx): the background is below, few voxels are above.
+    """Find the range (low, high) of the matter in a volume's `values` (nz, ny, nx).
 
-    `low` is halfway from the end of the background to the faintest matter, so that matter is above
-    it even if it has only one value.
+    The background lies below, and a few bright voxels above. `low` is halfway from the end of the
+    background to the faintest matter, so that matter of a single value still lies above it.
 
     >>> find_window(np.repeat([0.0, 100.0, 200.0], [9000, 500, 500]).reshape(100, 10, 10))
     (50.0, 200.0)
@@ -34,7 +34,11 @@ def find_window(values: AnyArray) -> tuple[float, float]:
 
 
 def scale_to_values(transfer: TransferFunction, values: AnyArray) -> TransferFunction:
-    """Scale a transfer function over shares to `values` (nz, ny, nx); keep any other as it is."""
+    """Scale a transfer function over shares of a range to a volume's `values` (nz, ny, nx).
+
+    Such functions, for data without a unit, have WINDOW_SHARES or RANGE_SHARES as their
+    `value_unit`; any other function is returned unchanged.
+    """
     low, high = float(values.min()), float(values.max())
     if low == high or transfer.value_unit not in (WINDOW_SHARES, RANGE_SHARES):
         return transfer
@@ -44,20 +48,21 @@ def scale_to_values(transfer: TransferFunction, values: AnyArray) -> TransferFun
 
 
 def sample_values(values: AnyArray) -> FloatArray:
-    """Return at most SAMPLED_VOXELS of the `values` (nz, ny, nx), evenly spread, as floats (n,)."""
+    """Return at most SAMPLED_VOXELS of a volume's `values` (nz, ny, nx) as floats (n,)."""
     step = -(-values.size // SAMPLED_VOXELS)
     return values.reshape(-1)[::step].astype(float)
 
 
 def split_background(values: FloatArray) -> tuple[float, FloatArray]:
-    """Return the largest value of the background, and the `values` (n,) of matter.
+    """Split `values` (n,) into background and matter.
 
-    The background is the peak of the lowest values, such as air. It ends where the histogram is
-    farthest below the line from the peak to the largest value [Zack et al. 1977]. Without such a
-    peak all is matter. Outliers belong to neither.
+    Returns the largest value of the background, and the values (m,) of matter. The background, such
+    as air, is the peak at the low end of the histogram. It ends where the histogram is farthest
+    below the straight line from the peak to the largest value [Zack et al. 1977]. Without such a
+    peak all values are matter; outliers are dropped.
     """
     low, high = np.percentile(values, [OUTLIERS, 100 - OUTLIERS])
-    if low == high:  # nearly all is background
+    if low == high:  # nearly all voxels have one value, the background
         others = values[values != low]
         return float(low), others if len(others) else values
     counts, edges = np.histogram(values, PARTS, (low, high))

@@ -1,4 +1,4 @@
-"""The grids of synthetic volumes: voxels that fill a cube about the origin."""
+"""The grid of synthetic volumes: voxels that fill a cube around the origin."""
 
 import numpy as np
 
@@ -7,8 +7,12 @@ from brdfkit.core.array_types import FloatArray
 Size = tuple[int, int, int]
 
 
-def fill_cube(size: Size, half_width: float) -> FloatArray:
-    """Return the transform (4, 4) of `size` voxels that fill the cube ±`half_width`."""
+def make_cube_transform(size: Size, half_width: float) -> FloatArray:
+    """Return the transform (4, 4) from voxels' indices to the world, for a grid that fills a cube.
+
+    `size` (nx, ny, nz) are the numbers of voxels; the cube reaches from -`half_width` to
+    `half_width` along each axis.
+    """
     spacing = 2 * half_width / np.array(size, float)
     to_world = np.diag([*spacing, 1])
     to_world[:3, 3] = spacing / 2 - half_width
@@ -16,6 +20,6 @@ def fill_cube(size: Size, half_width: float) -> FloatArray:
 
 
 def voxel_centres(size: Size, to_world: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return x, y and z of the voxels' centres, which broadcast to (nz, ny, nx)."""
+    """Return x, y and z of the voxels' centres in the world, which broadcast to (nz, ny, nx)."""
     x, y, z = (to_world[i, i] * np.arange(n) + to_world[i, 3] for i, n in enumerate(size))
     return x, y[:, None], z[:, None, None]
