@@ -99,7 +99,7 @@ def test_the_surface_of_a_ball(mi):
     ]
     integrator = scene(mi, SKY, volume=gridvolume(mi, values)).integrator()
     ray = rays(mi, o, d)
-    f = lambda t: integrator.f(ray(t))  # noqa: E731
+    f = lambda t: integrator.value_above_level(ray(t))  # noqa: E731
     t, found = find_first_crossing(f, mi.Float(0.7), mi.Float(2.3), 256, mi.Bool(True))
     assert np.array(found).all()
     assert np.abs(np.array(t) - truth).max() < 1e-5 * 1.6
@@ -127,7 +127,7 @@ def test_of_a_transfer_function_and_an_oblique_box(mi):
     loaded = scene(mi, SKY, volume=volume, level=0.5)
     ray, integrator = rays(mi, o, d), loaded.integrator()
     found, there = find_first_crossing(
-        lambda t: integrator.f(ray(t)), mi.Float(0.1), mi.Float(8), 512, mi.Bool(True)
+        lambda t: integrator.value_above_level(ray(t)), mi.Float(0.1), mi.Float(8), 512, mi.Bool(True)
     )
     assert np.array(there).all()
     si = integrator.surface(ray, found, mi.Float(0), there)
