@@ -103,7 +103,7 @@ def test_the_surface_of_a_ball(mi):
     t, found = find_first_crossing(f, mi.Float(0.7), mi.Float(2.3), 256, mi.Bool(True))
     assert np.array(found).all()
     assert np.abs(np.array(t) - truth).max() < 1e-5 * 1.6
-    si = integrator.surface(ray, t, mi.Float(0), found)
+    si = integrator.make_surface_interaction(ray, t, mi.Float(0), found)
     outwards = dr.dot(si.n, dr.normalize(mi.Vector3f(si.p) - 0.5))
     assert np.array(outwards).min() > 0.999
 
@@ -127,10 +127,14 @@ def test_of_a_transfer_function_and_an_oblique_box(mi):
     loaded = scene(mi, SKY, volume=volume, level=0.5)
     ray, integrator = rays(mi, o, d), loaded.integrator()
     found, there = find_first_crossing(
-        lambda t: integrator.value_above_level(ray(t)), mi.Float(0.1), mi.Float(8), 512, mi.Bool(True)
+        lambda t: integrator.value_above_level(ray(t)),
+        mi.Float(0.1),
+        mi.Float(8),
+        512,
+        mi.Bool(True),
     )
     assert np.array(there).all()
-    si = integrator.surface(ray, found, mi.Float(0), there)
+    si = integrator.make_surface_interaction(ray, found, mi.Float(0), there)
     local = (np.array(si.p).T - matrix[:3, 3]) @ np.linalg.inv(matrix[:3, :3]).T - 0.5
     np.testing.assert_allclose(np.linalg.norm(local, axis=1), 0.35, atol=2e-3)
     outwards = local @ np.linalg.inv(matrix[:3, :3])

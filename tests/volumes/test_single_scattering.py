@@ -284,7 +284,7 @@ def test_majorants_follow_the_parameters(llvm_variant):
     picture = mi.render(new, spp=4, seed=2)
     np.testing.assert_array_equal(mi.render(old, spp=4, seed=2), picture)
     parameters[name] = parameters[name] - 5  # of one voxel -1
-    with pytest.raises(BrdfkitError, match="clip it at 0, as after a step of an optimiser"):
+    with pytest.raises(BrdfkitError, match="clip it at 0, for example after each step"):
         parameters.update()
 
 

@@ -558,4 +558,4 @@ def test_rounding_to_single_precision_is_told(tmp_path, offset, told):
         warnings.simplefilter("always")
         found = bk.volumes.load(tmp_path / "double.nrrd")
     assert np.abs(found.values - exact.T).max() <= 32
-    assert any("off by up to 3" in str(w.message) for w in caught) == told
+    assert any("errors up to 3" in str(w.message) for w in caught) == told
