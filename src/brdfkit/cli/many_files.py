@@ -52,7 +52,7 @@ def fit_many(
 def _print_sweep(sweep: Sweep, folder: Path | None, console: Console) -> None:
     """Print the tables of errors of a sweep, unless it has no fits, or the sweep as JSON."""
     from brdfkit.fitting.sweeping.sweeping import PAGE, TABLE
-    from brdfkit.fitting.sweeping.tables import compare, quantities
+    from brdfkit.fitting.sweeping.tables import compare_models, list_quantities
 
     pages = [folder / PAGE, folder / TABLE] if folder and sweep.fits else []
     if console.as_json:
@@ -64,8 +64,8 @@ def _print_sweep(sweep: Sweep, folder: Path | None, console: Console) -> None:
         saved = [row.saved for row in sweep.rows if row.saved]
         console.json({"fits": fits, "failed": failed, "written": [*pages, *saved]})
     elif sweep.fits:
-        for quantity in quantities(sweep):
-            columns, *sections = compare(sweep, quantity)
+        for quantity in list_quantities(sweep):
+            columns, *sections = compare_models(sweep, quantity)
             unit = "" if quantity.decibels else f" ({sweep.rows[0].loss})"
             console.table(columns, *sections, title=f"{quantity.title}{unit}")
         console.out.print(sweep.summary)

@@ -1,4 +1,4 @@
-"""Run the tasks of a sweep on a cluster, through a client of `dask.distributed`."""
+"""Runs the tasks of a sweep on a cluster, through a client of `dask.distributed`."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -6,11 +6,11 @@ from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import use_threads
-from brdfkit.fitting.sweeping.tasks import Outcome, Task, fail, fit_models
+from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, make_failure
 
 
-def count_slots(client: Any) -> int:
-    """Return how many tasks the cluster of a `client` runs at once.
+def count_cluster_slots(client: Any) -> int:
+    """Return how many tasks the cluster of a `client` runs at the same time.
 
     Raises `BrdfkitError` if `client` is not a synchronous `distributed.Client`.
     """
@@ -29,13 +29,13 @@ def count_slots(client: Any) -> int:
 def run_on_cluster(tasks: list[Task], client: Any) -> Iterator[Outcome]:
     """Yield the outcomes of tasks in the order in which the cluster of a `client` finishes them.
 
-    If a worker dies, another worker repeats its task, as often as the cluster allows. After that,
-    the fits of the task run one at a time, after all other tasks: the cluster blames every task
-    that a dead worker held, although only one of them killed it.
+    If a worker dies, another worker repeats its tasks, as often as the cluster allows. The cluster
+    counts this for every task of a dead worker, although only one of them killed it. Tasks that are
+    given up are therefore divided into single fits, which run one after the other at the end.
     """
     from distributed import KilledWorker, as_completed
 
-    waiting = {client.submit(fit_task, task): task for task in tasks}
+    waiting = {client.submit(fit_on_worker, task): task for task in tasks}
     suspects: list[Task] = []
     try:
         for future in as_completed(waiting):
@@ -45,7 +45,7 @@ def run_on_cluster(tasks: list[Task], client: Any) -> Iterator[Outcome]:
             else:
                 yield from _wait_for_outcomes(future, task)
         for task in suspects:
-            future = client.submit(fit_task, task, pure=False)
+            future = client.submit(fit_on_worker, task, pure=False)
             waiting[future] = task
             yield from _wait_for_outcomes(future, task)
     finally:
@@ -53,20 +53,20 @@ def run_on_cluster(tasks: list[Task], client: Any) -> Iterator[Outcome]:
 
 
 def _wait_for_outcomes(future: Any, task: Task) -> list[Outcome]:
-    """Wait for the `future` of a task and return the outcomes, failures if the task was lost."""
+    """Wait for the `future` of a task, and return its outcomes, or failures if it was lost."""
     from distributed import KilledWorker
 
     try:
         return future.result()
     except KilledWorker:
         why = "ended every worker that tried it; see the workers' logs."
-        return [fail(task, label, f"{label} {why}") for label in task.models]
+        return [make_failure(task, label, f"{label} {why}") for label in task.models]
     except Exception as error:  # the cluster has shut down or dropped the task
-        return [fail(task, label, error) for label in task.models]
+        return [make_failure(task, label, error) for label in task.models]
 
 
-def fit_task(task: Task) -> list[Outcome]:
-    """Carry out a task in a thread of a cluster's worker and return its outcomes."""
+def fit_on_worker(task: Task) -> list[Outcome]:
+    """Carry out a task in a thread of a worker of the cluster, and return its outcomes."""
     from distributed import get_worker
 
     use_threads(get_worker().state.nthreads)

@@ -1,4 +1,4 @@
-"""Judge the fits to a material by their error in held-out directions and by a picture."""
+"""Judges fits to a material by their errors in held-out directions and by a picture."""
 
 import math
 from contextlib import suppress
@@ -15,11 +15,11 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.regression import Fit, Picture, to_loss
 
-FOLDS = 5  # parts of the directions, each of which is held out once
+FOLDS = 5  # number of parts of the directions, each of which is held out of one fit
 
 
 class Judge:
-    """A judge of the fits to one measured material, by more than the error of the fit itself.
+    """Judges the fits to one measured material, to reveal models that only suit their own samples.
 
     `settings` are the settings of the fits; their seed also draws the held-out directions.
     """
@@ -36,18 +36,21 @@ class Judge:
                 self.held_out = HeldOut.draw(samples, loss, data.anisotropic, FOLDS, rng)
 
     def judge(self, fit: Fit) -> dict[str, float]:
-        """Return the held-out error and the PSNR of a fit, by their field's name in `Row`."""
-        return {"held_out": self.error_of(fit), "psnr": self.psnr_of(fit)}
+        """Return the held-out error and the PSNR of a fit, by their names in `Row`."""
+        return {
+            "held_out": self.compute_held_out_error(fit),
+            "psnr": self.compute_picture_psnr(fit),
+        }
 
-    def error_of(self, fit: Fit) -> float:
-        """Return the error E of the fit's loss in held-out directions, to which it is not fitted.
+    def compute_held_out_error(self, fit: Fit) -> float:
+        """Return the error E of a fit's model in directions that are held out of the fit in turn.
 
-        The error is nan if the loss is a `Picture` or if there are too few samples.
+        It is nan if the loss is a `Picture`, or if there are too few samples.
         """
         if self.held_out is None:
             return math.nan
         how = self.settings.search_arguments()
-        del how["starts"]  # the search goes on from the fit
+        del how["starts"]  # every search starts from the values of the fit instead
         if how["anisotropic"] is None:
             how["anisotropic"] = self.anisotropic
         model = type(fit.model)
@@ -57,6 +60,6 @@ class Judge:
         except BrdfkitError:
             return math.nan
 
-    def psnr_of(self, fit: Fit) -> float:
-        """Return the PSNR [dB] of a ball's picture, compared with the measurement, as in `rank`."""
+    def compute_picture_psnr(self, fit: Fit) -> float:
+        """Return the PSNR [dB] of a ball's picture with the fit to one with the measurement."""
         return to_decibels(self.appearance.compute_picture_error(fit.model.rgb.eval))

@@ -1,4 +1,4 @@
-"""Write the HTML page of a sweep, with tables of errors, the failures and all fits."""
+"""Writes the HTML page of a sweep, with tables of errors, the failures and all fits."""
 
 import math
 import os
@@ -16,8 +16,8 @@ from brdfkit.regression import losses
 from brdfkit.regression.albedo import WRONG_FACTOR
 from brdfkit.regression.albedo_cells import average_albedos, format_albedo, is_wrong_albedo
 
-TINT_STEPS = 10  # shades of colour in the page's style
-COLOURLESS_RATIO = 4.0  # a cell with this many times the best error has no tint
+TINT_STEPS = 10  # number of shades that the style sheet defines for cells
+COLOURLESS_RATIO = 4.0  # a cell whose error is this multiple of the best one has no colour
 ALBEDOS = (
     f"Under {join_words([f'{angle:g}°' for angle in ANGLES])}: the albedo of the fit, the share of "
     "the light from that angle to the normal that it reflects, the mean over the channels; below "
@@ -35,16 +35,16 @@ EXPLANATIONS = {
 def write_sweep_page(sweep: Any, path: str | Path) -> None:
     """Write the page of a `Sweep` to the file `path`."""
     path = Path(path)
-    materials = tables.by_material(sweep)
+    materials = tables.group_by_material(sweep)
     models = list(dict.fromkeys(row.model for row in sweep.rows))
     write_page(
         "sweep.html",
         path,
-        title=f"{_count(models, 'model')} fitted to {_count(materials, 'material')}",
+        title=f"{_format_count(models, 'model')} fitted to {_format_count(materials, 'material')}",
         summary=sweep.summary,
         comparisons=[
-            _compare(sweep, materials, models, quantity, path.parent)
-            for quantity in tables.quantities(sweep)
+            _describe_table(sweep, materials, models, quantity, path.parent)
+            for quantity in tables.list_quantities(sweep)
         ],
         problems=sweep.problems,
         fits=_list_fits(sweep),
@@ -53,21 +53,23 @@ def write_sweep_page(sweep: Any, path: str | Path) -> None:
     )
 
 
-def _compare(
+def _describe_table(
     sweep: Any, materials: Any, models: Sequence[str], quantity: Any, folder: Path
 ) -> dict[str, Any]:
-    """Return the table of a quantity, materials by models; `folder` is where links start."""
-    columns, texts, foot = tables.compare(sweep, quantity)
+    """Return the table of a quantity, by materials and models, for the page's template.
+
+    Links to saved fits are relative to `folder`.
+    """
+    columns, texts, foot = tables.compare_models(sweep, quantity)
     rows = []
     for (material, by_model), row in zip(materials.items(), texts, strict=True):
-        best = quantity.best(by_model.values())
+        best = quantity.find_best(by_model.values())
         cells = [_make_cell(by_model.get(model), best, quantity, folder) for model in models]
         file = next(iter(by_model.values())).file
         rows.append({"material": material, "file": file, "cells": cells, "best": row[-1]})
     explanation = EXPLANATIONS.get(quantity.name) or _explain_errors(sweep)
-    title = quantity.title
     return {
-        "title": title,
+        "title": quantity.title,
         "explanation": explanation,
         "columns": columns,
         "rows": rows,
@@ -76,7 +78,7 @@ def _compare(
 
 
 def _explain_errors(sweep: Any) -> str:
-    """Return sentences on the errors by the loss, and on the marks in their table."""
+    """Return sentences on the loss, on the marks in the table of errors, and on its limits."""
     loss = losses.named[sweep.rows[0].loss]
     judge = (
         "; fit --judge, or sweep(..., judge=True), adds errors in directions held out, and pictures"
@@ -89,23 +91,26 @@ def _explain_errors(sweep: Any) -> str:
         f"Loss {loss.name}: {loss.meaning}. The best of a row is bold, the others have the more "
         "colour the nearer they come to it; colours compare within a row only. Errors are by the "
         "very samples that the models were fitted to, and the more numbers a model has, the more "
-        f"they flatter it{'' if len(tables.quantities(sweep)) > 1 else judge}."
+        f"they flatter it{'' if len(tables.list_quantities(sweep)) > 1 else judge}."
         f"{marks if sweep.warned else ''}"
     )
 
 
 def _make_cell(row: Any, best: Any, quantity: Any, folder: Path) -> dict[str, str]:
-    """Return the text, class, hint and link of one fit; `best` is the best fit to the material."""
+    """Return the text, style, hint and link of the cell of one fit, for the page's template.
+
+    `best` is the best fit to the same material; the link is relative to `folder`.
+    """
     if row is None:
         return EMPTY_CELL
     if not row.fit:
         return EMPTY_CELL | {"text": "failed", "kind": "failed", "hint": row.message}
-    number = quantity.of(row)
+    number = quantity.read_number(row)
     if math.isnan(number):
         return EMPTY_CELL | {"text": "–"}
-    ratio = math.log(quantity.ratio(row, best)) / math.log(COLOURLESS_RATIO)
+    ratio = math.log(quantity.compute_ratio(row, best)) / math.log(COLOURLESS_RATIO)
     kind = f"near near-{round(TINT_STEPS * max(0.0, 1 - ratio))}"
-    kind += " best" if number == quantity.of(best) else ""
+    kind += " best" if number == quantity.read_number(best) else ""
     link = quote(Path(os.path.relpath(row.saved, folder)).as_posix()) if row.saved else ""
     return {
         "text": quantity.format(number),
@@ -116,10 +121,10 @@ def _make_cell(row: Any, best: Any, quantity: Any, folder: Path) -> dict[str, st
 
 
 def _list_fits(sweep: Any) -> dict[str, Any] | None:
-    """Return the table of all fits with their numbers, albedos and values; None without fits."""
+    """Return the table of all fits for the page's template; None if there are no fits."""
     if not sweep.fits:
         return None
-    quantities = tables.quantities(sweep)
+    quantities = tables.list_quantities(sweep)
     rows = []
     for row in (row for row in sweep.rows if row.fit):
         bounds = [f"on a bound: {', '.join(row.at_bounds)}"] if row.at_bounds else []
@@ -127,7 +132,9 @@ def _list_fits(sweep: Any) -> dict[str, Any] | None:
             {
                 "material": row.material,
                 "model": row.model,
-                "quantities": [quantity.format(quantity.of(row)) for quantity in quantities],
+                "quantities": [
+                    quantity.format(quantity.read_number(row)) for quantity in quantities
+                ],
                 "albedos": [
                     (format_albedo(own), format_albedo(measured), is_wrong_albedo(own, measured))
                     for own, measured in zip(*average_albedos(row.fit.albedo), strict=True)
@@ -144,10 +151,10 @@ def _list_fits(sweep: Any) -> dict[str, Any] | None:
 
 
 def _format_value(value: float | tuple[float, ...]) -> str:
-    """Return a parameter's value as text."""
+    """Return the value of a parameter, one number or several, as text."""
     return "  ".join(f"{v:.5g}" for v in (value if isinstance(value, tuple) else [value]))
 
 
-def _count(things: Sized, noun: str) -> str:
-    """Return a number of things in words, such as "2 models"."""
+def _format_count(things: Sized, noun: str) -> str:
+    """Return the number of `things` with their noun in the right form, such as "2 models"."""
     return f"{len(things)} {noun}{'' if len(things) == 1 else 's'}"

@@ -1,4 +1,4 @@
-"""Make the tasks of a sweep from files, models and settings, and split them among workers."""
+"""Makes the tasks of a sweep from files, models and settings, and divides them among workers."""
 
 import math
 import sys
@@ -17,18 +17,18 @@ from brdfkit.materials.formats import Source
 from brdfkit.materials.loading import locate
 from brdfkit.model import Model, labels
 
-PARTS = 4  # least number of tasks for each worker, so that all workers finish at about one time
+PARTS = 4  # least number of tasks for each worker: with fewer, some would finish much earlier
 
 
-def plan(files: Any, models: Any, settings: FitSettings) -> list[Task]:
+def plan_tasks(files: Any, models: Any, settings: FitSettings) -> list[Task]:
     """Return one task for every file, with all models; duplicate files and models count once.
 
-    `files` and `models` are one or several each, and `settings` apply to all fits. The task of an
-    unreadable file holds the reason as its failure. Raises `BrdfkitError` if a model is unknown,
-    or if there is no file or no model.
+    `files` and `models` are one or several each, and `settings` are those of all fits. A task with
+    an unreadable file contains the reason. Raises `BrdfkitError` if a model is unknown, or if there
+    is no file or no model.
     """
     classes = [labels.model(labels.load_files(m)) for m in _as_list(models, "model")]
-    defined = {c.label(): _checksums_of_files(c) for c in classes}
+    defined = {c.label(): _compute_checksums(c) for c in classes}
     tasks: dict[str, Task] = {}
     for file in _as_list(files, "file"):
         task = _plan_file(file, defined, settings)
@@ -38,14 +38,14 @@ def plan(files: Any, models: Any, settings: FitSettings) -> list[Task]:
     return list(tasks.values())
 
 
-def split(tasks: list[Task], workers: int) -> list[Task]:
-    """Split the models of `tasks` into parts if there are too few tasks for the workers."""
+def split_tasks(tasks: list[Task], workers: int) -> list[Task]:
+    """Divide the models of `tasks` among more tasks if there are too few for the `workers`."""
     parts = math.ceil(PARTS * workers / max(1, len(tasks)))
     return [part for task in tasks for part in _split_task(task, parts)]
 
 
 def _split_task(task: Task, parts: int) -> Iterator[Task]:
-    """Yield the task in up to `parts` tasks, each with some of its models."""
+    """Divide the models of a task among up to `parts` tasks."""
     models = list(task.models.items())
     size = math.ceil(len(models) / parts)
     for start in range(0, len(models), size):
@@ -53,7 +53,7 @@ def _split_task(task: Task, parts: int) -> Iterator[Task]:
 
 
 def _plan_file(file: Any, models: dict[str, dict[str, str]], settings: FitSettings) -> Task:
-    """Return the task of one file, or of one material known by name."""
+    """Return the task for one file, or for one material that is known by name."""
     if not isinstance(file, str | Path):
         raise BrdfkitError(
             f"A sweep takes files and names of materials, not a {type(file).__name__}; save it "
@@ -75,11 +75,11 @@ def _plan_file(file: Any, models: dict[str, dict[str, str]], settings: FitSettin
 
 
 def _name_material(path: Path, suffix: str = "") -> str:
-    """Return the file's name, without its extension and with `suffix`, as a valid folder name."""
+    """Return a name for the material in a file that is also valid as the name of a folder."""
     return to_file_stem(Source(path, None, b"").name + suffix)
 
 
-def _checksums_of_files(model: type[Model]) -> dict[str, str]:
+def _compute_checksums(model: type[Model]) -> dict[str, str]:
     """Return the SHA-256 of each user's file that defines a model, by path."""
     checksums = {}
     for part in model.made_of():

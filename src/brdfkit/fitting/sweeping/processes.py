@@ -1,9 +1,9 @@
-"""Run the tasks of a sweep in processes of this machine, so that a crash costs only one fit.
+"""Runs the tasks of a sweep in processes of this machine, so that a crash costs only one fit.
 
-Processes are spawned, not forked, because Dr.Jit's threads do not survive a fork. Each process
-receives tasks through a pipe and sends every fit back as soon as it is finished.
-`ProcessPoolExecutor` does not fit: the death of one process ends its whole pool, and it does not
-report which fit the process was working on.
+Processes are spawned, not forked, because the threads of Dr.Jit do not survive a fork. Each process
+receives tasks through a pipe, and sends every fit back as soon as it is finished.
+`ProcessPoolExecutor` is no alternative: the death of one process ends its whole pool, and it does
+not report which fit the process was working on.
 """
 
 import multiprocessing
@@ -24,19 +24,19 @@ import psutil
 
 from brdfkit.core.interrupts import hold_signals
 from brdfkit.core.jit.threads import use_threads
-from brdfkit.fitting.sweeping.tasks import Outcome, Task, fail, fit_models
+from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, make_failure
 
-MEMORY = 10**9  # bytes for each process; fitting a MERL table takes 0.55 GB
-LIVES = 2  # processes that may die during one fit before it counts as failed
+MEMORY = 10**9  # memory of a process [bytes]; fitting a MERL table takes 0.55 GB
+LIVES = 2  # a fit counts as failed when it has killed this number of processes
 THREADS = "OMP_NUM_THREADS"  # environment variable that NumPy reads when it is imported
 
 
 @dataclass
 class Worker:
-    """A process and the pipe to it.
+    """A process that carries out tasks, and the pipe to it.
 
-    `task` is the task that the process works on, None if it is idle, and `left` lists the models
-    of that task whose outcomes it has not sent yet.
+    `task` is the task that the process works on, None if it is idle; `left` contains the labels of
+    the models whose outcomes it has not sent yet.
     """
 
     process: BaseProcess
@@ -44,20 +44,20 @@ class Worker:
     task: Task | None = None
     left: list[str] = field(default_factory=list)
 
-    def give(self, task: Task) -> None:
+    def send_task(self, task: Task) -> None:
         """Send a task to the process."""
         self.task, self.left = task, list(task.models)
-        with suppress(OSError):  # the process has died; the next read of the pipe reports it
+        with suppress(OSError):  # the process has died, which reading the pipe will report
             self.pipe.send(task)
 
-    def receive(self) -> Outcome:
+    def receive_outcome(self) -> Outcome:
         """Receive the next outcome; raises EOFError or OSError if the process has died."""
         outcome = self.pipe.recv()
         self.left.remove(outcome.model)
         self.task = self.task if self.left else None
         return outcome
 
-    def end(self) -> int:
+    def kill_process(self) -> int:
         """Kill the process, if it is still alive, and return its exit code."""
         self.pipe.close()
         self.process.kill()
@@ -65,8 +65,8 @@ class Worker:
         return self.process.exitcode or 0
 
 
-def default_workers() -> int:
-    """Return how many processes the cores and the memory of this machine allow."""
+def choose_worker_count() -> int:
+    """Return the number of processes for which the cores and the memory of this machine suffice."""
     return int(max(1, min(_count_cores(), psutil.virtual_memory().available // MEMORY)))
 
 
@@ -86,14 +86,13 @@ def run_in_processes(tasks: list[Task], workers: int) -> Iterator[Outcome]:
                 if not idle:
                     idle.append(_start_worker(threads=max(1, _count_cores() // workers)))
                     crew.append(idle[0])
-                idle.pop().give(waiting.popleft())
+                idle.pop().send_task(waiting.popleft())
             busy: dict[Any, Worker] = {worker.pipe: worker for worker in crew if worker.task}
-            for pipe in wait(
-                list(busy), timeout=1
-            ):  # Ctrl-C in another thread does not interrupt it
+            # The time limit lets Ctrl-C through, which does not interrupt the waiting itself
+            for pipe in wait(list(busy), timeout=1):
                 worker = busy[pipe]
                 try:
-                    outcome = worker.receive()
+                    outcome = worker.receive_outcome()
                 except (EOFError, OSError):
                     crew.remove(worker)
                     yield from _replace_dead_worker(worker, waiting, deaths)
@@ -101,24 +100,24 @@ def run_in_processes(tasks: list[Task], workers: int) -> Iterator[Outcome]:
                     yield outcome
     finally:
         for worker in crew:
-            worker.end()
+            worker.kill_process()
 
 
 def _replace_dead_worker(
     worker: Worker, waiting: deque[Task], deaths: Counter[tuple[str, str]]
 ) -> Iterator[Outcome]:
-    """Return the unfinished fits of a dead worker to the `waiting` tasks.
+    """Put the unfinished fits of a dead worker back in the queue `waiting`.
 
-    `deaths` counts dead processes by material and model. If the fit that killed the worker has
-    killed `LIVES` processes, its failure is yielded and the fit is not repeated.
+    `deaths` counts the dead processes by material and model. A fit that has killed `LIVES`
+    processes is not repeated; its failure is yielded.
     """
-    worker.process.join(timeout=5)  # the pipe closes before the process has ended
-    task, label, code = worker.task, worker.left[0], worker.end()
-    assert task is not None  # only busy workers are read from
+    worker.process.join(timeout=5)  # the process ends, and has an exit code, after its pipe
+    task, label, code = worker.task, worker.left[0], worker.kill_process()
+    assert task is not None
     deaths[task.material, label] += 1
     if deaths[task.material, label] == LIVES:
         how = signal.Signals(-code).name if code < 0 else f"exit status {code}"
-        yield fail(
+        yield make_failure(
             task,
             label,
             f"{label} ended its process {LIVES} times ({how}); give fewer workers if memory is "
@@ -133,11 +132,9 @@ def _start_worker(threads: int) -> Worker:
     """Start a process whose Dr.Jit kernels use `threads` threads, and return its `Worker`."""
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
-    process = context.Process(target=_work, args=(theirs, threads), daemon=True)
-    with (
-        hold_signals(),
-        _prepare_for_spawn(),
-    ):  # an interrupted start would leave a process without tasks
+    process = context.Process(target=_carry_out_tasks, args=(theirs, threads), daemon=True)
+    # An interrupted start would leave a process that nobody ends
+    with hold_signals(), _prepare_for_spawn():
         process.start()
     theirs.close()
     return Worker(process, ours)
@@ -145,14 +142,15 @@ def _start_worker(threads: int) -> Worker:
 
 @contextmanager
 def _prepare_for_spawn() -> Iterator[None]:
-    """Set up the block so that its new processes use one NumPy thread and ignore Ctrl-C.
+    """Give processes that start in this context one NumPy thread, and let them ignore Ctrl-C.
 
-    The main module is hidden from them: they would import a script that sweeps, and sweep again.
+    The main module is hidden from them: if it is a script that calls `sweep`, importing it would
+    start the sweep again.
     """
     main, old_threads = sys.modules["__main__"], os.environ.get(THREADS)
     masked = None
     if hasattr(signal, "pthread_sigmask"):
-        resource_tracker.ensure_running()  # its start would unmask Ctrl-C
+        resource_tracker.ensure_running()  # if it started later, it would unmask Ctrl-C again
         masked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     sys.modules["__main__"] = ModuleType("__main__")
     os.environ.setdefault(THREADS, "1")
@@ -166,8 +164,8 @@ def _prepare_for_spawn() -> Iterator[None]:
             signal.pthread_sigmask(signal.SIG_SETMASK, masked)
 
 
-def _work(pipe: Connection, threads: int) -> None:
-    """Carry out tasks from the `pipe`, one after another, until it is closed; runs in a process."""
+def _carry_out_tasks(pipe: Connection, threads: int) -> None:
+    """Carry out tasks from the `pipe` until it is closed; this is what a process runs."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     use_threads(threads)
     with suppress(EOFError, OSError):

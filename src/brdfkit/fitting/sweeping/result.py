@@ -1,4 +1,4 @@
-"""`Sweep`, the result of `sweep`: a row for every fit, printed and written as tables."""
+"""`Sweep`, the result of `sweep`: a row for every fit, which is printed and written as tables."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Row:
     Attributes
     ----------
     material : str
-        The name of the file's material, unique in the sweep.
+        The material's name, which is unique in the sweep.
     file : str
         The file, as the user named it.
     model : str
@@ -44,11 +44,11 @@ class Row:
     saved : Path or None
         The file of the saved fit; None if it was not saved.
     held_out : float
-        The error E of the loss in directions held out of the fit, each once; nan if the sweep does
-        not judge its fits or has too few samples.
+        The error E of the loss in directions held out of the fit, all in turn; nan if the sweep
+        does not judge its fits, or if there are too few samples.
     psnr : float
-        The PSNR [dB] of a ball's picture, compared with the measurement, as in `Ranked`; nan if the
-        sweep does not judge its fits.
+        The PSNR [dB] of a ball's picture with the fit to one with the measurement, as in `Ranked`;
+        nan if the sweep does not judge its fits.
     """
 
     material: str
@@ -95,25 +95,26 @@ class Sweep(Shown):
 
     @property
     def failed(self) -> list[Row]:
-        """The rows of the fits that failed; their `message` says why."""
+        """The rows of the fits that failed; the attribute `message` of each gives the reason."""
         return [row for row in self.rows if not row.fit]
 
     @property
     def warned(self) -> list[Row]:
-        """The rows of the fits whose light is wrong; their ``fit.warnings`` say how."""
+        """The rows of the fits whose albedo is wrong; ``fit.warnings`` of each describes it."""
         return [row for row in self.rows if row.fit and row.fit.warnings]
 
     @property
     def best(self) -> dict[str, Fit]:
-        """The fit with the least error for every material with a fit, by the material's name."""
+        """The fit with the least error for each material, by the material's name."""
         best = {
-            m: tables.ERROR.best(found.values()) for m, found in tables.by_material(self).items()
+            m: tables.ERROR.find_best(found.values())
+            for m, found in tables.group_by_material(self).items()
         }
         return {material: row.fit for material, row in best.items() if row}
 
     @property
     def problems(self) -> list[str]:
-        """The messages of the failed fits, without repetition."""
+        """The messages of the failed fits, each once."""
         return list(dict.fromkeys(row.message for row in self.failed))
 
     @property
@@ -186,8 +187,8 @@ class Sweep(Shown):
     def document(self) -> Document:
         """Return the tables of errors and judgements, the failures and a summary as a document."""
         shown: list[Table | Paragraph] = []
-        for quantity in tables.quantities(self):
-            columns, rows, foot = tables.compare(self, quantity)
+        for quantity in tables.list_quantities(self):
+            columns, rows, foot = tables.compare_models(self, quantity)
             table = Table(tuple(map(tuple, rows)), tuple(columns), tuple(map(tuple, foot)))
             shown += [*([Paragraph(quantity.title)] if shown else []), table]
         failed = [Paragraph(problem, BAD) for problem in self.problems]

@@ -1,7 +1,7 @@
-"""Save the fits of a sweep in a folder, and find them again when a sweep is repeated.
+"""Saves the fits of a sweep in a folder, and finds them again when the sweep is repeated.
 
-`FOLDER/MATERIAL/MODEL.json` holds a fit as `save` writes it, and `load` reads it. Two more entries
-hold the identity of the fit and its judgement.
+`FOLDER/MATERIAL/MODEL.json` contains a fit as `save` writes it, so that `load` can read it, and two
+more entries: everything that the fit depends on, and its held-out error and PSNR.
 """
 
 import json
@@ -16,13 +16,13 @@ from brdfkit.fitting.sweeping.tasks import Outcome, Task
 from brdfkit.materials.formats import Source, fit_json
 from brdfkit.regression import Fit
 
-KEY, JUDGED = "sweep", "judged"  # the names of the two entries
+KEY, JUDGED = "sweep", "judged"  # names of the two entries that a sweep adds to a fit's file
 
 
-def keep(folder: Path, task: Task, outcome: Outcome) -> Path:
+def save_fit(folder: Path, task: Task, outcome: Outcome) -> Path:
     """Write a finished fit into `folder`, completely or not at all, and return the file's path."""
-    file = _path_of_fit(folder, task, outcome.model)
-    record = {**json.loads(outcome.text), KEY: _identity(task, outcome.model)}
+    file = _find_fit_path(folder, task, outcome.model)
+    record = {**json.loads(outcome.text), KEY: _describe_dependencies(task, outcome.model)}
     if task.judge:
         record[JUDGED] = {name: None if isnan(v) else v for name, v in outcome.judged.items()}
     make_folder(file.parent)
@@ -31,41 +31,45 @@ def keep(folder: Path, task: Task, outcome: Outcome) -> Path:
     return file
 
 
-def find(folder: Path, task: Task, label: str) -> tuple[Fit, Path, dict[str, float]] | None:
+def find_saved_fit(
+    folder: Path, task: Task, label: str
+) -> tuple[Fit, Path, dict[str, float]] | None:
     """Find the saved fit of the model `label` in `folder`.
 
-    Returns the fit, its file and its judgement, or None unless the saved fit has the same file,
-    settings and versions as the `task`.
+    Return the fit, its file, and its held-out error and PSNR, if any, by name. Return None unless
+    the fit was saved with the same measured file, settings and versions as the `task` has.
     """
-    file = _path_of_fit(folder, task, label)
+    file = _find_fit_path(folder, task, label)
     if not task.checksums or not file.is_file():
         return None
     try:
         data = read_bytes(file)
         record = json.loads(data)
-        if record.get(KEY) == _identity(task, label) and (JUDGED in record or not task.judge):
+        if record.get(KEY) == _describe_dependencies(task, label) and (
+            JUDGED in record or not task.judge
+        ):
             judged = record.get(JUDGED, {}) if task.judge else {}
             judged = {name: nan if v is None else float(v) for name, v in judged.items()}
             return fit_json.read(Source(file, None, data)), file, judged
-    # A damaged file, or a file that no sweep wrote
+    # The file is damaged, or no sweep wrote it
     except (BrdfkitError, ValueError, TypeError, AttributeError):
         pass
     return None
 
 
-def parse(outcome: Outcome) -> Fit:
+def parse_fit(outcome: Outcome) -> Fit:
     """Return the `Fit` of an outcome that is no failure."""
     path = Path(f"{outcome.model}.json")  # for error messages only
     return fit_json.read(Source(path, None, outcome.text.encode()))
 
 
-def _path_of_fit(folder: Path, task: Task, label: str) -> Path:
-    """Return the path of the file in `folder` for the fit of the model `label`."""
+def _find_fit_path(folder: Path, task: Task, label: str) -> Path:
+    """Return the path in `folder` of the saved fit of the model `label`."""
     return to_fit_path(folder / task.material, label)
 
 
-def _identity(task: Task, label: str) -> Any:
-    """Return everything that a fit depends on, as JSON; a change in it requires a new fit."""
+def _describe_dependencies(task: Task, label: str) -> Any:
+    """Return everything that a fit depends on, as JSON; if it changes, the fit is repeated."""
     identity = {
         "file": [[sum_, task.path.removeprefix(path)] for path, sum_ in task.checksums.items()],
         "model": label,

@@ -1,4 +1,4 @@
-"""`sweep` fits models to many materials, and continues where an earlier sweep ended."""
+"""`sweep`: fits models to many materials, and continues where an earlier sweep ended."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from brdfkit.core.files import make_folder, require_writable
 from brdfkit.core.progress_bar import Progress
 from brdfkit.fitting.settings import FitSettings, ModelLike, require_material_first
 from brdfkit.fitting.sweeping import saved_fits
-from brdfkit.fitting.sweeping.cluster import count_slots, run_on_cluster
-from brdfkit.fitting.sweeping.planning import plan, split
-from brdfkit.fitting.sweeping.processes import default_workers, run_in_processes
+from brdfkit.fitting.sweeping.cluster import count_cluster_slots, run_on_cluster
+from brdfkit.fitting.sweeping.planning import plan_tasks, split_tasks
+from brdfkit.fitting.sweeping.processes import choose_worker_count, run_in_processes
 from brdfkit.fitting.sweeping.result import Row, Sweep
-from brdfkit.fitting.sweeping.tasks import Outcome, Task, fail, fit_models
+from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, make_failure
 from brdfkit.regression import Fit
 from brdfkit.regression.solvers.settings import require_plain_data
 
-TABLE, PAGE = "table.csv", "index.html"  # files in the folder
+TABLE, PAGE = "table.csv", "index.html"  # names of the files that summarise a folder
 
 
 def sweep(
@@ -57,11 +57,12 @@ def sweep(
         and not repeated, unless their file, their settings or brdfkit's version changed.
     judge : bool, default False
         Whether to compute for each fit its error in held-out directions and the PSNR of its
-        picture, as `rank` does. This doubles the time.
+        picture, as in `rank`. This doubles the time.
     workers : int, optional
         Number of processes; by default one for each core, as far as the memory suffices.
     client : distributed.Client, optional
-        A cluster that fits in place of processes. The paths of the files must be valid there, too.
+        A cluster that fits in place of local processes. The paths of the files must be valid there,
+        too.
     progress : callable, optional
         Called with (fits done, fits in all) before the first and after each fit; fits that an
         earlier sweep saved do not count.
@@ -74,8 +75,8 @@ def sweep(
     Raises
     ------
     BrdfkitError
-        For an unknown model or setting, without a file or a model, for a `folder` that is
-        none, and for a `client` that is none.
+        For an unknown model or setting, without a file or a model, for a `folder` that is no
+        folder, and for a `client` that is no `distributed.Client`.
 
     Examples
     --------
@@ -85,7 +86,7 @@ def sweep(
     checked = FitSettings.read(to_dictionary("settings", settings))
     require_plain_data(checked.solver, checked.constraints)
     slots = _count_slots(workers, client)
-    tasks = [replace(task, judge=bool(judge)) for task in plan(materials, models, checked)]
+    tasks = [replace(task, judge=bool(judge)) for task in plan_tasks(materials, models, checked)]
     require_material_first("sweep(materials, models)", materials)
     folder = None if folder is None else Path(folder)
     if folder:
@@ -93,12 +94,12 @@ def sweep(
         for name in (TABLE, PAGE):
             require_writable(folder / name)
 
-    # Read the saved fits; the other models remain to be fitted
+    # Read the fits that an earlier sweep saved, so that only the others are fitted
     rows = {key: row for task in tasks for key, row in _find_rows(task, folder)}
     left = [_remove_finished(task, rows) for task in tasks]
     found, total = len(rows), sum(len(task.models) for task in left)
 
-    # Run the other fits and save each one when it is finished
+    # Save each fit as soon as it is finished, so that Ctrl-C loses none
     report = progress or (lambda done, total: None)
     named = {task.material: task for task in tasks}
     try:
@@ -109,7 +110,7 @@ def sweep(
                 rows[outcome.material, outcome.model] = _save_outcome(task, outcome, folder)
                 report(len(rows) - found, total)
     except KeyboardInterrupt:
-        for task in tasks:  # Ctrl-C may come between the saving of a fit and its row
+        for task in tasks:  # Ctrl-C may come after a fit is saved and before its row is stored
             rows.update(_find_rows(_remove_finished(task, rows), folder))
         if not rows:
             raise
@@ -124,28 +125,28 @@ def sweep(
 
 
 def _count_slots(workers: int | None, client: Any) -> int:
-    """Return how many tasks run at once, on this machine or on the cluster of a `client`."""
+    """Return how many tasks run at a time, on this machine or on the cluster of a `client`."""
     if client is None:
-        return default_workers() if workers is None else to_whole_number("workers", workers, 1)
+        return choose_worker_count() if workers is None else to_whole_number("workers", workers, 1)
     if workers is not None:
         raise BrdfkitError("A cluster has workers of its own; give either workers or a client.")
-    return count_slots(client)
+    return count_cluster_slots(client)
 
 
 def _run_tasks(tasks: list[Task], slots: int, client: Any) -> Generator[Outcome, None, None]:
-    """Yield the outcomes of tasks as they finish; unreadable files come first."""
+    """Yield the outcomes of tasks as they are finished; failures of unreadable files come first."""
     readable = [task for task in tasks if not task.failure]
     for task in tasks:
         if task.failure:
             yield from fit_models(task)
-    parts = split(readable, slots)
+    parts = split_tasks(readable, slots)
     yield from run_in_processes(parts, slots) if client is None else run_on_cluster(parts, client)
 
 
 def _find_rows(task: Task, folder: Path | None) -> Iterator[tuple[tuple[str, str], Row]]:
-    """Yield key and row of every fit of a task that is saved in `folder`."""
+    """Yield the key (material, model) and the row of every fit of a task that `folder` contains."""
     for label in task.models:
-        if folder and (saved := saved_fits.find(folder, task, label)):
+        if folder and (saved := saved_fits.find_saved_fit(folder, task, label)):
             yield (task.material, label), _make_row(task, label, *saved)
 
 
@@ -158,20 +159,20 @@ def _remove_finished(task: Task, rows: Mapping[tuple[str, str], Row]) -> Task:
 def _save_outcome(task: Task, outcome: Outcome, folder: Path | None) -> Row:
     """Save the fit of an outcome in `folder`, if one is given, and return its row."""
     try:
-        fit = None if outcome.failure else saved_fits.parse(outcome)
+        fit = None if outcome.failure else saved_fits.parse_fit(outcome)
     except BrdfkitError as error:
-        outcome, fit = fail(task, outcome.model, error), None
+        outcome, fit = make_failure(task, outcome.model, error), None
     if fit is None:
         loss = task.settings.loss
         return Row(task.material, task.file, outcome.model, loss, message=outcome.failure)
-    saved = saved_fits.keep(folder, task, outcome) if folder else None
+    saved = saved_fits.save_fit(folder, task, outcome) if folder else None
     return _make_row(task, outcome.model, fit, saved, outcome.judged)
 
 
 def _make_row(
     task: Task, label: str, fit: Fit, saved: Path | None, judged: Mapping[str, float]
 ) -> Row:
-    """Return the row of a fit; `judged` holds its judgement by field of `Row`, or nothing."""
+    """Return the row of a fit; `judged` contains its held-out error and PSNR, if any, by name."""
     values = fit.model.free_values.items()
     sought = [v for n, v in values if n not in task.settings.fixed]
     return Row(

@@ -1,4 +1,4 @@
-"""Make the tables of a sweep: errors by material and model as text, all rows as CSV or Parquet."""
+"""Makes the tables of a sweep: errors by material and model as text, all rows as CSV or Parquet."""
 
 import csv
 import json
@@ -20,10 +20,13 @@ from brdfkit.regression.albedo_cells import average_albedos
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number by which a sweep compares models; `name` is its attribute in `Row`.
+    """A number, such as the error, by which the tables of a sweep compare models.
 
-    `title` stands above its table and `head` above its column; `by` completes "times best, by".
-    `format` turns a number into text; `decibels` marks a number in dB, for which more is better.
+    `name`: its attribute in `Row`.
+    `title`, `head`: title of its table, and head of its column in the list of all fits.
+    `by`: end of the line "times best, by ...", such as "pictures".
+    `format`: function that converts the number to text.
+    `decibels`: whether it is in dB, so that more is better.
     """
 
     name: str
@@ -33,18 +36,21 @@ class Quantity:
     format: Callable[[float], str]
     decibels: bool = False
 
-    def of(self, row: Any) -> float:
+    def read_number(self, row: Any) -> float:
         """Return the number of a `Row`; nan if its fit failed."""
         return float(getattr(row, self.name)) if row.fit else math.nan
 
-    def best(self, rows: Iterable[Any]) -> Any:
+    def find_best(self, rows: Iterable[Any]) -> Any:
         """Return the `Row` with the best number; None if no row has a number."""
-        numbers = [row for row in rows if not math.isnan(self.of(row))]
-        return (max if self.decibels else min)(numbers, key=self.of, default=None)
+        numbers = [row for row in rows if not math.isnan(self.read_number(row))]
+        return (max if self.decibels else min)(numbers, key=self.read_number, default=None)
 
-    def ratio(self, row: Any, best: Any) -> float:
-        """Return the error of a `row` divided by the error of the `best` row."""
-        one, least = self.of(row), self.of(best)
+    def compute_ratio(self, row: Any, best: Any) -> float:
+        """Return the error of a `row` divided by the error of the `best` row.
+
+        A number in decibels is converted to an error first.
+        """
+        one, least = self.read_number(row), self.read_number(best)
         if self.decibels:
             return 10 ** ((least - one) / 20)
         return one / least if least else math.inf if one else 1.0
@@ -59,23 +65,26 @@ PSNR = Quantity(
 )
 
 
-def quantities(sweep: Any) -> list[Quantity]:
-    """Return the quantities of a `Sweep`: the error, and the judgements if it has any."""
-    judged = [q for q in (HELD_OUT, PSNR) if any(not math.isnan(q.of(row)) for row in sweep.rows)]
+def list_quantities(sweep: Any) -> list[Quantity]:
+    """Return the quantities of a `Sweep`: the error, and held-out error and PSNR if computed."""
+    judged = [
+        q for q in (HELD_OUT, PSNR) if any(not math.isnan(q.read_number(row)) for row in sweep.rows)
+    ]
     return [ERROR, *judged]
 
 
-def compare(
+def compare_models(
     sweep: Any, quantity: Quantity = ERROR
 ) -> tuple[tuple[str, ...], list[tuple[str, ...]], list[tuple[str, ...]]]:
     """Compare the models of a `Sweep` by a quantity, as the texts of a table.
 
-    Returns the names of the columns, a row for each material, and the rows of the foot. The name
-    of a column of numbers begins with ">"; a mark precedes numbers of fits with wrong albedos.
+    Return the names of the columns, a row for each material, and rows with medians and counts below
+    them. The name of a column of numbers begins with ">"; a mark precedes numbers of fits with
+    wrong albedos.
     """
-    rows = by_material(sweep)
+    rows = group_by_material(sweep)
     models = list(dict.fromkeys(row.model for row in sweep.rows))
-    best = {material: quantity.best(by_model.values()) for material, by_model in rows.items()}
+    best = {material: quantity.find_best(by_model.values()) for material, by_model in rows.items()}
     names = {material: row.fit.name if row else "" for material, row in best.items()}
     body = [
         (
@@ -97,7 +106,7 @@ def compare(
     return columns, body, foot if len(rows) > 1 else []
 
 
-def by_material(sweep: Any) -> dict[str, dict[str, Any]]:
+def group_by_material(sweep: Any) -> dict[str, dict[str, Any]]:
     """Return the rows of a `Sweep` by material, then by model."""
     rows: dict[str, dict[str, Any]] = {}
     for row in sweep.rows:
@@ -106,15 +115,15 @@ def by_material(sweep: Any) -> dict[str, dict[str, Any]]:
 
 
 def _compute_medians(sweep: Any, models: Sequence[str], quantity: Quantity) -> Iterator[float]:
-    """Yield for each model the median of a quantity over all materials; nan without fits."""
+    """Yield the median of a quantity over all materials for each model; nan without fits."""
     for model in models:
-        numbers = [quantity.of(row) for row in sweep.rows if row.model == model]
+        numbers = [quantity.read_number(row) for row in sweep.rows if row.model == model]
         numbers = [number for number in numbers if not math.isnan(number)]
         yield median(numbers) if numbers else math.nan
 
 
 def write_csv(sweep: Any, path: str | Path) -> None:
-    """Write all rows as comma-separated values; invalid UTF-8 in names becomes "?"."""
+    """Write all rows as comma-separated values; characters that are invalid in UTF-8 become "?"."""
     columns = _make_columns(sweep)
     with (
         write_safely(path) as beside,
@@ -140,31 +149,27 @@ def write_parquet(sweep: Any, path: str | Path) -> None:
 
 
 def _make_columns(sweep: Any) -> dict[str, list[Any]]:
-    """Return the numbers or texts of each column by the column's name; None stands for nan."""
+    """Return the values of each column by its name; None stands for nan."""
     records = [_make_record(row) for row in sweep.rows]
     return {name: [record[name] for record in records] for name in records[0]}
 
 
 def _make_record(row: Any) -> dict[str, Any]:
-    """Return the numbers and texts of one row by the name of their column."""
+    """Return the values of one row by the names of their columns; None stands for nan."""
     record = {f.name: getattr(row, f.name) for f in fields(row) if f.name not in ("fit", "saved")}
     record["at_bounds"] = " ".join(row.at_bounds)
     record["values"] = json.dumps(row.fit.values) if row.fit else None
-    for name, albedos in zip(("albedo", "measured_albedo"), _mean_albedos(row), strict=True):
+    means = average_albedos(row.fit.albedo if row.fit else None)
+    for name, albedos in zip(("albedo", "measured_albedo"), means, strict=True):
         record |= {f"{name}_{angle:g}": a for angle, a in zip(ANGLES, albedos, strict=True)}
     record["warnings"] = "; ".join(row.fit.warnings) if row.fit else None
     return {name: None if value != value else value for name, value in record.items()}
 
 
-def _mean_albedos(row: Any) -> Any:
-    """Return the mean albedos of a row's fit and of its measurement; nan if unknown."""
-    return average_albedos(row.fit.albedo if row.fit else None)
-
-
 def _format_cell(row: Any, quantity: Quantity) -> str:
-    """Return a row's number as text, marked if its albedo is wrong; empty without a row."""
+    """Return the number of a `Row` as text, marked if its albedo is wrong; "" without a row."""
     if row is None:
         return ""
     if not row.fit:
         return "failed"
-    return (BAD_MARK if row.fit.warnings else "") + quantity.format(quantity.of(row))
+    return (BAD_MARK if row.fit.warnings else "") + quantity.format(quantity.read_number(row))

@@ -1,8 +1,8 @@
-"""A task of a sweep fits several models to one file.
+"""Carries out a task of a sweep: several models are fitted to one file.
 
-A process of this machine and a worker of a cluster run the same function, `fit_models`. Its
-argument and results are plain data that any process can receive; the files must have the same
-paths there.
+Processes of this machine and workers of a cluster run the same function, `fit_models`. Its argument
+and results are plain data that can be sent to any process; the files must have the same paths
+there.
 """
 
 import io
@@ -24,13 +24,17 @@ from brdfkit.model import labels
 
 @dataclass(frozen=True)
 class Task:
-    """A file and the models to fit to it.
+    """A file, and the models to fit to it.
 
-    `material` is the unique name of the material in tables, `file` the file as the user named it,
-    and `path` the argument of `load` for it. `checksums` holds the SHA-256 of the file by path;
-    `models` holds, for each model's label, the checksums of the user's files that define it.
-    `judge` asks for a held-out error and a PSNR of each fit. `failure` says why the file cannot be
-    read, and is empty if it can. `version` is the version of brdfkit.
+    `material`: unique name of the material in tables.
+    `file`: the file, as the user named it.
+    `path`: the file with its full path, as `load` takes it.
+    `checksums`: SHA-256 of the file by its path, to notice changes.
+    `models`: for each model's label, the SHA-256 of the user's files that define it, by path.
+    `settings`: the settings of all fits.
+    `judge`: whether to compute a held-out error and a PSNR of each fit.
+    `failure`: the reason why the file cannot be read, or "".
+    `version`: the version of brdfkit that made the task.
     """
 
     material: str
@@ -48,7 +52,8 @@ class Task:
 class Outcome:
     """The result of one fit: its saved form in `text`, or the reason of its `failure`.
 
-    `judged` holds the held-out error and the PSNR by field of `Row`, if the task judges its fits.
+    `judged` contains its held-out error and PSNR by their names in `Row`, if the task asks for
+    them.
     """
 
     material: str
@@ -59,12 +64,12 @@ class Outcome:
 
 
 def fit_models(task: Task) -> Iterator[Outcome]:
-    """Fit the models of a task in order and yield the `Outcome` of each, also after an error."""
+    """Fit the models of a task in order, and yield the `Outcome` of each, even if it fails."""
     try:
         data = _read_measurement(task)
         judge = Judge(data, task.settings) if task.judge else None
     except Exception as error:
-        yield from (fail(task, label, error) for label in task.models)
+        yield from (make_failure(task, label, error) for label in task.models)
         return
     for label, files in task.models.items():
         try:
@@ -77,10 +82,10 @@ def fit_models(task: Task) -> Iterator[Outcome]:
             judged = judge.judge(result) if judge else {}
             yield Outcome(task.material, label, text=stream.getvalue().decode(), judged=judged)
         except Exception as error:
-            yield fail(task, label, error)
+            yield make_failure(task, label, error)
 
 
-def fail(task: Task, label: str, error: Exception | str) -> Outcome:
+def make_failure(task: Task, label: str, error: Exception | str) -> Outcome:
     """Return the `Outcome` of a fit that ended with an error; its message names the file."""
     if isinstance(error, Exception) and not isinstance(error, BrdfkitError):
         error = f"{label} fails with {type(error).__name__} ({error})."
@@ -92,7 +97,7 @@ def fail(task: Task, label: str, error: Exception | str) -> Outcome:
 
 
 def _read_measurement(task: Task) -> Measured:
-    """Read the measured material of a task; raise `BrdfkitError` if it is not as planned."""
+    """Read the measured material of a task; raise `BrdfkitError` if file or version has changed."""
     if task.failure:
         raise BrdfkitError(task.failure)
     if task.version != __version__:
@@ -104,7 +109,7 @@ def _read_measurement(task: Task) -> Measured:
 
 
 def _require_unchanged(checksums: dict[str, str]) -> None:
-    """Raise `BrdfkitError` unless every file has its SHA-256; `checksums` are by path."""
+    """Raise `BrdfkitError` if a file no longer has its SHA-256; `checksums` are by path."""
     for path, checksum in checksums.items():
         if sha256(path) != checksum:
             raise BrdfkitError(f"{path}: has changed since the sweep began; begin it again.")

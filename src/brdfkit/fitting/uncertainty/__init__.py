@@ -1,7 +1,7 @@
 """The uncertainty of a fit: the bootstrap, loss profiles and prediction errors.
 
-Users reach the three functions as `brdfkit.uncertainty`. `isotropic_limit.py` serves the notes of
-a fit: the least error that any isotropic model can reach on an anisotropic material.
+Users reach the three functions as `brdfkit.uncertainty`. `isotropic_limit.py` estimates, for the
+notes of a fit, the least error that an isotropic model can have on an anisotropic material.
 """
 
 import lazy_loader

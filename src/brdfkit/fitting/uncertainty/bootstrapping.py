@@ -21,14 +21,14 @@ from brdfkit.regression import Fit
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Bootstrap(Shown):
-    """Values of the parameters in fits to resampled measurements; prints as a table.
+    """Estimates of the parameters from fits to resampled measurements; prints as a table.
 
     Attributes
     ----------
     fit : Fit
-        The fit whose uncertainty this is.
+        The fit whose uncertainty is estimated.
     estimates : dict of str to ndarray
-        Name of a parameter → its values (draws,) in all fits; of a weight (draws, channels).
+        Values of each parameter in all fits, by name: (draws,), or (draws, channels) for a weight.
     """
 
     fit: Fit
@@ -52,7 +52,7 @@ class Bootstrap(Shown):
         }
 
     def document(self) -> Document:
-        """The values, with standard errors and intervals."""
+        """Return the table of the parameters' values, with standard errors and intervals."""
         rows = []
         intervals, errors = self.intervals(), self.standard_errors
         for name, value in self.fit.values.items():
@@ -84,10 +84,10 @@ def bootstrap(
 ) -> Bootstrap:
     """Estimate standard errors and intervals of a fit's parameters by the bootstrap.
 
-    Each draw takes as many samples as there are, at random and with replacement, each with all its
-    channels, and fits them again from the end of the fit [Efron & Tibshirani 1993]. Like
-    `Fit.standard_errors`, this assumes that samples are independent; unlike them, it does not
-    assume that the model is nearly linear.
+    For each draw, samples are taken at random and with replacement, as many as were fitted, and the
+    model is fitted to them again, from the values of the fit [Efron & Tibshirani 1993]. Like
+    `Fit.standard_errors`, the bootstrap assumes that samples are independent; unlike them, it does
+    not assume that the model is nearly linear.
 
     Parameters
     ----------
@@ -105,12 +105,13 @@ def bootstrap(
     Returns
     -------
     Bootstrap
-        The values of all fits; prints as a table.
+        The parameters' values in all fits; prints as a table.
 
     Raises
     ------
     BrdfkitError
-        Where `material` was not measured or no sample is left, and for a fit by standard errors.
+        Where `material` was not measured or no sample is left, and for a fit that used standard
+        errors of the measurement.
 
     Examples
     --------

@@ -1,6 +1,6 @@
-"""The least error that any isotropic model can reach on an anisotropic material.
+"""Estimates the least error that any isotropic model can have on an anisotropic material.
 
-The notes of a fit tell it where a model without anisotropy was fitted to such a material.
+A note of a fit reports this error if an isotropic model was fitted to such a material.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from brdfkit.model.samples.samples import Samples
 from brdfkit.regression import Loss, Picture
 
 PAIRS = 2_000  # direction pairs at which azimuths are compared
-TURNS = 8  # angles by which the surface is turned at each of them
+TURNS = 8  # number of angles by which the surface is turned for each direction pair
 
 
 def is_isotropic(model: Model, wi: FloatArray, wo: FloatArray) -> bool:
-    """Return whether a model has equal values after turns of the surface, at pairs (n, 3)."""
+    """Return whether a model's values at direction pairs (n, 3) do not change with azimuth."""
     values = model.eval(wi, wo)
     turned = [model.eval(rotate_z(wi, angle), rotate_z(wo, angle)) for angle in (0.7, 1.9)]
     largest_change = max(abs(other - values).max() for other in turned)
@@ -35,9 +35,9 @@ def is_isotropic(model: Model, wi: FloatArray, wo: FloatArray) -> bool:
 def note_on_azimuth(
     data: Measured, samples: Samples, loss: Loss | Picture, fitted: Model
 ) -> str | None:
-    """Return the note on an isotropic fit to an anisotropic material, or None for another fit.
+    """Return a note if an isotropic model was fitted to an anisotropic material, otherwise None.
 
-    For a table, and for a format with values between its samples, the note tells the least error
+    If the data can be evaluated at all azimuths, as a table can, the note gives the least error
     that any isotropic model can reach, which follows from the spread over the azimuths.
     """
     rows = np.linspace(0, len(samples.wi) - 1, min(PAIRS, len(samples.wi))).astype(int)
@@ -46,18 +46,19 @@ def note_on_azimuth(
         return None
     note = "the material changes as the surface turns, and the model as fitted does not"
     if isinstance(loss, Picture) or not (data.is_table or data.has_lookup):
-        return note  # pixels have no error at one azimuth
+        return note  # the error of a picture cannot be computed at single azimuths
     least = _compute_least_error(data if fitted.wavelengths else data.rgb, part, loss)
     return f"{note}: no isotropic one has an error below about {least:.2g}"
 
 
 @in_turn
 def _compute_least_error(data: Measured, samples: Samples, loss: Loss) -> float:
-    """Return the least E of any isotropic model at samples and their turns.
+    """Return the least error E that an isotropic model can have on samples and their turned copies.
 
-    An isotropic model has one value for all azimuths of a pair. Its best value is found by one
-    Gauss-Newton step from the mean, which is exact if the loss's difference is linear in the
-    model's value or is a difference of one function of the two values.
+    An isotropic model has one value for all azimuths of a direction pair. Its best value is found
+    by one Gauss-Newton step from the mean. The step is exact if the loss's difference is linear in
+    the model's value, or if it is the difference of one function of the model's and of the measured
+    value.
     """
     angles = np.arange(TURNS) * 2 * np.pi / TURNS
     measured = np.stack(

@@ -23,13 +23,14 @@ from brdfkit.regression.refitting import Refit
 
 @dataclass(frozen=True, eq=False)
 class PredictionError:
-    """Expected errors of a linear model's prediction at each fitted sample [Kurt 2007, eq. 7.8].
+    """Expected errors of a fitted linear model at each sample [Kurt 2007, eq. 7.8].
 
     Attributes
     ----------
     variance : ndarray, shape (n, channels)
-        Variance of the prediction by noise, z (Z'Z)⁻¹ z' σ² [sr⁻²]: z are the lobes of the model
-        at the sample, Z those at all samples, σ is the standard deviation of the noise.
+        Variance of the prediction by noise, z (Z'Z)⁻¹ z' σ² [sr⁻²]. The row vector z has the
+        values of the model's lobes at the sample, the matrix Z has these rows for all samples, and
+        σ is the standard deviation of the noise.
     bias : ndarray, shape (n, channels)
         Error that repeated measurements would not reduce, z (Z'Z)⁻¹ Z'η - η(z) [sr⁻¹], because
         the model cannot represent the true BRDF η.
@@ -40,12 +41,12 @@ class PredictionError:
 
     @property
     def mean_square(self) -> NDArray[np.float64]:
-        """The mean squared errors (n, channels), variance + bias² [sr⁻²]."""
+        """The mean squared error of the prediction, variance + bias², (n, channels) [sr⁻²]."""
         return self.variance + self.bias**2
 
     @property
     def largest(self) -> NDArray[np.float64]:
-        """The largest squared bias δ_max of each channel [sr⁻²] [Kurt 2007, eq. 7.10]."""
+        """The largest squared bias δ_max, (channels,) [sr⁻²] [Kurt 2007, eq. 7.10]."""
         return (self.bias**2).max(axis=0)
 
     def __str__(self) -> str:
@@ -64,10 +65,9 @@ def prediction_error(
 ) -> PredictionError:
     """Compute the variance and the bias of a fit's prediction at the fitted samples.
 
-    They are known where the fit is linear in the data: for a model without searched shape
+    The formulas hold if the fit is linear in the data: for a model without searched shape
     parameters, such as ``koenderink`` and ``pca_polynomial``, a linear loss and no robust weight.
-    A prediction that is clamped at 0 and a weight on its bound are not linear, but are treated as
-    if they were.
+    Clamping at 0 and weights on their bounds are ignored, although they are not linear.
 
     Parameters
     ----------
@@ -89,8 +89,8 @@ def prediction_error(
     Raises
     ------
     BrdfkitError
-        For a fit that is not linear, and where `material` was not measured or `truth` is no
-        material.
+        For a fit that is not linear in the data, and where `material` was not measured or `truth`
+        is no material.
 
     Examples
     --------
@@ -99,10 +99,10 @@ def prediction_error(
     """
     samples = select_fitted_samples(fit, material)
     _require_linear(fit, samples)
-    # Raises for fits with weights, constraints or standard errors, which are not known here
+    # A fit does not keep the weights of its samples, so fits with such weights are rejected
     Refit(fit, samples).require_least_loss()
     Z = compute_lobe_values(fit.model, samples.wi, samples.wo)[0]
-    # (Z'WZ)⁻¹ Z'W with the weights W of the loss
+    # `solve` is (Z'WZ)⁻¹ Z'W with the weights W of the loss: it maps values to weights of the lobes
     root = _compute_root_weights(to_loss(fit.loss_name), samples)
     solve = np.linalg.pinv(root[:, None] * Z) * root
     values = samples.values if truth is None else to_material(truth).eval(samples.wi, samples.wo)
@@ -121,7 +121,7 @@ def prediction_error(
 
 
 def _to_numbers(sigma: ArrayLike, channels: int) -> FloatArray:
-    """Return `sigma` as an array of one number, or of one for each channel."""
+    """Return the standard deviation of the noise as an array, of one number or one per channel."""
     try:
         numbers = np.asarray(sigma, float)
     except (TypeError, ValueError):
@@ -134,7 +134,7 @@ def _to_numbers(sigma: ArrayLike, channels: int) -> FloatArray:
 
 
 def _require_linear(fit: Fit, samples: Samples) -> None:
-    """Raise `BrdfkitError` unless the values of a fit are linear in the measured ones."""
+    """Raise `BrdfkitError` unless the values that a fit predicts are linear in the data."""
     model, settings = type(fit.model), fit.settings
     known = {*model.determine_parameters(samples), *settings.get("fixed", ())}
     searched = [
@@ -157,7 +157,7 @@ def _require_linear(fit: Fit, samples: Samples) -> None:
 
 
 def _compute_root_weights(loss: Any, samples: Samples) -> FloatArray:
-    """Return √W (n,) of a linear loss, whose squared differences are W (model - measured)²."""
+    """Return √W (n,) for a linear loss, whose squared differences are W (model - measured)²."""
     ones = np.ones((len(samples.wi), 1))
     black = replace(samples, values=0 * ones)
     return np.sqrt(loss.importance(samples) * sum_squared_differences(loss, ones, black))

@@ -1,4 +1,4 @@
-"""`profile`: the least loss at each value of one parameter, and the interval that follows."""
+"""`profile`: the least loss as a function of one parameter, and the parameter's interval."""
 
 from __future__ import annotations
 
@@ -22,22 +22,23 @@ from brdfkit.regression.profiling import follow_profile, profile_curvature
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Profile(Shown):
-    """The least loss at each value of a parameter; prints as a line.
+    """The least loss as a function of one parameter, and its 95 % interval; prints as a line.
 
     Attributes
     ----------
     fit : Fit
-        The fit whose uncertainty this is.
+        The fit whose uncertainty is estimated.
     parameter : str
         Name of the shape parameter.
     values : ndarray, shape (points,)
-        Its values, that of the fit among them.
+        Values of the parameter, including its value in the fit.
     losses : ndarray, shape (points,)
-        The least E at each.
+        The least error E at each of these values.
     level : float
-        E up to which values are in the 95 % interval.
+        Values of the parameter belong to the 95 % interval if their E is at most this level.
     interval : tuple of float
-        Where E crosses the level (low, high), or a bound that it does not cross before.
+        The values (low, high) where E crosses the level, or the parameter's bound where E stays
+        below the level.
     """
 
     fit: Fit
@@ -53,7 +54,7 @@ class Profile(Shown):
         return float(np.ravel(self.fit.values[self.parameter])[0])
 
     def plot(self) -> Figure:
-        """The loss over the parameter, with the level and the interval."""
+        """Draw the loss over the parameter, with the level and the 95 % interval."""
         figure = Plot(figsize=(5, 3.2), layout="constrained")
         axes = figure.add_subplot(xlabel=self.parameter, ylabel=f"{self.fit.loss_name} loss")
         axes.plot(self.values, self.losses, color="#0072b2")
@@ -64,7 +65,7 @@ class Profile(Shown):
         return figure
 
     def document(self) -> Document:
-        """The value with its interval, and the plot."""
+        """Return the parameter's value with its interval, and the plot."""
         low, high = self.interval
         line = f"{self.parameter} = {self.value:.6g}, 95 %: {low:.6g} to {high:.6g}, by its profile"
         says = f"the {self.fit.loss_name} loss over {self.parameter}"
@@ -75,10 +76,10 @@ class Profile(Shown):
 def profile(fit: Fit, material: MaterialLike, *, parameter: str, points: int = 25) -> Profile:
     """Compute the profile of the loss over a shape parameter, and its 95 % interval.
 
-    At each value of the parameter the loss is minimised over all other parameters. The interval is
-    where E² stays below a level [Bates & Watts 1988], which a parabola of the same curvature
-    reaches at the ends of `Fit.intervals`. It makes the same assumptions about the noise as these,
-    but does not assume that the model is nearly linear.
+    At each value of the parameter the loss is minimised over all other parameters. The interval
+    contains the values whose E² stays below a level [Bates & Watts 1988]: the level that a parabola
+    with the curvature of E² at the fit reaches at the ends of `Fit.intervals`. The assumptions
+    about the noise are those of `Fit.intervals`, but the model need not be nearly linear.
 
     Parameters
     ----------
@@ -99,9 +100,9 @@ def profile(fit: Fit, material: MaterialLike, *, parameter: str, points: int = 2
     Raises
     ------
     BrdfkitError
-        For a parameter that was not searched, a robust fit, one by standard errors or one that was
-        searched again for its light, where `material` was not measured, and where no number is left
-        beyond the parameters.
+        For a parameter that was not searched; for a robust fit, a fit that used standard errors of
+        the measurement, or one that was corrected to keep the measured albedo; where `material` was
+        not measured; and where there are no more measured numbers than parameters.
 
     Examples
     --------
@@ -129,7 +130,7 @@ def profile(fit: Fit, material: MaterialLike, *, parameter: str, points: int = 2
     k = space.names.index(parameter)
     rise = profile_curvature(again, parameter, float(space.low[k]), float(space.high[k]))
     low, high = np.ravel(fit.intervals[parameter]).tolist()
-    if rise is None:  # on a bound, where no interval is known
+    if rise is None:  # the fit is on a bound, where `Fit.intervals` gives no interval
         level = fit.loss * np.sqrt(1 + stdtrit(freedom, 0.975) ** 2 / freedom)
     else:
         level = np.sqrt(fit.loss**2 + rise * ((high - low) / 2) ** 2)
