@@ -31,8 +31,8 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import (
     compute_coverage,
     find_largest_angles,
-    is_near,
-    to_points,
+    is_near_sample,
+    map_pairs_to_points,
 )
 from brdfkit.model.samples import Table
 
@@ -77,8 +77,8 @@ ANGLE, AZIMUTH = st.floats(0, np.pi / 2), st.floats(-np.pi, np.pi)
 
 @given(ANGLE, ANGLE, AZIMUTH, AZIMUTH)
 def test_turned_pairs_are_the_same_point(theta_i, theta_o, phi, turn):
-    a = to_points(from_angles(theta_i, [0.0]), from_angles(theta_o, [phi]))
-    b = to_points(from_angles(theta_i, [turn]), from_angles(theta_o, [phi + turn]))
+    a = map_pairs_to_points(from_angles(theta_i, [0.0]), from_angles(theta_o, [phi]))
+    b = map_pairs_to_points(from_angles(theta_i, [turn]), from_angles(theta_o, [phi + turn]))
     np.testing.assert_allclose(a, b, atol=1e-7)  # acos near 1
 
 
@@ -93,7 +93,7 @@ def test_a_distance_is_about_the_angle(theta_i, theta_o, phi, part, direction):
     wi_2, wo_2 = from_angles(other[0], turns), from_angles(other[1], further + turns)
     chords = np.sum((wi - wi_2) ** 2, axis=1) + np.sum((wo - wo_2) ** 2, axis=1)
     angle = np.sqrt(chords.min())
-    distance = np.linalg.norm(to_points(wi, wo) - to_points(wi_2[:1], wo_2[:1]))
+    distance = np.linalg.norm(map_pairs_to_points(wi, wo) - map_pairs_to_points(wi_2[:1], wo_2[:1]))
     # near the normal, where azimuths mean little, it is off most
     assert angle / np.sqrt(2) - 2e-3 <= distance <= 1.5 * angle + 2e-3
 
@@ -188,11 +188,11 @@ def test_near_allows_for_the_symmetries_of_the_material():
     )
     for anisotropic in (False, True):
         data = scattered(np.ones((1, 1)), wi, wo, anisotropic=anisotropic)
-        assert is_near(data, wi, wo).all()
-        assert is_near(data, wo, wi).all()
-        assert is_near(data, *turned).all() != anisotropic
-        assert is_near(data, *mirrored).all() != anisotropic
-        assert not is_near(data, *grid([20], [60], [110])).any()
+        assert is_near_sample(data, wi, wo).all()
+        assert is_near_sample(data, wo, wi).all()
+        assert is_near_sample(data, *turned).all() != anisotropic
+        assert is_near_sample(data, *mirrored).all() != anisotropic
+        assert not is_near_sample(data, *grid([20], [60], [110])).any()
 
 
 # Noise

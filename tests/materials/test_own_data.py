@@ -327,10 +327,13 @@ WRONG = [
     ({"R": 1}, "has values of BRDF, R, where R, G, B belong"),
     (
         {"BRDF": None, "CCBRDF_R": 1, "G": 1, "B": 1},
-        "has CCBRDF, values with a cosine, beside others",
+        "has columns CCBRDF, the BRDF times cos theta_o, beside",
     ),
-    ({"CCBRDF_error": 1}, "has CCBRDF, values with a cosine, beside others"),
-    ({"BRDF": None, "CCBRDF": 1, "BRDF_error": 1}, "has CCBRDF, values with a cosine, beside"),
+    ({"CCBRDF_error": 1}, "has columns CCBRDF, the BRDF times cos theta_o, beside"),
+    (
+        {"BRDF": None, "CCBRDF": 1, "BRDF_error": 1},
+        "has columns CCBRDF, the BRDF times cos theta_o, beside",
+    ),
     ({"BRDF": None, 550: 1, "550": 2}, "the column '550' comes twice"),
     ({"BRDF": np.array(["2026-06-01"] * 3, "datetime64[D]")}, "'BRDF' should hold numbers alone"),
     ({"BRDF": np.array([1, 2, 3], "timedelta64[s]")}, "'BRDF' should hold numbers alone"),
@@ -344,7 +347,7 @@ WRONG = [
     ({"theta_o": [10, 30, np.nan]}, "theta_o is nan in row 2; give a number"),
     ({"theta_o": [10, 30, 100.5]}, "theta_o is 100.5° in row 2, which is below the horizon"),
     ({"theta_i": -91}, "theta_i is -91° in row 0, which is below the horizon"),
-    ({"phi_o": [0, 361, 0]}, "phi_o is 361° in row 1, more than a turn"),
+    ({"phi_o": [0, 361, 0]}, "phi_o is 361° in row 1, more than a full turn"),
     ({"theta_i": None, "theta_i [rad]": 30}, "theta_i is 30 rad in row 0, which is too large"),
     (
         {"theta_i": 0.5, "theta_o": [0.2, 1, 1.5], "phi_o": 3.1416},

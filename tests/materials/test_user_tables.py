@@ -141,12 +141,15 @@ def test_what_is_said_to_mend_a_table_mends_it(changes, tmp_path):
     run = CliRunner().invoke(main, ["convert", str(path), mended, *options])
     assert run.exit_code == 0, run.output
     np.testing.assert_allclose(bk.load(mended).values, bk.load(path, **mends).values)
-    with pytest.raises(BrdfkitError, match="was mended already"):
+    with pytest.raises(BrdfkitError, match="was converted already"):
         bk.load(mended, **mends)
 
 
 REFUSED = {
-    "radians without a unit": (in_radians(table()), r"might be degrees or radians; say so in the"),
+    "radians without a unit": (
+        in_radians(table()),
+        r"might be degrees or radians; state the unit in the",
+    ),
     "in the plane without azimuth": (IN_ONE_PLANE.drop(columns="delta_phi"), "180 throughout"),
     "percent": (table().rename(columns={"BRDF": "BRDF [%]"}), "1/sr for values .* convert"),
     "micrometres": (in_rows(table()).eval("wavelength = wavelength / 1000"), "give nanometres"),
@@ -206,7 +209,7 @@ def test_rows_of_channels_are_those_of_columns(tmp_path):
         np.testing.assert_allclose(data.standard_error[0], [0.02, 0.04, 0.06])
     assert found.info["channels"] == "3, a row each, at 3 pairs of directions"
     for wrong, other, said in (
-        ("b,", "X,", "line 4 is none of R, G and B"),
+        ("b,", "X,", "line 4 is not R, G or B"),
         ("G,", "R,", "no row"),
     ):
         (tmp_path / "mine.csv").write_text(text.replace(wrong, other))

@@ -7,7 +7,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.geometry.directions import from_angles, to_angles
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.measured.albedos import albedo_at
+from brdfkit.materials.measured.albedos import compute_directional_albedo
 from brdfkit.model.samples import Samples
 
 DEGREES = np.arange(0, 90, 5)  # angles of incidence
@@ -40,7 +40,7 @@ def compute_albedo(data: Measured, measured_to: float) -> Albedo:
     azimuths = np.arange(AZIMUTHS) / AZIMUTHS * 2 * np.pi if data.anisotropic else (0.0,)
     values = np.array(
         [
-            [albedo_at(data, from_angles(theta, phi)) for phi in azimuths]
+            [compute_directional_albedo(data, from_angles(theta, phi)) for phi in azimuths]
             for theta in np.radians(DEGREES)
         ]
     )

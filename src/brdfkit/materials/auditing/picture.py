@@ -12,7 +12,7 @@ from brdfkit.core.figures import Plot
 from brdfkit.materials.auditing.albedos import Albedo
 from brdfkit.materials.auditing.report import to_percent
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.measured.coverage import is_near
+from brdfkit.materials.measured.coverage import is_near_sample
 from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean
 from brdfkit.materials.plotting.lobe_plots import draw_panels
 from brdfkit.materials.plotting.plane_of_incidence import choose_angles
@@ -94,7 +94,7 @@ def is_measured(data: Measured, table: Table, cells: Any) -> BoolArray:
     if data.is_table:
         return np.isfinite(table.values[cells]).all(axis=-1)
     wi, wo = (w[cells].reshape(-1, 3) for w in table.directions())
-    return is_near(data, wi, wo).reshape(table.values[cells].shape[:-1])
+    return is_near_sample(data, wi, wo).reshape(table.values[cells].shape[:-1])
 
 
 def make_scale(values: FloatArray) -> Any:

@@ -7,7 +7,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.materials.auditing.subsets import draw_rows, draw_valid_samples, thin_half_vectors
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.measured.coverage import to_points
+from brdfkit.materials.measured.coverage import map_pairs_to_points
 from brdfkit.model.samples import Samples
 
 SAME_ANGLE = np.radians(0.5)  # direction pairs that differ by less count as one
@@ -79,10 +79,10 @@ def find_swapped(samples: Samples, anisotropic: bool) -> IntArray:
 
     On an isotropic material, pairs with θi = θo are left out: their exchange is a mirror image.
     """
-    images = to_points(samples.wo, samples.wi, anisotropic)
+    images = map_pairs_to_points(samples.wo, samples.wi, anisotropic)
     if not anisotropic:
         images[np.abs(images[:, 0] - images[:, 1]) < 2 * SAME_ANGLE] = np.inf
-    return _match(to_points(samples.wi, samples.wo, anisotropic), images)
+    return _match(map_pairs_to_points(samples.wi, samples.wo, anisotropic), images)
 
 
 def find_mirrored(samples: Samples, anisotropic: bool) -> IntArray:
@@ -92,7 +92,7 @@ def find_mirrored(samples: Samples, anisotropic: bool) -> IntArray:
     """
     if anisotropic:
         return np.empty((0, 2), int)
-    points = to_points(samples.wi, samples.wo)
+    points = map_pairs_to_points(samples.wi, samples.wo)
     return _match(points, points * [1, 1, 1, -1])
 
 

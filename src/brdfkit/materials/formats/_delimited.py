@@ -15,8 +15,12 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.measured.angles import DEGREES, RADIANS
-from brdfkit.materials.measured.column_names import PER_STERADIAN, are_columns, find_row_key
-from brdfkit.materials.measured.long_form import channel_number
+from brdfkit.materials.measured.column_names import (
+    PER_STERADIAN,
+    are_sample_columns,
+    match_channel_column,
+)
+from brdfkit.materials.measured.long_form import parse_colour_name
 
 DELIMITERS = "\t;,"  # the first of them in the line of names; blanks where there is none
 UNITS = {"", *DEGREES, *RADIANS, *PER_STERADIAN, "nm"}
@@ -33,7 +37,7 @@ def find_delimiter(head: bytes) -> str | None:
     BRDF.
     """
     header, _ = _find_header(Source(Path("head"), None, head))
-    if header is None or not are_columns(split_fields(header)):
+    if header is None or not are_sample_columns(split_fields(header)):
         return None
     return _choose_delimiter(header)
 
@@ -54,7 +58,7 @@ def read_columns(source: Source) -> tuple[list[str], list[int], list[FloatArray]
     delimiter = _choose_delimiter(header)
     names, rows = _take_units(split_fields(header), rows, delimiter)
     named = [k for k, name in enumerate(names) if name]  # the index that pandas writes has none
-    texts = [k for k in named if find_row_key(names[k]) == "channel"]
+    texts = [k for k in named if match_channel_column(names[k]) == "channel"]
     lines: list[int] = []
     data: list[list[float]] = []
     marks: dict[str, int] = {}
@@ -66,7 +70,7 @@ def read_columns(source: Source) -> tuple[list[str], list[int], list[FloatArray]
         source.require_count(n, fields, len(names))
         _require_one_mark(source, n, " ".join(fields), marks)
         for k in texts:
-            fields[k] = str(channel_number(fields[k]))
+            fields[k] = str(parse_colour_name(fields[k]))
         lines.append(n)
         data.append(source.parse_numbers(n, [_to_python_number(fields[k]) for k in named]))
     if not lines:
@@ -96,9 +100,11 @@ def _find_header(source: Source) -> tuple[str | None, Lines]:
     lines = source.whole_lines
     texts = [line for _, line in takewhile(lambda row: not NUMERIC.fullmatch(row[1]), lines)]
     if texts:
-        first = next((k for k, text in enumerate(texts) if are_columns(split_fields(text))), 0)
+        first = next(
+            (k for k, text in enumerate(texts) if are_sample_columns(split_fields(text))), 0
+        )
         return texts[first], lines[first + 1 :]
-    comments = [c for c in source.comments if are_columns(split_fields(c))]
+    comments = [c for c in source.comments if are_sample_columns(split_fields(c))]
     return (comments[-1] if comments else None), lines
 
 

@@ -28,7 +28,7 @@ from brdfkit.core.geometry.directions import from_angles, from_half_difference
 from brdfkit.materials.formats._source import SPHERICAL, Source
 from brdfkit.materials.formats._writing import compute_angles, require_measured, write_rows
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.measured.conventions import DIVIDED, find_cosines
+from brdfkit.materials.measured.conventions import DIVIDED, compute_view_cosines
 
 NAME = "ALTA"
 SUFFIXES = (".dat",)
@@ -198,7 +198,7 @@ def _find_factor(
     """
     stated = header.get("PARAM_OUT")
     if stated == COSINE:
-        factor, low = find_cosines(wo)
+        factor, low = compute_view_cosines(wo)
         notes = dict(DIVIDED)
         if low.any():
             notes["masked"] = f"{low.sum():,} rows with the view at the horizon"

@@ -1,15 +1,15 @@
-"""`Measured`: a BRDF given by samples or by a table, and its values between and beyond them.
+"""`Measured`: a BRDF given by scattered samples or by a table, which can be evaluated anywhere.
 
-`measured.py` has the class, and `measured_data.py` the data below it, which `validation.py` checks.
-A user's own samples come by angles or by the columns of a table (`from_angles.py`): the names of
-the columns say what these are (`column_names.py`), `columns.py` converts them with the help of
-`angles.py` and `coordinates.py`, and `long_form.py` collects wavelengths that stand in rows.
-`conventions.py` mends samples of another convention.
+`measured.py` defines the class, on top of the data in `measured_data.py`, which `validation.py`
+checks. `from_angles.py` makes it from a user's own samples: `column_names.py` interprets the names
+of a table's columns, `columns.py` converts them with `angles.py` and `coordinates.py`, and
+`long_form.py` rearranges tables with one wavelength per row. `conventions.py` converts samples from
+other conventions.
 
-`interpolation.py` gives values between scattered samples, `tabulation.py` tables of any BRDF,
-`arithmetic.py` and `spectrum_to_rgb.py` other channels and differences. `selection.py` chooses the
-samples that a fit uses, `coverage.py` finds the share of all directions that was measured, and
-`albedos.py` the light that the material reflects.
+`interpolation.py` interpolates scattered samples, and `tabulation.py` tabulates any BRDF.
+`arithmetic.py` and `spectrum_to_rgb.py` mix channels and subtract BRDFs. `selection.py` selects the
+samples of a fit, `coverage.py` finds the share of all directions that was measured, and
+`albedos.py` computes the albedo.
 """
 
 from brdfkit.materials.measured.measured import Measured as Measured

@@ -1,6 +1,6 @@
-"""The directional albedo of a measurement: the share of light from one direction that it reflects.
+"""Computes the directional albedo of a measurement: the share of light that it reflects.
 
-Fits and measurements are compared by it, and an albedo above 1 reveals a wrong unit.
+Fits are compared with measurements by their albedo, and a large albedo reveals a wrong unit.
 """
 
 from collections.abc import Callable
@@ -21,25 +21,25 @@ from brdfkit.regression.albedo import (
     LARGEST_MEASURED_ALBEDO,
 )
 
-# Angles of incidence [degrees] at which fits and measurements are compared, and a grazing angle at
-# which no measurement is trusted, but no fit should reflect more light than arrives
+# Angles of incidence [degrees] at which the albedos of fits and measurements are compared. At the
+# grazing one no measurement is trusted, but it is tested whether a fit reflects too much light
 ANGLES, GRAZING = (5.0, 45.0, 75.0), 85.0
-# Numbers of half vectors in the quadrature: polar angles, spaced as in a table, and azimuths
+# Numbers of polar angles and azimuths of half vectors in the quadrature
 N_THETA, N_PHI = 60, 24
-# The share of the light that must leave near measured directions for the albedo to be known
+# An albedo counts as measured if at least this share of the light leaves near measured directions
 LEAST_KNOWN_SHARE = 0.75
-# Where a larger share of the samples is not positive, noise makes the albedo too low, because the
-# lookup interpolates logarithms
+# If more than this share of the samples is not positive, their albedo is not trusted: logarithms
+# are interpolated, so that noise around 0 makes it too low
 LARGEST_NEGATIVE_SHARE = 0.02
 
 
 @dataclass(frozen=True, eq=False)
 class MeasuredAlbedo:
-    """The directional albedo of a measurement.
+    """The directional albedo of a measurement at a few angles of incidence.
 
-    `theta_i`: angles of incidence [degrees] (n,); `values` (n, channels): the mean over azimuths of
-    incidence; `known` (n,): False where the albedo is mostly extrapolated. The last angle is
-    `GRAZING`, and its albedo is never known.
+    `theta_i`: angles of incidence [degrees], (n,); `values`: albedo, a mean over azimuths of
+    incidence, (n, channels); `known`: whether it is mostly measured rather than extrapolated, (n,),
+    always False at the last angle, `GRAZING`.
     """
 
     theta_i: tuple[float, ...]
@@ -48,41 +48,41 @@ class MeasuredAlbedo:
 
     @property
     def has_another_unit(self) -> bool:
-        """Whether the albedo is so large that the values cannot be in 1/sr."""
+        """Whether the albedo is so large that the measured values cannot be a BRDF in sr⁻¹."""
         return bool((self.known[:, None] & (self.values > LARGEST_MEASURED_ALBEDO)).any())
 
     @property
     def means(self) -> tuple[float, ...]:
-        """The mean over the channels at `ANGLES`; nan where it is not known."""
+        """The albedo at each of `ANGLES`, averaged over the channels; NaN where it is not known."""
         means = np.where(self.known, self.values.mean(axis=1), np.nan)
         return tuple(means[: len(ANGLES)].tolist())
 
 
-def albedo_at(data: Any, wi: FloatArray) -> FloatArray:
-    """Return the albedo (channels,) of a `Measured` for light from `wi` (3,).
+def compute_directional_albedo(data: Any, wi: FloatArray) -> FloatArray:
+    """Return the directional albedo (channels,) of a `Measured` for light from `wi` (3,).
 
-    The integral is over half vectors, dωo = 4 (wi·h) dωh, spaced as in a table. A few of them
-    suffice, whereas `brdfkit.albedo`, which takes any BRDF, refines its quadrature for seconds. The
-    sum is divided by the sum for f = 1/π, so that a Lambertian surface gets exactly its
-    reflectance.
+    The integral is over half vectors h, where dωo = 4 (wi·h) dωh. A coarse quadrature suffices for
+    measured data, whereas `brdfkit.albedo` refines one for seconds. The sum is divided by the sum
+    for f = 1/π, so that a Lambertian surface gets exactly its reflectance.
     """
-    wo, weight = place_directions(wi)
+    wo, weight = make_outgoing_quadrature(wi)
     values = data.eval(np.broadcast_to(wi, wo.shape), wo)
     return weight @ values * np.pi / weight.sum()
 
 
-def place_directions(wi: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return directions wo (n, 3) above the surface, dense around the mirror direction of `wi`.
+def make_outgoing_quadrature(wi: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the nodes and weights of a quadrature over the directions wo for light from `wi` (3,).
 
-    The second result is their weights cos θo dωo (n,), up to a factor.
+    The nodes (n, 3) are directions above the surface, dense around the mirror direction. The
+    weights (n,) are cos θo dωo, up to a factor.
     """
-    # Half vectors, dense around the normal
+    # Place half vectors, dense around the normal
     x = (np.arange(N_THETA) + 0.5) / N_THETA
     theta, phi = x**2 * np.pi / 2, (np.arange(N_PHI) + 0.5) / N_PHI * 2 * np.pi
     h = from_angles(*np.meshgrid(theta, phi, indexing="ij")).reshape(-1, 3)
     d_omega = np.repeat(x * np.sin(theta), N_PHI)
 
-    # The directions to which they reflect `wi`
+    # Reflect `wi` about them
     cosine = h @ wi
     wo = 2 * cosine[:, None] * h - wi
     above = (cosine > 0) & (wo[:, 2] > 0)
@@ -90,19 +90,19 @@ def place_directions(wi: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def compute_measured_albedo(data: MeasuredData) -> MeasuredAlbedo:
-    """Return the `MeasuredAlbedo` of a `Measured` at `ANGLES` and `GRAZING`."""
+    """Compute the directional albedo of a `Measured` at the incidences `ANGLES` and `GRAZING`."""
     azimuths = ANISOTROPIC_AZIMUTHS if data.anisotropic else ISOTROPIC_AZIMUTHS
-    angles, is_near, values, known = (*ANGLES, GRAZING), _make_nearness_test(data), [], []
+    angles, is_near, values, known = (*ANGLES, GRAZING), _make_measured_test(data), [], []
     for angle in angles:
         directions = [from_angles(np.radians(angle), phi) for phi in azimuths]
-        values.append(np.mean([albedo_at(data, wi) for wi in directions], axis=0))
+        values.append(np.mean([compute_directional_albedo(data, wi) for wi in directions], axis=0))
         share = np.mean([_compute_known_share(is_near, wi) for wi in directions])
         known.append(angle < GRAZING and share >= LEAST_KNOWN_SHARE and not _is_noisy(data))
     return MeasuredAlbedo(angles, np.array(values), np.array(known))
 
 
 def _is_noisy(data: MeasuredData) -> bool:
-    """Return whether many of scattered samples are not positive."""
+    """Return whether so many scattered samples are not positive that their albedo is too low."""
     if data.is_table:
         return False
     means = data.samples.values[data.samples.valid].mean(axis=1)
@@ -112,13 +112,19 @@ def _is_noisy(data: MeasuredData) -> bool:
 def _compute_known_share(
     is_near: Callable[[FloatArray, FloatArray], BoolArray], wi: FloatArray
 ) -> float:
-    """Return the share of a matt surface's light from `wi` that leaves to measured directions."""
-    wo, weight = place_directions(wi)
+    """Return the share of the light from `wi` that a matt surface reflects to measured directions.
+
+    `is_near` tells which directions, given as wi and wo (n, 3), count as measured.
+    """
+    wo, weight = make_outgoing_quadrature(wi)
     return float(weight @ is_near(np.broadcast_to(wi, wo.shape), wo) / weight.sum())
 
 
-def _make_nearness_test(data: MeasuredData) -> Callable[[FloatArray, FloatArray], BoolArray]:
-    """Return a function that tells which direction pairs are near a valid sample or cell."""
+def _make_measured_test(data: MeasuredData) -> Callable[[FloatArray, FloatArray], BoolArray]:
+    """Return a function of wi and wo (n, 3) that tells which pairs lie near a valid sample.
+
+    For a table it tells which pairs lie in a valid cell.
+    """
     from scipy.spatial import cKDTree
 
     if data._table is not None:

@@ -1,6 +1,6 @@
 """Mixes the channels of a measured material, and subtracts another BRDF from it.
 
-The result has the same samples or cells.
+The results have the same directions, as samples or as the cells of a table.
 """
 
 from collections.abc import Sequence
@@ -21,10 +21,10 @@ from brdfkit.model.samples.samples import require_valid
 def mix_channels(
     data: Data, weights: FloatArray, channels: Sequence[str], info: dict[str, str]
 ) -> Data:
-    """Return a `Measured` with other `channels`, mixed from the old ones, and with notes `info`.
+    """Return a `Measured` in new `channels`, which are linear combinations of the old ones.
 
-    `weights` (old, new) are the shares of the old channels in the new ones. The standard
-    errors of the channels count as independent.
+    `weights` (old, new) are the coefficients, and `info` are the notes of the result. Standard
+    errors are propagated as if the channels' errors were independent.
     """
     changed: dict[str, Any] = {"channels": tuple(channels), "info": info}
     if data.standard_error is not None:
@@ -42,15 +42,16 @@ def mix_channels(
 def _look_up_mixed(
     lookup: Lookup, weights: FloatArray, wi: FloatArray, wo: FloatArray
 ) -> FloatArray:
-    """Return the values of a lookup, with its channels mixed by `weights` (old, new)."""
+    """Evaluate an interpolation function `lookup`, and mix its channels by `weights` (old, new)."""
     return lookup(wi, wo) @ weights
 
 
 def subtract(data: Data, brdf: Any, max_angle: float) -> Data:
-    """Subtract `brdf` from the values of a `Measured`, as `Measured.subtract` describes it.
+    """Return a `Measured` with the differences between measured values and another BRDF.
 
-    `brdf` is a material with `name` and `eval`. Samples with an angle at or beyond `max_angle`
-    [degrees] are unknown in the result, and it has no lookup between the samples.
+    `brdf` is a material with `name` and `eval`. Samples with an angle to the normal at or beyond
+    `max_angle` [degrees] are masked. The differences are interpolated by brdfkit, even where the
+    file format has its own interpolation.
     """
     to_number("max_angle", max_angle, above=0, most=90)
     samples, name = data.samples, f"{data.name} - {brdf.name}"

@@ -1,6 +1,6 @@
-"""Says by their names what the columns of a user's table hold: coordinates, values or errors.
+"""Interprets the names of a user's columns: which are coordinates, BRDF values, standard errors.
 
-Capitals, spaces, hyphens and underscores do not matter, and a Greek letter counts as its name. A
+Capitals, spaces, hyphens and underscores do not matter, and a Greek letter may replace its name. A
 unit may follow in brackets, as in ``theta_i [deg]``.
 """
 
@@ -15,27 +15,27 @@ from brdfkit.materials.measured.coordinates import COORDINATES
 from brdfkit.materials.measured.long_form import NANOMETRES
 from brdfkit.materials.measured.validation import Origin
 
-# Other names of the outgoing direction: r for reflection, s for scattering
+# Other names of the angles of view: r stands for reflection, s for scattering
 ALIASES = {"theta_r": "theta_o", "theta_s": "theta_o", "phi_r": "phi_o", "phi_s": "phi_o"}
 VALUE = re.compile(
     r"(((cc)?b[rs]df)?(?P<channel>[rgb]|[0-9]{3,6}(\.[0-9]+)?(nm)?)?|value|y)"
     r"(?P<error>(standard)?error)?"
 )
 PER_STERADIAN = ("1/sr", "sr-1", "sr^-1", "sr⁻¹")
-# Columns that say which wavelength or channel the value in a row belongs to
+# Columns that state the wavelength or the channel of the value in each row, by their other names
 KEYS_OF_ROWS = {"wavelength": "wavelength", "lambda": "wavelength", "channel": "channel"}
-EXAMPLES = ("BRDF", *RGB, "550nm", "BRDF_error", "R_error")  # proposed for names that are unknown
+EXAMPLES = ("BRDF", *RGB, "550nm", "BRDF_error", "R_error")  # proposed in errors on unknown names
 
 
 @dataclass(frozen=True)
 class Layout:
-    """The meaning of each column of a table; columns are given as their numbers.
+    """The meaning of a table's columns, which are given by their numbers.
 
-    `coordinates`: the columns of one line of `COORDINATES`, by name; `units`: the units that the
-    names of these columns state, or None; `channels`: names of the channels; `values` and `errors`:
-    the columns of each channel's values and standard errors, if any; `cosine`: whether the values
-    are the BRDF times cos theta_o; `key`: "wavelength" or "channel" and its column where each row
-    has the value of one channel, else None.
+    `coordinates`: column of each coordinate of the directions, by its name; `units`: unit of each
+    coordinate, or None where the column's name states none; `channels`: names of the channels;
+    `values`: column of each channel's BRDF; `errors`: column of each channel's standard errors,
+    empty where there are none; `cosine`: whether the values are the BRDF times cos theta_o; `key`:
+    "wavelength" or "channel", and its column, where each row has one channel's value, else None.
     """
 
     coordinates: dict[str, int]
@@ -47,8 +47,8 @@ class Layout:
     key: tuple[str, int] | None = None
 
 
-def are_columns(names: Iterable[str]) -> bool:
-    """Return whether `names` have the columns of a line of `COORDINATES`, and one of values."""
+def are_sample_columns(names: Iterable[str]) -> bool:
+    """Return whether columns with these `names` give both directions and values of a BRDF."""
     texts = [_split_unit(name)[0] for name in names]
     coordinates = set(map(_match_coordinate, texts))
     has_values = any(map(_match_value, texts))
@@ -56,10 +56,10 @@ def are_columns(names: Iterable[str]) -> bool:
 
 
 def parse_layout(names: Sequence[str], origin: Origin) -> Layout:
-    """Return the `Layout` of columns with these `names`.
+    """Interpret the `names` of a table's columns as a `Layout`.
 
-    Raises `BrdfkitError` for a name that is unknown or comes twice, and where the columns do not
-    give both directions, or no BRDF.
+    Raises `BrdfkitError` for a name that is unknown or repeated, and for columns that do not give
+    both directions and a BRDF.
     """
     coordinates: dict[str, int] = {}
     units: dict[str, str | None] = {}
@@ -69,56 +69,65 @@ def parse_layout(names: Sequence[str], origin: Origin) -> Layout:
     for number, name in enumerate(names):
         text, unit = _split_unit(name)
         coordinate, value = _match_coordinate(text), _match_value(text)
-        key = find_row_key(name)
+        key = match_channel_column(name)
         if coordinate in coordinates or value in values or (key and keys):
-            raise origin.error(f"the column {_quote(name)} comes twice; keep one")
-        if coordinate and unit in _list_units(coordinate):
+            raise origin.error(f"the column {_quote_name(name)} comes twice; keep one")
+        if coordinate and unit in _list_allowed_units(coordinate):
             coordinates[coordinate], units[coordinate] = number, unit
         elif value and unit in (None, *PER_STERADIAN):
             values[value] = number
-            cosines |= _find_cosine(text, is_error=value[1])
+            cosines |= _match_cosine(text, is_error=value[1])
         elif key and unit in ((None, "nm") if key == "wavelength" else (None,)):
             keys[key] = number
         else:
             known = coordinate or value or key
-            raise origin.error(_describe_unknown(name, unit if known else None, coordinates))
+            raise origin.error(_describe_unknown_column(name, unit if known else None, coordinates))
     if len(cosines) > 1:
-        raise origin.error("has CCBRDF, values with a cosine, beside others; convert them")
+        raise origin.error(
+            "has columns CCBRDF, the BRDF times cos theta_o, beside columns without the cosine; "
+            "convert the ones or the others"
+        )
     _require_both_directions(coordinates, origin)
-    channels, columns, errors = _find_channels(values, origin)
+    channels, columns, errors = _group_by_channel(values, origin)
     for key in keys:
         if channels != ("Y",):
             raise origin.error(
-                f"has values of {_join(channels)} beside a column {key}; keep one column of "
-                f"values, BRDF, with a row for each {key}, or leave the column {key} out"
+                f"has values of {_join_channels(channels)} beside a column {key}; keep one column "
+                f"of values, BRDF, with a row for each {key}, or leave the column {key} out"
             )
     row_key = next(iter(keys.items()), None)
     return Layout(coordinates, units, channels, columns, errors, cosines == {True}, row_key)
 
 
-def find_row_key(name: str) -> str | None:
-    """Return "wavelength" or "channel" if a column states it for each row, else None."""
-    return KEYS_OF_ROWS.get(_simplify(_split_unit(name)[0]))
+def match_channel_column(name: str) -> str | None:
+    """Return what a column of this name states about each row's value.
+
+    It is "wavelength" or "channel", or None for all other columns.
+    """
+    return KEYS_OF_ROWS.get(_simplify_name(_split_unit(name)[0]))
 
 
-def _describe_unknown(name: str, unit: str | None, coordinates: Iterable[str]) -> str:
-    """Return the words for a column with an unknown `unit`, or, where it is None, an unknown name.
+def _describe_unknown_column(name: str, unit: str | None, coordinates: Iterable[str]) -> str:
+    """Return the text of an error on a column whose `unit`, or if that is None, name is unknown.
 
-    `coordinates`: the names of the columns that are known already.
+    A similar name is proposed, but none of `coordinates`, which the table has already.
     """
     if unit is not None:
         return (
-            f"the column {_quote(name)} has the unit {unit[:20]!r}, where deg or rad belongs for "
-            "angles, 1/sr for values and nm for wavelengths; convert the column"
+            f"the column {_quote_name(name)} has the unit {unit[:20]!r}, where deg or rad belongs "
+            "for angles, 1/sr for values and nm for wavelengths; convert the column"
         )
     others = {name for line in COORDINATES for name in line} - set(coordinates)
     near = nearest(_split_unit(name)[0][:40], [*sorted(others), *EXAMPLES])
     guess = f"; did you mean {near}? Else rename it" if near else "; rename it"
-    return f"the column {_quote(name)} is unknown{guess} or leave it out"
+    return f"the column {_quote_name(name)} is unknown{guess} or leave it out"
 
 
 def _require_both_directions(coordinates: Mapping[str, int], origin: Origin) -> None:
-    """Raise `BrdfkitError` unless `coordinates` has the names in one line of `COORDINATES`."""
+    """Raise `BrdfkitError` unless these coordinates, by name, determine both directions.
+
+    The allowed sets of names are the lines of `COORDINATES`.
+    """
     if set(coordinates) in map(set, COORDINATES):
         return
     like = max(COORDINATES, key=lambda line: len(set(line) & set(coordinates)))
@@ -135,12 +144,12 @@ def _require_both_directions(coordinates: Mapping[str, int], origin: Origin) -> 
     raise origin.error(f"lacks the columns {', '.join(missing)}; add them{hint}")
 
 
-def _find_channels(
+def _group_by_channel(
     columns: Mapping[tuple[str, bool], int], origin: Origin
 ) -> tuple[tuple[str, ...], tuple[int, ...], tuple[int, ...]]:
-    """Return the channels, the columns of their values, and the columns of their errors.
+    """Return the names of the channels, the columns of their values, and those of their errors.
 
-    `columns` has the number of each column by (channel, whether the column is of errors).
+    `columns` has each column's number by its channel and whether it contains standard errors.
     """
     values = {channel: number for (channel, error), number in columns.items() if not error}
     errors = {channel: number for (channel, error), number in columns.items() if error}
@@ -151,22 +160,22 @@ def _find_channels(
         channels = RGB
     elif channels != ("Y",) and not all(channel.endswith("nm") for channel in channels):
         raise origin.error(
-            f"has values of {_join(channels)}, where R, G, B belong, or wavelengths such "
-            "as 550nm, or one column BRDF; mend the names"
+            f"has values of {_join_channels(channels)}, where R, G, B belong, or wavelengths such "
+            "as 550nm, or one column BRDF; correct the names"
         )
     if errors and set(errors) != set(channels):
         raise origin.error(
-            f"has standard errors of {_join(errors)} for the values of {_join(channels)}; give "
-            "those of all, as R_error or BRDF_error, or none"
+            f"has standard errors of {_join_channels(errors)} for the values of "
+            f"{_join_channels(channels)}; give those of all, as R_error or BRDF_error, or none"
         )
     error_columns = tuple(errors[c] for c in channels) if errors else ()
     return channels, tuple(values[c] for c in channels), error_columns
 
 
 def _split_unit(name: str) -> tuple[str, str | None]:
-    """Return a column's name without its unit, and the unit in lower case, None where it has none.
+    """Split a column's name into the name and the unit in brackets behind it.
 
-    The unit stands in brackets behind the name.
+    The unit is in lower case; it is None where the name has none.
     """
     name = name.strip()
     bracket = max(name.rfind("["), name.rfind("("))
@@ -175,26 +184,28 @@ def _split_unit(name: str) -> tuple[str, str | None]:
     return name[:bracket], name[bracket + 1 : -1].strip().lower()
 
 
-def _simplify(text: str) -> str:
-    """Return a name in lower case, without spaces, hyphens and underscores, in Latin letters."""
+def _simplify_name(text: str) -> str:
+    """Return a name in lower case, with Greek letters spelt out, without blanks, - and _."""
     for letter, word in {"θ": "theta", "φ": "phi", "ϕ": "phi", "δ": "delta", "λ": "lambda"}.items():
         text = text.lower().replace(letter, word)
     return re.sub(r"[\s_-]", "", text)
 
 
-KEYS = {_simplify(name): name for line in COORDINATES for name in line}
-KEYS |= {_simplify(alias): name for alias, name in ALIASES.items()}
+KEYS = {_simplify_name(name): name for line in COORDINATES for name in line}
+KEYS |= {_simplify_name(alias): name for alias, name in ALIASES.items()}
 
 
 def _match_coordinate(text: str) -> str | None:
-    """Return the coordinate that a column of this name holds, or None."""
-    return KEYS.get(_simplify(text))
+    """Return the coordinate that a column of this name contains, such as "theta_i", or None."""
+    return KEYS.get(_simplify_name(text))
 
 
 def _match_value(text: str) -> tuple[str, bool] | None:
-    """Return the channel that a column of this name holds, and whether it holds standard errors;
-    None for a column without values."""
-    match = VALUE.fullmatch(_simplify(text))
+    """Return the channel of a column with this name, and whether it contains standard errors.
+
+    The result is None for a column that contains neither values nor errors of a BRDF.
+    """
+    match = VALUE.fullmatch(_simplify_name(text))
     if not match or not match[0]:
         return None
     channel = (match["channel"] or "y").upper()
@@ -206,25 +217,26 @@ def _match_value(text: str) -> tuple[str, bool] | None:
     return channel, bool(match["error"])
 
 
-def _find_cosine(text: str, is_error: bool) -> set[bool]:
-    """Return whether a column of this name holds the BRDF times cos theta_o, as a set of one.
+def _match_cosine(text: str, is_error: bool) -> set[bool]:
+    """Return a set with True if a column of this name contains the BRDF times cos theta_o.
 
-    The set is empty for errors whose name does not say: they are as the values are.
+    The set has False if it contains the BRDF itself, and is empty for a column of errors that does
+    not say, because errors follow the convention of their values.
     """
-    simple = _simplify(text)
+    simple = _simplify_name(text)
     if is_error and not re.match("(cc)?b[rs]df", simple):
         return set()
     return {simple.startswith("cc")}
 
 
-def _list_units(coordinate: str) -> tuple[str | None, ...]:
-    """Return the units that a column of this coordinate may state."""
+def _list_allowed_units(coordinate: str) -> tuple[str | None, ...]:
+    """Return the units that the column of a coordinate may state; None stands for no unit."""
     return (None,) if coordinate.startswith("w") else (None, *DEGREES, *RADIANS)
 
 
-def _join(channels: Iterable[str]) -> str:
+def _join_channels(channels: Iterable[str]) -> str:
     return ", ".join("BRDF" if channel == "Y" else channel for channel in channels)[:60]
 
 
-def _quote(name: str) -> str:
+def _quote_name(name: str) -> str:
     return repr(name[:40])

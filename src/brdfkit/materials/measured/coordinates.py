@@ -1,8 +1,8 @@
-"""Converts the coordinates of a user's samples, by their names, to pairs of directions.
+"""Converts the coordinates of a user's samples, which are given by name, to pairs of directions.
 
-z is along the normal and phi = 0 along x; a theta below 0 is on the other side of the normal, as
-phi + 180°. `wi` points to the light and `wo` to the viewer, so that the mirror direction is at
-phi_o - phi_i = 180°.
+z is along the normal, and phi = 0 along x. A negative theta points to the other side of the normal,
+as a turn of phi by 180° does. `wi` points to the light and `wo` to the viewer, so that the mirror
+direction is at phi_o - phi_i = 180°.
 """
 
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ from brdfkit.materials.measured.angles import RADIANS, to_radians
 from brdfkit.materials.measured.validation import Origin
 
 ANGLES = ("theta_i", "phi_i", "theta_o", "phi_o")
-# The coordinates that give both directions: a table has the coordinates of one line
+# Each line is a set of coordinates that determines both directions
 COORDINATES = (
     ANGLES,
     ("theta_i", "theta_o", "delta_phi"),
@@ -23,21 +23,23 @@ COORDINATES = (
     ("theta_h", "theta_d", "phi_d"),
     ("wi_x", "wi_y", "wi_z", "wo_x", "wo_y", "wo_z"),
 )
-ROUNDING = 1e-3  # rad: directions that differ by less are equal but for rounding
-LENGTH_TOLERANCE = 1e-3  # how far the length of a direction may be from 1
+ROUNDING = 1e-3  # rad; azimuths that differ by less count as equal
+LENGTH_TOLERANCE = 1e-3  # a unit vector's length may differ by this much from 1
 
 
 def to_directions(
     coordinates: Mapping[str, FloatArray], units: Mapping[str, str | None], origin: Origin
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the directions wi, wo (n, 3) of `coordinates`, arrays (n,) by name.
+    """Return the directions wi and wo (n, 3) for `coordinates`, arrays (n,) by name.
 
-    The names are one line of `COORDINATES`; `units` has a word for the unit of each angle, or None.
-    Directions from half and difference angles may lie below the horizon, and the caller masks
-    them. Raises `BrdfkitError` for other coordinates below the horizon, and for impossible ones.
+    The names are one line of `COORDINATES`. `units` has a word for the unit of each angle, or None.
+    Raises `BrdfkitError` for impossible coordinates, and for directions below the horizon. Only
+    half and difference angles may give such directions, which the caller must mask.
     """
     if "wi_x" in coordinates:
-        return _to_vectors("wi", coordinates, origin), _to_vectors("wo", coordinates, origin)
+        return _collect_unit_vectors("wi", coordinates, origin), _collect_unit_vectors(
+            "wo", coordinates, origin
+        )
     angles = to_radians(coordinates, units, origin)
     if "theta_h" in angles:
         return from_half_difference(**angles)
@@ -49,10 +51,11 @@ def to_directions(
 def is_surface_turned(
     coordinates: Mapping[str, FloatArray], units: Mapping[str, str | None]
 ) -> bool:
-    """Return whether the surface was turned about its normal between samples at `coordinates`.
+    """Return whether the surface was turned about its normal between the samples.
 
-    It was if the azimuth of wi, or of the half vector, varies by more than `ROUNDING` where it has
-    one. A theta below 0 is no turn, because phi stays as it is. `units`: see `to_directions`.
+    It was if the azimuth of wi, or of the half vector, varies by more than `ROUNDING`; directions
+    along the normal have none. A negative theta is no turn. `coordinates` are arrays (n,) by name,
+    and `units` has a word for the unit of each angle, or None.
     """
     if "wi_x" in coordinates:
         x, y = coordinates["wi_x"], coordinates["wi_y"]
@@ -73,20 +76,24 @@ def is_surface_turned(
     return bool(np.any((length > ROUNDING) & turned))
 
 
-def _to_vectors(name: str, coordinates: Mapping[str, FloatArray], origin: Origin) -> FloatArray:
-    """Return the vectors (n, 3) `name`_x, _y, _z; raise `BrdfkitError` unless they are unit vectors
-    above the surface."""
+def _collect_unit_vectors(
+    name: str, coordinates: Mapping[str, FloatArray], origin: Origin
+) -> FloatArray:
+    """Return the vectors (n, 3) whose components are `name`_x, `name`_y and `name`_z.
+
+    Raises `BrdfkitError` unless they are unit vectors above the surface.
+    """
     vectors = np.stack([coordinates[f"{name}_{axis}"] for axis in "xyz"], axis=1)
     with np.errstate(over="ignore"):
         lengths = np.linalg.norm(vectors, axis=1)
     for row in np.flatnonzero(~(np.abs(lengths - 1) <= LENGTH_TOLERANCE))[:1]:
         raise origin.error(
-            f"{name} has the length {lengths[row]:.4g} in {origin.row(row)}, where 1 belongs; "
-            "give unit vectors"
+            f"{name} has the length {lengths[row]:.4g} in {origin.locate_row(row)}, where 1 "
+            "belongs; give unit vectors"
         )
     for row in np.flatnonzero(vectors[:, 2] <= 0)[:1]:
         raise origin.error(
-            f"{name}_z is {vectors[row, 2]:.4g} in {origin.row(row)}, which is below the horizon: "
-            "brdfkit holds reflection; leave the row out"
+            f"{name}_z is {vectors[row, 2]:.4g} in {origin.locate_row(row)}, which is below the "
+            "horizon, but a BRDF describes reflection alone; leave the row out"
         )
     return vectors

@@ -1,4 +1,4 @@
-"""The share of all direction pairs that a measurement reaches, and distances between such pairs."""
+"""Computes which share of all pairs of directions was measured, and how far two pairs differ."""
 
 from dataclasses import dataclass
 
@@ -9,17 +9,18 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured.measured import Measured
 from brdfkit.model.samples import Samples, Table
 
-NEAR_ANGLE = np.radians(5)  # a pair this near to a sample counts as measured
-PAIRS = 20_000  # random pairs for scattered samples: the shares are accurate to 0.4 %
+NEAR_ANGLE = np.radians(5)  # a pair of directions this near to a sample counts as measured
+PAIRS = 20_000  # number of random pairs, by which the shares are accurate to 0.4 %
 
 
 @dataclass(frozen=True)
 class Coverage:
-    """Shares of the direction pairs above the horizon, by solid angle; their sum is 1.
+    """Three shares of all pairs of directions above the surface, by solid angle; their sum is 1.
 
-    `measured`: in valid cells of a table, or within 5° of a sample, also after exchanging wi and wo
-    and by the symmetries of an isotropic material; `between`: not measured, at angles up to the
-    largest measured ones; `beyond`: at larger angles, where values are extrapolated.
+    `measured`: share in valid cells of a table, or within 5° of a sample, where reciprocity and the
+    symmetries of an isotropic material count; `between`: share that was not measured, at angles to
+    the normal up to the largest measured ones; `beyond`: share at larger angles, where values are
+    extrapolated.
     """
 
     measured: float
@@ -28,7 +29,10 @@ class Coverage:
 
 
 def compute_coverage(data: Measured, max_angle: float = 90.0) -> Coverage:
-    """Return the `Coverage` of the direction pairs with both angles below `max_angle` [degrees]."""
+    """Return the `Coverage` of the pairs of directions that a measurement reaches.
+
+    Only pairs with both angles to the normal below `max_angle` [degrees] count.
+    """
     least = np.cos(np.radians(max_angle))
     if not data.is_table:
         z, phi = np.random.default_rng(0).random((2, 2, PAIRS))
@@ -36,20 +40,20 @@ def compute_coverage(data: Measured, max_angle: float = 90.0) -> Coverage:
         return compute_coverage_at(data, wi, wo)
     low, high = _sort_cosines(data.samples.wi, data.samples.wo)
     weight = _compute_solid_angles(data.table) * (low > max(least, 0))
-    return _share(data, low, high, weight, data.samples.valid)
+    return _compute_shares(data, low, high, weight, data.samples.valid)
 
 
 def compute_coverage_at(data: Measured, wi: FloatArray, wo: FloatArray) -> Coverage:
-    """Return the `Coverage` by scattered samples of these direction pairs (n, 3) alone."""
+    """Return the `Coverage` of the given pairs of directions, (n, 3) each, by scattered samples."""
     low, high = _sort_cosines(wi, wo)
-    return _share(data, low, high, np.ones(len(wi)), is_near(data, wi, wo))
+    return _compute_shares(data, low, high, np.ones(len(wi)), is_near_sample(data, wi, wo))
 
 
 def find_largest_angles(data: Measured) -> tuple[float, float]:
-    """Return the largest measured angles [degrees] of the nearer and of the farther direction.
+    """Return how far from the normal pairs of directions were measured, as two angles [degrees].
 
-    Of each pair, the nearer direction has the smaller angle to the normal. No measured pair has a
-    smaller angle above the first result, or a larger angle above the second.
+    A pair has a smaller and a larger angle to the normal. The results are the maximum over all
+    pairs of the smaller angle, and that of the larger angle.
     """
     valid = data.samples.valid
     low, high = _sort_cosines(data.samples.wi[valid], data.samples.wo[valid])
@@ -58,29 +62,37 @@ def find_largest_angles(data: Measured) -> tuple[float, float]:
 
 
 def is_in_plane(samples: Samples) -> bool:
-    """Return whether all valid `Samples` are in the plane of incidence, within 5°."""
+    """Return whether all valid `Samples` lie in the plane of incidence, to within 5°."""
     wi, wo = samples.wi[samples.valid], samples.wo[samples.valid]
     across = np.abs(wi[:, 0] * wo[:, 1] - wi[:, 1] * wo[:, 0])  # sin θi sin θo |sin Δφ|
     return bool((across <= np.sin(NEAR_ANGLE) * np.sqrt(1 - wi[:, 2] ** 2)).all())
 
 
-def is_near(data: Measured, wi: FloatArray, wo: FloatArray) -> BoolArray:
-    """Return a mask (n,) of the direction pairs (n, 3) that are within 5° of a valid sample."""
+def is_near_sample(data: Measured, wi: FloatArray, wo: FloatArray) -> BoolArray:
+    """Return a mask (n,) of the pairs of directions, (n, 3) each, within 5° of a valid sample.
+
+    Reciprocity counts, and so does the mirror symmetry of an isotropic material.
+    """
     from scipy.spatial import cKDTree
 
     valid = data.samples.at(data.samples.valid)
-    both_ways = [_fold(data, valid.wi, valid.wo), _fold(data, valid.wo, valid.wi)]
+    both_ways = [
+        _to_symmetric_points(data, valid.wi, valid.wo),
+        _to_symmetric_points(data, valid.wo, valid.wi),
+    ]
     tree = cKDTree(np.concatenate(both_ways))
-    return np.isfinite(tree.query(_fold(data, wi, wo), distance_upper_bound=NEAR_ANGLE)[0])
+    return np.isfinite(
+        tree.query(_to_symmetric_points(data, wi, wo), distance_upper_bound=NEAR_ANGLE)[0]
+    )
 
 
-def to_points(wi: FloatArray, wo: FloatArray, anisotropic: bool = False) -> FloatArray:
-    """Return direction pairs (n, 3) as points whose distance says how far the directions differ.
+def map_pairs_to_points(wi: FloatArray, wo: FloatArray, anisotropic: bool = False) -> FloatArray:
+    """Map pairs of directions, (n, 3) each, to points whose distance measures how far pairs differ.
 
     The points are (n, 4), or (n, 6) for an anisotropic material. Their distance is 1/√2 to 3/2 of
-    the angle [rad] by which the pairs' directions differ. For an isotropic material only the
-    azimuth between wi and wo counts: where it differs by δ between two pairs, no common rotation
-    brings the pairs nearer to each other than δ sin θi sin θo / √(sin² θi + sin² θo).
+    the angle [rad] between the pairs. On an isotropic material pairs may be turned about the
+    normal: if their azimuths between wi and wo differ by δ, the least angle is
+    δ sin θi sin θo / √(sin² θi + sin² θo).
     """
     if anisotropic:
         return np.concatenate([wi, wo], axis=-1)
@@ -91,11 +103,11 @@ def to_points(wi: FloatArray, wo: FloatArray, anisotropic: bool = False) -> Floa
     return np.stack([theta_i, theta_o, azimuth.real, azimuth.imag], axis=-1)
 
 
-def _fold(data: Measured, wi: FloatArray, wo: FloatArray) -> FloatArray:
-    """Return direction pairs as points; mirror images on an isotropic material are one point."""
-    points = to_points(wi, wo, data.anisotropic)
+def _to_symmetric_points(data: Measured, wi: FloatArray, wo: FloatArray) -> FloatArray:
+    """Map pairs of directions to points; those that an isotropic material mirrors coincide."""
+    points = map_pairs_to_points(wi, wo, data.anisotropic)
     if not data.anisotropic:
-        points[:, 3] = np.abs(points[:, 3])  # left and right of the plane of incidence
+        points[:, 3] = np.abs(points[:, 3])  # its sign says on which side of the plane wo lies
     return points
 
 
@@ -104,22 +116,24 @@ def _sort_cosines(wi: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArra
     return np.minimum(wi[:, 2], wo[:, 2]), np.maximum(wi[:, 2], wo[:, 2])
 
 
-def _share(
+def _compute_shares(
     data: Measured, low: FloatArray, high: FloatArray, weight: FloatArray, reached: BoolArray
 ) -> Coverage:
-    """Return the `Coverage` of pairs with the cosines `low` and `high` and with these weights (n,).
+    """Return the `Coverage` of pairs of directions, given whether each was measured.
 
-    `reached` (n,) is True where a pair was measured.
+    `low` and `high` (n,) are the pairs' cosines to the normal, the smaller and the larger one,
+    `weight` (n,) are their solid angles, and the mask `reached` (n,) tells which were measured.
     """
     measured = _sort_cosines(*(w[data.samples.valid] for w in (data.samples.wi, data.samples.wo)))
-    # Neither the larger nor the smaller angle is above the largest such angle that was measured
+    # A pair lies within the measured angles if its larger and its smaller angle are both at most
+    # the largest one of their kind that was measured
     within = (low >= measured[0].min()) & (high >= measured[1].min())
     shares = (reached, ~reached & within, ~reached & ~within)
     return Coverage(*(float(weight @ share / weight.sum()) for share in shares))
 
 
 def _compute_solid_angles(table: Table) -> FloatArray:
-    """Return the solid angles (cells,) of a table's cells, up to a factor.
+    """Return the products of solid angles dωi dωo (cells,) of a table's cells, up to a factor.
 
     dωi dωo = 4 cos θd dωh dωd [Rusinkiewicz 1998].
     """

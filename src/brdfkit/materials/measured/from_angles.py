@@ -1,4 +1,4 @@
-"""Constructors of a `Measured` from angles, and from a table of named columns."""
+"""Makes a `Measured` from a user's samples, given by angles or by a table of named columns."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Any, Self
 import numpy as np
 
 from brdfkit.core.array_types import ArrayLike, FloatArray
-from brdfkit.materials.measured.angles import require_unit
-from brdfkit.materials.measured.columns import to_columns, to_numbers, to_sample_arguments
+from brdfkit.materials.measured.angles import require_known_unit
+from brdfkit.materials.measured.columns import extract_columns, to_float_array, to_sample_arguments
 from brdfkit.materials.measured.coordinates import is_surface_turned, to_directions
 from brdfkit.materials.measured.measured_data import MeasuredData
-from brdfkit.materials.measured.validation import Origin, to_notes
+from brdfkit.materials.measured.validation import Origin, check_notes
 
 
 class FromAngles(MeasuredData):
-    """Measured data with constructors for samples at angles and for tables of named columns."""
+    """A base class of `Measured` that adds the constructors `from_angles` and `from_frame`."""
 
     @classmethod
     def from_angles(
@@ -36,31 +36,33 @@ class FromAngles(MeasuredData):
     ) -> Self:
         """Make a measured BRDF from samples at angles, as a goniometer measures them.
 
-        Theta is the angle to the normal and phi the azimuth; i is the direction to the light and o
-        the direction to the viewer. The mirror direction is at phi_o = phi_i + 180°. A theta below
-        0 lies on the other side of the normal: in the plane of incidence, with phi_i = 0 and
-        phi_o = 180°, theta_o = theta_i is the mirror direction, and theta_o = -theta_i points to
-        the light. Where an instrument states phi_o - phi_i alone, give 0 for phi_i.
+        Theta is the angle to the normal and phi the azimuth; i stands for the direction to the
+        light and o for the direction to the viewer. The mirror direction is at phi_o = phi_i + 180°
+        and theta_o = theta_i. A negative theta points to the other side of the normal, as a turn of
+        phi by 180° does: with phi_i = 0 and phi_o = 180°, theta_o = -theta_i points to the light.
+        Where an instrument only states the difference phi_o - phi_i, give it as phi_o, and 0 as
+        phi_i.
 
         Parameters
         ----------
         theta_i, phi_i, theta_o, phi_o : array_like or float
             Angles, theta from -90° to 90° and phi from -360° to 360°. NumPy broadcasts numbers and
             arrays: ``theta_i[:, None]`` and ``theta_o`` make a grid.
-        values : array_like, the shape of the angles together, or the same and channels
-            BRDF [sr⁻¹], without a cosine; NaN where nothing was measured.
+        values : array_like, with the broadcast shape of the angles
+            BRDF [sr⁻¹], without a cosine; NaN where nothing was measured. More than one channel is
+            a last axis.
         unit : {"degrees", "radians"}, optional
-            Unit of the angles: by default degrees, but it must be given where all angles are so
-            small that they might be in radians.
+            Unit of the angles, by default degrees. It must be given where all angles are so small
+            that they might be in radians.
         channels : sequence of str, optional
-            Names of the last axis of `values`, as in `from_samples`.
+            Names of the channels on the last axis of `values`, as in `from_samples`.
         name : str, default "samples"
-            Name in pictures and tables.
+            Name of the material in pictures and tables.
         info : dict of str to str, optional
-            Notes, as ``{"instrument": "gonioreflectometer"}``.
+            Notes by topic, such as ``{"instrument": "gonioreflectometer"}``.
         anisotropic : bool, optional
-            Whether the BRDF changes as the surface turns about its normal; by default whether
-            phi_i varies, other than by full turns.
+            Whether the BRDF changes as the surface turns about its normal. By default it is True
+            where phi_i varies, other than by full turns.
         standard_error : array_like, the shape of `values`, optional
             Standard errors of the values [sr⁻¹].
 
@@ -72,8 +74,8 @@ class FromAngles(MeasuredData):
         Raises
         ------
         BrdfkitError
-            For angles that are not finite or below the horizon, a unit that must be given, and
-            shapes that do not fit each other. The errors count rows from 0, through all axes.
+            For angles that are not finite or below the horizon, for a missing unit, and for shapes
+            that do not fit each other. The errors number the samples from 0.
 
         Examples
         --------
@@ -83,14 +85,14 @@ class FromAngles(MeasuredData):
         mine: samples, 33 of 33 valid, channels Y
         """
         origin = Origin(name)
-        require_unit(unit)
+        require_known_unit(unit)
         named = {"theta_i": theta_i, "phi_i": phi_i, "theta_o": theta_o, "phi_o": phi_o}
-        angles, shape = _broadcast(named, origin)
+        angles, shape = _broadcast_angles(named, origin)
         units = dict.fromkeys(angles, unit)
         wi, wo = to_directions(angles, units, origin)
-        values = _flatten("values", values, shape, origin)
+        values = _flatten_values("values", values, shape, origin)
         if standard_error is not None:
-            standard_error = _flatten("standard_error", standard_error, shape, origin)
+            standard_error = _flatten_values("standard_error", standard_error, shape, origin)
         return cls.from_samples(
             wi,
             wo,
@@ -114,33 +116,34 @@ class FromAngles(MeasuredData):
     ) -> Self:
         """Make a measured BRDF from a DataFrame, or from any table of named columns.
 
-        The names say what the columns hold, as in the files that `load` reads as CSV. Directions:
+        The names say what the columns contain, as in the CSV files that `load` reads. Directions
+        are given by one of these sets of columns:
 
         - theta_i, phi_i, theta_o, phi_o: as in `from_angles`;
-        - theta_i, theta_o, delta_phi: delta_phi is phi_o - phi_i, so 180° in the mirror direction;
+        - theta_i, theta_o, delta_phi: delta_phi is phi_o - phi_i, 180° in the mirror direction;
         - theta_h, [phi_h,] theta_d, phi_d: half and difference angles of Rusinkiewicz, as MERL's;
         - wi_x, wi_y, wi_z, wo_x, wo_y, wo_z: unit vectors, z along the normal.
 
-        Values: R, G, B (linear sRGB), or wavelengths such as 550nm, or one column BRDF. Columns
-        CCBRDF, CCBRDF_R or CCBRDF_550nm hold the BRDF times cos theta_o, which is divided out.
-        Standard errors: R_error, 550nm_error, BRDF_error or standard_error. A unit may follow a
-        name, as in ``theta_i [rad]``. With a column wavelength [nm], or a column channel with R, G
-        and B, the value BRDF of each row belongs to the one wavelength or channel stated there.
+        Values are columns R, G, B in linear sRGB, or wavelengths such as 550nm, or one column BRDF.
+        Columns CCBRDF, CCBRDF_R or CCBRDF_550nm contain the BRDF times cos theta_o, and are divided
+        by this cosine. Standard errors are columns such as R_error, 550nm_error, BRDF_error or
+        standard_error. A unit may follow a name, as in ``theta_i [rad]``. If a column wavelength
+        [nm] or channel (R, G or B) stands beside BRDF, each row has the value of one channel.
 
         Parameters
         ----------
         frame : DataFrame or dict of str to array_like
-            The columns, with equal lengths; a number in a dictionary counts for all rows.
+            The columns, with equal lengths; a single number in a dictionary counts for all rows.
         unit : {"degrees", "radians"}, optional
-            Unit of angles whose names state none: by default degrees, but it must be given where
+            Unit of the angles whose names state none, by default degrees. It must be given where
             all angles are so small that they might be in radians.
         name : str, default "samples"
-            Name in pictures and tables.
+            Name of the material in pictures and tables.
         info : dict of str to str, optional
-            Notes, as ``{"instrument": "gonioreflectometer"}``.
+            Notes by topic, such as ``{"instrument": "gonioreflectometer"}``.
         anisotropic : bool, optional
-            Whether the BRDF changes as the surface turns about its normal; by default whether the
-            azimuth of the light, or of the half vector, varies.
+            Whether the BRDF changes as the surface turns about its normal. By default it is True
+            where the azimuth of the light, or of the half vector, varies.
 
         Returns
         -------
@@ -150,8 +153,8 @@ class FromAngles(MeasuredData):
         Raises
         ------
         BrdfkitError
-            For columns that are unknown, missing or of different lengths, and for wrong numbers;
-            the errors count rows from 0.
+            For columns that are unknown, missing or of different lengths, and for impossible
+            numbers. The errors number the rows from 0.
 
         Examples
         --------
@@ -160,22 +163,22 @@ class FromAngles(MeasuredData):
         mine: samples, 3 of 3 valid, channels Y
         """
         origin = Origin(name)
-        names, columns = to_columns(frame, origin)
+        names, columns = extract_columns(frame, origin)
         arguments = to_sample_arguments(names, columns, unit, origin)
-        arguments["info"] |= to_notes(info, name)
+        arguments["info"] |= check_notes(info, name)
         if anisotropic is not None:
             arguments["anisotropic"] = anisotropic
         return cls.from_samples(**arguments, name=name)
 
 
-def _broadcast(
+def _broadcast_angles(
     angles: Mapping[str, ArrayLike], origin: Origin
 ) -> tuple[dict[str, FloatArray], tuple[int, ...]]:
-    """Return the `angles`, by name, broadcast against each other and flattened to arrays (n,).
+    """Return the `angles` by name, broadcast to one shape and flattened to arrays (n,).
 
-    The second result is the shape that the broadcast arrays had.
+    The second result is their shape before the flattening.
     """
-    arrays = [to_numbers(name, angle, origin) for name, angle in angles.items()]
+    arrays = [to_float_array(name, angle, origin) for name, angle in angles.items()]
     try:
         broadcast = np.broadcast_arrays(*arrays)
     except ValueError:
@@ -186,12 +189,14 @@ def _broadcast(
     return dict(zip(angles, map(np.ravel, broadcast), strict=True)), broadcast[0].shape
 
 
-def _flatten(what: str, numbers: ArrayLike, shape: tuple[int, ...], origin: Origin) -> FloatArray:
-    """Return `numbers` (*shape) as (n,), or (*shape, channels) as (n, channels).
+def _flatten_values(
+    what: str, numbers: ArrayLike, shape: tuple[int, ...], origin: Origin
+) -> FloatArray:
+    """Flatten `numbers` that have the angles' `shape` to (n,); an axis of channels is kept.
 
-    `what` names them in the error for another shape.
+    `what` is their name in the error for another shape.
     """
-    values, axes = to_numbers(what, numbers, origin), len(shape)
+    values, axes = to_float_array(what, numbers, origin), len(shape)
     if values.shape[:axes] != shape or values.ndim > axes + 1:
         raise origin.error(
             f"{what} {values.shape} should have the shape of the angles, {shape}, or that and "

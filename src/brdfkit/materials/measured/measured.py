@@ -1,4 +1,4 @@
-"""`Measured`: a BRDF given by samples or by a table, looked up anywhere and rendered."""
+"""The class `Measured`: a BRDF given by samples or by a table, to evaluate, convert and render."""
 
 from __future__ import annotations
 
@@ -24,33 +24,35 @@ from brdfkit.materials.measured.interpolation import Interpolant
 from brdfkit.materials.measured.measured_data import Lookup
 from brdfkit.materials.measured.spectrum_to_rgb import to_rgb, to_rgb_or_mean, wavelengths
 from brdfkit.materials.measured.tabulation import (
-    bound_lookup,
     choose_table_shape,
+    limit_lookup_values,
     make_reciprocal,
     tabulate,
     tabulate_lookup,
 )
-from brdfkit.materials.measured.validation import check_shape
+from brdfkit.materials.measured.validation import check_table_shape
 from brdfkit.model.samples import Table
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Measured(Shown, FromAngles):
-    """A measured BRDF, made by `brdfkit.load` or by one of the methods `from_...`.
+    """A measured BRDF, given by scattered samples or by a table, which can be evaluated anywhere.
+
+    `brdfkit.load` and the class methods `from_...` make it.
 
     Attributes
     ----------
     name : str
-        Name in pictures and tables.
+        Name of the material in pictures and tables.
     channels : tuple of str
-        Names of the columns of `values`: ``("R", "G", "B")``, linear sRGB; ``("Y",)``, achromatic;
-        or wavelengths, as ``("400nm", "410nm")``.
+        Names of the columns of `values`: ``("R", "G", "B")`` for linear sRGB, ``("Y",)`` for
+        achromatic values, or wavelengths such as ``("400nm", "410nm")``.
     info : dict of str to str
-        Notes of the file and of its reader.
+        Notes by topic, from the file and from its reader.
     anisotropic : bool
         Whether the BRDF changes as the surface turns about its normal.
     standard_error : ndarray, shape (n, channels), or None
-        Standard errors of `values` [sr⁻¹], where the measurement states them.
+        Standard errors of `values` [sr⁻¹], or None where the measurement does not state them.
 
     Examples
     --------
@@ -61,7 +63,7 @@ class Measured(Shown, FromAngles):
 
     @cached_in_turn
     def table(self) -> Table:
-        """The material as a table: its own, or a table interpolated between the samples."""
+        """The BRDF as a `Table` over half and difference angles, interpolated if it has samples."""
         if self._table is not None:
             return self._table
         if isinstance(self._lookup, Table):
@@ -71,21 +73,21 @@ class Measured(Shown, FromAngles):
         return self.resampled(choose_table_shape(self.anisotropic))
 
     def resampled(self, shape: tuple[int, ...]) -> Table:
-        """Tabulate the BRDF in a reciprocal table of another size.
+        """Tabulate the BRDF in a reciprocal table with this number of cells.
 
-        The table has the values of `eval`. Where the format itself defines the values between the
-        samples, it is evaluated with the more grazing direction as wi, and directions less than 2°
-        above the horizon get the values at 2°.
+        The cells hold the values of `eval`, except where the file format has its own interpolation.
+        That one is evaluated with the direction nearer to the horizon as wi, so that the table is
+        reciprocal, and directions less than 2° above the horizon get the values at 2°.
 
         Parameters
         ----------
         shape : tuple of int
-            Cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d) of the table.
+            Numbers of cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d) of the table.
 
         Returns
         -------
         Table
-            The table; its `values` [sr⁻¹] have this `shape` and a last axis of channels.
+            The table; its `values` [sr⁻¹] have this `shape`, and the channels as their last axis.
 
         Raises
         ------
@@ -97,21 +99,21 @@ class Measured(Shown, FromAngles):
         >>> load("paint.bsdf").resampled((90, 90, 180)).shape    # doctest: +SKIP
         (90, 90, 180)
         """
-        check_shape(shape, self.name)
+        check_table_shape(shape, self.name)
         brdf: Lookup = self.eval
         if self._lookup is not None and not isinstance(self._lookup, Table):
-            brdf = make_reciprocal(bound_lookup(self._lookup, self.anisotropic))
+            brdf = make_reciprocal(limit_lookup_values(self._lookup, self.anisotropic))
         return tabulate(brdf, len(self.channels), shape)
 
     @cached_in_turn
     def _interpolant(self) -> Lookup:
-        """The BRDF between the samples, by the format's own interpolation or by ours."""
+        """A function that interpolates the samples: the file format's own one, or brdfkit's."""
         return self._lookup or Interpolant(self.samples, self.anisotropic)
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
-        """Return the BRDF [sr⁻¹] (n, channels) of direction pairs (n, 3).
+        """Return the BRDF [sr⁻¹] (n, channels) for directions to light and viewer, (n, 3) each.
 
-        It is interpolated between the samples or cells, and never negative.
+        Values are interpolated between the samples or cells, and negative ones become 0.
         """
         wi, wo = np.asarray(wi, float), np.asarray(wo, float)
         if self._table is not None:
@@ -123,8 +125,9 @@ class Measured(Shown, FromAngles):
 
     @property
     def rgb(self) -> Measured:
-        """The material in linear sRGB, or itself where it is RGB or achromatic already."""
-        # Not cached where it is the material itself: such a circle would keep its memory for long
+        """The material in linear sRGB, or the same object where it is RGB or achromatic already."""
+        # Only a conversion is cached: an object that caches itself is freed late, being a reference
+        # cycle
         return self if self.channels == RGB or len(self.channels) == 1 else self._in_rgb
 
     @cached_property
@@ -134,33 +137,33 @@ class Measured(Shown, FromAngles):
     def mix_channels(
         self, weights: NDArray[np.float64], channels: Sequence[str], **info: str
     ) -> Measured:
-        """Return the material in other `channels`, mixed from its own by `weights` (old, new).
+        """Return the material in new `channels`, which are linear combinations of its own.
 
-        `info` are notes to add.
+        `weights` (old, new) are the coefficients, and `info` are notes to add.
         """
         return mix_channels(self, weights, channels, {**self.info, **info})
 
     def subtract(self, material: Any, max_angle: float = 90.0) -> Measured:
-        """Subtract another BRDF from the measured values: signed residuals, as a measurement.
+        """Subtract another BRDF from the measured values, as for the residuals of a fit.
 
         Parameters
         ----------
         material : Measured, Fit or Model
-            The material to subtract, with the same channels or with one.
+            The material to subtract, with the same number of channels or with one.
         max_angle : float, default 90
-            Samples with an angle to the normal at or beyond this one [degrees, above 0 to 90] are
-            left out.
+            Largest angle to the normal [degrees], above 0 and at most 90; samples at or beyond it
+            are left out.
 
         Returns
         -------
         Measured
-            The differences [sr⁻¹] at the samples, or in the cells of a table. `eval`, plots and
-            pictures show negative differences as 0.
+            The signed differences [sr⁻¹] at the samples, or in the cells of the table. `eval`,
+            plots and pictures show negative differences as 0.
 
         Raises
         ------
         BrdfkitError
-            For an angle out of range, other channels, and where no sample is left.
+            For an angle out of range, for channels that do not fit, and where no sample is left.
 
         Examples
         --------
@@ -170,29 +173,29 @@ class Measured(Shown, FromAngles):
         return subtract(self, material, max_angle)
 
     def mend(self, mirror_azimuth: bool = False, divide_by_cos: bool = False) -> Measured:
-        """Convert samples from another convention of a file or an instrument to brdfkit's.
+        """Convert samples from the convention of a file or an instrument to brdfkit's.
 
-        `load` does this with the same arguments. The notes in `info` say what was done.
+        `load` has the same arguments. Notes in `info` say what was done.
 
         Parameters
         ----------
         mirror_azimuth : bool, default False
-            Whether 180° is added to every phi_o, for an instrument whose mirror direction is at
-            phi_o = phi_i.
+            Whether to add 180° to the azimuth phi_o of every view, for an instrument that has the
+            mirror direction at phi_o = phi_i.
         divide_by_cos : bool, default False
-            Whether the values, and their standard errors, are divided by cos theta_o, for values
-            that are the BRDF times this cosine. Samples with a cosine below 0.001 are masked.
+            Whether to divide the values, and their standard errors, by cos theta_o, for values that
+            are the BRDF times this cosine. Samples with a cosine below 0.001 are masked.
 
         Returns
         -------
         Measured
-            The mended samples; this material itself where both arguments are False.
+            The converted samples; the same object where both arguments are False.
 
         Raises
         ------
         BrdfkitError
-            For a table, and for a format with values between its samples, because they state what
-            they hold; and for samples that were mended, or read as BRDF times cosine, before.
+            For a table, and for a file format with its own interpolation, because their conventions
+            are known; and for samples that were converted before.
 
         Examples
         --------
@@ -204,11 +207,11 @@ class Measured(Shown, FromAngles):
 
     @cached_in_turn
     def albedo(self) -> MeasuredAlbedo:
-        """The albedo at 5°, 45° and 75° of incidence, known where samples are near."""
+        """The directional albedo at incidences of 5°, 45° and 75°, and whether it is measured."""
         return compute_measured_albedo(self)
 
     def document(self) -> Document:
-        """Return the measurement as a document: its size, its look and the notes of its file."""
+        """Return a document that describes the material: a summary, pictures, and its notes."""
         notes = tuple((key.replace("_", " "), str(value)) for key, value in self.info.items())
         pictures = make_thumbnails(
             self.name, lambda wi, wo: to_rgb_or_mean(self).rendered.eval(wi, wo)
@@ -217,7 +220,7 @@ class Measured(Shown, FromAngles):
 
     @cached_in_turn
     def tabulated(self) -> Measured:
-        """The material with its `table` in place of the samples."""
+        """The material as a `Measured` that holds its `table` in place of the samples."""
         if self.is_table:
             return self
         return self.from_table(
@@ -230,13 +233,16 @@ class Measured(Shown, FromAngles):
 
     @property
     def rendered(self) -> Measured:
-        """The material that Mitsuba renders: itself, or its table where Mitsuba has no plugin."""
+        """The form that Mitsuba renders: the same object if a plugin takes it, else `tabulated`."""
         has_plugin = self.is_table or hasattr(self._lookup, "scene_dict")
         return self if has_plugin else self.tabulated
 
     @in_turn
     def scene_dict(self) -> dict[str, Any]:
-        """Return the dictionary of `rendered` for `mitsuba.load_dict`, in the current variant."""
+        """Return the dictionary from which `mitsuba.load_dict` makes the BSDF.
+
+        In a spectral variant it has the measured wavelengths, otherwise linear sRGB.
+        """
         import mitsuba as mi
 
         spectral = mi.is_spectral and len(self.channels) > 1 and self.channels != RGB

@@ -1,4 +1,4 @@
-"""`MeasuredData`: the samples or the table of a measurement; `Measured` adds the lookup."""
+"""`MeasuredData`: the base class of `Measured`, which checks and holds the measured values."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ from numpy.typing import NDArray
 from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 from brdfkit.core.colours import RGB
 from brdfkit.materials.measured.validation import (
-    check_errors,
-    check_table,
-    default_channels,
+    check_standard_errors,
+    check_table_values,
+    choose_default_channels,
     make_printable,
 )
 from brdfkit.model.samples import Samples, Table
 
-MOST_NAMED_CHANNELS = 8  # in the summary; of more, the first and the last are named
+MOST_NAMED_CHANNELS = 8  # with more channels, the summary names only the first and the last
 
 Floats: TypeAlias = NDArray[np.float64]
-# A function from directions (wi, wo), both (n, 3), to values (n, channels)
+# A function that returns BRDF values (n, channels) for the directions wi and wo, both (n, 3)
 Lookup: TypeAlias = Callable[[FloatArray, FloatArray], FloatArray]
 Data = TypeVar("Data", bound="MeasuredData")
 
 
 @dataclass(frozen=True, eq=False)
 class MeasuredData:
-    """The checked data of a `Measured`, without values between them.
+    """The measured values of a `Measured`, without their interpolation.
 
-    Either `_samples` or `_table` is given, and the other is None. `_lookup` is the interpolation
-    between the samples that a format itself defines, or None. `Measured` describes the other
-    attributes.
+    `_samples`: scattered samples, or None where there is a table; `_table`: the table, or None
+    where there are samples; `_lookup`: interpolation function that the file format itself defines,
+    or None. `Measured` describes the public attributes.
     """
 
     name: str
@@ -68,27 +68,29 @@ class MeasuredData:
         Parameters
         ----------
         wi, wo : array_like, shape (n, 3)
-            Directions in the local frame, z along the normal; they need not be normalised.
-        values : array_like, shape (n, channels) or, of one channel, (n,)
+            Directions to the light and to the viewer in the local frame, z along the normal; they
+            need not be normalised.
+        values : array_like, shape (n, channels), or (n,) for one channel
             BRDF [sr⁻¹], without a cosine.
         valid : array_like of bool, shape (n,), optional
-            False where nothing was measured. Samples with a value that is not finite or with a
-            direction below the surface never count.
+            False for samples to ignore. Samples with a value that is not finite, or with a
+            direction below the surface, are always ignored.
         channels : sequence of str, optional
-            Names of the columns of `values`: ``("R", "G", "B")``, linear sRGB, by default for
-            three; ``("Y",)``, achromatic, for one; or wavelengths, as ``("400nm", "410nm")``.
+            Names of the columns of `values`: ``("R", "G", "B")`` for linear sRGB, the default of
+            three columns; ``("Y",)`` for achromatic values, the default of one; or wavelengths such
+            as ``("400nm", "410nm")``.
         name : str, default "samples"
-            Name in pictures and tables.
+            Name of the material in pictures and tables.
         info : dict of str to str, optional
-            Notes, as ``{"instrument": "gonioreflectometer"}``.
+            Notes by topic, such as ``{"instrument": "gonioreflectometer"}``.
         anisotropic : bool, default False
             Whether the BRDF changes as the surface turns about its normal.
         standard_error : array_like, the shape of `values`, optional
             Standard errors of the values [sr⁻¹].
         lookup : callable, optional
-            A function that returns the values (m, channels) between the samples for (wi, wo), both
-            (m, 3); by default they are interpolated. A lookup with `scene_dict()` and
-            `mix_channels(weights)` is rendered itself, any other as a table of its values.
+            A function that returns the BRDF (m, channels) for wi and wo, both (m, 3), in place of
+            brdfkit's interpolation of the samples. If it has methods `scene_dict()` and
+            `mix_channels(weights)`, Mitsuba renders it itself, otherwise a table of its values.
 
         Returns
         -------
@@ -107,12 +109,12 @@ class MeasuredData:
         grey: samples, 1 of 1 valid, channels Y
         """
         if channels is None:
-            channels = default_channels(values, len(np.atleast_2d(wi)), name)
+            channels = choose_default_channels(values, len(np.atleast_2d(wi)), name)
         words = make_printable(name, channels, info)
         name = words[0]
         samples = Samples.from_arrays(wi, wo, values, valid, channels, name)
         valid_values = np.where(samples.valid[:, None], samples.values, np.nan)
-        errors = check_errors(standard_error, valid_values, name)
+        errors = check_standard_errors(standard_error, valid_values, name)
         return cls(*words, anisotropic, errors, _samples=samples, _lookup=lookup)
 
     @classmethod
@@ -126,24 +128,25 @@ class MeasuredData:
         info: Mapping[str, str] | None = None,
         standard_error: ArrayLike | None = None,
     ) -> Self:
-        """Make a measured BRDF from a table over half and difference angles, as MERL's.
+        """Make a measured BRDF from a table over half and difference angles, as MERL's files have.
 
-        The axes are theta_h, square-root spaced from 0° to 90°; theta_d, even from 0° to 90°; and
-        phi_d, even over `phi_d_period`. An anisotropic table has phi_h before them, even over 360°.
-        A value belongs to the centre of its cell.
+        The first axis is theta_h from 0° to 90°, whose square root has even steps. The next ones,
+        with even steps, are theta_d from 0° to 90° and phi_d over `phi_d_period`. An anisotropic
+        table has phi_h before them, with even steps over 360°. A value belongs to the centre of its
+        cell.
 
         Parameters
         ----------
         values : array_like, shape ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels)
             BRDF [sr⁻¹], without a cosine; NaN where nothing was measured.
         phi_d_period : float, default pi
-            π for a reciprocal table, 2π for any other [rad].
+            The range of phi_d [rad]: π for a reciprocal table, 2π for any other.
         channels : sequence of str, default RGB
-            Names of the last axis of `values`, as in `from_samples`.
+            Names of the channels on the last axis of `values`, as in `from_samples`.
         name : str, default "table"
-            Name in pictures and tables.
+            Name of the material in pictures and tables.
         info : dict of str to str, optional
-            Notes, as ``{"instrument": "gonioreflectometer"}``.
+            Notes by topic, such as ``{"instrument": "gonioreflectometer"}``.
         standard_error : array_like, the shape of `values`, optional
             Standard errors of the values [sr⁻¹].
 
@@ -155,7 +158,7 @@ class MeasuredData:
         Raises
         ------
         BrdfkitError
-            For another shape or period, and where no cell is measured.
+            For values of another shape, for an impossible period, and where all cells are NaN.
 
         Examples
         --------
@@ -164,13 +167,13 @@ class MeasuredData:
         """
         words = make_printable(name, channels, info)
         name = words[0]
-        table = Table(check_table(values, phi_d_period, channels, name), phi_d_period)
-        errors = check_errors(standard_error, table.values, name)
+        table = Table(check_table_values(values, phi_d_period, channels, name), phi_d_period)
+        errors = check_standard_errors(standard_error, table.values, name)
         return cls(*words, table.anisotropic, errors, _table=table)
 
     @property
     def is_table(self) -> bool:
-        """Whether the measurement is a table; otherwise it is scattered samples."""
+        """Whether the BRDF is given by a table; otherwise it is given by scattered samples."""
         return self._table is not None
 
     @property
@@ -180,7 +183,7 @@ class MeasuredData:
 
     @cached_property
     def samples(self) -> Samples:
-        """The direction pairs and their values; for a table, at the centres of its cells."""
+        """The measured pairs of directions and their values, for a table at its cells' centres."""
         if self._table is None:
             assert self._samples is not None
             return self._samples
@@ -188,20 +191,24 @@ class MeasuredData:
 
     @property
     def values(self) -> Floats:
-        """The measured BRDF [sr⁻¹] (n, channels) at `samples`."""
+        """The measured BRDF [sr⁻¹] (n, channels), with one row for each of the `samples`."""
         return self.samples.values
 
     @cached_property
     def extents_by_angle(self) -> dict[float, Floats]:
-        """A cache of `selection.py`: the extents of the samples by the largest angle [degrees]."""
+        """Cache in which `selection.py` keeps extents of the samples by `max_angle` [degrees].
+
+        A sample's extent is the region of directions that it stands for, by which fits weight it.
+        """
         return {}
 
     @cached_property
     def checksum(self) -> str:
-        """The SHA-256 of the channels' names, directions and values, in hexadecimal.
+        """The SHA-256 of the channels' names, the directions and the values, in hexadecimal.
 
-        Equal data have the same checksum, whichever file and format they came from. Numbers are
-        hashed as 64 bits each, in C order; a table's directions follow from its shape.
+        Equal data have the same checksum, whatever file and format they come from. Numbers are
+        hashed as 64 bits each, in C order. Of a table the shape is hashed, which determines the
+        directions.
         """
         digest = hashlib.sha256(repr(self.channels).encode())
         if self._table is not None:
@@ -216,14 +223,14 @@ class MeasuredData:
 
     @property
     def kind(self) -> str:
-        """The kind in words: "90×90×180 table", "samples" or "anisotropic samples"."""
+        """The kind of data in words: "90×90×180 table", "samples" or "anisotropic samples"."""
         if self._table is not None:
             return "×".join(map(str, self._table.shape)) + " table"
         return "anisotropic samples" if self.anisotropic else "samples"
 
     @property
     def summary(self) -> str:
-        """The name, the kind, the number of samples and the channels, in one line."""
+        """One line with the material's name, kind of data, number of samples and channels."""
         valid = self.samples.valid
         channels = " ".join(self.channels)
         if len(self.channels) > MOST_NAMED_CHANNELS:

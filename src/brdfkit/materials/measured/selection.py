@@ -1,4 +1,4 @@
-"""Selects the samples of a measured material that fits and comparisons use."""
+"""Selects the samples of a measured material that fits and comparisons use, with their weights."""
 
 from dataclasses import replace
 from typing import Any
@@ -21,13 +21,13 @@ def select_samples(
     errors: bool = False,
     spectral: bool = False,
 ) -> Samples:
-    """Return the valid `Samples` of a `Measured` with both angles below `max_angle` [degrees].
+    """Return the valid `Samples` with both angles to the normal below `max_angle` [degrees].
 
-    Spectral samples are converted to linear sRGB unless they are to be `spectral`. `weights` are a
-    user's weights of all samples of the material (n,), or of a table's cells in its shape; samples
-    with weight 0 are left out. `errors` says whether the samples carry the standard errors of the
-    material. Raises `BrdfkitError` for an angle that is not above 0° and at most 90°, for
-    impossible weights, for `spectral` without wavelengths, and where no sample is left.
+    The samples are in linear sRGB, or at the measured wavelengths if `spectral` is True. `weights`
+    are a user's weights, (n,) for all samples of `data` or in the shape of its table; samples of
+    weight 0 are left out. With `errors` the samples keep their standard errors. Raises
+    `BrdfkitError` for an angle that is not above 0° and at most 90°, for impossible weights, for
+    `spectral` without wavelengths, and where no sample is left.
     """
     to_number("max_angle", max_angle, above=0, most=90)
     if not spectral:
@@ -40,7 +40,7 @@ def select_samples(
     factors: Any = None
     if weights is not None:
         factors = _check_weights(weights, data)
-        factors = factors / (factors.max(initial=0) or 1)  # so that no square overflows
+        factors = factors / (factors.max(initial=0) or 1)  # lest the square of a large one overflow
     standard_error = data.standard_error if errors else None
     if data.is_table:
         samples = Samples.from_cells(data.table, max_angle, factors, standard_error)
@@ -50,7 +50,7 @@ def select_samples(
         rows = samples.within(max_angle)
         samples = samples.at(rows)
         if rows.any():
-            samples = replace(samples, extents=_find_extents(data, samples, rows, max_angle))
+            samples = replace(samples, extents=_find_sample_extents(data, samples, rows, max_angle))
     if factors is not None:
         samples = samples.at(samples.weight > 0)
     if not len(samples.wi):
@@ -63,13 +63,14 @@ def select_samples(
     return samples
 
 
-def _find_extents(
+def _find_sample_extents(
     data: Measured, samples: Samples, rows: BoolArray, max_angle: float
 ) -> FloatArray:
-    """Return how much of both measures of directions the `samples` stand for (n, 2).
+    """Return the extents (n, 2) of the `samples`: how much of all directions each one stands for.
 
-    `samples` are the `rows`, a mask, of `data`. The format's own grid says how much, or else it is
-    estimated, once for each `max_angle`. `model/samples/measures.py` defines the measures.
+    Fits weight samples by extents in two measures (`model/samples/measures.py`). `samples` are the
+    `rows`, a mask, of `data`. A format with a grid of its own knows their extents; others are
+    estimated, once for each `max_angle`.
     """
     if max_angle not in data.extents_by_angle:
         lookup: Any = data._lookup
@@ -82,8 +83,10 @@ def _find_extents(
 
 
 def _check_weights(weights: ArrayLike, data: Measured) -> FloatArray:
-    """Return the `weights` of all samples of a `Measured` as (n,); raise `BrdfkitError` unless they
-    are finite, at least 0 and in the right shape."""
+    """Return a user's `weights` of all samples of a `Measured` as an array (n,).
+
+    Raises `BrdfkitError` unless they are finite, at least 0 and in the right shape.
+    """
     n = data.table.values[..., 0].size if data.is_table else len(data.samples.wi)
     try:
         array = np.array(weights, float)

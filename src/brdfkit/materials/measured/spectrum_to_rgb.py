@@ -16,11 +16,11 @@ WAVELENGTH = re.compile(r"\d+(\.\d+)?nm")
 
 
 def to_rgb(data: Data) -> Data:
-    """Return a `Measured` whose channels are wavelengths in linear sRGB under D65 (CIE 1931, 2°).
+    """Convert a `Measured` with wavelengths as channels to linear sRGB, under D65 (CIE 1931, 2°).
 
-    Reflectance is linear between the wavelengths and constant beyond them; reflectance 1 at all
-    wavelengths becomes (1, 1, 1). Colours outside sRGB keep their negative values. Raises
-    `BrdfkitError` for channels that are no wavelengths, or that do not span 480 to 620 nm.
+    Reflectance is taken as linear between the wavelengths and constant beyond them. A spectrum of 1
+    becomes (1, 1, 1). Colours outside sRGB keep their negative values. Raises `BrdfkitError` for
+    channels that are no wavelengths, or that do not span 480 to 620 nm.
 
     >>> to_rgb(load("cayman.brdf")).channels  # doctest: +SKIP
     ('R', 'G', 'B')
@@ -32,7 +32,7 @@ def to_rgb(data: Data) -> Data:
 
 
 def to_rgb_or_mean(data: Any) -> Any:
-    """Return a `Measured` in linear sRGB, or the mean of its channels where they give no colour."""
+    """Convert a `Measured` to linear sRGB, or to its channels' mean where they give no colour."""
     try:
         return data.rgb
     except BrdfkitError:
@@ -41,19 +41,19 @@ def to_rgb_or_mean(data: Any) -> Any:
 
 
 def has_wavelengths(data: MeasuredData) -> bool:
-    """Return whether the channels of a `Measured` are all named as wavelengths, as ``"400nm"``."""
+    """Return whether all channels of a `Measured` are named as wavelengths, such as ``"400nm"``."""
     return all(map(WAVELENGTH.fullmatch, data.channels))
 
 
 def format_channels(channels: Sequence[str]) -> str:
-    """Return a text of the names of channels: all of up to five, else the first and the last."""
+    """Return a text that names up to five channels, or else the first and the last."""
     if len(channels) > 5:
         return f"{len(channels)} wavelengths, {channels[0]} to {channels[-1]}"
     return " ".join(channels)
 
 
 def wavelengths(data: MeasuredData) -> NDArray[np.float64]:
-    """Return the channels of a `Measured` as wavelengths [nm] (channels,).
+    """Return the wavelengths [nm] (channels,) of a `Measured`, by the names of its channels.
 
     Raises `BrdfkitError` unless all channels are named as wavelengths.
     """

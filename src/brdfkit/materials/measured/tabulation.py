@@ -7,25 +7,27 @@ from brdfkit.core.geometry.directions import from_angles, normalize
 from brdfkit.materials.measured.measured_data import Lookup
 from brdfkit.model.samples import Table
 
-# Cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)
+# Default numbers of cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)
 ISOTROPIC = (90, 45, 90)
 ANISOTROPIC = (36, 45, 23, 36)
-LEAST_COSINE = 0.03  # about 2° above the horizon
-NEAR_NORMAL = np.radians(3)  # one and a half cells of theta_d
+LEAST_COSINE = 0.03  # cosine to the normal about 2° above the horizon
+# Incidences within this angle of the normal, one and a half cells of theta_d, are averaged over
+# these azimuths
+NEAR_NORMAL = np.radians(3)
 AZIMUTHS = np.arange(16) / 16 * 2 * np.pi
 
 
 def choose_table_shape(anisotropic: bool) -> tuple[int, ...]:
-    """Return the default shape of a table."""
+    """Return the default numbers of cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d) of a table."""
     return ANISOTROPIC if anisotropic else ISOTROPIC
 
 
 def tabulate(
     brdf: Lookup, channels: int, shape: tuple[int, ...], phi_d_period: float = np.pi
 ) -> Table:
-    """Return the `Table` of a BRDF with so many `channels` at the centres of `shape` cells.
+    """Evaluate a BRDF with this number of `channels` at the centres of a table's cells.
 
-    A cell whose centre lies below the surface is NaN.
+    The `Table` has `shape` cells. Those whose centre has a direction below the surface are NaN.
     """
     table = Table(np.full((*shape, channels), np.nan), phi_d_period)
     wi, wo = table.directions()
@@ -35,27 +37,27 @@ def tabulate(
 
 
 def tabulate_lookup(lookup: Lookup, channels: int, anisotropic: bool) -> Table:
-    """Return a `Table` of a BRDF that a file format interpolates in its own way.
+    """Tabulate the BRDF that a file format's own interpolation function `lookup` returns.
 
-    phi_d runs over π, or over 2π where the BRDF is not reciprocal.
+    The table's phi_d runs over π, or over 2π where the BRDF is not reciprocal.
     """
     *others, n_phi_d = choose_table_shape(anisotropic)
-    brdf = bound_lookup(lookup, anisotropic)
+    brdf = limit_lookup_values(lookup, anisotropic)
     if _is_reciprocal(lookup):
         return tabulate(brdf, channels, (*others, n_phi_d))
     return tabulate(brdf, channels, (*others, 2 * n_phi_d), 2 * np.pi)
 
 
-def bound_lookup(lookup: Lookup, anisotropic: bool) -> Lookup:
-    """Return a format's own interpolation with bounded values, for a table.
+def limit_lookup_values(lookup: Lookup, anisotropic: bool) -> Lookup:
+    """Return the interpolation function of a file format, modified so that a table can hold it.
 
-    Directions are clamped 2° above the horizon: where the format stores the BRDF f times cosθ_o, f
-    grows without bound towards the horizon. At normal incidence an isotropic lookup that is not
-    reciprocal is averaged over the azimuth.
+    Directions are lifted to 2° above the horizon, because the BRDF of a format that stores
+    f cosθ_o may grow without bound towards the horizon. An isotropic lookup that is not reciprocal
+    is averaged over the azimuth at normal incidence.
     """
 
     def look_up_clamped(wi: FloatArray, wo: FloatArray) -> FloatArray:
-        return lookup(_lift(wi), _lift(wo))
+        return lookup(_lift_above_horizon(wi), _lift_above_horizon(wo))
 
     if anisotropic or _is_reciprocal(lookup):
         return look_up_clamped
@@ -63,9 +65,10 @@ def bound_lookup(lookup: Lookup, anisotropic: bool) -> Lookup:
 
 
 def make_reciprocal(brdf: Lookup) -> Lookup:
-    """Return a reciprocal BRDF, which calls `brdf` with the more grazing direction as wi.
+    """Return a reciprocal BRDF, which calls `brdf` with the direction nearer to the horizon as wi.
 
-    Where a format stores the BRDF times cosθ_o, its values are thus divided by the larger cosine.
+    A format that stores the BRDF times cosθ_o then divides by the larger of the two cosines, which
+    amplifies errors less.
     """
 
     def call_with_lower_first(wi: FloatArray, wo: FloatArray) -> FloatArray:
@@ -76,38 +79,38 @@ def make_reciprocal(brdf: Lookup) -> Lookup:
 
 
 def _is_reciprocal(brdf: Lookup) -> bool:
-    """Return whether exchanging the directions of 1,000 random pairs leaves the values equal."""
+    """Return whether a BRDF is reciprocal, by exchanging the directions of 1,000 random pairs."""
     u, v = np.random.default_rng(0).random((2, 2, 1000))
     wi, wo = from_angles(np.arccos(0.1 + 0.9 * u), 2 * np.pi * v)
     return np.allclose(brdf(wi, wo), brdf(wo, wi), rtol=1e-6)
 
 
 def _average_at_normal(brdf: Lookup) -> Lookup:
-    """Return an isotropic BRDF that is averaged over the azimuth of wo at normal incidence.
+    """Return an isotropic BRDF whose values near normal incidence are averaged over the azimuth.
 
-    The azimuth means nothing there, but a file's values may depend on it, and a table cell near the
-    normal would hold the value at one azimuth only. The mean fades out until wi is 3° from the
-    normal.
+    At normal incidence the azimuth of wo has no meaning, but a file's values may depend on it, and
+    a table's cell would take the value at one azimuth. The mean is faded out until wi is 3° from
+    the normal.
     """
 
-    def average(wi: FloatArray, wo: FloatArray) -> FloatArray:
+    def average_near_normal(wi: FloatArray, wo: FloatArray) -> FloatArray:
         values = brdf(wi, wo)
         theta_i = np.arccos(np.minimum(wi[:, 2], 1))
         near = theta_i < NEAR_NORMAL
-        # The mean over wo at the same theta_h, with wi at the normal
+        # The mean over the azimuth of wo, with wi at the normal and the same theta_h
         theta_h = np.arccos(normalize(wi[near] + wo[near])[:, 2])
         normal = np.broadcast_to([0.0, 0.0, 1.0], (len(theta_h), 3))
         mean = np.mean([brdf(normal, from_angles(2 * theta_h, phi)) for phi in AZIMUTHS], axis=0)
-        # Only the mean up to half of `NEAR_NORMAL`, then a linear transition
+        # Up to half of `NEAR_NORMAL` take the mean alone, then fade linearly to the values
         share = np.clip(2 * theta_i[near] / NEAR_NORMAL - 1, 0, 1)[:, None]
         values[near] = share * values[near] + (1 - share) * mean
         return values
 
-    return average
+    return average_near_normal
 
 
-def _lift(w: FloatArray) -> FloatArray:
-    """Return the directions `w` (n, 3), lifted where their cosine is below `LEAST_COSINE`."""
+def _lift_above_horizon(w: FloatArray) -> FloatArray:
+    """Return the directions `w` (n, 3), lifted to the cosine `LEAST_COSINE` where it is smaller."""
     z = np.maximum(w[:, 2], LEAST_COSINE)
     shorter = np.sqrt((1 - z * z) / np.maximum(w[:, 0] ** 2 + w[:, 1] ** 2, 1e-12))
     lifted = np.stack([w[:, 0] * shorter, w[:, 1] * shorter, z], axis=1)

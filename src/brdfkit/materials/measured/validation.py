@@ -1,6 +1,6 @@
-"""Checks of the data that a `Measured` is made of, and errors that name the row of a wrong number.
+"""Checks the data that a `Measured` is made of: names, notes, table, standard errors.
 
-A `Measured` is made of names and notes, a table or samples, and standard errors.
+Its class `Origin` makes errors that say in which line of a file, or row, a wrong number stands.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from brdfkit.model.samples.samples import require_valid
 
 @dataclass(frozen=True)
 class Origin:
-    """The place that numbers come from, for the errors about them.
+    """The file or the arrays that numbers come from, which errors about the numbers name.
 
-    `name`: of the file or of the material; `lines`: the number of the line of each row of a file,
-    None for arrays.
+    `name`: name of the file or of the material; `lines`: number of the line of each row in the
+    file, or None for arrays.
 
-    >>> Origin("mine.csv", [2, 3]).row(1)
+    >>> Origin("mine.csv", [2, 3]).locate_row(1)
     'line 3'
     """
 
@@ -33,30 +33,36 @@ class Origin:
     lines: Sequence[int] | None = None
 
     def error(self, problem: str) -> BrdfkitError:
-        """Return a `BrdfkitError`; `problem` says what is wrong and what to do, without a stop."""
+        """Return a `BrdfkitError` that begins with the origin's name.
+
+        `problem` says what is wrong and what to do, without a full stop.
+        """
         return BrdfkitError(f"{self.name}: {problem}.")
 
-    def row(self, index: int) -> str:
-        """Return the words for a row: its line in the file, or its number, counted from 0."""
+    def locate_row(self, index: int) -> str:
+        """Return words that locate a row: its line in the file, or its number, counted from 0."""
         return f"row {index}" if self.lines is None else f"line {self.lines[index]}"
 
     @property
-    def how_to_state_units(self) -> str:
-        """The end of an error: how to state the unit of the angles."""
+    def unit_advice(self) -> str:
+        """The last part of an error, which says how to state the unit of the angles."""
         if self.lines is None:
             return "say unit='degrees' or unit='radians'"
-        return "say so in the columns' names, as theta_i [deg] or theta_i [rad]"
+        return "state the unit in the columns' names, as theta_i [deg] or theta_i [rad]"
 
 
 def make_printable(
     name: str, channels: Sequence[str], info: Mapping[str, str] | None
 ) -> tuple[str, tuple[str, ...], dict[str, str]]:
-    """Return the name, the channels and the notes `info` as text without control characters."""
-    return to_printable(name), tuple(map(to_printable, channels)), to_notes(info, name)
+    """Return a material's name, channels and notes, all as text without control characters."""
+    return to_printable(name), tuple(map(to_printable, channels)), check_notes(info, name)
 
 
-def to_notes(info: Mapping[str, str] | None, name: str) -> dict[str, str]:
-    """Return the notes `info` as text without control characters; None gives no notes."""
+def check_notes(info: Mapping[str, str] | None, name: str) -> dict[str, str]:
+    """Return the notes `info` of the material `name`, as text without control characters.
+
+    None gives no notes. Raises `BrdfkitError` for anything but a mapping.
+    """
     if not isinstance(info, Mapping | None):
         raise BrdfkitError(
             f"{name}: info = {info!r:.60} should be notes by their names, as in "
@@ -67,10 +73,10 @@ def to_notes(info: Mapping[str, str] | None, name: str) -> dict[str, str]:
     }
 
 
-def default_channels(values: ArrayLike, samples: int, name: str) -> tuple[str, ...]:
-    """Return the names of the channels where the user gives none: R, G, B for three, Y for one.
+def choose_default_channels(values: ArrayLike, samples: int, name: str) -> tuple[str, ...]:
+    """Return the channels' names where the user gives none: R, G, B for three, or Y for one.
 
-    `values` are (samples, channels); a single sample may have its three values as (3,). Raises
+    `values` are (samples, channels), or (channels,) if there is a single sample. Raises
     `BrdfkitError` for another number of channels.
     """
     shape = np.shape(values)
@@ -84,13 +90,13 @@ def default_channels(values: ArrayLike, samples: int, name: str) -> tuple[str, .
     return ("Y",) if columns == 1 else RGB
 
 
-def check_table(
+def check_table_values(
     values: ArrayLike, phi_d_period: float, channels: Sequence[str], name: str
 ) -> NDArray[np.float64]:
-    """Return the values of a table, with NaN for infinite ones.
+    """Check the values of a table, and return them as floats, with NaN in place of infinity.
 
-    The shape is ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels). Raises `BrdfkitError` for
-    another shape, an impossible period [rad], and where no cell was measured.
+    Raises `BrdfkitError` for a shape other than ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d,
+    channels), for an impossible `phi_d_period` [rad], and where no cell was measured.
     """
     values = np.asarray(values, float)
     if values.ndim not in (4, 5) or values.shape[-1] != len(channels) or 0 in values.shape:
@@ -107,8 +113,11 @@ def check_table(
     return np.where(np.isinf(values), np.nan, values) if np.isinf(values).any() else values
 
 
-def check_shape(shape: Sequence[int], name: str) -> None:
-    """Raise `BrdfkitError` unless `shape` is ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)."""
+def check_table_shape(shape: Sequence[int], name: str) -> None:
+    """Raise `BrdfkitError` unless `shape` is ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d).
+
+    These are the numbers of cells of a table; `name` is the material's.
+    """
     numbers = shape if isinstance(shape, tuple | list) else (shape,)
     whole = all(isinstance(n, int | np.integer) and n >= 1 for n in numbers)
     if not whole or len(numbers) not in (3, 4):
@@ -118,14 +127,13 @@ def check_shape(shape: Sequence[int], name: str) -> None:
         )
 
 
-def check_errors(
+def check_standard_errors(
     standard_error: ArrayLike | None, values: FloatArray, name: str
 ) -> NDArray[np.float64] | None:
-    """Return standard errors as (n, channels); None where there are none.
+    """Check the standard errors of `values` (..., channels), and return them as (n, channels).
 
-    They must have the shape of `values` (..., channels), or (n,) for one channel. Raises
-    `BrdfkitError` for another shape, and where a value is finite and its error negative or not
-    finite.
+    None gives None. Raises `BrdfkitError` for another shape than that of `values`, or (n,) for one
+    channel, and where a finite value has an error that is negative or not finite.
     """
     if standard_error is None:
         return None
