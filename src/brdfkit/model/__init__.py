@@ -1,10 +1,10 @@
-"""The building blocks of a BRDF model: all that the author of a model reads.
+"""The building blocks of a BRDF model, for authors of models.
 
-`model.py` has the class `Model`, `parameters.py` what it declares, `lobes.py` its terms and how
-their directions are drawn, `microfacet.py` distributions of normals, `fresnel.py` the models of
-facets with Schlick's F, and `numerics.py` accurate functions. The other files serve all models:
-`labels.py` finds a model by its label, `weights.py` reads weights of any channels, and
-`evaluation.py` computes values.
+`model.py` has the class `Model`, `parameters.py` its parameters and options, `lobes.py` its terms
+and how their directions are drawn, `microfacet.py` distributions of normals, `fresnel.py` the
+microfacet models with Schlick's Fresnel reflectance, and `numerics.py` functions that are accurate
+in single precision. The other files serve all models: `labels.py` finds a model by its label,
+`weights.py` reads weights of any channels, and `evaluation.py` computes values of the BRDF.
 """
 
 from brdfkit.model.model import Model as Model

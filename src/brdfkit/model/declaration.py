@@ -1,4 +1,4 @@
-"""The parts of a model that belong to its class: parameters, options and name."""
+"""The base class of `Model` with everything that does not need values of the parameters."""
 
 import re
 from functools import cache
@@ -24,7 +24,7 @@ class Declaration:
             setattr(cls, name, option.default)
         cls.options = {**cls.options, **options}
         parameters = {name: p for name, p in own.items() if isinstance(p, Parameter)}
-        for name in parameters:  # the attribute of an object will hold the value
+        for name in parameters:  # since the attribute of each object holds its value
             delattr(cls, name)
         cls._declared = {**cls._declared, **parameters}
         every = {**cls._declared, **cls.more_parameters()}
@@ -32,42 +32,43 @@ class Declaration:
 
     @classmethod
     def more_parameters(cls) -> dict[str, Parameter | None]:
-        """Return the parameters, by name, that depend on the options, attributes of `cls`.
+        """Return the parameters that only some values of the options have, by name.
 
-        None stands for a declared parameter that is left out.
+        A model overrides this, and reads its options as attributes of `cls`. None removes a
+        parameter that the class declares.
         """
         return {}
 
     @classmethod
     def configured(cls, **options: Any) -> type[Self]:
-        """Return the class of this model with other options, given by name.
+        """Return the class of this model with other values of its options, given by name.
 
         Raises `BrdfkitError` for an option that the model does not have, and for a value that the
         option does not allow.
 
         >>> models()["ashikhmin_shirley"].configured(diffuse="coupled")    # doctest: +SKIP
         """
-        for name, given in options.items():
+        for name, value in options.items():
             if name not in cls.options:
                 raise no_such("option", name, cls.options, cls.type_name())
-            options[name] = cls.options[name].read(given, f"{cls.type_name()}: {name}")
+            options[name] = cls.options[name].read(value, f"{cls.type_name()}: {name}")
         changed = {n: v for n, v in options.items() if v != getattr(cls, n)}
-        made: Any = cls
-        return _derive(made, tuple(sorted(changed.items()))) if changed else made
+        base: Any = cls
+        return _derive_class(base, tuple(sorted(changed.items()))) if changed else base
 
     @classmethod
     def without_options(cls) -> type[Any]:
-        """Return the class as it was written, with the default options."""
+        """Return the model's original class, whose options have their defaults."""
         return next(base for base in cls.__mro__ if "_chosen" not in vars(base))
 
     @classmethod
     def is_in_plugin_file(cls) -> bool:
-        """Return whether the class was read from a plugin file, brdfkit's or a user's."""
+        """Return whether a plugin file, of brdfkit or of a user, defines the class."""
         return cls.__module__.rpartition(".")[0] in plugin_files.PACKAGES_OF_MODELS
 
     @classmethod
     def make_known(cls) -> None:
-        """Add a class from a notebook or a user's module to the models known by name."""
+        """Register a class of a notebook or a user's module, so that its name finds it."""
         model, name = cls.without_options(), cls.type_name()
         if not cls.is_in_plugin_file() and _find_source(name) is not model:
             plugin_files.add_plugins(plugin_files.MODELS, {name: model})
@@ -87,18 +88,18 @@ class Declaration:
 
     @classmethod
     def label(cls) -> str:
-        """Return the type with changed options, such as "lafortune:lobe_count=2"."""
+        """Return the model's name and its changed options, such as "lafortune:lobe_count=2"."""
         options = ",".join(f"{name}={value}" for name, value in cls.changed_options().items())
         return f"{cls.type_name()}:{options}" if options else cls.type_name()
 
     @classmethod
     def made_of(cls) -> tuple[Any, ...]:
-        """Return the classes that a pickled model needs: its own, then those of its terms."""
+        """Return the classes that a pickle must store: the model's own, then those of its sum."""
         return (cls.without_options(),)
 
     @classmethod
     def parameter(cls, name: str) -> Parameter:
-        """Return the parameter of a name; raise `BrdfkitError` for an unknown name."""
+        """Return the `Parameter` with this name; raise `BrdfkitError` if there is none."""
         if name in cls.options:
             raise BrdfkitError(
                 f"{cls.type_name()}: {name} is an option; write {cls.type_name()}:{name}=VALUE."
@@ -114,7 +115,11 @@ class Declaration:
 
     @classmethod
     def shapes(cls, anisotropic: bool = False) -> list[str]:
-        """Return the names of the nonlinear parameters, without followers unless `anisotropic`."""
+        """Return the names of the nonlinear parameters.
+
+        Parameters that by default equal another one (alpha_v, which follows alpha_u) are included
+        only if `anisotropic`.
+        """
         return [
             name
             for name, p in cls.parameters.items()
@@ -123,9 +128,9 @@ class Declaration:
 
     @classmethod
     def is_anisotropic(cls) -> bool:
-        """Return whether the BRDF may depend on the azimuth.
+        """Return whether the BRDF can change as the surface turns about its normal.
 
-        It may if a parameter, such as alpha_v, has the value of another one, alpha_u, by default.
+        By default this is so if one parameter (alpha_v) follows another one (alpha_u).
         """
         return any(p.follows for p in cls.parameters.values())
 
@@ -136,12 +141,12 @@ class Declaration:
 
 
 def _find_source(name: str) -> Path | type | None:
-    """Return the file or class of the model of a name, None where there is none."""
+    """Return the plugin file or the class of the model `name`, None if it is unknown."""
     return plugin_files.find_plugins(plugin_files.MODELS).get(name)
 
 
 @cache
-def _derive(cls: Any, options: tuple[tuple[str, Any], ...]) -> type[Any]:
-    """Derive a class from `cls` with other options, ((name, value), ...)."""
+def _derive_class(cls: Any, options: tuple[tuple[str, Any], ...]) -> type[Any]:
+    """Return a subclass of `cls` whose options have the values of ((name, value), ...)."""
     attributes = dict(options) | {"__module__": cls.__module__, "__doc__": cls.__doc__}
     return type(cls.__name__, (cls,), attributes | {"_chosen": options})

@@ -1,4 +1,4 @@
-"""Evaluates a model in double precision: the values of its lobes times its weights."""
+"""Evaluates a model in NumPy, in double precision: the sum of its lobes times their weights."""
 
 from typing import Any
 
@@ -13,8 +13,8 @@ from brdfkit.core.jit.threads import in_turn
 def evaluate_model(model: Any, wi: ArrayLike, wo: ArrayLike) -> AnyArray:
     """Compute the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3).
 
-    It is the sum of weight · `eval` + weight² · `quadratic` over the lobes, clamped at 0 where
-    weights are signed, and 0 where a direction is not above the surface.
+    The BRDF is the sum of weight · `Lobe.eval` + weight² · `Lobe.quadratic` over the lobes. It is
+    clamped at 0 if weights may be negative, and 0 where a direction is not above the surface.
     """
     wi, wo = np.asarray(wi, float), np.asarray(wo, float)
     above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
@@ -24,9 +24,9 @@ def evaluate_model(model: Any, wi: ArrayLike, wo: ArrayLike) -> AnyArray:
 
 
 def mix_lobes(model: Any, weights: AnyArray, wi: AnyArray, wo: AnyArray) -> AnyArray:
-    """Compute the BRDF as `evaluate_model` does, with other weights (lobes, channels).
+    """Compute the BRDF (n, channels) in sr⁻¹ with `weights` (lobes, channels) of the caller.
 
-    The direction pairs (n, 3) have to be above the surface.
+    The direction pairs `wi` and `wo` (n, 3) have to be above the surface.
     """
     plain, squared = compute_lobe_values(model, wi, wo)
     values = plain @ weights + squared @ weights**2
@@ -34,9 +34,10 @@ def mix_lobes(model: Any, weights: AnyArray, wi: AnyArray, wo: AnyArray) -> AnyA
 
 
 def compute_clamped_share(model: Any, n: int = 20_000) -> float:
-    """Return the share of direction pairs at which a channel of a signed model is clamped at 0.
+    """Return the share of direction pairs at which a channel would be negative without clamping.
 
-    The `n` pairs are drawn uniformly in solid angle with a fixed seed.
+    The `n` pairs are drawn uniformly in solid angle with a fixed seed. The share is 0 unless
+    weights of the model may be negative.
     """
     z, phi = np.random.default_rng(0).random((2, 2, n))
     sine, phi = np.sqrt(1 - z * z), 2 * np.pi * phi
@@ -47,7 +48,7 @@ def compute_clamped_share(model: Any, n: int = 20_000) -> float:
 
 
 def to_weight_matrix(model: Any) -> Any:
-    """Return the weights (lobes, channels) of a model with values."""
+    """Return the weights of a model's lobes as an array (lobes, channels)."""
     weights = [np.atleast_1d(getattr(model, name)) for name in model.weights()]
     channels = max(len(model.wavelengths), *(len(w) for w in weights))
     return np.array([np.broadcast_to(w, channels) for w in weights])
@@ -56,13 +57,16 @@ def to_weight_matrix(model: Any) -> Any:
 def make_model(
     model: Any, shapes: dict[str, Any], weights: AnyArray, wavelengths: ArrayLike = ()
 ) -> Any:
-    """Make a model of a class from shape parameters by name and weights (channels, lobes)."""
+    """Make an object of the class `model` from shape parameters and weights (channels, lobes)."""
     named = dict(zip(model.weights(), map(tuple, weights.T), strict=True))
     return model(wavelengths=wavelengths, **shapes, **named)
 
 
 def to_shape_scalars(model: Any) -> dict[str, JitFloat]:
-    """Return the free shape parameters of a model with values, by name, as opaque scalars."""
+    """Convert a model's shape parameters to Dr.Jit scalars in double precision, by name.
+
+    Opaque scalars are inputs of a kernel, so that one kernel serves all values.
+    """
     linear = model.weights()
     values = model.free_values.items()
     return {name: double_precision.to_scalar(v) for name, v in values if name not in linear}
@@ -70,16 +74,16 @@ def to_shape_scalars(model: Any) -> dict[str, JitFloat]:
 
 @in_turn
 def compute_lobe_values(model: Any, wi: AnyArray, wo: AnyArray) -> list[AnyArray]:
-    """Compute two arrays (n, lobes) in sr⁻¹ at direction pairs (n, 3) above the surface.
+    """Compute the values of all lobes, without weights, at direction pairs (n, 3).
 
-    The first holds the values of every `Lobe.eval`, the second those of every `Lobe.quadratic`, or
-    0 for a lobe without one.
+    Returns two arrays (n, lobes) in sr⁻¹: the values of `Lobe.eval`, and of `Lobe.quadratic`, which
+    are 0 for a lobe without it. The directions have to be above the surface.
     """
     terms = model.bind(to_shape_scalars(model)).terms()
     pair = double_precision.to_vector(wi), double_precision.to_vector(wo)
     plain = [lobe.eval(*pair) for _, lobe in terms]
     squared = [lobe.quadratic(*pair) if lobe.quadratic else 0.0 for _, lobe in terms]
-    dr.eval(plain, squared)  # in one kernel, since one for each lobe takes six times as long
+    dr.eval(plain, squared)  # in one kernel, because a kernel for each lobe takes six times as long
     shape = len(wi), len(terms)
     return [
         np.stack([np.broadcast_to(np.asarray(c), shape[0]) for c in columns], axis=1)

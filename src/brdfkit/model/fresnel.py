@@ -1,8 +1,9 @@
-"""Models of facets with Schlick's Fresnel reflectance, grey or coloured at both ends.
+"""The base class of microfacet models with Schlick's Fresnel reflectance, grey or coloured.
 
-F = F₀ + (F₉₀ - F₀) (1 - V·H)⁵ [Schlick 1994] is linear in the reflectances F₀ at normal and F₉₀ at
-grazing incidence. So both can be weights, one for each channel, in place of the strength k_s and of
-F₀. Otherwise F₀ is a shape parameter and F₉₀ is 1.
+F = F₀ + (F₉₀ - F₀) (1 - V·H)⁵ [Schlick 1994], where V·H is the cosine of the angle of incidence on
+the facet, is linear in the reflectances F₀ at normal and F₉₀ at grazing incidence. So with the
+option `fresnel=coloured`, k_s F₀ and k_s F₉₀ are weights, one for each colour channel. By default
+only the strength k_s is a weight, F₀ is a shape parameter, and F₉₀ is 1.
 """
 
 from collections.abc import Callable
@@ -16,7 +17,10 @@ from brdfkit.model.parameters import Parameter, option, weight
 
 
 class FresnelModel(Model):
-    """A model with the parameters `specular_reflectance` and `f0`, and an option for its F."""
+    """A microfacet model with the parameters `specular_reflectance` (k_s) and `f0` (F₀).
+
+    The option `fresnel` makes weights of both ends of the Fresnel reflectance.
+    """
 
     fresnel = option(
         "schlick",
@@ -44,17 +48,18 @@ class FresnelModel(Model):
         sampling: Sampling,
         albedo: float = 1.0,
     ) -> tuple[Lobe, ...]:
-        """Return the lobe or the two lobes of k_s F `D(h)` `geometry(wi, wo)` [sr⁻¹].
+        """Return the lobes of the microfacet term k_s F · `D(h)` · `geometry(wi, wo)` [sr⁻¹].
 
-        `albedo` is the approximate albedo of the term without k_s F.
+        There is one lobe by default, and two with `fresnel=coloured`. `sampling` draws their
+        directions; `albedo` is the approximate albedo of `D(h)` · `geometry(wi, wo)`.
         """
 
-        def lobe(F: Callable[[JitFloat], JitFloat]) -> Lobe:
-            def facets(h: JitVector, cos_d: JitFloat) -> JitFloat:
+        def make_lobe(F: Callable[[JitFloat], JitFloat]) -> Lobe:
+            def facet_factor(h: JitVector, cos_d: JitFloat) -> JitFloat:
                 return D(h) * F(cos_d)
 
-            return make_factored_lobe(facets, geometry, sampling, lambda wi: albedo * F(wi.z))
+            return make_factored_lobe(facet_factor, geometry, sampling, lambda wi: albedo * F(wi.z))
 
         if self.fresnel == "schlick":
-            return (lobe(lambda cosine: schlick(self.f0, cosine)),)
-        return lobe(lambda c: 1 - fifth_power(1 - c)), lobe(lambda c: fifth_power(1 - c))
+            return (make_lobe(lambda cosine: schlick(self.f0, cosine)),)
+        return make_lobe(lambda c: 1 - fifth_power(1 - c)), make_lobe(lambda c: fifth_power(1 - c))

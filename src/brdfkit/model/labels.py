@@ -2,9 +2,9 @@
 
     ward    koenderink:order=8    ggx+ggx    oren_nayar:form=full+ward
 
-In a label that a person types, a Python file may stand for the model that it defines: `load_files`
-loads the file. A label from a saved file never goes through `load_files`, since it must not run
-code.
+In a label that a user types, the path of a Python file may stand for the model that it defines;
+`load_files` loads the file. Labels that are read from saved files never go through `load_files`,
+because opening a file must not run code.
 """
 
 from __future__ import annotations
@@ -23,25 +23,25 @@ from brdfkit.model.model import Model
 
 
 class Models(Shown, dict[str, type[Model]]):
-    """The classes of models by name; prints as a table."""
+    """A dictionary of model classes by name, which prints as a table."""
 
     def __missing__(self, name: str) -> type[Model]:
         raise no_such("model", name, self)
 
     def document(self) -> Document:
-        """Return a table of the models by name, with one sentence on each."""
+        """Return a table of the models: the name of each, and a sentence that describes it."""
         rows = tuple((Cell(name, kind=STRONG), read_page(m).sentence) for name, m in self.items())
         return Document(f"{len(self)} BRDF models", (Table(rows),))
 
 
 def models() -> Models:
-    """Return the BRDF models of brdfkit, and your own that were loaded.
+    """Return all known BRDF models: those of brdfkit, and your own that were loaded.
 
     Returns
     -------
     dict of str to type
-        Classes by name, printed as a table. A class called with parameters gives a model with
-        values.
+        The classes of models by name, printed as a table. Calling a class with parameters makes a
+        model with these values.
 
     Examples
     --------
@@ -57,12 +57,12 @@ def model(label: str | type[Model]) -> type[Model]:
     """Return the model class that a label names.
 
     A label is a model's name ("ggx"), a name with options ("lafortune:lobe_count=2"), or a sum
-    ("ggx+ward") with the diffuse term of its first model and the other terms of all its models. A
-    class is returned unchanged. Raises `BrdfkitError` for an unknown name, with the nearest one.
+    ("ggx+ward"), which has the diffuse term of its first model and the other terms of all its
+    models. A class is returned unchanged. Raises `BrdfkitError` for an unknown name.
     """
     if isinstance(label, type) and issubclass(label, Model):
         label.make_known()
-        # A plugin file may have changed since the class was read
+        # The plugin file may have changed since the class was read, so it is looked up again
         return model(label.label()) if label.is_in_plugin_file() else label
     if not isinstance(label, str):
         raise BrdfkitError(
@@ -89,9 +89,9 @@ def is_label(word: str) -> bool:
 
 
 def load_files(label: Any) -> Any:
-    """Load the Python files that stand for models in a label, and put the models' names into it.
+    """Load the Python files that a label names, and return the label with their models' names.
 
-    A label that is neither a text nor a `Path` is returned as it is.
+    A label that is neither a string nor a `Path` is returned unchanged.
 
     >>> load_files("my_models/felt.py+ggx")    # doctest: +SKIP
     'felt+ggx'
@@ -109,7 +109,7 @@ def load_files(label: Any) -> Any:
 
 
 def load_model_file(path: str | Path) -> None:
-    """Load a Python file that defines a model, and make the model known by the file's name.
+    """Load a Python file that defines a model, and register the model under the file's name.
 
     Raises `BrdfkitError` for a file that cannot be imported, or defines no model or several, and
     for a name that another plugin has.
@@ -124,7 +124,8 @@ def load_model_file(path: str | Path) -> None:
 def find_model_in(source: Path | type) -> type[Model] | None:
     """Return the `Model` class that a plugin file defines, None if it defines none.
 
-    A class stands for itself. Raises `BrdfkitError` for a file that defines several models.
+    A `source` that is a class is returned unchanged. Raises `BrdfkitError` for a file that defines
+    several models.
     """
     if isinstance(source, type):
         return source
@@ -142,7 +143,7 @@ def find_model_in(source: Path | type) -> type[Model] | None:
 
 
 def _find_named_model(name: str) -> type[Model]:
-    """Return the model of a name; raise `BrdfkitError` for an unknown name."""
+    """Return the model class with this name; raise `BrdfkitError` if there is none."""
     source = plugin_files.find_plugins(MODELS).get(name)
     named = source and find_model_in(source)
     if not named:

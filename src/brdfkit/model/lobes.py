@@ -1,4 +1,4 @@
-"""Lobes, the terms of a model, and the ways to draw their outgoing directions."""
+"""Lobes, the terms of a BRDF model, and methods that draw their outgoing directions."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,31 +13,33 @@ from brdfkit.model.numerics import cosine_power
 
 
 class Sampling(Protocol):
-    """A way to draw the outgoing direction of a lobe."""
+    """The interface of objects that draw outgoing directions `wo` of a lobe, given `wi`."""
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
-        """Return a unit vector wo for a point `u` (x, y, z) of the unit cube.
+        """Draw an outgoing direction `wo`, by a random point `u` (x, y, z) of the unit cube.
 
-        It may lie below the surface; the adapter gives it the weight 0.
+        The unit vector may point below the surface; the renderer then gives it the weight 0.
         """
 
     def pdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        """Return the density of `sample` per solid angle [sr⁻¹] at `wo` above the surface.
+        """Return the density per solid angle [sr⁻¹] with which `sample` draws `wo`.
 
-        Its integral over the hemisphere is 1, less the share of samples below the surface.
+        `wo` is above the surface. The integral of the density over the hemisphere is 1, less the
+        share of samples below the surface.
         """
 
 
 @dataclass(frozen=True)
 class Lobe:
-    """One term of a model, without its weight.
+    """One term of a model's sum, without its weight.
 
-    `eval(wi, wo)` is the value in sr⁻¹ without cosine, for directions above the surface. `sampling`
-    draws `wo`; lobes that are drawn together share one object. `energy(wi)` is about the lobe's
-    albedo: lobes are chosen in proportion to weight times energy. `quadratic(wi, wo)` is a value
-    that is multiplied by the square of the weight, as for light that is scattered twice. `diffuse`
-    says whether Mitsuba counts the lobe as diffuse, else as glossy. `factors` are the two functions
-    of a lobe from `make_factored_lobe`.
+    `eval`: function (wi, wo) → value in sr⁻¹, without cosine, for directions above the surface.
+    `sampling`: draws `wo`; lobes with the same object are drawn together.
+    `energy`: function wi → approximate albedo; a lobe is chosen in proportion to weight · energy.
+    `quadratic`: function (wi, wo) → value that is multiplied by the square of the weight, such as
+    light that is scattered twice.
+    `diffuse`: whether Mitsuba counts the lobe as diffuse, not as glossy.
+    `factors`: the two functions whose product is `eval`, if `make_factored_lobe` made the lobe.
     """
 
     eval: Callable[..., Any]
@@ -54,10 +56,11 @@ def make_factored_lobe(
     sampling: Sampling,
     energy: Callable[[Any], Any] = lambda wi: 1.0,
 ) -> Lobe:
-    """Make the lobe `facets(h, cos_d)` · `geometry(wi, wo)`; h is the half vector, cos_d wi·h.
+    """Make the lobe `facets(h, cos_d)` · `geometry(wi, wo)` from its two factors.
 
-    A fit to a table with a linear loss sums over the cells once and for all if the shape parameters
-    occur in `facets` alone. The fit finds out by itself whether they do.
+    h is the half vector and cos_d = wi·h. If the shape parameters occur in `facets` alone, which a
+    fit finds out by itself, sums over the cells of a table with the same h and cos_d are computed
+    only once, and the fit is faster. `sampling` and `energy` are those of `Lobe`.
     """
 
     def value(wi: JitVector, wo: JitVector) -> JitFloat:
@@ -67,7 +70,7 @@ def make_factored_lobe(
 
 
 def group_components(lobes: Sequence[Lobe]) -> list[list[int]]:
-    """Return the lobes' indices of each component; lobes with one sampling are one component."""
+    """Group the indices of lobes into Mitsuba's components: lobes that share one `sampling`."""
     groups: dict[int, list[int]] = {}
     for index, lobe in enumerate(lobes):
         groups.setdefault(id(lobe.sampling), []).append(index)
@@ -75,13 +78,16 @@ def group_components(lobes: Sequence[Lobe]) -> list[list[int]]:
 
 
 def lambertian() -> Lobe:
-    """Make the diffuse lobe of most models, 1/π [Kurt 2007, eq. 3.1]."""
+    """Make the diffuse lobe of most models, whose value is 1/π [Kurt 2007, eq. 3.1]."""
     return Lobe(lambda wi, wo: 1 / dr.pi, Cosine(), diffuse=True)
 
 
 @dataclass(frozen=True)
 class Cosine:
-    """Draws directions in proportion to their cosine [Kurt 2007, eqs. 4.21, 4.22]."""
+    """Sampling of directions in proportion to their cosine to the normal.
+
+    [Kurt 2007, eqs. 4.21, 4.22]
+    """
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
         radius = dr.sqrt(u.x)
@@ -94,7 +100,7 @@ class Cosine:
 
 @dataclass(frozen=True)
 class HalfVector:
-    """Draws a half vector from a `distribution` of normals, and reflects wi about it."""
+    """Sampling of directions by reflecting wi about a normal drawn from a `distribution`."""
 
     distribution: Any
 
@@ -108,9 +114,10 @@ class HalfVector:
 
 @dataclass(frozen=True)
 class PowerLobe:
-    """Draws directions above the surface in proportion to cos^n of their angle to `axis(wi)`.
+    """Sampling of directions in proportion to cosⁿ of their angle to the lobe's `axis(wi)`.
 
-    A direction below the surface is mirrored up. [Lafortune & Willems 1994]
+    `exponent` is n. A direction below the surface is mirrored to above it.
+    [Lafortune & Willems 1994]
     """
 
     axis: Callable[..., Any]
@@ -128,10 +135,10 @@ class PowerLobe:
         return (self.exponent + 1) / (2 * dr.pi) * power
 
     def energy(self, wi: JitVector) -> JitFloat:
-        """Return about the albedo ∫ (n + 2) / 2π cos^n cosθ dω of the lobe.
+        """Return the approximate albedo ∫ (n + 2) / 2π cosⁿα cosθ dω of a lobe about the axis.
 
-        It is close to the cosine of the axis, which is 1 at the normal; with the axis at the
-        horizon it is 0.4 / √(n + 0.6).
+        α is the angle to the axis, θ the angle to the normal. The albedo is close to the cosine of
+        the axis to the normal; for an axis at the horizon it is 0.4 / √(n + 0.6).
         """
         z = self.axis(wi).z
         return 0.5 * (z + dr.sqrt(z * z + 0.64 / (self.exponent + 0.6)))

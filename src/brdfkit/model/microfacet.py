@@ -1,9 +1,9 @@
-"""Distributions of microfacet normals, shadowing and Fresnel reflectance, which the models share.
+"""Distributions of microfacet normals, shadowing and Fresnel reflectance, shared by the models.
 
-A distribution has `D(h)` [sr⁻¹, ∫ D cosθ_h dω = 1], `sample(wi, u)`, which returns h, and `pdf(wi,
-h, cos_d)`, the density of `sample` per solid angle of h. `wi` and the half vector `h` are unit
-vectors with x, y, z in the local frame, z along the normal; `u` is a point (x, y, z) of the unit
-cube; cos_d = wi·h, as `cos_theta_d` computes it.
+A distribution has three methods: `D(h)` [sr⁻¹], with ∫ D cosθ_h dω = 1, where θ_h is the angle of h
+to the surface normal; `sample(wi, u)`, which draws h by a point `u` (x, y, z) of the unit cube; and
+`pdf(wi, h, cos_d)`, the density of `sample` per solid angle of h, with cos_d = wi·h. `wi` and the
+half vector `h` are unit vectors in the local frame, whose z axis is the surface normal.
 """
 
 from dataclasses import dataclass
@@ -17,36 +17,47 @@ from brdfkit.model.numerics import cosine_power, expm1
 
 
 def schlick(f0: JitFloat, cos_theta: JitFloat) -> JitFloat:
-    """Return the Fresnel reflectance for F₀ = `f0` [Schlick 1994]; [Kurt 2007, eq. 3.16]."""
+    """Return the Fresnel reflectance of a facet, which is `f0` at normal incidence.
+
+    [Schlick 1994]; [Kurt 2007, eq. 3.16]
+    """
     return f0 + (1 - f0) * fifth_power(1 - cos_theta)
 
 
 def fifth_power(x: JitFloat) -> JitFloat:
-    """Return x⁵ with an exact derivative at 0."""
+    """Return x⁵, by multiplications, so that the derivative at 0 is exact."""
     squared = x * x
     return squared * squared * x
 
 
 def v_groove(wi: JitVector, wo: JitVector, h: JitVector) -> JitFloat:
-    """Return the masking of V-grooves [Torrance & Sparrow 1967]; [Kurt 2007, eq. 3.27]."""
+    """Return the shadowing and masking of V-grooves, 0 to 1, for facets with the normal `h`.
+
+    [Torrance & Sparrow 1967]; [Kurt 2007, eq. 3.27]
+    """
     s = 2 * h.z / cos_theta_d(wi, wo)
     return dr.minimum(1, s * dr.minimum(wi.z, wo.z))
 
 
-def _slope_exponent(h: JitVector, alpha_u: JitFloat, alpha_v: JitFloat) -> JitFloat:
-    """Return tan²θ_h (cos²φ_h/α_u² + sin²φ_h/α_v²), without a trigonometric function."""
+def _scaled_slope_squared(h: JitVector, alpha_u: JitFloat, alpha_v: JitFloat) -> JitFloat:
+    """Return tan²θ_h (cos²φ_h/α_u² + sin²φ_h/α_v²), the squared slope of h in widths α.
+
+    θ_h and φ_h are the angle of h to the surface normal and its azimuth.
+    """
     x, y = h.x / alpha_u, h.y / alpha_v
     return (x * x + y * y) / cos_squared(h)
 
 
 def cos_squared(h: JitVector) -> JitFloat:
-    """Return cos²θ_h, at least 1e-6, so that D and its derivatives stay finite."""
+    """Return the squared cosine of h to the normal, at least 1e-6, by which D stays finite."""
     return dr.maximum(h.z * h.z, 1e-6)
 
 
 @dataclass(frozen=True)
 class Beckmann:
-    """Normals with Gaussian slopes, of width `alpha_u` along x and `alpha_v` along y.
+    """Beckmann's distribution: normals with Gaussian slopes of widths `alpha_u` and `alpha_v`.
+
+    The widths are along x and y.
 
     [Beckmann & Spizzichino 1963]; sampling: [Kurt 2007, eqs. 4.23-4.25].
     """
@@ -55,8 +66,8 @@ class Beckmann:
     alpha_v: Any
 
     def gauss(self, h: JitVector) -> JitFloat:
-        """Return exp(-tan²θ_h/α²), the part of D that Ward's models share."""
-        return dr.exp(-_slope_exponent(h, self.alpha_u, self.alpha_v))
+        """Return the factor exp(-tan²θ_h/α²) of D, which Ward's models use without the others."""
+        return dr.exp(-_scaled_slope_squared(h, self.alpha_u, self.alpha_v))
 
     def D(self, h: JitVector) -> JitFloat:
         cos_2 = cos_squared(h)
@@ -65,7 +76,7 @@ class Beckmann:
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
         radius = dr.sqrt(-dr.log(dr.maximum(1 - u.x, 1e-12)))
-        return _slope_normal(
+        return _normal_from_slopes(
             type(wi), radius * self.alpha_u * cos_phi, radius * self.alpha_v * sin_phi
         )
 
@@ -75,8 +86,9 @@ class Beckmann:
 
 @dataclass(frozen=True)
 class TrowbridgeReitz:
-    """GGX, normals with long-tailed slopes, of width `alpha_u` along x and `alpha_v` along y.
+    """The distribution of GGX: normals with long-tailed slopes of widths `alpha_u` and `alpha_v`.
 
+    The widths are along x and y.
     [Walter et al. 2007]; [Heitz 2014]
     """
 
@@ -89,21 +101,22 @@ class TrowbridgeReitz:
         return 1 / (dr.pi * self.alpha_u * self.alpha_v * s * s)
 
     def Lambda(self, w: JitVector) -> JitFloat:
-        """Return Smith's auxiliary function [Heitz 2014, eq. 72]."""
+        """Return Smith's auxiliary function Λ, which gives the shadowing [Heitz 2014, eq. 72]."""
         x, y = self.alpha_u * w.x, self.alpha_v * w.y
         return 0.5 * (dr.sqrt(1 + (x * x + y * y) / (w.z * w.z)) - 1)
 
     def G2(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        """Return the height-correlated shadowing and masking [Heitz 2014, eq. 99]."""
+        """Return Smith's height-correlated shadowing and masking [Heitz 2014, eq. 99]."""
         return 1 / (1 + self.Lambda(wi) + self.Lambda(wo))
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
-        """Draw a visible normal by spherical caps [Dupuy & Benyoub 2023]."""
+        """Draw a normal among those visible from wi, by spherical caps [Dupuy & Benyoub 2023]."""
         # Stretch wi so that the visible normals become those of a hemisphere
         x, y = self.alpha_u * wi.x, self.alpha_v * wi.y
         inverse = dr.rsqrt(x * x + y * y + wi.z * wi.z)
         x, y, z = x * inverse, y * inverse, wi.z * inverse
-        # The mirror direction is uniform in a spherical cap; the sum of both is along the normal
+        # The mirror direction is uniform in a spherical cap; the sum of wi and the mirror direction
+        # is along the normal
         cos_theta = (1 - u.y) * (1 + z) - z
         sin_theta = dr.sqrt(dr.maximum(1 - cos_theta * cos_theta, 0))
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.x)
@@ -120,16 +133,17 @@ class TrowbridgeReitz:
 
 @dataclass(frozen=True)
 class CosinePower:
-    """A distribution of normals in proportion to (N·H)^(n_u cos²φ_h + n_v sin²φ_h).
+    """A distribution of normals h in proportion to (N·H)^(n_u cos²φ_h + n_v sin²φ_h).
 
-    [Blinn 1977]; [Ashikhmin & Shirley 2000]
+    N·H is the cosine of h to the surface normal, φ_h the azimuth of h. [Blinn 1977];
+    [Ashikhmin & Shirley 2000]
     """
 
     n_u: Any
     n_v: Any
 
     def power(self, h: JitVector) -> JitFloat:
-        """Return (N·H)^(n_u cos²φ_h + n_v sin²φ_h)."""
+        """Return (N·H)^(n_u cos²φ_h + n_v sin²φ_h), where φ_h is the azimuth of the normal h."""
         x, y = h.x * h.x, h.y * h.y
         exponent = (self.n_u * x + self.n_v * y) / dr.maximum(x + y, 1e-20)
         return cosine_power((x + y) / (1 + h.z), exponent)
@@ -140,7 +154,7 @@ class CosinePower:
         inverse = dr.rsqrt(x * x + y * y)
         x, y = x * inverse, y * inverse
         exponent = self.n_u * x * x + self.n_v * y * y
-        # 1 - cosθ_h, computed without the cosine, which loses its digits in single precision
+        # 1 - cosθ_h, computed without the cosine, from which single precision would lose digits
         complement = -expm1(dr.log(dr.maximum(1 - u.x, 1e-12)) / (exponent + 1))
         sin_theta = dr.sqrt(complement * (2 - complement))
         return type(wi)(sin_theta * x, sin_theta * y, 1 - complement)
@@ -154,13 +168,12 @@ class CosinePower:
 
 @dataclass(frozen=True)
 class Visible:
-    """The normals of a `distribution` that are visible from wi on a surface of V-grooves.
+    """Sampling of the normals that are visible from wi, on a surface of V-grooves.
 
-    The two facets of a groove have the normal h and its mirror image about the surface normal. One
-    of them is drawn in proportion to its area as it appears from wi. The `distribution` should be
-    the same after a half turn about the surface normal.
-
-    The density is G1 (wi·h)⁺ D / cosθ_i [Heitz & d'Eon 2014], with the G1 of `v_groove`.
+    The facets of a groove have the normal h, drawn from the `distribution`, and its mirror image
+    about the surface normal. One of them is chosen in proportion to its area as seen from wi. The
+    `distribution` has to be unchanged by a half turn about the surface normal. The density is
+    G1 (wi·h)⁺ D / cosθ_i [Heitz & d'Eon 2014], with the G1 of `v_groove`.
     """
 
     distribution: Any
@@ -176,7 +189,7 @@ class Visible:
         return self.distribution.pdf(wi, h, cos_d) * dr.minimum(area, 2)
 
 
-def _slope_normal(vector: Any, x: JitFloat, y: JitFloat) -> JitVector:
-    """Return the unit normal of a facet with the slopes `x` and `y`, as the type `vector`."""
+def _normal_from_slopes(vector: Any, x: JitFloat, y: JitFloat) -> JitVector:
+    """Return the unit normal of a facet with the slopes `x` and `y`, of the type `vector`."""
     inverse = dr.rsqrt(1 + x * x + y * y)
     return vector(x * inverse, y * inverse, inverse)

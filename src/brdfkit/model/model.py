@@ -2,16 +2,16 @@
 
     f(wi, wo) = Σ weight_k · lobe_k(wi, wo; shape)
 
-The weights are linear and per colour channel; the shape parameters are nonlinear and shared by the
-channels. A model is a class in a file of its own. Its parameters are class attributes, made by
-`weight` and `shape`, and `lobes` returns one `Lobe` per weight, in their order.
+The weights are linear, with one number per colour channel; the shape parameters are nonlinear, and
+all channels share them. A model is a class in a file of its own. Its parameters are class
+attributes, made by `weight` and `shape`, and `lobes` returns one `Lobe` per weight, in their order.
 
-The same lines run in the renderer, where a parameter is a value per ray, and in a fit, where it is
-a double with derivatives. So a model uses `dr.*` and no Python `if` on values.
+The same lines run in the renderer, where a parameter has one value per ray, and in a fit, where it
+is a double with derivatives. So a model uses functions of `dr`, and no Python `if` on values.
 
 A choice that is not a number to fit, such as a form or an order, is an `option`: a plain Python
-value. Each value of an option makes a class of its own (`Model.configured`). `more_parameters` adds
-the parameters that depend on options, and leaves declared ones out.
+value. `Model.configured` derives a class for each value of an option. `more_parameters` adds the
+parameters that depend on options, and removes declared ones.
 """
 
 from __future__ import annotations
@@ -40,18 +40,18 @@ from brdfkit.model.weights import (
 
 
 class Model(Shown, Declaration):
-    """A BRDF model with values.
+    """A BRDF model: a material given by the values of a model's parameters.
 
-    Each model is a class derived from this one. The values of its parameters are the attributes of
-    an object, which do not change; `parameters` has the default, bounds and meaning of each.
+    Each model is a class derived from this one. The attributes of an object are the values of its
+    parameters, and do not change; `parameters` has the default, bounds and meaning of each.
 
     Parameters
     ----------
     wavelengths : sequence of float, optional
-        Wavelengths [nm] for which weights have one number each. By default weights are linear sRGB.
+        Wavelengths [nm] of the numbers of a weight. By default weights are linear sRGB.
     **values : float or sequence of float
-        Values by the parameters' names; the others have their default. A weight takes one number,
-        or one for each of R, G, B, or of the wavelengths.
+        Values by the parameters' names; all other parameters have their default. A weight takes one
+        number, or one for each of R, G, B, or of the wavelengths.
 
     Raises
     ------
@@ -67,7 +67,7 @@ class Model(Shown, Declaration):
 
     wavelengths: tuple[float, ...] = ()
 
-    if TYPE_CHECKING:  # a type checker cannot know the parameters
+    if TYPE_CHECKING:  # a type checker cannot know the parameters, which are attributes
 
         def __getattr__(self, name: str) -> Any: ...
 
@@ -94,13 +94,13 @@ class Model(Shown, Declaration):
             self.__dict__[name] = value
 
     def changed(self, **values: ArrayLike | None) -> Self:
-        """Return the model with other values.
+        """Return a copy of the model with other values of some parameters.
 
         Parameters
         ----------
         **values : float or sequence of float
-            Values by the parameters' names. A parameter that follows another one goes on to follow
-            it.
+            Values by the parameters' names. A parameter that follows another one, as alpha_v
+            follows alpha_u, still does.
 
         Returns
         -------
@@ -122,18 +122,24 @@ class Model(Shown, Declaration):
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise BrdfkitError(
-            f"{self.type_name()}: a model's values do not change; make another one, as by "
-            f".changed({name}={value!r})."
+            f"{self.type_name()}: a model's values do not change; make another one, such as "
+            f"model.changed({name}={value!r})."
         )
 
     @classmethod
     def determine_parameters(cls, samples: Any) -> dict[str, float]:
-        """Return shape parameters, by name, that measured directions determine without a search."""
+        """Return the shape parameters, by name, that a fit computes from the measured directions.
+
+        A model overrides this if some of its parameters need no search.
+        """
         return {}
 
     @classmethod
     def bind(cls, values: dict[str, Any]) -> Any:
-        """Return the model with values by name of any type, such as arrays, unchecked."""
+        """Return the model with values of any type, such as Dr.Jit arrays, without checks.
+
+        `values` are the values of all parameters by name; followers may be missing.
+        """
         bound = object.__new__(cls)
         bound.__dict__.update(values)
         for name, parameter in cls.parameters.items():
@@ -142,49 +148,49 @@ class Model(Shown, Declaration):
         return bound
 
     def lobes(self) -> tuple[Lobe, ...]:
-        """Return one lobe per weight, in the order of the weights."""
+        """Return the terms of the model: one lobe per weight, in the order of the weights."""
         raise NotImplementedError(f"{type(self).__name__} should give its lobes")
 
     def terms(self) -> list[tuple[str, Lobe]]:
-        """Return (name of the weight, lobe) of every term."""
+        """Return pairs of a weight's name and its lobe, for every term of the model."""
         weights, lobes = self.weights(), self.lobes()
         if len(weights) != len(lobes):
             raise BrdfkitError(
-                f"{self.type_name()}: lobes() gives {len(lobes)} lobes for the {len(weights)} "
-                f"weights {', '.join(weights)}; it should give one each."
+                f"{self.type_name()}: lobes() returns {len(lobes)} lobes for the {len(weights)} "
+                f"weights {', '.join(weights)}; it should return one for each."
             )
         return list(zip(weights, lobes, strict=True))
 
     @property
     def values(self) -> dict[str, float | tuple[float, ...]]:
-        """The values of the parameters by name."""
+        """The values of all parameters by name: a number, or a tuple of one per channel."""
         return {name: getattr(self, name) for name in self.parameters}
 
     @property
     def free_values(self) -> dict[str, float | tuple[float, ...]]:
-        """The `values` without the parameters that follow another one and equal it."""
+        """The values without those of parameters that follow another one, and equal it."""
         values = self.values
         followed = {name: p.follows for name, p in self.parameters.items() if p.follows}
         return {n: v for n, v in values.items() if n not in followed or v != values[followed[n]]}
 
     @property
     def arguments(self) -> dict[str, Any]:
-        """The arguments that make an equal model: `values`, and wavelengths if there are any."""
+        """The keyword arguments of an equal model: its values, and its wavelengths if any."""
         known = {"wavelengths": self.wavelengths} if self.wavelengths else {}
         return {**known, **self.values}
 
     @property
     def rgb(self) -> Self:
-        """The model with weights in linear sRGB, as RGB pictures show it.
+        """The model with its weights converted to linear sRGB, for RGB pictures.
 
-        A colour outside sRGB is clipped to the bounds of the weight. Lobes with squares of weights
-        (``oren_nayar``, ``eon``) have the square of the colour, not the colour of the square.
+        A colour outside sRGB is clipped to the bounds of the weight. Terms with the square of a
+        weight (``oren_nayar``, ``eon``) use the square of its colour, not the colour of its square.
         """
         return type(self)(**to_rgb_values(self)) if self.wavelengths else self
 
     @property
     def name(self) -> str:
-        """The name of the model in pictures and tables, which is its label."""
+        """The name of the model in pictures and tables: its label."""
         return self.label()
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> NDArray[np.float64]:
@@ -192,7 +198,7 @@ class Model(Shown, Declaration):
         return evaluate_model(self, wi, wo)
 
     def scene_dict(self) -> dict[str, Any]:
-        """Return the dictionary for `mitsuba.load_dict` in the current variant."""
+        """Return the model as a BSDF for `mitsuba.load_dict`, in the current variant."""
         self.make_known()
         entries = {"type": self.type_name(), **self.changed_options()}
         shown = self if self.wavelengths and _is_spectral() else self.rgb

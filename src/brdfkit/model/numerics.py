@@ -1,4 +1,4 @@
-"""Functions that stay accurate in single precision, where lobes are narrow."""
+"""Functions of Dr.Jit values that stay accurate in single precision, for narrow lobes."""
 
 import drjit as dr
 
@@ -6,9 +6,9 @@ from brdfkit.core.array_types import JitFloat
 
 
 def cosine_power(complement: JitFloat, exponent: JitFloat) -> JitFloat:
-    """Return cosine^exponent for `complement` = 1 - cosine, accurate for large exponents.
+    """Return cosine^exponent from `complement` = 1 - cosine, accurate for large exponents.
 
-    It is 0 where the cosine is not positive.
+    The result is 0 where the cosine is not positive.
     """
     power = dr.exp(exponent * log1p(-dr.minimum(complement, 1 - 1e-6)))
     return dr.select(complement < 1, power, 0)

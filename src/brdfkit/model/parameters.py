@@ -1,4 +1,4 @@
-"""The declarations of a model: parameters, which are linear or not, and options."""
+"""The declarations of a model: linear parameters (weights), nonlinear ones (shapes), options."""
 
 import math
 from dataclasses import dataclass
@@ -17,9 +17,10 @@ LARGEST_WEIGHT = 1e100  # the square of a larger weight may be infinite
 class Parameter:
     """A parameter of a model, with its default, its bounds (low, high) and its meaning.
 
-    `linear` says whether it is a weight, `log` whether it is searched on a logarithmic scale.
-    `follows` names the parameter that it equals unless it is given. `width` is p in: lobe width ∝
-    parameter^p.
+    `linear`: whether the parameter is a weight, by which a lobe is multiplied.
+    `log`: whether a fit searches it on a logarithmic scale.
+    `follows`: name of the parameter whose value it takes if it is not given.
+    `width`: exponent p with which the lobe's width is proportional to parameterᵖ, 0 if unrelated.
     """
 
     default: float | None
@@ -34,8 +35,8 @@ class Parameter:
         low, high = self.bounds
         if self.linear and (low, high) not in (NOT_NEGATIVE, SIGNED):
             raise BrdfkitError(
-                f"{self.meaning!r}: a weight is solved for, at least 0 or of any sign; leave its "
-                "bounds out, or give (-math.inf, math.inf)."
+                f"{self.meaning!r}: a weight is at least 0 or of any sign; leave out its bounds, "
+                "or give (-math.inf, math.inf)."
             )
         if not self.linear and not -math.inf < low < high < math.inf:
             raise BrdfkitError(
@@ -48,24 +49,21 @@ class Parameter:
             raise BrdfkitError(f"{self.meaning!r}: the default {problem}.")
 
     def find_problem(self, value: ArrayLike) -> str | None:
-        """Describe what is wrong with one number or several; None if all are within bounds."""
+        """Describe what is wrong with one number or several; return None if all are allowed."""
         low, high = self.bounds
-        given = np.asarray(value)
-        if np.all(np.isfinite(given) & (given >= low) & (given <= high)):
-            large = np.abs(given).max(initial=0) > LARGEST_WEIGHT
-            return (
-                f"{value} is out of bounds: it should be at most {LARGEST_WEIGHT:g}"
-                if large
-                else None
-            )
+        numbers = np.asarray(value)
         limits = f"at least {low:g}" if math.isinf(high) else f"between {low:g} and {high:g}"
+        if np.all(np.isfinite(numbers) & (numbers >= low) & (numbers <= high)):
+            if np.abs(numbers).max(initial=0) <= LARGEST_WEIGHT:
+                return None
+            limits = f"at most {LARGEST_WEIGHT:g}"
         return f"{value} is out of bounds: it should be {limits}"
 
 
 def weight(default: float, meaning: str, bounds: tuple[float, float] = NOT_NEGATIVE) -> Any:
     """Declare a linear parameter: the strength of one lobe in each colour channel.
 
-    `bounds` are ``(0, math.inf)``, or ``(-math.inf, math.inf)`` if the weight may be negative.
+    `bounds` are ``(0, math.inf)``, or ``(-math.inf, math.inf)`` for a weight that may be negative.
     """
     return Parameter(default, bounds, meaning, linear=True)
 
@@ -75,21 +73,26 @@ def shape(
 ) -> Any:
     """Declare a nonlinear parameter within finite `bounds` (low, high).
 
-    `log` is True for a parameter whose order of magnitude matters, such as a width. `width` is p
-    in: lobe width ∝ parameter^p. It is 1 for a width, -0.5 for an exponent n, whose lobe is about
-    1/√n wide, and 0 for all others. A sum of models uses it to begin with unequal widths.
+    `log` is True for a parameter whose order of magnitude matters, such as a width. `width` is the
+    exponent p with which the lobe's width is proportional to parameterᵖ: 1 for a width, -0.5 for an
+    exponent n, whose lobe is about 1/√n wide, 0 for all other parameters. Fits of a sum of equal
+    models use it to start from unequal widths.
     """
     return Parameter(default, bounds, meaning, log=log, width=width)
 
 
 def follows(other: str, parameter: Parameter, meaning: str) -> Any:
-    """Declare a shape parameter that equals the one named `other` unless given, for anisotropy."""
+    """Declare a shape parameter that equals the parameter named `other` unless it is given.
+
+    `parameter` is that other parameter, whose bounds and scale it takes. Anisotropic models declare
+    their second width (alpha_v) in this way.
+    """
     return Parameter(None, parameter.bounds, meaning, log=parameter.log, follows=other)
 
 
 @dataclass(frozen=True)
 class Option:
-    """A choice that is not a number to fit: a form of the model, an order, a count of lobes."""
+    """A choice that is not a number to fit: a form of the model, an order, a number of lobes."""
 
     default: Any
     choices: tuple[Any, ...] | None
@@ -98,22 +101,24 @@ class Option:
     def read(self, given: Any, what: str) -> Any:
         """Convert a word or a number to a value of the option.
 
-        Raises `BrdfkitError`, which calls the option `what`, for a value that is not allowed.
+        Raises `BrdfkitError` for a value that is not allowed; `what` is the option's name in its
+        message.
         """
-        value = type(self.default)(given) if _is_convertible(type(self.default), given) else given
-        if type(value) is not type(self.default) or (self.choices and value not in self.choices):
+        kind = type(self.default)
+        value = kind(given) if _is_convertible(kind, given) else given
+        if type(value) is not kind or (self.choices and value not in self.choices):
             one_of = " or ".join(map(str, self.choices)) if self.choices else "of another kind"
             raise BrdfkitError(f"{what} = {given} should be {one_of}.")
         return value
 
 
 def option(default: Any, choices: tuple[Any, ...] | None, meaning: str) -> Any:
-    """Declare an option with its `choices`; None allows any value of the default's type."""
+    """Declare an option with its `choices`; None allows all values of the default's type."""
     return Option(default, choices, meaning)
 
 
 def _is_convertible(kind: Any, given: Any) -> bool:
-    """Return whether `given` is a value of the type `kind`, or a word for one."""
+    """Return whether `given` is a value of the type `kind`, or a text that converts to one."""
     try:
         return kind(given) == given or str(kind(given)) == given
     except (TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""Reads and converts the values of weights: one number, linear R, G, B, or one per wavelength."""
+"""Reads, checks and converts values of weights: a number, linear R, G, B, or a spectrum."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -8,15 +8,15 @@ import numpy as np
 from brdfkit.core.colours import compute_rgb_weights
 from brdfkit.core.errors import BrdfkitError
 
-CHANNELS = 1, 3  # numbers of a weight without wavelengths: achromatic, linear sRGB
-VISIBLE = 360.0, 830.0  # nm, the range of Mitsuba's spectral variants
-LARGEST_COUNT = 3  # numbers of a weight that are printed
+CHANNELS = 1, 3  # allowed lengths of a weight without wavelengths: achromatic, linear sRGB
+VISIBLE = 360.0, 830.0  # [nm] range of the wavelengths in Mitsuba's spectral variants
+LARGEST_COUNT = 3  # a weight with more numbers than this is printed by its range
 
 
 def check_wavelengths(wavelengths: Any, what: str) -> tuple[float, ...]:
     """Return wavelengths [nm] as a tuple; raise `BrdfkitError` unless they differ and are above 0.
 
-    `what` names the model in the error.
+    `what` is the model's name in the error message.
     """
     try:
         numbers = tuple(map(float, wavelengths))
@@ -26,14 +26,17 @@ def check_wavelengths(wavelengths: Any, what: str) -> tuple[float, ...]:
         raise BrdfkitError(
             f"{what}: wavelengths = {wavelengths!r} should be different numbers above 0 [nm]."
         )
-
     return numbers
 
 
 def read_value(
     value: Any, per_channel: bool, wavelengths: Sequence[float], what: str
 ) -> float | tuple[float, ...]:
-    """Return a value as a float, or as a tuple of floats if it is given `per_channel`."""
+    """Convert a parameter's value to a float, or to a tuple of one float per channel.
+
+    `per_channel` is True for weights. Raises `BrdfkitError` for another value; `what` is the
+    parameter's name in its message.
+    """
     lengths = (1, len(wavelengths)) if wavelengths else CHANNELS
     try:
         if np.ndim(value) == 0:
@@ -52,7 +55,7 @@ def read_value(
 
 
 def to_rgb_values(model: Any) -> dict[str, Any]:
-    """Return the values by name of a model with wavelengths, with its weights in linear sRGB.
+    """Return a spectral model's values by name, with its weights converted to linear sRGB.
 
     A colour outside sRGB is clipped to the bounds of its weight.
     """
@@ -65,7 +68,7 @@ def to_rgb_values(model: Any) -> dict[str, Any]:
 
 
 def to_mitsuba_entries(model: Any) -> dict[str, Any]:
-    """Return a model's values by name for Mitsuba: a colour, a spectrum or a number."""
+    """Convert a model's values to entries of Mitsuba's dictionaries: colour, spectrum or number."""
     entries = {}
     for name, value in model.free_values.items():
         if isinstance(value, tuple) and model.wavelengths:
@@ -77,11 +80,15 @@ def to_mitsuba_entries(model: Any) -> dict[str, Any]:
 
 
 def _make_spectrum(value: tuple[float, ...], wavelengths: Sequence[float], what: str) -> Any:
-    """Make the spectrum of one number per wavelength, linear between these and constant beyond."""
+    """Make Mitsuba's spectrum of one number per wavelength.
+
+    It is linear between the wavelengths and constant beyond them. `what` is the parameter's name
+    in error messages.
+    """
     if min(value) < 0:
         raise BrdfkitError(
-            f"{what} is a spectrum with a value below 0, which Mitsuba does not hold; use an rgb "
-            "or mono variant, or save the material as .bsdf."
+            f"{what} is a spectrum with a value below 0, which Mitsuba does not support; use an "
+            "rgb or mono variant, or save the material as .bsdf."
         )
     if len(value) == 1 or max(value) == 0:  # Mitsuba refuses a spectrum that is 0 everywhere
         return value[0]
@@ -95,7 +102,7 @@ def _make_spectrum(value: tuple[float, ...], wavelengths: Sequence[float], what:
 
 
 def format_value(value: Any) -> str:
-    """Format a value as a short text."""
+    """Format a parameter's value as a short text, such as "0.3" or "[0.1, 0.2, 0.3]"."""
     if not isinstance(value, tuple):
         return f"{value:.4g}"
     if len(value) > LARGEST_COUNT:

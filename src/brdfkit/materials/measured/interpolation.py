@@ -32,8 +32,8 @@ from brdfkit.model.samples import Samples
 from brdfkit.model.samples.coordinates import (
     HIGHLIGHT,
     RETROREFLECTION,
-    anisotropic_coordinates,
-    isotropic_coordinates,
+    to_anisotropic_points,
+    to_isotropic_points,
 )
 from brdfkit.regression import losses, regress
 
@@ -67,12 +67,12 @@ class Interpolant:
         )
         self.coordinates: Callable[[FloatArray, FloatArray], FloatArray]
         if anisotropic:
-            self.coordinates = anisotropic_coordinates
+            self.coordinates = to_anisotropic_points
             wi, wo = np.concatenate([wi, wo]), np.concatenate([wo, wi])
             ratios = np.concatenate([ratios, ratios])
         else:
             scales = _choose_coordinate_scales(wi, wo, ratios)
-            self.coordinates = functools.partial(isotropic_coordinates, scales=scales)
+            self.coordinates = functools.partial(to_isotropic_points, scales=scales)
         self.log_ratio = _InverseDistanceMean(self.coordinates(wi, wo), ratios)
 
     def __call__(self, wi: FloatArray, wo: FloatArray) -> FloatArray:

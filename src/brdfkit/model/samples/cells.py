@@ -1,4 +1,4 @@
-"""Computes the directions of a table's cells, once for all tables of one size."""
+"""Computes the directions of a table's cells, and keeps them for further tables of this size."""
 
 import math
 from functools import lru_cache
@@ -12,7 +12,10 @@ from brdfkit.core.jit.padding import make_padded_rows
 
 
 def minimum_cosine(max_angle: float) -> float:
-    """Return the cosine that z exceeds for angles below `max_angle` [degrees]."""
+    """Return the cosine that a direction exceeds if its angle is below `max_angle` [degrees].
+
+    A small margin excludes directions whose angle equals `max_angle` but for rounding.
+    """
     return math.cos(math.radians(max_angle)) * (1 + 1e-12)
 
 
@@ -20,15 +23,15 @@ def minimum_cosine(max_angle: float) -> float:
 def find_directions_within(
     axes: tuple[tuple[float, ...], ...], max_angle: float
 ) -> tuple[IntArray, FloatArray, FloatArray]:
-    """Find the cells with both angles to the normal below `max_angle` [degrees].
+    """Find the cells of a table whose directions are within `max_angle` [degrees] of the normal.
 
-    `axes` are the centres of cells along ([phi_h,] theta_h, theta_d, phi_d) [rad]. Returns the
-    indices of the cells (n,), in C order, and their directions wi and wo (n, 3), each coordinate
-    contiguous.
+    `axes` are the centres of the cells along ([phi_h,] theta_h, theta_d, phi_d) [rad]. Returns the
+    flat indices of the cells (n,) in C order, and their directions wi and wo (n, 3), with each
+    coordinate contiguous in memory.
     """
     first, *others = axes
     parts, size = [], math.prod(map(len, others))
-    for number, centre in enumerate(first):  # one slab at a time takes little memory
+    for number, centre in enumerate(first):  # one slab at a time, which takes little memory
         *phi_h, theta_h, theta_d, phi_d = np.meshgrid([centre], *others, indexing="ij")
         pair = from_half_difference(theta_h, theta_d, phi_d, *phi_h)
         wi, wo = (w.reshape(-1, 3) for w in pair)
@@ -40,7 +43,7 @@ def find_directions_within(
 
 
 def copy_columns(array: AnyArray, rows: Any = None) -> AnyArray:
-    """Copy an array (n, k), or some rows of it, to contiguous columns, as for Dr.Jit."""
+    """Copy an array (n, k), or its `rows`, with each column contiguous, as Dr.Jit needs it."""
     taken = [values if rows is None else values[rows] for values in array.T]
     columns = make_padded_rows(len(taken), len(taken[0]))
     for column, values in zip(columns, taken, strict=True):

@@ -1,4 +1,4 @@
-"""Samples of a BRDF: direction pairs with the values measured there."""
+"""Samples of a BRDF: pairs of directions with the values that were measured there."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from brdfkit.model.samples.table import Table
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Direction pairs with the values of a BRDF.
+    """Pairs of directions with the measured values of a BRDF.
 
-    `wi` and `wo` are unit vectors (n, 3); `values` (n, channels) in sr⁻¹ are as measured, negative
-    ones included. `valid` (n,) is False where the reader or the format says that nothing was
-    measured. `weight` (n,) is a factor of each sample in every loss, such as a user's weight.
-    `extents` (n, 2) say how much of both measures of `measures.py` each sample stands for, or None
-    if that is unknown.
-
-    For the cells of a table, `cells` holds the indices (n,) of the half vector and of its pair with
-    theta_d, each in increasing order; else None. `errors` (n, channels) are the standard errors of
-    the values where they are known and count.
+    `wi` and `wo`: unit vectors (n, 3).
+    `values`: measured values (n, channels) in sr⁻¹, which may be negative.
+    `valid`: mask (n,), False where nothing was measured.
+    `weight`: factor (n,) of each sample in every loss, such as a user's weight.
+    `extents`: amounts (n, 2) of angles and of solid angle that each sample represents, by the two
+    measures of `measures.py`, or None if unknown.
+    `cells`: for samples of a table, two arrays (n,), in increasing order: the index of the half
+    vector's cell, and the index of its pair with theta_d; otherwise None.
+    `errors`: standard errors (n, channels) of the values, or None if a fit should not use any.
     """
 
     wi: AnyArray
@@ -48,12 +48,11 @@ class Samples:
         channels: Sequence[str],
         name: str,
     ) -> Samples:
-        """Make samples from arrays as a user gives them.
+        """Make samples from a user's arrays, normalising the directions `wi` and `wo` (n, 3).
 
-        `wi` and `wo` are vectors (n, 3), which are normalised here; `values` (n, channels), or (n,)
-        for one channel; `valid` (n,) or None. Samples that are not finite or have a direction below
-        the surface become invalid. Raises `BrdfkitError` for shapes that do not fit, and where no
-        sample is valid.
+        `values` are (n, channels), or (n,) for one channel; `valid` is (n,) or None. Samples that
+        are not finite or have a direction below the surface become invalid. Raises `BrdfkitError`
+        for wrong shapes, and if no sample is valid; `name` is the material's name in its message.
         """
         given = [np.array(a, float) for a in (wi, wo, values)]
         w_i, w_o, f = (np.atleast_2d(a) for a in given)
@@ -75,7 +74,7 @@ class Samples:
 
     @classmethod
     def from_table(cls, table: Table) -> Samples:
-        """Make one sample for each cell of a table, at the cell's centre."""
+        """Make one sample for every cell of a table, at the cell's centre."""
         wi, wo = (w.reshape(-1, 3) for w in table.directions())
         values = table.values.reshape(len(wi), -1)
         return cls(wi, wo, values, _find_usable(wi, wo, values), np.ones(len(wi)))
@@ -88,10 +87,10 @@ class Samples:
         factors: AnyArray | None = None,
         errors: AnyArray | None = None,
     ) -> Samples:
-        """Make samples of the known cells of a table with both angles below `max_angle` [degrees].
+        """Make samples of a table's known cells within `max_angle` [degrees] of the normal.
 
-        `factors` (cells,) are factors of the weights, and `errors` (cells, channels) standard
-        errors, for all cells in C order.
+        `factors` (cells,) become the weights of the samples, and `errors` (cells, channels) their
+        standard errors; both are given for all cells of the table, in C order.
         """
         axes = tuple(tuple(axis.tolist()) for axis in table.centres)
         cells, wi, wo = find_directions_within(axes, float(max_angle))
@@ -109,16 +108,16 @@ class Samples:
 
     @property
     def largest_angle(self) -> float:
-        """The largest angle to the normal of all directions [degrees]."""
+        """The largest angle [degrees] between the normal and a direction of the samples."""
         return float(np.degrees(np.arccos(min(self.wi[:, 2].min(), self.wo[:, 2].min(), 1.0))))
 
     def within(self, max_angle: float) -> BoolArray:
-        """Return a mask (n,) of the valid samples with θ_i and θ_o below `max_angle` [degrees]."""
+        """Return a mask (n,) of valid samples within `max_angle` [degrees] of the normal."""
         cos_min = minimum_cosine(max_angle)
         return self.valid & (self.wi[:, 2] > cos_min) & (self.wo[:, 2] > cos_min)
 
     def at(self, rows: Any) -> Samples:
-        """Return the samples of some `rows`, a mask or indices."""
+        """Return only the samples of the given `rows`, a mask (n,) or indices."""
         wi, wo, values = (copy_columns(a, rows) for a in (self.wi, self.wo, self.values))
         cells = self.cells and tuple(numbers[rows] for numbers in self.cells)
         extents, errors = (a if a is None else a[rows] for a in (self.extents, self.errors))
@@ -126,9 +125,9 @@ class Samples:
 
 
 def require_valid(valid: AnyArray, name: str, values: AnyArray, channels: Sequence[str]) -> None:
-    """Raise `BrdfkitError` where no sample is valid, by a mask `valid` (...).
+    """Raise `BrdfkitError` if the mask `valid` (...) of the material `name` is False everywhere.
 
-    The error names the `channels` that have no finite value among `values` (..., channels).
+    The message names the `channels` that have no finite value among `values` (..., channels).
     """
     if not valid.any():
         known = np.isfinite(values).reshape(-1, len(channels))
@@ -144,15 +143,15 @@ def require_valid(valid: AnyArray, name: str, values: AnyArray, channels: Sequen
 
 
 def _check_mask(valid: ArrayLike, n: int, name: str) -> BoolArray:
-    """Return a user's mask as an array (n,); raise `BrdfkitError` for another shape."""
+    """Convert a user's mask to an array (n,) of bool; raise `BrdfkitError` for another shape."""
     valid = np.asarray(valid, bool)
     if valid.shape != (n,):
         raise BrdfkitError(
-            f"{name}: valid {valid.shape} should be ({n},), one for each of the samples."
+            f"{name}: the shape of valid, {valid.shape}, should be ({n},): one entry per sample."
         )
     return valid
 
 
 def _find_usable(wi: AnyArray, wo: AnyArray, values: AnyArray) -> BoolArray:
-    """Return a mask (n,) of samples with finite values and directions above the surface."""
+    """Return a mask (n,) of the samples with finite values and directions above the surface."""
     return np.isfinite(values).all(axis=1) & (wi[:, 2] > 0) & (wo[:, 2] > 0)

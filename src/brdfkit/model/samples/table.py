@@ -1,9 +1,10 @@
-"""A table over half/difference coordinates, with the cells of MERL and multilinear interpolation.
+"""A table of BRDF values over half and difference angles, interpolated linearly along each axis.
 
-The cells are those of [Matusik et al. 2003]. The axis theta_h is square-root spaced, so that cells
-are small where highlights are; theta_d and phi_d are evenly spaced. An anisotropic table has the
-azimuth phi_h of the half vector as its first axis, evenly spaced over the full circle. A cell's
-value belongs to the cell's centre.
+The cells are those of the MERL database [Matusik et al. 2003]. The axis theta_h, the angle of the
+half vector to the normal, is divided evenly in √theta_h, so that cells are small where highlights
+are; the axes of the difference angles theta_d and phi_d are divided evenly. An anisotropic table
+has the azimuth phi_h of the half vector as its first axis, divided evenly over the full circle. The
+value of a cell belongs to its centre.
 """
 
 from __future__ import annotations
@@ -24,15 +25,15 @@ from brdfkit.core.geometry.multilinear import (
     to_flat_index,
 )
 
-LARGEST = 1e30  # [sr⁻¹] that is rendered; single precision ends at 3e38
+LARGEST = 1e30  # [sr⁻¹] largest value to be rendered, since single precision ends at 3e38
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """A table of BRDF values ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹.
+    """A table of BRDF values over the half and difference angles, and their interpolation.
 
-    Unknown cells are NaN. `phi_d_period` is π for a reciprocal table, which needs half of the
-    azimuths phi_d, else 2π.
+    `values`: the BRDF ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d, channels) in sr⁻¹, NaN in unknown
+    cells. `phi_d_period`: range of phi_d [rad], π for a reciprocal table, otherwise 2π.
 
     >>> Table(np.full((9, 9, 18, 1), 1 / np.pi)).eval([[0, 0, 1.0]], [[0, 0, 1.0]])
     array([[0.31830989]])
@@ -48,7 +49,7 @@ class Table:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """The numbers of cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)."""
+        """The numbers of cells along the axes, ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)."""
         return self.values.shape[:-1]
 
     @cached_property
@@ -67,9 +68,10 @@ class Table:
 
     @property
     def extents(self) -> FloatArray:
-        """The shares (n_theta_h, n_theta_d, 2) of both measures that a cell stands for.
+        """The amounts (n_theta_h, n_theta_d, 2) of angles and of solid angle in a cell.
 
-        They do not depend on the azimuths.
+        They are the extents of the cell by the two measures of `measures.py`, and do not depend on
+        its azimuths.
         """
         n_h, n_d, n_p = self.shape[-3:]
         azimuths = n_p * (self.shape[0] if self.anisotropic else 1)
@@ -83,12 +85,15 @@ class Table:
         return np.stack([angles, solid], axis=-1) * 2 * np.pi / azimuths
 
     def directions(self) -> tuple[FloatArray, FloatArray]:
-        """Return (wi, wo) at the centre of every cell, each (*shape, 3), also below the surface."""
+        """Return the directions (wi, wo) at the centres of all cells, each (*shape, 3).
+
+        Some of them are below the surface.
+        """
         *phi_h, theta_h, theta_d, phi_d = np.meshgrid(*self.centres, indexing="ij")
         return from_half_difference(theta_h, theta_d, phi_d, *phi_h)
 
     def find_cells(self, wi: ArrayLike, wo: ArrayLike) -> tuple[IntArray, ...]:
-        """Return the cells of direction pairs (n, 3), as an array of indices (n,) for each axis."""
+        """Find the cells of direction pairs (n, 3); return one array of indices (n,) per axis."""
         theta_h, theta_d, phi_d = to_half_difference(wi, wo)
         places = [
             np.sqrt(theta_h / (np.pi / 2)),
@@ -102,32 +107,32 @@ class Table:
 
     @cached_property
     def filled_values(self) -> AnyArray:
-        """The values with each unknown cell filled from the nearest known one, counted in cells.
+        """The values, where each unknown cell has the value of the nearest known cell.
 
-        Both azimuths are periodic, phi_d with its own period.
+        Distances are counted in cells. Both azimuths are periodic.
         """
         unknown = np.isnan(self.values).any(axis=-1)
         if not unknown.any():
             return self.values
         from scipy.ndimage import distance_transform_edt
 
-        # Periodic axes are extended at both ends by as many cells as may hold the nearest one
+        # Periodic axes are extended at both ends, far enough to find the nearest known cell there
         farthest = int(np.ceil(distance_transform_edt(unknown).max()))
         azimuths = (0, 3) if self.anisotropic else (2,)
         added = [min(farthest, n // 2) * (k in azimuths) for k, n in enumerate(self.shape)]
         wrapped = np.pad(unknown, [(a, a) for a in added], mode="wrap")
-        # Index along each axis of the nearest known cell, back in the table that is not extended
+        # Indices of the nearest known cell along each axis, converted to the original table
         nearest = distance_transform_edt(wrapped, return_distances=False, return_indices=True)
         own = tuple(slice(a, a + n) for a, n in zip(added, self.shape, strict=True))
         cells = [(i[own] - a) % n for i, a, n in zip(nearest, added, self.shape, strict=True)]
         return self.values[tuple(cells)]
 
     def mix_channels(self, weights: AnyArray) -> Table:
-        """Return a table in new channels, the old ones times `weights` (old, new)."""
+        """Return a table whose channels are the present channels times `weights` (present, new)."""
         return replace(self, values=self.values @ weights)
 
     def scene_dict(self) -> dict[str, Any]:
-        """Return the dictionary for `mitsuba.load_dict`; the caller adds wavelengths.
+        """Return the table as a BSDF for `mitsuba.load_dict`; the caller adds wavelengths.
 
         Raises `BrdfkitError` for values that are too large for single precision.
         """
@@ -137,8 +142,8 @@ class Table:
         largest = max(values.max(), -values.min())
         if not largest < LARGEST:
             raise BrdfkitError(
-                f"A measured value of {largest:.3g} 1/sr is too large to be rendered; above "
-                f"{LARGEST:g} it is no BRDF: mend the data."
+                f"A measured value of {largest:.3g} 1/sr is too large to be rendered (the limit "
+                f"is {LARGEST:g}); check the data."
             )
         return {
             "type": "measured_table",
@@ -147,10 +152,10 @@ class Table:
         }
 
     def eval(self, wi: ArrayLike, wo: ArrayLike) -> AnyArray:
-        """Compute the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3), multilinearly.
+        """Interpolate the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3), linearly per axis.
 
-        It is clamped at the ends of theta_h and theta_d, periodic in the azimuths, and 0 below the
-        surface.
+        Beyond the outermost centres of theta_h and theta_d it is constant; it is periodic in the
+        azimuths, and 0 below the surface.
         """
         wi, wo = np.asarray(wi, float), np.asarray(wo, float)
         theta_h, theta_d, phi_d = to_half_difference(wi, wo)
@@ -165,7 +170,7 @@ class Table:
             phi_h = half_azimuth(wi, wo)
             axes.insert(0, find_periodic_bracket(phi_h / (2 * np.pi) * n_a - 0.5, n_a))
 
-        # np.take with flat indices is several times as fast as an index on each axis
+        # np.take with flat indices is several times as fast as indexing along every axis
         values = self.filled_values.reshape(-1, self.values.shape[-1])
         result = np.zeros((*theta_h.shape, values.shape[-1]))
         for nodes, share in list_corners(axes):
@@ -173,4 +178,4 @@ class Table:
         above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
         return np.where(above[..., None], result, 0.0)
 
-    __call__ = eval  # a table can be the lookup function of a `Measured`
+    __call__ = eval  # so that a table can be the function of a `Measured`
