@@ -21,7 +21,7 @@ from leaderboard.page import write_page
 from leaderboard.truth import MAX_ANGLE, PAIRS, Truth
 
 import brdfkit as bk
-from brdfkit.core.files import sha256, write_safely
+from brdfkit.core.files import compute_sha256, write_safely
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
 from brdfkit.regression import regress
@@ -175,7 +175,7 @@ def judge(rows, collection, networks, kept):
 
     for row in rows:
         if row.fit:
-            key = f"{row.loss}/{row.material}/{row.model}/{sha256(row.saved)}"
+            key = f"{row.loss}/{row.material}/{row.model}/{compute_sha256(row.saved)}"
             score = row.material, row.model, row.loss, kept(key, error, row), row.error
             yield Score(collection, *score, row.parameters)
     kept.write()

@@ -35,7 +35,7 @@ import brdfkit as bk
 from brdfkit.core import catalogue
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.files import write_safely
-from brdfkit.core.jit.threads import use_threads
+from brdfkit.core.jit.threads import set_thread_count
 from brdfkit.core.json_values import round_numbers
 
 RESULTS = Path(__file__).parents[1] / "real_measurements.json"
@@ -86,13 +86,13 @@ def table_of(name, folder):
 
 def measure_file(name, folder):
     """The figures of one measured file."""
-    use_threads(1)
+    set_thread_count(1)
     return measure(bk.load(str(folder / name)))
 
 
 def measure_invariance(name, folder):
     """Model → loss → how the fits of one material differ by the file that it is read from."""
-    use_threads(1)
+    set_thread_count(1)
     table = table_of(name, folder)
     with tempfile.TemporaryDirectory() as beside:
         files = {kind: read_again(kind, table, Path(beside)) for kind in FILES}

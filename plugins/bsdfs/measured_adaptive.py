@@ -50,7 +50,7 @@ def define(mi: MitsubaModule) -> type:
                 make_channels(np.array(props[name]).reshape(-1, props[name].shape[-1]), wavelengths)
                 for name in ("values", "albedo")
             )
-            self.draw_by(self.lookup, not props["isotropic"], COSINE_SHARE)
+            self.set_sampling(self.lookup, not props["isotropic"], COSINE_SHARE)
             self.shape = props["values"].shape
 
         def brdf(self, wi: JitVector, wo: JitVector, si: MitsubaObject) -> JitColour:

@@ -45,7 +45,7 @@ def define(mi: MitsubaModule) -> type:
             size: dict[str, Any] = ANISOTROPIC if self.table.anisotropic else {}
             half_vectors = HalfVectorTable(self.eval_in_numpy, **size)
             self.albedos = make_channels(half_vectors.albedo, wavelengths)
-            self.draw_by(half_vectors, self.table.anisotropic)
+            self.set_sampling(half_vectors, self.table.anisotropic)
 
         def eval_in_numpy(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
             """Return the BRDF (n, channels) in sr⁻¹ at direction pairs (n, 3), in NumPy."""

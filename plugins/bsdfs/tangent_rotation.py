@@ -16,11 +16,17 @@ from brdfkit.core.array_types import (
     MitsubaModule,
     MitsubaObject,
 )
-from brdfkit.mitsuba_bridge.properties.declarations import bsdf, derive_plugin, texture
+from brdfkit.mitsuba_bridge.properties.declarations import (
+    declare_bsdf,
+    declare_texture,
+    derive_plugin,
+)
 
 PARAMETERS = {
-    "angle": texture(0.0, "from the surface's u axis to the material's, counterclockwise [rad]"),
-    "bsdf": bsdf("the material to turn; in a scene file it needs this name"),
+    "angle": declare_texture(
+        0.0, "from the surface's u axis to the material's, counterclockwise [rad]"
+    ),
+    "bsdf": declare_bsdf("the material to turn; in a scene file it needs this name"),
 }
 
 

@@ -32,13 +32,15 @@ from brdfkit.core.array_types import FloatArray, MitsubaModule, MitsubaObject
 from brdfkit.lighting.sampling.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
 from brdfkit.lighting.sampling.emitter import MAP_PARAMETERS, environment_emitter, make_small_sky
 from brdfkit.lighting.sampling.tree import CRITERIA
-from brdfkit.mitsuba_bridge.properties.declarations import count, word
+from brdfkit.mitsuba_bridge.properties.declarations import declare_choice, declare_int
 
 PARAMETERS = MAP_PARAMETERS | {
-    "blocks": count(4096, (1, 1_000_000), "largest number of blocks that the map is cut into"),
-    "criterion": word(CRITERIA, "which block is cut next"),
-    "distribution": word(DISTRIBUTIONS, "how a block is chosen"),
-    "lookup": word(LOOKUPS, "how the density at a direction is found"),
+    "blocks": declare_int(
+        4096, (1, 1_000_000), "largest number of blocks that the map is cut into"
+    ),
+    "criterion": declare_choice(CRITERIA, "which block is cut next"),
+    "distribution": declare_choice(DISTRIBUTIONS, "how a block is chosen"),
+    "lookup": declare_choice(LOOKUPS, "how the density at a direction is found"),
 }
 
 

@@ -26,7 +26,7 @@ from brdfkit.core.array_types import (
 from brdfkit.lighting.sampling.emitter import MAP_PARAMETERS, environment_emitter, make_small_sky
 from brdfkit.lighting.sampling.power_map import cell_power, pixel_power
 from brdfkit.mitsuba_bridge.arrays import Integers, Rows, find_cell
-from brdfkit.mitsuba_bridge.properties.declarations import word
+from brdfkit.mitsuba_bridge.properties.declarations import declare_choice
 
 # `lighting/sampling/__init__.py` lists the methods that the three map samplers below share
 
@@ -169,7 +169,9 @@ def make_alias_table(weights: FloatArray) -> tuple[FloatArray, IntArray]:
 
 
 SAMPLERS = {"cdf": Cdf, "mip": Mip, "alias": Alias}
-PARAMETERS = MAP_PARAMETERS | {"sampler": word(SAMPLERS, "how points of the map are drawn")}
+PARAMETERS = MAP_PARAMETERS | {
+    "sampler": declare_choice(SAMPLERS, "how points of the map are drawn")
+}
 
 
 def define(mi: MitsubaModule) -> type:

@@ -43,11 +43,13 @@ from brdfkit.lighting.visibility.casters import Casters
 from brdfkit.lighting.visibility.decomposition import CONCAVITY
 from brdfkit.lighting.visibility.occluders import RESOLUTION, Occluders
 from brdfkit.mitsuba_bridge.check_scenes import make_film
-from brdfkit.mitsuba_bridge.properties.declarations import count, derive_plugin, plain_number
+from brdfkit.mitsuba_bridge.properties.declarations import declare_float, declare_int, derive_plugin
 
 PARAMETERS = {
-    "concavity": plain_number(CONCAVITY, (0.01, 1.0), "largest distance of a part to its hull"),
-    "resolution": count(RESOLUTION, (4, 1024), "texels along a side of the largest part's map"),
+    "concavity": declare_float(CONCAVITY, (0.01, 1.0), "largest distance of a part to its hull"),
+    "resolution": declare_int(
+        RESOLUTION, (4, 1024), "texels along a side of the largest part's map"
+    ),
 }
 
 

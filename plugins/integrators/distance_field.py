@@ -73,25 +73,25 @@ from brdfkit.distance_fields.shadows.shadow import DIRECTIONS
 from brdfkit.mitsuba_bridge.check_scenes import make_film
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 from brdfkit.mitsuba_bridge.properties.declarations import (
-    count,
+    declare_choice,
+    declare_float,
+    declare_int,
+    declare_text,
     derive_plugin,
-    plain_number,
-    text,
-    word,
 )
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 
 PARAMETERS = {
-    "filename": text("", "file of the field, as JSON"),
-    "field": text("", "or the field itself, by `field.to_json()`"),
-    "shadow": word(SHADOWS, "the method that finds shadows"),
-    "direction": word(DIRECTIONS, "where marches start"),
-    "epsilon": plain_number(0.05, (1e-3, 0.5), "largest error of the visible share of a lamp"),
-    "rays": count(64, (1, 65_536), "rays of monte_carlo"),
-    "shading": word(SHADINGS, "the method that sums up light"),
-    "samples": count(4, (1, 65_536), "samples of each lamp and of the sky"),
-    "far": plain_number(0.0, (0, 1e9), "length of rays [unit]; 0: by the size of the field"),
-    "precision": plain_number(0.0, (0, 1e3), "radius of the thinnest rays [unit]; 0: by the size"),
+    "filename": declare_text("", "file of the field, as JSON"),
+    "field": declare_text("", "or the field itself, by `field.to_json()`"),
+    "shadow": declare_choice(SHADOWS, "the method that finds shadows"),
+    "direction": declare_choice(DIRECTIONS, "where marches start"),
+    "epsilon": declare_float(0.05, (1e-3, 0.5), "largest error of the visible share of a lamp"),
+    "rays": declare_int(64, (1, 65_536), "rays of monte_carlo"),
+    "shading": declare_choice(SHADINGS, "the method that sums up light"),
+    "samples": declare_int(4, (1, 65_536), "samples of each lamp and of the sky"),
+    "far": declare_float(0.0, (0, 1e9), "length of rays [unit]; 0: by the size of the field"),
+    "precision": declare_float(0.0, (0, 1e3), "radius of the thinnest rays [unit]; 0: by the size"),
 }
 # Defaults of `far` and `precision` in radii of a sphere about the field; `far` is at least 1000
 RAY_LENGTH, PRECISION = 1e3, 1e-4

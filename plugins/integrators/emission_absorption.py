@@ -43,17 +43,22 @@ from brdfkit.core.array_types import (
 from brdfkit.core.jit.loops import record_loops
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission, make_white_light
 from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
-from brdfkit.mitsuba_bridge.properties.declarations import count, derive_plugin, flag, volume
+from brdfkit.mitsuba_bridge.properties.declarations import (
+    declare_bool,
+    declare_int,
+    declare_volume,
+    derive_plugin,
+)
 from brdfkit.model.numerics import expm1
 from brdfkit.volumes.rays.box import evaluate_light_behind, intersect_box
 
 OPAQUE_TRANSMITTANCE = 1e-4
 
 PARAMETERS = {
-    "extinction": volume(1.0, "σ: absorbed share per unit, within its box", coloured=False),
-    "emission": volume(0.0, "e: radiance that is added per unit of length"),
-    "steps": count(128, (1, 1_000_000), "parts that a ray is cut into"),
-    "jitter": flag(False, "whether the parts are shifted by a random share of one"),
+    "extinction": declare_volume(1.0, "σ: absorbed share per unit, within its box", coloured=False),
+    "emission": declare_volume(0.0, "e: radiance that is added per unit of length"),
+    "steps": declare_int(128, (1, 1_000_000), "parts that a ray is cut into"),
+    "jitter": declare_bool(False, "whether the parts are shifted by a random share of one"),
 }
 
 

@@ -44,7 +44,7 @@ from brdfkit.core.array_types import (
     MitsubaModule,
     MitsubaObject,
 )
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.lighting.filtering.filtered_light import FILTERS, FilteredLight, Light
 from brdfkit.lighting.filtering.filtered_sampling import FilteredSampling
 from brdfkit.lighting.filtering.lobe_light import LobeLight
@@ -55,25 +55,25 @@ from brdfkit.lighting.visibility.occluders import RESOLUTION
 from brdfkit.lighting.visibility.shadowed_light import ShadowedLight
 from brdfkit.mitsuba_bridge.check_scenes import make_film
 from brdfkit.mitsuba_bridge.properties.declarations import (
-    count,
+    declare_choice,
+    declare_float,
+    declare_int,
+    declare_text,
     derive_plugin,
-    plain_number,
-    text,
-    word,
 )
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 
 METHODS = "filtered_sampling", *LOBES
 PARAMETERS = {
-    "method": text(METHODS[0], ", ".join(METHODS)),
-    "samples": count(
+    "method": declare_text(METHODS[0], ", ".join(METHODS)),
+    "samples": declare_int(
         64, (1, 65_536), "directions of filtered_sampling, for all rays of a pixel together"
     ),
-    "lobes": count(32, (1, 1024), "lobes per view in gmm, kde and elliptic"),
-    "filter": text("lobes", "lobes, or mips like graphics hardware"),
-    "resolution": count(512, (32, 1024), "texels across a hemisphere of the light"),
-    "shadows": word(("none", "shapes", "convex"), "what casts shadows"),
-    "concavity": plain_number(
+    "lobes": declare_int(32, (1, 1024), "lobes per view in gmm, kde and elliptic"),
+    "filter": declare_text("lobes", "lobes, or mips like graphics hardware"),
+    "resolution": declare_int(512, (32, 1024), "texels across a hemisphere of the light"),
+    "shadows": declare_choice(("none", "shapes", "convex"), "what casts shadows"),
+    "concavity": declare_float(
         CONCAVITY, (0.01, 1.0), "largest distance of a convex part to its hull"
     ),
 }
@@ -88,7 +88,7 @@ def define(mi: MitsubaModule) -> type:
             super().__init__(props)
             for name, known in (("method", METHODS), ("filter", FILTERS)):
                 if getattr(self, name) not in known:
-                    raise no_such(name, getattr(self, name), known, where="filtered_environment")
+                    raise no_such_error(name, getattr(self, name), known, "filtered_environment")
             self.shading = _choose_shading(mi, self.method, self.samples, self.lobes)
             self.light = FilteredLight(FILTERS[self.filter], self.resolution)
             self.casters = Casters(self.concavity, RESOLUTION, self.shadows == "convex")

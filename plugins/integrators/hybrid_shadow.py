@@ -24,12 +24,12 @@ from typing import Any
 from brdfkit.core.array_types import FloatArray, MitsubaModule, MitsubaObject
 from brdfkit.mitsuba_bridge.check_scenes import make_shadow_scene
 from brdfkit.mitsuba_bridge.direct_light import derive_shadow_integrator
-from brdfkit.mitsuba_bridge.properties.declarations import count, plain_number
+from brdfkit.mitsuba_bridge.properties.declarations import declare_float, declare_int
 from brdfkit.shadows.hybrid import hybrid_shadow
 
 PARAMETERS = {
-    "resolution": count(256, (2, 4096), "texels along a side of each map"),
-    "jump": plain_number(8.0, (0.0, 1e6), "change of depth at a silhouette [width of a texel]"),
+    "resolution": declare_int(256, (2, 4096), "texels along a side of each map"),
+    "jump": declare_float(8.0, (0.0, 1e6), "change of depth at a silhouette [width of a texel]"),
 }
 
 

@@ -36,12 +36,12 @@ from brdfkit.core.array_types import (
 )
 from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import (
-    bsdf,
-    count,
+    declare_bool,
+    declare_bsdf,
+    declare_int,
+    declare_number,
+    declare_volume,
     derive_plugin,
-    flag,
-    number,
-    volume,
 )
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 from brdfkit.mitsuba_bridge.surface_points import make_interaction
@@ -61,11 +61,11 @@ from brdfkit.volumes.rays.search import (
 )
 
 PARAMETERS = {
-    "volume": volume(1.0, "the values, or a transfer_function", False, least=-np.inf),
-    "level": number(0.5, (-1e9, 1e9), "larger values, or A, are inside"),
-    "steps": count(256, (1, 1_000_000), "parts that a ray is cut into"),
-    "bsdf": bsdf("the material"),
-    "shadows": flag(False, "whether the surface hides lights from itself"),
+    "volume": declare_volume(1.0, "the values, or a transfer_function", False, least=-np.inf),
+    "level": declare_number(0.5, (-1e9, 1e9), "larger values, or A, are inside"),
+    "steps": declare_int(256, (1, 1_000_000), "parts that a ray is cut into"),
+    "bsdf": declare_bsdf("the material"),
+    "shadows": declare_bool(False, "whether the surface hides lights from itself"),
 }
 
 

@@ -35,15 +35,20 @@ from brdfkit.core.array_types import (
 )
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
-from brdfkit.mitsuba_bridge.properties.declarations import count, derive_plugin, flag, volume
+from brdfkit.mitsuba_bridge.properties.declarations import (
+    declare_bool,
+    declare_int,
+    declare_volume,
+    derive_plugin,
+)
 from brdfkit.volumes.rays.box import evaluate_light_behind, intersect_box
 from brdfkit.volumes.rays.search import find_distance_of_maximum
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
 PARAMETERS = {
-    "volume": volume(0.0, "a transfer_function, or any other volume in grey", False),
-    "steps": count(256, (1, 1_000_000), "parts that a ray is cut into"),
-    "jitter": flag(True, "whether the place in each part is random"),
+    "volume": declare_volume(0.0, "a transfer_function, or any other volume in grey", False),
+    "steps": declare_int(256, (1, 1_000_000), "parts that a ray is cut into"),
+    "jitter": declare_bool(True, "whether the place in each part is random"),
 }
 
 

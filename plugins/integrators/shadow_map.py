@@ -31,22 +31,29 @@ from typing import Any
 from brdfkit.core.array_types import FloatArray, MitsubaModule, MitsubaObject
 from brdfkit.mitsuba_bridge.check_scenes import make_shadow_scene
 from brdfkit.mitsuba_bridge.direct_light import derive_shadow_integrator
-from brdfkit.mitsuba_bridge.properties.declarations import count, flag, plain_number, word
+from brdfkit.mitsuba_bridge.properties.declarations import (
+    declare_bool,
+    declare_choice,
+    declare_float,
+    declare_int,
+)
 from brdfkit.shadows.maps.light_shadow import DEPTHS, LightShadow
 from brdfkit.shadows.maps.map_point import AUTOMATIC, Bias
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.techniques import FILES, find_settings, list_settings
 
 PARAMETERS = {
-    "projection": word(FILES["projection"], "how a map projects the scene", "focused"),
-    "filter": word(FILES["filter"], "how a map is read", "depth"),
-    "partition": word(FILES["partition"], "how the scene is divided among maps", "whole"),
-    "resolution": count(1024, (1, 16384), "texels along a side of each map"),
-    "bias": plain_number(AUTOMATIC.constant, (0.0, 1.0), "share of the light's way in the scene"),
-    "depth": word(DEPTHS, "the kind of depth that a map holds"),
-    "slope_bias": plain_number(0.0, (0.0, 100.0), "bias in steps of depth from texel to texel"),
-    "normal_offset": plain_number(0.0, (0.0, 100.0), "bias along the normal [texels]"),
-    "plane_bias": flag(AUTOMATIC.plane, "whether texels are compared with the tangent plane"),
+    "projection": declare_choice(FILES["projection"], "how a map projects the scene", "focused"),
+    "filter": declare_choice(FILES["filter"], "how a map is read", "depth"),
+    "partition": declare_choice(FILES["partition"], "how the scene is divided among maps", "whole"),
+    "resolution": declare_int(1024, (1, 16384), "texels along a side of each map"),
+    "bias": declare_float(AUTOMATIC.constant, (0.0, 1.0), "share of the light's way in the scene"),
+    "depth": declare_choice(DEPTHS, "the kind of depth that a map holds"),
+    "slope_bias": declare_float(0.0, (0.0, 100.0), "bias in steps of depth from texel to texel"),
+    "normal_offset": declare_float(0.0, (0.0, 100.0), "bias along the normal [texels]"),
+    "plane_bias": declare_bool(
+        AUTOMATIC.plane, "whether texels are compared with the tangent plane"
+    ),
     **list_settings(),
 }
 

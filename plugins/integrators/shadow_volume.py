@@ -35,7 +35,11 @@ from brdfkit.core.array_types import FloatArray, MitsubaModule, MitsubaObject
 from brdfkit.core.projective.light import Light
 from brdfkit.mitsuba_bridge.check_scenes import make_shadow_scene
 from brdfkit.mitsuba_bridge.direct_light import derive_shadow_integrator
-from brdfkit.mitsuba_bridge.properties.declarations import flag, plain_number, word
+from brdfkit.mitsuba_bridge.properties.declarations import (
+    declare_bool,
+    declare_choice,
+    declare_float,
+)
 from brdfkit.shadows.volumes.casters import CASTERS
 from brdfkit.shadows.volumes.light_volumes import FAR_PLANES, METHODS, LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
@@ -44,13 +48,13 @@ from brdfkit.shadows.volumes.silhouettes import SILHOUETTES
 from brdfkit.shadows.volumes.volume import BACK_CAPS
 
 PARAMETERS = {
-    "method": word(METHODS, "which faces count"),
-    "near_cap": flag(False, "whether depth_pass starts with the shadows on the near plane"),
-    "extrusion": plain_number(0.0, (0.0, 1e9), "length of the walls [unit]; 0: infinite"),
-    "far_plane": word(FAR_PLANES, "where faces are clipped"),
-    "casters": word(CASTERS, "which triangles make the volumes"),
-    "silhouettes": word(SILHOUETTES, "how their silhouettes are found"),
-    "back_cap": word(BACK_CAPS, "how volumes end"),
+    "method": declare_choice(METHODS, "which faces count"),
+    "near_cap": declare_bool(False, "whether depth_pass starts with the shadows on the near plane"),
+    "extrusion": declare_float(0.0, (0.0, 1e9), "length of the walls [unit]; 0: infinite"),
+    "far_plane": declare_choice(FAR_PLANES, "where faces are clipped"),
+    "casters": declare_choice(CASTERS, "which triangles make the volumes"),
+    "silhouettes": declare_choice(SILHOUETTES, "how their silhouettes are found"),
+    "back_cap": declare_choice(BACK_CAPS, "how volumes end"),
 }
 
 

@@ -55,12 +55,12 @@ from brdfkit.core.array_types import (
 )
 from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import (
-    count,
+    declare_choice,
+    declare_int,
+    declare_number,
+    declare_phase,
+    declare_volume,
     derive_plugin,
-    number,
-    phase,
-    volume,
-    word,
 )
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 from brdfkit.volumes.light import emitters
@@ -72,13 +72,15 @@ ROULETTE_DEPTH = 5  # number of scatterings after which dark paths end at random
 SMALLEST_CHANCE = 0.05
 
 PARAMETERS = {
-    "extinction": volume(1.0, "σ: collisions per unit of length", coloured=False),
-    "scale": number(1.0, (0.0, math.inf), "what σ is multiplied by"),
-    "albedo": volume(1.0, "α: share of the collisions that scatter light"),
-    "emission": volume(0.0, "e: radiance that is added per unit of length"),
-    "phase": phase("p: the directions of scattered light, by default uniform"),
-    "max_depth": count(2, (1, 1_000_000), "largest number of segments of a path"),
-    "majorants": word(("local", "global"), "bounds of σ: of coarse cells, or one for all"),
+    "extinction": declare_volume(1.0, "σ: collisions per unit of length", coloured=False),
+    "scale": declare_number(1.0, (0.0, math.inf), "what σ is multiplied by"),
+    "albedo": declare_volume(1.0, "α: share of the collisions that scatter light"),
+    "emission": declare_volume(0.0, "e: radiance that is added per unit of length"),
+    "phase": declare_phase("p: the directions of scattered light, by default uniform"),
+    "max_depth": declare_int(2, (1, 1_000_000), "largest number of segments of a path"),
+    "majorants": declare_choice(
+        ("local", "global"), "bounds of σ: of coarse cells, or one for all"
+    ),
 }
 
 

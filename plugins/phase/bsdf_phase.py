@@ -30,11 +30,15 @@ from brdfkit.core.array_types import (
     MitsubaObject,
 )
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.mitsuba_bridge.properties.declarations import bsdf, derive_plugin, volume
+from brdfkit.mitsuba_bridge.properties.declarations import (
+    declare_bsdf,
+    declare_volume,
+    derive_plugin,
+)
 
 PARAMETERS = {
-    "bsdf": bsdf("f, by default white and matte; in a scene file it needs this name"),
-    "density": volume(1.0, "ρ, which has the gradient: the same grid as the medium's"),
+    "bsdf": declare_bsdf("f, by default white and matte; in a scene file it needs this name"),
+    "density": declare_volume(1.0, "ρ, which has the gradient: the same grid as the medium's"),
 }
 ROUNDING = 1e-5  # changes of ρ below this share of ρ count as rounding errors
 

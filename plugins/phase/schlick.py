@@ -19,10 +19,10 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, MitsubaModule, MitsubaObject
 from brdfkit.mitsuba_bridge.phase_functions import derive_phase_function
-from brdfkit.mitsuba_bridge.properties.declarations import number
+from brdfkit.mitsuba_bridge.properties.declarations import declare_number
 
 PARAMETERS = {
-    "k": number(0.5, (-0.999, 0.999), "asymmetry: above 0 forward, below 0 back"),
+    "k": declare_number(0.5, (-0.999, 0.999), "asymmetry: above 0 forward, below 0 back"),
 }
 
 

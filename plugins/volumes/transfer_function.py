@@ -44,7 +44,12 @@ from brdfkit.core.array_types import (
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission, make_rgb_spectrum
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
-from brdfkit.mitsuba_bridge.properties.declarations import derive_plugin, text, volume, word
+from brdfkit.mitsuba_bridge.properties.declarations import (
+    declare_choice,
+    declare_text,
+    declare_volume,
+    derive_plugin,
+)
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 from brdfkit.volumes.light.majorants import read_grid_values
 from brdfkit.volumes.rays.voxel_steps import is_trilinear, rms_neighbour_difference
@@ -57,9 +62,9 @@ from brdfkit.volumes.transfer.windows import scale_to_values
 
 CHANNELS = {1: "values alone", 2: "values and gradient magnitudes"}
 PARAMETERS = {
-    "values": volume(0.0, "the values to look up", least=-np.inf),
-    "transfer": text("ct_bone", "the function: a preset, a file, or its text"),
-    "output": word(("extinction", "colour"), "what Mitsuba's media and textures read"),
+    "values": declare_volume(0.0, "the values to look up", least=-np.inf),
+    "transfer": declare_text("ct_bone", "the function: a preset, a file, or its text"),
+    "output": declare_choice(("extinction", "colour"), "what Mitsuba's media and textures read"),
 }
 
 

@@ -21,5 +21,5 @@ from brdfkit.mitsuba_bridge.registration import hook
 # The public names are listed in __init__.pyi alone, and imported when used
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
-llvm.choose_library()
-hook.install()
+llvm.choose_llvm_library()
+hook.install_import_hook()

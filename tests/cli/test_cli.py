@@ -770,7 +770,7 @@ def test_a_table_is_one_or_a_block_for_each_row(monkeypatch, capsys, columns):
     from brdfkit.cli.console import Console
 
     monkeypatch.setenv("COLUMNS", str(columns))
-    Console().table(COLUMNS, ROWS[:2], ROWS[2:], title="an [important] table")
+    Console().print_table(COLUMNS, ROWS[:2], ROWS[2:], title="an [important] table")
     shown = capsys.readouterr().out
     words = {word for row in (COLUMNS, *ROWS) for text in row for word in text.lstrip(">").split()}
     assert {word.strip(":") for word in words} <= {word.strip(":") for word in shown.split()}
@@ -790,7 +790,7 @@ def test_a_long_name_does_not_undo_a_table(monkeypatch, capsys, columns, is_tabl
     monkeypatch.setenv("COLUMNS", str(columns))
     name = "measured-on-a-day-in-" * 5
     rows = [(name, "1.234", "37.1 dB", "take it"), ("ggx", "2.345", "36.2 dB", "tied")]
-    Console().table(("model", ">error", ">PSNR [dB]", "verdict"), rows)
+    Console().print_table(("model", ">error", ">PSNR [dB]", "verdict"), rows)
     shown = capsys.readouterr().out
     assert ("───" in shown) == is_table
     if is_table:

@@ -16,7 +16,7 @@ import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.cli.errors import Group, print_message
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.interrupts import is_stopped
+from brdfkit.core.interrupts import is_stopped_by_signal
 
 SHAPE = (6, 4, 8)
 
@@ -57,7 +57,7 @@ def test_ctrl_c_ends_a_command_whatever_native_code_makes_of_it(becomes):
 @pytest.mark.quick
 def test_each_command_begins_unstopped():
     CliRunner().invoke(group, ["work", "nothing"])
-    assert is_stopped()
+    assert is_stopped_by_signal()
     assert CliRunner().invoke(group, ["work", "wrong"]).exit_code == 130
     CliRunner().invoke(group, ["work", "--help"])
     found = CliRunner().invoke(group, ["nothing"])

@@ -60,24 +60,24 @@ def machine(tmp_path, monkeypatch):
 )
 def test_version_by_name(tmp_path, name, version):
     (tmp_path / name).touch()
-    assert llvm.library_version(tmp_path / name) == version
-    assert llvm.library_version(tmp_path / "elsewhere" / name) == 0
+    assert llvm.read_llvm_version(tmp_path / name) == version
+    assert llvm.read_llvm_version(tmp_path / "elsewhere" / name) == 0
 
 
 @pytest.mark.quick
 def test_version_by_asking(monkeypatch):
     """Where the name does not tell: the library is asked, and one that is no LLVM has none."""
-    found = llvm.find_library()
+    found = llvm.find_llvm_library()
     if found is None:
         pytest.skip("no LLVM 17 or newer here")
     monkeypatch.setattr(llvm, "re", SimpleNamespace(search=lambda *_: None))
-    assert llvm.library_version(found) >= llvm.OLDEST
-    assert llvm.library_version(ctypes.util.find_library("c")) == 0
+    assert llvm.read_llvm_version(found) >= llvm.OLDEST
+    assert llvm.read_llvm_version(ctypes.util.find_library("c")) == 0
 
 
 @pytest.mark.quick
 def test_none(machine):
-    assert llvm.find_library() is None
+    assert llvm.find_llvm_library() is None
 
 
 @pytest.mark.quick
@@ -86,30 +86,31 @@ def test_old_ones_do_not_count(machine, name, monkeypatch):
     old = machine.add(machine.system / name)
     machine.add_bundled("15.0")  # some system's /usr/lib/libLLVM.so looks like it
     monkeypatch.setenv(llvm.VARIABLE, old)
-    assert llvm.find_library() is None
+    assert llvm.find_llvm_library() is None
 
 
 @pytest.mark.quick
 def test_newest_of_the_system(machine):
     for name in ("libLLVM-15.so.1", "libLLVM-19.so.1", "libLLVM.so.22.1", "libLLVM-18.so.1"):
         machine.add(machine.system / name)
-    assert Path(llvm.find_library()).name == "libLLVM.so.22.1"
+    assert Path(llvm.find_llvm_library()).name == "libLLVM.so.22.1"
 
 
 @pytest.mark.quick
 def test_bundled_before_system_and_named_before_bundled(machine, monkeypatch):
     named = machine.add(machine.system / "libLLVM-19.so.1")
     bundled = machine.add_bundled()
-    assert llvm.find_library() == bundled
+    assert llvm.find_llvm_library() == bundled
     monkeypatch.setenv(llvm.VARIABLE, named)
-    assert llvm.find_library() == named
+    assert llvm.find_llvm_library() == named
 
 
 @pytest.mark.quick
 def test_the_advice_is_to_install_or_to_import_in_another_order(machine):
-    assert llvm.describe_remedy().startswith("install karellen-llvm-core")
+    assert llvm.describe_llvm_remedy().startswith("install karellen-llvm-core")
     machine.add_bundled()
-    assert llvm.describe_remedy() == "start Python anew and import brdfkit before mitsuba and drjit"
+    expected = "start Python anew and import brdfkit before mitsuba and drjit"
+    assert llvm.describe_llvm_remedy() == expected
 
 
 @pytest.mark.quick
@@ -123,23 +124,23 @@ def test_the_advice_is_to_install_or_to_import_in_another_order(machine):
 )
 def test_a_check_without_llvm_says_what_to_do(monkeypatch, loaded, found, advice):
     monkeypatch.setattr(llvm, "use_variant", lambda: "scalar_rgb")
-    monkeypatch.setattr(llvm, "loaded_version", lambda: loaded)
-    monkeypatch.setattr(llvm, "find_library", lambda: found)
+    monkeypatch.setattr(llvm, "find_loaded_version", lambda: loaded)
+    monkeypatch.setattr(llvm, "find_llvm_library", lambda: found)
     with pytest.raises(BrdfkitError, match=f"needs an LLVM or CUDA variant of Mitsuba; {advice}"):
         check("lambert")
 
 
 @pytest.mark.quick
 def test_prepare(machine, monkeypatch):
-    llvm.choose_library()
+    llvm.choose_llvm_library()
     assert os.environ[llvm.VARIABLE] == llvm.NO_LIBRARY
-    llvm.choose_library()  # a child process that inherits it is not told off
+    llvm.choose_llvm_library()  # a child process that inherits it is not told off
     bundled = machine.add_bundled()
-    llvm.choose_library()
+    llvm.choose_llvm_library()
     assert os.environ[llvm.VARIABLE] == bundled
     monkeypatch.setenv(llvm.VARIABLE, "/nowhere/libLLVM-15.so")
     with pytest.warns(UserWarning, match=f"/nowhere/libLLVM-15.so, {REPLACED}; {bundled} is used"):
-        llvm.choose_library()
+        llvm.choose_llvm_library()
     assert os.environ[llvm.VARIABLE] == bundled
 
 
@@ -147,7 +148,7 @@ def test_prepare(machine, monkeypatch):
 def test_prepare_leaves_other_systems_alone(machine):
     machine.fake.platform = "darwin"
     machine.add_bundled()
-    llvm.choose_library()
+    llvm.choose_llvm_library()
     assert os.environ[llvm.VARIABLE] == ""
 
 
@@ -167,7 +168,7 @@ def python(code, **environment):
 def bad_library():
     """An LLVM 15 or 16 of this machine, with which Dr.Jit aborts."""
     found = [p for f in llvm.SYSTEM_FOLDERS for p in Path("/").glob(f"{f[1:]}/libLLVM*.so*")]
-    bad = [str(p) for p in found if llvm.library_version(p) in (15, 16)]
+    bad = [str(p) for p in found if llvm.read_llvm_version(p) in (15, 16)]
     if not bad:
         pytest.skip("no LLVM 15 or 16 here")
     return bad[0]
@@ -180,7 +181,7 @@ assert picture.pictures["ward"].mean() > 0.01
 
 
 def test_a_usable_llvm_is_picked():
-    if llvm.find_library() is None:
+    if llvm.find_llvm_library() is None:
         pytest.skip("no LLVM 17 or newer here")
     code = f"""
 import brdfkit as bk
@@ -194,7 +195,7 @@ mi.set_variant("llvm_ad_rgb")
 
 
 def test_a_bad_choice_of_the_user_is_replaced():
-    if llvm.find_library() is None:
+    if llvm.find_llvm_library() is None:
         pytest.skip("no LLVM 17 or newer here")
     code = f"""
 import brdfkit as bk
@@ -248,7 +249,7 @@ package = types.ModuleType("brdfkit")
 package.__path__ = importlib.util.find_spec("brdfkit").submodule_search_locations
 sys.modules["brdfkit"] = package
 from brdfkit.core.jit import llvm
-llvm.find_library = lambda: None
+llvm.find_llvm_library = lambda: None
 del sys.modules["brdfkit"]
 import brdfkit as bk
 assert bk.llvm is llvm
@@ -287,7 +288,7 @@ def test_without_llvm_the_command_line_works(tmp_path, words, sentences):
 
 def test_mitsuba_first_without_llvm_says_import_brdfkit_first():
     """The environment has an LLVM, but Dr.Jit looked before brdfkit could tell."""
-    if llvm.find_library() is None:
+    if llvm.find_llvm_library() is None:
         pytest.skip("no LLVM 17 or newer here")
     code = f"import mitsuba\nimport brdfkit as bk\n{RENDER}"
     told = python(code, DRJIT_LIBLLVM_PATH="/nowhere/libLLVM.so").stderr

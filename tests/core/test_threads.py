@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 import brdfkit as bk
-from brdfkit.core.interrupts import hold_signals
+from brdfkit.core.interrupts import delay_signals
 from brdfkit.core.jit.threads import cached_in_turn, in_turn
 from brdfkit.rendering import render_materials
 
@@ -163,7 +163,7 @@ def test_a_cached_property_waits_for_its_turn_without_a_lock_of_its_own():
 
 
 def load_while_a_signal_comes(received, done):
-    with hold_signals():
+    with delay_signals():
         os.kill(os.getpid(), received)
         done.append("loaded")
 

@@ -17,7 +17,7 @@ from brdfkit.distance_fields.shadows.monte_carlo import halton_disc, monte_carlo
 from brdfkit.distance_fields.shadows.split import cell_centres, split
 from brdfkit.distance_fields.shadows.tau import tau, tau_slope
 
-if llvm.loaded_version() < llvm.OLDEST:
+if llvm.find_loaded_version() < llvm.OLDEST:
     pytest.skip("needs LLVM", allow_module_level=True)
 
 from drjit.llvm.ad import Array3f64 as P

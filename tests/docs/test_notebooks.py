@@ -25,7 +25,9 @@ SMALLER = {  # smaller pictures and shorter searches, of which the notebooks' as
     r"samples=256": "samples=64",
 }
 # a notebook has as many threads as a test (conftest.py): more would wait for the other tests'
-SHARE_THE_CORES = f"import brdfkit.core.jit.threads as t; t.use_threads({dr.thread_count()}); del t"
+SHARE_THE_CORES = (
+    f"import brdfkit.core.jit.threads as t; t.set_thread_count({dr.thread_count()}); del t"
+)
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)

@@ -4,7 +4,7 @@ import numpy as np
 
 from brdfkit.core.projective.body import make_box
 from brdfkit.core.projective.camera import Camera
-from brdfkit.core.projective.homogeneous import make_axes, make_rigid
+from brdfkit.core.projective.homogeneous import make_axes, make_rigid_matrix
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.placement import Placement
 
@@ -28,7 +28,7 @@ def camera(eye, target, near=0.1, far=1e3, slope=0.4):
     """A `Camera` whose y is about the world's z."""
     eye, back = np.array(eye, float), np.subtract(eye, target)
     axes = make_axes(back / np.linalg.norm(back), [0, 0, 1])
-    return Camera(make_rigid(axes, eye), slope, slope, near, far)
+    return Camera(make_rigid_matrix(axes, eye), slope, slope, near, far)
 
 
 def placement(camera, light, low=LOW, high=HIGH, nearest=0.0):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-from brdfkit.core.colours import import_colour, to_srgb
+from brdfkit.core.colours import import_colour_package, to_srgb
 from brdfkit.images.errors import compare_pictures
 from brdfkit.images.errors.colour_difference import WHITE, ciede2000, delta_e_itp
 from brdfkit.images.errors.flip import find_exposures, flip
@@ -63,7 +63,7 @@ def test_errors_are_unknown_where_nothing_shows_the_material(scene):
 def test_ciede2000_is_as_published():
     """G. Sharma, W. Wu and E. N. Dalal, "The CIEDE2000 color-difference formula", Color Research
     and Application 30(1), 2005, Table 1, 1 and 25."""
-    colour = import_colour()
+    colour = import_colour_package()
     assert not np.get_printoptions()["legacy"]  # which its import sets
     lab = [
         [(50, 2.6772, -79.7751), (60.2574, -34.0099, 36.2677), (100, 0, 0), (50, 0, 0)],
@@ -76,7 +76,7 @@ def test_ciede2000_is_as_published():
 
 def test_differences_are_those_of_colour_science(rng):
     """The package's, over dark, saturated, grey and bright colours, and those out of the gamut."""
-    colour = import_colour()
+    colour = import_colour_package()
     first = rng.random((4000, 3)) ** 3 * rng.choice([0.1, 1, 20], (4000, 1))
     other = first * (1 + rng.choice([0.01, 0.3, 3], (4000, 1)) * rng.standard_normal((4000, 3)))
     other[:500] = other[:500, :1]

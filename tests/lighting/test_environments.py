@@ -31,7 +31,7 @@ def maps():
 @pytest.fixture(scope="module")
 def make():
     """The program that makes the maps, as a module."""
-    file = catalogue.find_folder(catalogue.ENVIRONMENTS) / "make.py"
+    file = catalogue.find_data_folder(catalogue.ENVIRONMENTS) / "make.py"
     spec = importlib.util.spec_from_file_location("make_environments", file)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -73,7 +73,7 @@ def test_shipped(maps, name):
 
 
 def test_the_folder_holds_what_the_index_names():
-    files = {file.name for file in catalogue.find_folder(catalogue.ENVIRONMENTS).glob("*.exr")}
+    files = {file.name for file in catalogue.find_data_folder(catalogue.ENVIRONMENTS).glob("*.exr")}
     assert files == {entry.file for entry in catalogue.list_environments().values()}
 
 

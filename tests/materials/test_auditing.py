@@ -14,7 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 import brdfkit as bk
 from brdfkit import models
 from brdfkit.checks.material_subject import random_pairs
-from brdfkit.cli.commands.info import to_record
+from brdfkit.cli.commands.info import make_audit_record
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.json_values import to_json
 from brdfkit.materials.auditing import symmetries
@@ -541,7 +541,8 @@ def test_it_prints_and_is_json():
         assert text.startswith(data.name)
         assert "nan" not in text.lower()
         assert all(heading in text for heading in audit.rows())
-        back = json.loads(json.dumps(to_json(to_record(audit, []))), parse_constant=pytest.fail)
+        record = to_json(make_audit_record(audit, []))
+        back = json.loads(json.dumps(record), parse_constant=pytest.fail)
         assert back["valid"] == audit.valid
         assert back["coverage"]["measured"] == audit.coverage.measured
 

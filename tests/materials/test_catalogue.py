@@ -27,7 +27,7 @@ def measured():
 @pytest.fixture(scope="module")
 def make():
     """The program that made the tables, as a module."""
-    spec = importlib.util.spec_from_file_location("make", catalogue.find_folder() / "make.py")
+    spec = importlib.util.spec_from_file_location("make", catalogue.find_data_folder() / "make.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -37,8 +37,8 @@ def make():
 def copy(tmp_path, monkeypatch):
     """A copy of the folder, to spoil."""
     folder = tmp_path / "measured"
-    shutil.copytree(catalogue.find_folder(), folder)
-    monkeypatch.setattr(catalogue, "find_folder", lambda kind=catalogue.MEASURED: folder)
+    shutil.copytree(catalogue.find_data_folder(), folder)
+    monkeypatch.setattr(catalogue, "find_data_folder", lambda kind=catalogue.MEASURED: folder)
     return folder
 
 
@@ -77,12 +77,12 @@ def assert_same(values, errors, others, other_errors):
 
 @pytest.mark.quick
 def test_index_and_files_are_one_to_one(make):
-    files = {file.name for file in catalogue.find_folder().glob("*.xz")}
+    files = {file.name for file in catalogue.find_data_folder().glob("*.xz")}
     entries = [material.file for material in catalogue.list_materials().values()]
     assert sorted(entries) == sorted(files)
     assert sorted(make.TABULATED) == TABULATED
     assert sorted(make.MEASURED) == MEASURED
-    readme = (catalogue.find_folder() / "README.md").read_text(encoding="utf-8")
+    readme = (catalogue.find_data_folder() / "README.md").read_text(encoding="utf-8")
     assert all(f"| `{name}` |" in readme for name in NAMES)
 
 

@@ -16,7 +16,7 @@ from small_files import curet, curet_table, merl
 from brdfkit.cli import main
 from brdfkit.core import catalogue
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import sha256
+from brdfkit.core.files import compute_sha256
 from brdfkit.materials.collections import public
 from brdfkit.materials.collections.downloading import download
 from brdfkit.materials.loading import load
@@ -418,5 +418,5 @@ def test_checksums_are_those_of_real_files(measured_data, folder):
     there = [f for f in (measured_data / folder).iterdir() if known.get(f.name)]
     assert there
     for file in there:
-        assert sha256(file) == known[file.name].sha256
+        assert compute_sha256(file) == known[file.name].sha256
         assert file.stat().st_size == known[file.name].bytes

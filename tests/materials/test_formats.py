@@ -27,7 +27,7 @@ from small_files import (
 
 import brdfkit as bk
 from brdfkit.core import files
-from brdfkit.core.colours import RGB, import_colour
+from brdfkit.core.colours import RGB, import_colour_package
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.formats import formats
@@ -577,7 +577,7 @@ def test_order_of_wavelengths_does_not_matter():
 
 
 def test_colour_agrees_with_integration_by_colour_science():
-    colour = import_colour()
+    colour = import_colour_package()
 
     nm = np.arange(400, 701, 10)
     reflectance = 0.4 + 0.3 * np.sin(nm / 40)

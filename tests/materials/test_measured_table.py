@@ -13,7 +13,7 @@ from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences, ran
 from brdfkit.checks.registry import checks
 from brdfkit.checks.sampling import spread
 from brdfkit.core import catalogue
-from brdfkit.core.colours import import_colour
+from brdfkit.core.colours import import_colour_package
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.mitsuba_bridge.arrays import Rows
 from brdfkit.mitsuba_bridge.bsdf.half_vector_table import _draw_cell
@@ -128,7 +128,7 @@ def test_in_every_variant(name, label, variant):
 
 def colour_of(spectrum):
     """Linear sRGB under D65 of a reflectance, `spectrum` of four wavelengths at a time."""
-    colour = import_colour()
+    colour = import_colour_package()
 
     nm = np.arange(380.0, 780.0, 5.0)
     values = np.concatenate([spectrum(list(map(float, four))) for four in nm.reshape(-1, 4)])

@@ -15,7 +15,7 @@ import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.checks.sampling import draw_uniform
 from brdfkit.core.geometry.directions import from_angles, normalize
-from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate
+from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate_lobe_sum
 from brdfkit.model.lobes import group_components
 
 # All z-scores of this file, some 30: a right renderer exceeds this once in 5,000 files
@@ -117,9 +117,9 @@ def test_gradient_of_a_picture(model, llvm_variant, monkeypatch):
     mi = llvm_variant
     tables = {}  # a table drawn from moves with the weights, and the directions would with it
     monkeypatch.setattr(
-        "brdfkit.mitsuba_bridge.bsdf.adapter.tabulate",
+        "brdfkit.mitsuba_bridge.bsdf.adapter.tabulate_lobe_sum",
         lambda model, weights, lobes: tables.setdefault(
-            tuple(lobes), tabulate(model, weights, lobes)
+            tuple(lobes), tabulate_lobe_sum(model, weights, lobes)
         ),
     )
     integrator = {"type": "prb", "max_depth": 2}

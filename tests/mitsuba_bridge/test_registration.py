@@ -91,7 +91,7 @@ mi.load_string('<scene version="3.0.0"><bsdf type="blinn_phong"/></scene>')
     ],
 )
 def test_any_order_of_imports(imports):
-    usable = llvm.find_library()
+    usable = llvm.find_llvm_library()
     if usable is None:
         pytest.skip("no LLVM 17 or newer here")
     environment = os.environ | {llvm.VARIABLE: usable}

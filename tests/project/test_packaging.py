@@ -81,7 +81,7 @@ def test_works_without_the_checkout(installed, tmp_path):
 import brdfkit
 from brdfkit.core import catalogue
 from brdfkit.core.discovery import plugin_files as discovery
-folders = map(catalogue.find_folder, (catalogue.MEASURED, catalogue.ENVIRONMENTS))
+folders = map(catalogue.find_data_folder, (catalogue.MEASURED, catalogue.ENVIRONMENTS))
 for path in (brdfkit.__file__, *folders, *discovery.find_plugins('bsdfs').values()):
     print(path)
 """

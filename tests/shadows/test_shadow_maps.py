@@ -48,7 +48,7 @@ def test_the_nearest_surface_is_found():
     si, _, _ = seen_from(scene)
     placement = placement_of(scene)
     seen = np.array(si.is_valid())
-    depths = placement.camera.depths(np.array(si.p).T[seen])
+    depths = placement.camera.compute_depths(np.array(si.p).T[seen])
     assert placement.nearest == pytest.approx(depths.min(), rel=0.02)
     assert placement.depths[0] == placement.nearest
 

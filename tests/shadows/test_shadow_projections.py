@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from placements import LIGHTS, SUN, VIEWS, camera, placement
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.projective.homogeneous import make_axes, project_all
+from brdfkit.core.projective.homogeneous import make_axes, project_points
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.light_shadow import LightShadow
 from brdfkit.shadows.maps.line_of_sight import LineOfSight
@@ -115,7 +115,7 @@ def test_the_camera_s_depths_are_those_of_its_planes():
     """Acceptance check 2 of [Ergun 2008]."""
     depths = camera([0, 0, 0], [0, 1, 0], near=1, far=100)
     y = np.array([1, 2, 10, 50, 99, 100.0])
-    found = project_all(depths.matrix, np.outer(y, [0, 1, 0]))[:, 2]
+    found = project_points(depths.matrix, np.outer(y, [0, 1, 0]))[:, 2]
     expected = [-1, 0.0101010, 0.8181818, 0.9797980, 0.9997959, 1]
     np.testing.assert_allclose(found, expected, atol=1e-7)
 
@@ -133,13 +133,13 @@ def test_a_trapezoid_becomes_the_map(angle):
     to_sight = np.array([[-1, 0, 0, 0.1], [0, -1, 0, 0.6], [0, 0, 1, 0], [0, 0, 0, 1]])
     placed = np.eye(4)
     placed[:3, :3], placed[:3, 3] = turn.T, shift
-    corners = project_all(placed, [(x, y, z) for x, y in sides for z in (-1, 1)])
+    corners = project_points(placed, [(x, y, z) for x, y in sides for z in (-1, 1)])
     light = Light(np.array([0, 0, -1.0, 0]))
     sight = LineOfSight(to_sight @ np.linalg.inv(placed), light, corners, 0, 0)
     found = sight.warp(1.35 - 0.6)
     points = [(0, 0, 0), (0, 0.4, 0), (0, -0.7, 0), (0, 0.4, 0.25), *((x, y, 0) for x, y in sides)]
-    u, v, depth = found.to_map(*project_all(placed, points).T)
-    printed = project_all(np.array(N_T), points)
+    u, v, depth = found.to_map(*project_points(placed, points).T)
+    printed = project_points(np.array(N_T), points)
     np.testing.assert_allclose(np.transpose([-u, -v, depth]), printed, atol=1e-9)
     np.testing.assert_allclose(-u[:3], [-0.0222222, -0.1157895, 0.0536585], atol=1e-7)
     np.testing.assert_allclose(-v[:3], [-0.3333333, 0.3684211, -0.9024390], atol=1e-7)
@@ -180,11 +180,11 @@ def test_warps_weaken_as_view_and_light_become_parallel(name, view):
     """The distance of the apex, of w along the map, is the formula's over sin γ."""
     scene = seen_from(view)
     sun, eye, corners = scene.light.point[:3], scene.camera.position, scene.visible.corners
-    sight = scene.visible.middle - eye
+    sight = scene.visible.centroid - eye
     sight /= np.linalg.norm(sight)
     across = sight - sun * (sun @ sight)
     sine = np.linalg.norm(across)
-    z_f = scene.camera.depths(corners).max()
+    z_f = scene.camera.compute_depths(corners).max()
     n = (2.5 + np.sqrt(2.5 * z_f) if name == "light_space_perspective" else 2.5) / sine
     length = np.ptp(scene.body.corners @ across / sine)
     w = np.column_stack([scene.body.corners, np.ones(len(scene.body.corners))])
@@ -212,7 +212,7 @@ def test_perspective_is_even_in_the_picture_s_cube():
     """A light at right angles to the view is far away in that cube too, so its map is affine."""
     scene = overhead()
     points = points_in(scene.body)
-    cube = np.column_stack([project_all(scene.camera.matrix, points), np.ones(len(points))])
+    cube = np.column_stack([project_points(scene.camera.matrix, points), np.ones(len(points))])
     found = np.transpose(project("perspective", scene).to_map(*points.T))
     affine, *_ = np.linalg.lstsq(cube, found, rcond=None)
     np.testing.assert_allclose(cube @ affine, found, atol=1e-9)
@@ -226,7 +226,7 @@ def test_plane_optimal_is_the_projection_by_five_pairs_of_points(light):
     light = light / np.linalg.norm(light[:3]) if light[3] == 0 else light
     scene = placement(eye, Light(light), high=[20, 20, 0.5])
     square = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    rays = project_all(np.linalg.inv(eye.matrix), np.column_stack([square, np.ones(4)]))
+    rays = project_points(np.linalg.inv(eye.matrix), np.column_stack([square, np.ones(4)]))
     rays -= eye.position
     ground = eye.position - rays * (eye.position[2] / rays[:, 2])[:, None]
     lifted = ground[3] + 0.1 * (light[:3] - light[3] * ground[3])
@@ -238,12 +238,12 @@ def test_plane_optimal_is_the_projection_by_five_pairs_of_points(light):
     _, singular, rows = np.linalg.svd(np.array(equations))
     assert singular[-1] > 1e-4
     by_pairs = rows[-1].reshape(4, 4)
-    np.testing.assert_allclose(project_all(by_pairs, ground)[:, :2], square, atol=1e-9)
+    np.testing.assert_allclose(project_points(by_pairs, ground)[:, :2], square, atol=1e-9)
     at_infinity = by_pairs @ light / np.linalg.norm(by_pairs)
     np.testing.assert_allclose(at_infinity[[0, 1, 3]], 0, atol=1e-9)
     points = points_in(scene.body)
     found = project("plane_optimal", scene).to_map(*points.T)
-    for ours, theirs in zip(found, project_all(by_pairs, points).T, strict=True):
+    for ours, theirs in zip(found, project_points(by_pairs, points).T, strict=True):
         stretch, shift = np.polyfit(theirs, ours, 1)
         assert stretch > 0
         np.testing.assert_allclose(stretch * theirs + shift, ours, atol=1e-8)

@@ -6,7 +6,7 @@ import pytest
 import brdfkit as bk
 from brdfkit.core.jit import llvm
 
-if llvm.loaded_version() < llvm.OLDEST:
+if llvm.find_loaded_version() < llvm.OLDEST:
     pytest.skip("needs LLVM", allow_module_level=True)
 
 from brdfkit.theses.ergun2008 import by_volumes, printed, stencil, table_1, trapezoid, views

@@ -8,7 +8,7 @@ import pytest
 import brdfkit as bk
 from brdfkit.core.jit import llvm
 
-if llvm.loaded_version() < llvm.OLDEST:
+if llvm.find_loaded_version() < llvm.OLDEST:
     pytest.skip("needs LLVM", allow_module_level=True)
 
 from brdfkit.theses.lesar2018 import (

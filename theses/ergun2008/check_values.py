@@ -7,7 +7,7 @@ from drjit.llvm import Float64
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.projective.camera import Camera
-from brdfkit.core.projective.homogeneous import make_axes, make_rigid, project_all
+from brdfkit.core.projective.homogeneous import make_axes, make_rigid_matrix, project_points
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.filters.bilinear_percentage_closer import Lookup
 from brdfkit.shadows.maps.line_of_sight import LineOfSight
@@ -43,7 +43,7 @@ def looking(eye, target, near=1.0, far=100.0, slope=1.0):
     """A `Camera`."""
     back = np.subtract(eye, target) / np.linalg.norm(np.subtract(eye, target))
     return Camera(
-        make_rigid(make_axes(back, [0, 0, 1]), np.array(eye, float)), slope, slope, near, far
+        make_rigid_matrix(make_axes(back, [0, 0, 1]), np.array(eye, float)), slope, slope, near, far
     )
 
 
@@ -70,7 +70,7 @@ def infinity():
 
 def depths():
     z = np.array([1, 2, 10, 50, 99, 100.0])
-    found = project_all(looking((0, 0, 0), (0, 1, 0)).matrix, np.outer(z, [0, 1, 0]))[:, 2]
+    found = project_points(looking((0, 0, 0), (0, 1, 0)).matrix, np.outer(z, [0, 1, 0]))[:, 2]
     expected = [-1, 0.010101010, 0.818181818, 0.979797980, 0.999795918, 1]
     return agreed(
         "z' = (f + n) / (f - n) - 2 f n / ((f - n) z), of z = 1, 2, 10, 50, 99, 100.",
@@ -89,7 +89,7 @@ def trapezoid():
         placed[:2, :2], placed[:2, 3] = turn, (3, -5)
         corners = CORNERS @ turn.T + (3, -5)
         points = [(x, y, z) for x, y in corners for z in (-1, 1)]
-        mapped = project_all(trapezoid_to_square(corners), points)[:, :2]
+        mapped = project_points(trapezoid_to_square(corners), points)[:, :2]
         off = max(off, np.abs(mapped[::2] - SQUARE).max())
         # from the apex of the sides, (0.1, 1.35), to the middle of the narrow one
         to_sight = np.array([[-1, 0, 0, 0.1], [0, -1, 0, 0.6], [0, 0, 1, 0], [0, 0, 0, 1.0]])
@@ -97,7 +97,7 @@ def trapezoid():
         sight = LineOfSight(to_sight @ np.linalg.inv(placed), below, np.array(points), None, None)
         u, v, _ = sight.warp(1.35 - 0.6).to_map(*np.transpose(points))
         off = max(off, np.abs(np.column_stack([-u, -v]) - mapped).max())
-    found = project_all(trapezoid_to_square(), [(0, 0, 0), (0, 0.4, 0.25), (0, -0.7, 0)])
+    found = project_points(trapezoid_to_square(), [(0, 0, 0), (0, 0.4, 0.25), (0, -0.7, 0)])
     expected = [(-0.022222222, -1 / 3, 0), (-0.115789474, 0.368421053, 0.197368421)]
     expected += [(0.053658537, -0.902439024, 0)]
     inner = np.abs(found - expected).max()

@@ -5,7 +5,7 @@ from brdfkit.theses.ergun2008.printed import mean_and_relative, printed
 from brdfkit.theses.ergun2008.trapezoid import CORNERS, SQUARE, trapezoid_to_square
 
 from brdfkit.core.projective.camera import Camera
-from brdfkit.core.projective.homogeneous import make_axes, make_rigid, project_all
+from brdfkit.core.projective.homogeneous import make_axes, make_rigid_matrix, project_points
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.resolution import magnification
@@ -48,7 +48,8 @@ def bound():
 
 def missed(**as_printed):
     """How far the corners of the trapezoid come from those of the square."""
-    found = project_all(trapezoid_to_square(**as_printed), np.column_stack([CORNERS, np.zeros(4)]))
+    corners = np.column_stack([CORNERS, np.zeros(4)])
+    found = project_points(trapezoid_to_square(**as_printed), corners)
     return np.abs(found[:, :2] - SQUARE).max()
 
 
@@ -80,7 +81,7 @@ def fifth_point():
     corners = np.array([(-3.0, -3, 0), (3, -3, 0), (6, 6, 0), (-6, 6, 0)])
     off = {
         way: np.abs(
-            project_all(by_five_points(light, corners, corners[3] + lift), corners)[3, :2]
+            project_points(by_five_points(light, corners, corners[3] + lift), corners)[3, :2]
             - SQUARE[3]
         ).max()
         for way, lift in {"light": 0.1 * light, "eye": 0.1 * (eye - corners[3])}.items()
@@ -127,7 +128,7 @@ def footprint_area():
     ground, areas = ((0.0, 0, 0), (0.0, 0, 1)), []
     for place in np.array([(0, 3, 2), (0, 6, 4)], float):
         back = place / np.linalg.norm(place)
-        camera = Camera(make_rigid(make_axes(back, [0, 0, 1]), place), 1.0, 1.0, 1.0, 100.0)
+        camera = Camera(make_rigid_matrix(make_axes(back, [0, 0, 1]), place), 1.0, 1.0, 1.0, 100.0)
         light = Light(np.append(place, 1))
         areas.append(1 / magnification(Projection.from_matrix(camera.matrix, light), *ground))
     growth = areas[1] / areas[0]

@@ -6,7 +6,7 @@ It is symmetric about its axis, and the camera's near plane is nearer than what 
 
 import numpy as np
 
-from brdfkit.core.projective.homogeneous import project_all, to_unit_cube
+from brdfkit.core.projective.homogeneous import make_unit_cube_matrix, project_points
 from brdfkit.shadows.comparison.quality import aliasing_error, share_used
 from brdfkit.shadows.maps.light_camera import view_matrix
 from brdfkit.shadows.maps.projection import Projection
@@ -17,14 +17,14 @@ NEAR = 0.1  # the camera's near plane over the distance of what is nearest
 
 def simple_perspective(placement):
     """The `Projection` of a `Placement`."""
-    corners, middle = placement.body.corners, placement.body.middle
+    corners, middle = placement.body.corners, placement.body.centroid
     z_n, z_f = placement.depths
-    camera = placement.camera.with_planes(NEAR * z_n, z_f).move_back(corners).matrix
-    cube, (centre,) = project_all(camera, corners), project_all(camera, [middle])
+    camera = placement.camera.replace_planes(NEAR * z_n, z_f).move_behind(corners).matrix
+    cube, (centre,) = project_points(camera, corners), project_points(camera, [middle])
     matrix = view_matrix(camera @ placement.light.point, cube, centre) @ camera
-    ends = project_all(matrix, corners)
+    ends = project_points(matrix, corners)
     half, depths = np.abs(ends[:, :2]).max(), ends[:, 2]
-    square = to_unit_cube([-half, -half, depths.min()], [half, half, depths.max()])
+    square = make_unit_cube_matrix([-half, -half, depths.min()], [half, half, depths.max()])
     return Projection.from_matrix(square @ matrix, placement.light)
 
 

@@ -59,8 +59,8 @@ def moments(p):
 N = 4001  # of μ
 TARGETS = {  # name: p(μ), and a start of the fit
     "Rayleigh": (rayleigh, (0.5, -0.5, 0.5)),
-    "Mie hazy": (lambda mu: phase_functions.density(8, mu), (0.2, -0.4, 0.7)),
-    "Mie murky": (lambda mu: phase_functions.density(32, mu), (0.3, -0.3, 0.9)),
+    "Mie hazy": (lambda mu: phase_functions.even_and_forward_density(8, mu), (0.2, -0.4, 0.7)),
+    "Mie murky": (lambda mu: phase_functions.even_and_forward_density(32, mu), (0.3, -0.3, 0.9)),
 }
 
 

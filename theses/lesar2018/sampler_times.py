@@ -38,7 +38,7 @@ def two_lobes(u):
 
 def mie(u, n):
     """μ of `mie_hazy` or `mie_murky`; one number both chooses the half and places μ in it."""
-    return phase_functions.cosine(n, u, dr.select(u < 0.5, 2 * u, 2 * u - 1))
+    return phase_functions.draw_even_and_forward_cosine(n, u, dr.select(u < 0.5, 2 * u, 2 * u - 1))
 
 
 def samplers():

@@ -68,7 +68,7 @@ def silhouette(solid, light):
     another corner (n, 3) of a face at each."""
     corners = solid.corners[solid.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    turned = (normals * light.directions_from(corners[:, 0])).sum(axis=1) > 0
+    turned = (normals * light.directions_to_light(corners[:, 0])).sum(axis=1) > 0
     is_turned = {}
     for (a, b, c), its in zip(solid.triangles.tolist(), turned, strict=True):
         is_turned |= {(a, b): (its, c), (b, c): (its, a), (c, a): (its, b)}

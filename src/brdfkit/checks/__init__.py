@@ -21,7 +21,7 @@ from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS, MODELS
 from brdfkit.core.documents import Cell, Document, Shown, Table
 from brdfkit.core.documents.parts import BAD, GOOD
-from brdfkit.core.errors import BrdfkitError, nearest, no_such
+from brdfkit.core.errors import BrdfkitError, find_nearest, no_such_error
 from brdfkit.core.jit import llvm
 from brdfkit.core.jit.loops import is_interrupt
 from brdfkit.core.jit.threads import in_turn
@@ -102,15 +102,15 @@ def check(
     >>> print(check("ward"))    # doctest: +SKIP
     """
     if llvm.use_variant().startswith("scalar"):
-        usable = llvm.loaded_version() >= llvm.OLDEST
-        remedy = "set llvm_ad_rgb" if usable else llvm.describe_remedy()
+        usable = llvm.find_loaded_version() >= llvm.OLDEST
+        remedy = "set llvm_ad_rgb" if usable else llvm.describe_llvm_remedy()
         raise BrdfkitError(f"check needs an LLVM or CUDA variant of Mitsuba; {remedy}.")
     subject, kind, name = _make_subject(material)
     only = [only] if isinstance(only, str) else only
     names = list(checks[kind]) if only is None else list(only)
     for wanted in names:
         if wanted not in checks[kind]:
-            raise no_such("check", wanted, checks[kind])
+            raise no_such_error("check", wanted, checks[kind])
     if kind != MODELS and not _can_load(subject):
         names = ["loads"]  # the other checks would fail with the same error
     findings: list[Finding] = []
@@ -126,7 +126,7 @@ def _make_subject(material: MaterialLike) -> tuple[Subject | PluginSubject, str,
     if isinstance(material, str) and is_no_model(material):
         material = make_example(material)
     name = material.get("type") if isinstance(material, dict) else None
-    kind = plugin_files.find_kind(name) if isinstance(name, str) else None
+    kind = plugin_files.find_plugin_kind(name) if isinstance(name, str) else None
     if isinstance(material, dict) and kind not in (None, MODELS):
         return PluginSubject(kind, material), kind, str(name)
     converted = _to_material(material)
@@ -143,8 +143,8 @@ def _to_material(material: MaterialLike) -> Any:
         return to_material(material)
     except BrdfkitError:
         others = [n for kind in KINDS if kind != MODELS for n in plugin_files.find_plugins(kind)]
-        if isinstance(material, str) and nearest(material, others):
-            raise no_such("plugin", material, others) from None
+        if isinstance(material, str) and find_nearest(material, others):
+            raise no_such_error("plugin", material, others) from None
         raise
 
 

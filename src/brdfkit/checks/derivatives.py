@@ -189,7 +189,7 @@ def _lobe_slopes(model: Model, name: str, wi: FloatArray, wo: FloatArray) -> lis
     values = to_shape_scalars(model)
     dr.enable_grad(values[name])
     directions = double_precision.to_vector(wi), double_precision.to_vector(wo)
-    Float64 = double_precision.float_type()
+    Float64 = double_precision.choose_float_type()
     terms = model.bind(values).terms()
     plain = [Float64(lobe.eval(*directions)) for _, lobe in terms]
     squared = [Float64(lobe.quadratic(*directions) if lobe.quadratic else 0) for _, lobe in terms]

@@ -11,7 +11,7 @@ from brdfkit.checks.registry import check_of
 from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS, MODELS
-from brdfkit.core.errors import no_such
+from brdfkit.core.errors import no_such_error
 from brdfkit.model import labels
 
 
@@ -47,7 +47,7 @@ class PluginSubject:
 
 def is_no_model(name: str) -> bool:
     """Return whether a plugin of this name exists and is no `Model`; it may be another BSDF."""
-    kind = plugin_files.find_kind(name)
+    kind = plugin_files.find_plugin_kind(name)
     return kind is not None and (
         kind != MODELS or labels.find_model_in(plugin_files.find_plugins(MODELS)[name]) is None
     )
@@ -58,7 +58,7 @@ def require_declared(name: str, parameters: Iterable[str]) -> None:
     declared = getattr(_find_module(name), "PARAMETERS", None)
     for parameter in parameters:
         if declared is not None and parameter not in declared:
-            raise no_such("parameter", parameter, declared, where=name)
+            raise no_such_error("parameter", parameter, declared, where=name)
 
 
 def make_example(name: str, **values: Any) -> dict[str, Any]:
@@ -73,7 +73,7 @@ def make_example(name: str, **values: Any) -> dict[str, Any]:
 
 def _find_module(name: str) -> ModuleType:
     """Return the module of the plugin of this name."""
-    kind = str(plugin_files.find_kind(name))
+    kind = str(plugin_files.find_plugin_kind(name))
     return plugin_files.import_plugin(plugin_files.find_plugins(kind)[name])
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, JitColour, MitsubaObject
-from brdfkit.core.colours import LUMINANCE, RGB, import_colour
+from brdfkit.core.colours import LUMINANCE, RGB, import_colour_package
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 from brdfkit.model import Model
@@ -36,7 +36,7 @@ def to_variant_channels(values: FloatArray, material: Measured) -> FloatArray:
         return (values @ LUMINANCE)[:, None]
     if not mi.is_spectral:
         return values
-    basis = import_colour().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
+    basis = import_colour_package().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
     spectra = [np.interp(WAVELENGTHS, basis.wavelengths, column) for column in basis.values.T]
     return values @ np.array(spectra)
 

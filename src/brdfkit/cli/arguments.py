@@ -50,7 +50,7 @@ def refuse_mends(name: str, what: str, mends: Mapping[str, bool]) -> None:
 
 
 @contextmanager
-def results_folder(path: Path | None) -> Iterator[None]:
+def use_results_folder(path: Path | None) -> Iterator[None]:
     """Make the folder `path`, unless it is None; remove it after the block if it is empty."""
     if path is None:
         yield

@@ -28,7 +28,7 @@ class Console:
     quiet: bool = False
 
     @cached_property
-    def out(self) -> rich.console.Console:
+    def output(self) -> rich.console.Console:
         """The console of Rich that prints on standard output."""
         from rich.console import Console
 
@@ -41,13 +41,13 @@ class Console:
         """Show a progress bar within the block; the block gets a function (steps done, in all)."""
         return nullcontext(lambda done, total: None) if self.quiet else progress(what)
 
-    def json(self, record: Any) -> None:
+    def print_json(self, record: Any) -> None:
         """Print a record of dictionaries, lists, arrays, paths and dataclasses as JSON."""
         from brdfkit.core.json_values import to_json  # here, because it loads NumPy
 
         print(json.dumps(to_json(record), indent=2))
 
-    def table(
+    def print_table(
         self, columns: Sequence[str], *sections: Sequence[Sequence[str]], title: str | None = None
     ) -> None:
         """Print a table from the columns' names and `sections`, which are lists of rows of texts.
@@ -55,28 +55,29 @@ class Console:
         A column whose name begins with ">" is right-aligned, for numbers. On a terminal that is too
         narrow, each row becomes a block of lines. In a pipe or a file, lines have any length.
         """
-        table = tables.make_table(columns, sections, self.out.width, title)
-        if table is None and not self.out.is_terminal and "COLUMNS" not in os.environ:
-            self.out.width = UNLIMITED_WIDTH
-            table = tables.make_table(columns, sections, self.out.width, title)
+        table = tables.make_table(columns, sections, self.output.width, title)
+        if table is None and not self.output.is_terminal and "COLUMNS" not in os.environ:
+            self.output.width = UNLIMITED_WIDTH
+            table = tables.make_table(columns, sections, self.output.width, title)
         if table is not None:
-            self.out.print(table, soft_wrap=False)
+            self.output.print(table, soft_wrap=False)
             return
-        lines = tables.format_blocks(columns, sections, self.out.width)
-        self.out.print(title or "", *lines, "", sep="\n")
+        lines = tables.format_blocks(columns, sections, self.output.width)
+        self.output.print(title or "", *lines, "", sep="\n")
 
     def print_image_errors(self, errors: Any) -> None:
         """Print the `ImageErrors` of a rendering as a table."""
         *rows, floor = errors.table()
-        self.table(errors.columns, rows, [floor], title=f"{errors.reference}: errors of pictures")
-        self.out.print("\n".join(errors.remarks))
+        title = f"{errors.reference}: errors of pictures"
+        self.print_table(errors.columns, rows, [floor], title=title)
+        self.output.print("\n".join(errors.remarks))
 
     def print_doubts(self, findings: Iterable[str]) -> None:
         """Print a line for each of the `findings` of an audit."""
         for finding in findings:
-            self.out.print(f"The measurement is doubtful: {finding}.")
+            self.output.print(f"The measurement is doubtful: {finding}.")
 
     def print_written(self, paths: Iterable[str | Path]) -> None:
         """Print a line for each file that was written."""
         for path in paths:
-            self.out.print(f"written: {path}")
+            self.output.print(f"written: {path}")

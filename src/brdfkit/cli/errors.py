@@ -12,10 +12,10 @@ from typing import Any, NoReturn
 
 import click
 
-from brdfkit.cli.outputs import refuse_to_replace, remember
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.cli.outputs import record_writing, refuse_to_replace
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import watch_writing
-from brdfkit.core.interrupts import exit_status, is_stopped, stop_on_signals
+from brdfkit.core.interrupts import find_exit_status, is_stopped_by_signal, stop_on_signals
 from brdfkit.core.names import to_printable
 
 WRITE_ERRORS = errno.ENOSPC, errno.EDQUOT, errno.EIO  # no space, quota exceeded, device failed
@@ -36,13 +36,13 @@ class Group(click.Group):
         for stream in (sys.stdout, sys.stderr):  # a terminal whose encoding lacks θ shows ?
             if hasattr(stream, "reconfigure"):
                 stream.reconfigure(errors="replace")
-        guard = watch_writing(refuse_to_replace, remember)
+        guard = watch_writing(refuse_to_replace, record_writing)
         with stop_on_signals(), translate_errors(), guard, warnings.catch_warnings():
             warnings.showwarning = _print_warning
             try:
                 return super().invoke(ctx)
             finally:
-                _flush()
+                _flush_output()
 
 
 class FinalMessage(click.ClickException):
@@ -85,7 +85,7 @@ def translate_errors() -> Iterator[None]:
     except MemoryError as error:
         raise FinalMessage("there is too little memory for this; make it smaller.") from error
     except KeyboardInterrupt as error:
-        raise FinalMessage("interrupted.", exit_status()) from error
+        raise FinalMessage("interrupted.", find_exit_status()) from error
 
 
 @contextmanager
@@ -96,17 +96,17 @@ def _restore_interrupts() -> Iterator[None]:
     except (click.exceptions.Exit, FinalMessage):
         raise
     except Exception as error:
-        if is_stopped():
+        if is_stopped_by_signal():
             raise KeyboardInterrupt from error
         raise
 
 
 def _describe_misuse(error: click.UsageError) -> str:
-    """Return click's message without its full stop, or that of `no_such` for an unknown name."""
+    """Return click's message without its full stop; for an unknown name, propose a known one."""
     message = error.format_message()
     command: Any = error.ctx and error.ctx.command
     if isinstance(error, click.NoSuchCommand):
-        message = str(no_such("command", error.command_name, command.commands))
+        message = str(no_such_error("command", error.command_name, command.commands))
     elif isinstance(error, click.NoSuchOption) and error.ctx:
         if error.option_name in FIT_OPTIONS:
             message = (
@@ -116,11 +116,11 @@ def _describe_misuse(error: click.UsageError) -> str:
         else:
             parameters = command.get_params(error.ctx)
             options = [p.opts[-1] for p in parameters if isinstance(p, click.Option)]
-            message = str(no_such("option", error.option_name, options))
+            message = str(no_such_error("option", error.option_name, options))
     return message.rstrip(".")
 
 
-def _flush() -> None:
+def _flush_output() -> None:
     """Flush standard output, so that an error in it is raised within `translate_errors`."""
     if sys.stdout:  # None, where it was closed
         sys.stdout.flush()
@@ -142,7 +142,7 @@ def print_message(message: object) -> None:
 def exit_interrupted(message: str) -> NoReturn:
     """Print what was finished before Ctrl-C or SIGTERM, and end the command with its status."""
     print_message(f"interrupted; {message}.")
-    click.get_current_context().exit(exit_status())
+    click.get_current_context().exit(find_exit_status())
 
 
 def _print_warning(message: Warning | str, *_args: Any, **_kwargs: Any) -> None:

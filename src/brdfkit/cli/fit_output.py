@@ -32,29 +32,29 @@ def print_fits(
     `errors` are the `ImageErrors` of the pictures, or None. Notes that all fits share come first.
     JSON also contains the errors of models that `failed`, by name, and the `ranking`.
     """
-    from brdfkit.cli.rank_output import to_record
+    from brdfkit.cli.rank_output import make_ranking_record
     from brdfkit.materials.auditing.data_findings import list_data_findings
 
     if console.as_json:
         psnr = {n: row["psnr"] for n, row in errors.by_name.items()} if errors else {}
-        records = [_to_record(fit, comparison, psnr) for fit in fits]
+        records = [_make_fit_record(fit, comparison, psnr) for fit in fits]
         entries: dict[str, Any] = {"material": material.name, "fits": records, "failed": failed}
         entries["measured_albedo"] = comparison.measured_albedo
-        entries["ranking"] = to_record(ranking)
-        console.json({**entries, "pictures": errors, "written": written})
+        entries["ranking"] = make_ranking_record(ranking)
+        console.print_json({**entries, "pictures": errors, "written": written})
         return
     shared = _find_shared_notes(fits, list_data_findings(material))
     for note in shared:
-        console.out.print(f"! {note}")
+        console.output.print(f"! {note}")
     for fit in fits:
         own = tuple(note for note in fit.notes if note not in shared)
-        console.out.print(f"{replace(fit, notes=own)}\n")
-    console.out.print(f"{comparison}\n")
+        console.output.print(f"{replace(fit, notes=own)}\n")
+    console.output.print(f"{comparison}\n")
     if errors:
         console.print_image_errors(errors)
     console.print_written(written)
     if not written:
-        console.out.print("Nothing was saved; -o FOLDER keeps the fits.")
+        console.output.print("Nothing was saved; -o FOLDER keeps the fits.")
 
 
 def _find_shared_notes(fits: Sequence[Fit], findings: Sequence[str]) -> list[str]:
@@ -68,7 +68,7 @@ def _find_shared_notes(fits: Sequence[Fit], findings: Sequence[str]) -> list[str
     return [note for note in notes if note in shared or note in findings]
 
 
-def _to_record(fit: Fit, comparison: Comparison, psnr: Mapping[str, float]) -> dict[str, Any]:
+def _make_fit_record(fit: Fit, comparison: Comparison, psnr: Mapping[str, float]) -> dict[str, Any]:
     """Return the record of a fit for JSON, with its errors under every loss and its PSNR."""
     return {
         "model": fit.name,

@@ -10,7 +10,7 @@ import click
 
 from brdfkit.cli.console import Console
 from brdfkit.cli.errors import print_message
-from brdfkit.core.interrupts import exit_status
+from brdfkit.core.interrupts import find_exit_status
 
 if TYPE_CHECKING:
     from brdfkit.fitting.sweeping import Sweep
@@ -29,12 +29,12 @@ def fit_many(
 
     Each failure is printed as one sentence; the exit status is then 2.
     """
-    from brdfkit.cli.arguments import results_folder
+    from brdfkit.cli.arguments import use_results_folder
     from brdfkit.fitting.sweeping import sweep
 
     options: dict[str, Any] = {"folder": folder, "workers": workers, "judge": judge}
     what = f"fit {len(names)} models to {len(files)} materials"
-    with results_folder(folder), console.progress(what) as progress:
+    with use_results_folder(folder), console.progress(what) as progress:
         result = sweep(files, names, settings=settings, **options, progress=progress)
     _print_sweep(result, folder, console)
     for problem in result.problems:
@@ -46,7 +46,7 @@ def fit_many(
             f"interrupted; {len(result.fits)} of {result.requested} fits are finished{more}."
         )
     if interrupted or result.failed:
-        click.get_current_context().exit(exit_status() if interrupted else 2)
+        click.get_current_context().exit(find_exit_status() if interrupted else 2)
 
 
 def _print_sweep(sweep: Sweep, folder: Path | None, console: Console) -> None:
@@ -56,25 +56,25 @@ def _print_sweep(sweep: Sweep, folder: Path | None, console: Console) -> None:
 
     pages = [folder / PAGE, folder / TABLE] if folder and sweep.fits else []
     if console.as_json:
-        fits = [_to_sweep_record(row) for row in sweep.rows if row.fit]
+        fits = [_make_sweep_record(row) for row in sweep.rows if row.fit]
         failed = [
             {"material": r.material, "file": r.file, "model": r.model, "message": r.message}
             for r in sweep.failed
         ]
         saved = [row.saved for row in sweep.rows if row.saved]
-        console.json({"fits": fits, "failed": failed, "written": [*pages, *saved]})
+        console.print_json({"fits": fits, "failed": failed, "written": [*pages, *saved]})
     elif sweep.fits:
         for quantity in list_quantities(sweep):
             columns, *sections = compare_models(sweep, quantity)
             unit = "" if quantity.decibels else f" ({sweep.rows[0].loss})"
-            console.table(columns, *sections, title=f"{quantity.title}{unit}")
-        console.out.print(sweep.summary)
+            console.print_table(columns, *sections, title=f"{quantity.title}{unit}")
+        console.output.print(sweep.summary)
         console.print_written(pages)
         if pages:
             console.print_written([f"{folder}/MATERIAL/MODEL.json, {len(sweep.fits)} fits"])
 
 
-def _to_sweep_record(row: Any) -> dict[str, Any]:
+def _make_sweep_record(row: Any) -> dict[str, Any]:
     """Return the record of a row of a sweep for JSON."""
     return {
         "material": row.material,

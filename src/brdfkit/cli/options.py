@@ -62,12 +62,12 @@ def mend_options(command: Command) -> Command:
         help="Divide the values of FILE, which are BRDF times cos theta_o, by this cosine.",
     )
     @functools.wraps(command)
-    def with_mends(*args: Any, mirror_azimuth: bool, divide_by_cos: bool, **kwargs: Any) -> Any:
-        options = {"mirror_azimuth": mirror_azimuth, "divide_by_cos": divide_by_cos}
-        mends = {name: True for name, is_given in options.items() if is_given}
+    def call_with_mends(*args: Any, **kwargs: Any) -> Any:
+        given = {name: kwargs.pop(name) for name in ("mirror_azimuth", "divide_by_cos")}
+        mends = {name: True for name, is_given in given.items() if is_given}
         return command(*args, mends=mends, **kwargs)
 
-    return with_mends
+    return call_with_mends
 
 
 def output_options(command: Command) -> Command:
@@ -76,12 +76,12 @@ def output_options(command: Command) -> Command:
     @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
     @click.option("-q", "--quiet", is_flag=True, help="Print only errors, and what --json prints.")
     @functools.wraps(command)
-    def with_output(*args: Any, as_json: bool, quiet: bool, **kwargs: Any) -> Any:
+    def call_with_console(*args: Any, as_json: bool, quiet: bool, **kwargs: Any) -> Any:
         from brdfkit.cli.console import Console
 
         return command(*args, console=Console(as_json, quiet), **kwargs)
 
-    return with_output
+    return call_with_console
 
 
 def writing_options(command: Command) -> Command:
@@ -92,10 +92,10 @@ def writing_options(command: Command) -> Command:
     )
     @output_options
     @functools.wraps(command)
-    def with_force(*args: Any, force: bool, **kwargs: Any) -> Any:
+    def call_without_force(*args: Any, force: bool, **kwargs: Any) -> Any:
         return command(*args, **kwargs)
 
-    return with_force
+    return call_without_force
 
 
 def render_options(
@@ -140,7 +140,7 @@ def scene_options(command: Command, files: str = SCENE_FILES) -> Command:
     maps = ", ".join(catalogue.list_environments())
 
     @functools.wraps(command)
-    def with_scene(*args: Any, scene: str, up: str | None, **kwargs: Any) -> Any:
+    def call_with_scene(*args: Any, scene: str, up: str | None, **kwargs: Any) -> Any:
         if up is not None:
             if not scene.lower().endswith((".obj", ".ply")):
                 raise BrdfkitError(f"--up turns a mesh, .obj or .ply; leave it out for {scene}.")
@@ -169,8 +169,8 @@ def scene_options(command: Command, files: str = SCENE_FILES) -> Command:
             help=f"The scene that shows the material: {names}; {files}.",
         ),
     ):
-        with_scene = option(with_scene)
-    return with_scene
+        call_with_scene = option(call_with_scene)
+    return call_with_scene
 
 
 def tone_options(command: Command) -> Command:
@@ -202,9 +202,9 @@ def tone_options(command: Command) -> Command:
         help="Apply the curve to each channel, or to the luminance, which keeps colours.",
     )
     @functools.wraps(command)
-    def with_tone(*args: Any, curve: str, exposure: float, by: str, **kwargs: Any) -> Any:
+    def call_with_tone(*args: Any, curve: str, exposure: float, by: str, **kwargs: Any) -> Any:
         from brdfkit.images.tone_mapping import ToneMapping
 
         return command(*args, tone=ToneMapping(curve, exposure, by), **kwargs)
 
-    return with_tone
+    return call_with_tone

@@ -19,7 +19,7 @@ from typing import Any
 import click
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import sha256
+from brdfkit.core.files import compute_sha256
 
 # Options that do not change the contents of files
 NEUTRAL_OPTIONS = "force", "as_json", "quiet", "workers"
@@ -37,62 +37,63 @@ def refuse_to_replace(target: Path) -> None:
     It must not replace a file that it reads, or, without --force, one that it did not write.
     """
     context = click.get_current_context(silent=True)
-    if context is None or not target.exists() or _is_cached(target) or _is_own(target, context):
+    if context is None or not target.exists() or _is_in_cache(target):
+        return
+    if _was_written_by(target, context):
         return
     if _is_input(target, context.params):
-        raise BrdfkitError(f"{_shorten(target)} is a file to read; name another to write.")
+        raise BrdfkitError(f"{_shorten_path(target)} is a file to read; name another to write.")
     if context.params.get("force"):
         return
     raise BrdfkitError(
-        f"{_shorten(target)} exists already, and another command wrote it: name another file, or "
-        "add --force to replace it."
+        f"{_shorten_path(target)} exists already, and another command wrote it: name another file, "
+        "or add --force to replace it."
     )
 
 
-def _shorten(target: Path) -> Path:
+def _shorten_path(target: Path) -> Path:
     """Return a file's path relative to the current folder, if the file is in that folder."""
     here = Path.cwd()
     return target.relative_to(here) if target.is_relative_to(here) else target
 
 
-def remember(target: Path) -> None:
+def record_writing(target: Path) -> None:
     """Record in the cache folder that the running command wrote the file `target`."""
     context = click.get_current_context(silent=True)
-    if context is None or _is_cached(target):
+    if context is None or _is_in_cache(target):
         return
     context.meta.setdefault(WRITTEN, set()).add(target)
     with suppress(OSError, BrdfkitError):  # without a cache folder, --force will be needed
-        record = _record_path(target)
+        record = _find_record_path(target)
         record.parent.mkdir(parents=True, exist_ok=True)
         written = {
             "file": str(target),
             "origin": _describe_command(context),
-            "sha256": sha256(target),
+            "sha256": compute_sha256(target),
         }
         record.write_text(json.dumps(written), encoding="utf-8")
 
 
-def _is_cached(target: Path) -> bool:
+def _is_in_cache(target: Path) -> bool:
     """Return whether a file lies in brdfkit's cache folder."""
     from brdfkit.materials.collections.public import cache_folder  # here, because it loads slowly
 
     return target.is_relative_to(cache_folder().resolve())
 
 
-def _is_own(target: Path, context: click.Context) -> bool:
+def _was_written_by(target: Path, context: click.Context) -> bool:
     """Return whether this command wrote the file, and no other program changed it since."""
     if target in context.meta.get(WRITTEN, ()):
         return True
     try:
-        written = json.loads(_record_path(target).read_text(encoding="utf-8"))
-        return written["origin"] == _describe_command(context) and written["sha256"] == sha256(
-            target
-        )
+        written = json.loads(_find_record_path(target).read_text(encoding="utf-8"))
+        same_file = written["sha256"] == compute_sha256(target)
+        return same_file and written["origin"] == _describe_command(context)
     except (OSError, ValueError, KeyError, TypeError, BrdfkitError):
         return False
 
 
-def _record_path(target: Path) -> Path:
+def _find_record_path(target: Path) -> Path:
     """Return the path in the cache folder of the record on the file `target`."""
     from brdfkit.materials.collections.public import cache_folder  # here, because it loads slowly
 
@@ -114,7 +115,7 @@ def _is_input(target: Path, parameters: Mapping[str, Any]) -> bool:
 
 def _list_inputs(words: Any) -> Iterator[Path]:
     """Yield the files that arguments name, with files in folders and files that files refer to."""
-    waiting, known = [Path(word) for word in _find_texts(words)], set()
+    waiting, known = [Path(word) for word in _list_texts(words)], set()
     while waiting:
         path = _resolve_existing(waiting.pop())
         if path is None or path in known:
@@ -129,7 +130,7 @@ def _list_inputs(words: Any) -> Iterator[Path]:
             waiting += [path.parent / next(filter(None, groups)) for groups in WORDS.findall(text)]
 
 
-def _find_texts(value: Any) -> Iterator[str]:
+def _list_texts(value: Any) -> Iterator[str]:
     """Yield the texts in values of arguments, and their parts before # and after =."""
     if isinstance(value, str | Path):
         text = str(value)
@@ -138,7 +139,7 @@ def _find_texts(value: Any) -> Iterator[str]:
         yield from (text.partition(sign)[2] for sign in "=" if sign in text)
     elif not isinstance(value, dict) and hasattr(value, "__iter__"):
         for part in value:
-            yield from _find_texts(part)
+            yield from _list_texts(part)
 
 
 def _resolve_existing(path: Path) -> Path | None:

@@ -10,7 +10,7 @@ import click
 
 from brdfkit.cli.console import Console
 from brdfkit.cli.errors import print_message
-from brdfkit.core.interrupts import exit_status
+from brdfkit.core.interrupts import find_exit_status
 
 if TYPE_CHECKING:
     from brdfkit.images.tone_mapping import ToneMapping
@@ -53,7 +53,7 @@ def write_result(result: Rendering | Film, path: Path, tone: ToneMapping, consol
         _print_picture(result, path, console)
         done = result.spp
     if done < (result.requested or 0):
-        click.get_current_context().exit(exit_status())
+        click.get_current_context().exit(find_exit_status())
 
 
 def _print_picture(picture: Rendering, path: Path, console: Console) -> None:
@@ -62,7 +62,7 @@ def _print_picture(picture: Rendering, path: Path, console: Console) -> None:
     if path.suffix.lower() == ".exr":
         written += [path.with_suffix(".png")]
     if console.as_json:
-        console.json(
+        console.print_json(
             {
                 "pictures": list(picture.pictures),
                 "psnr": picture.psnr(),
@@ -74,10 +74,10 @@ def _print_picture(picture: Rendering, path: Path, console: Console) -> None:
         )
     else:
         if picture.differences:
-            console.out.print(picture.head)
+            console.output.print(picture.head)
             console.print_image_errors(picture.errors())
         else:  # without the noise floor, of which `write_picture` informed
-            console.out.print(str(replace(picture, requested_noise_floor=None)))
+            console.output.print(str(replace(picture, requested_noise_floor=None)))
         console.print_written(written)
 
 
@@ -89,8 +89,8 @@ def _write_film(film: Film, path: Path, tone: ToneMapping, console: Console) -> 
         print_message(f"interrupted; the film has {count} of {requested} frames.")
     if console.as_json:
         counts = {"frames": count, "requested": requested, "spp": film.spp, "seconds": film.seconds}
-        console.json(counts | {"written": [path]})
+        console.print_json(counts | {"written": [path]})
     else:
-        console.out.print(str(film))
+        console.output.print(str(film))
         console.print_written([path])
     return count

@@ -18,7 +18,7 @@ BEST = "best"  # stands for the recommended model
 IGNORED_OPTIONS = {"robust": "robust", "spectral": "spectral", "fixed": "fixed", "bounds": "bound"}
 
 
-def recommend(
+def recommend_model(
     names: list[str], material: Measured, how: Mapping[str, Any], console: Console
 ) -> tuple[list[str], Ranking | None]:
     """Rank all models on a material, and print the ranking, if BEST is among the `names`.
@@ -58,14 +58,14 @@ def _print_ranking(ranking: Ranking, console: Console) -> None:
 
     if not console.as_json:
         title = f"{ranking.material}: errors ({ranking.loss}) at directions that were held out"
-        console.table(COLUMNS, ranking.table(), title=title)
+        console.print_table(COLUMNS, ranking.table(), title=title)
         sentences = [ranking.reason, *ranking.doubts, ranking.suits, ""]
-        console.out.print("\n".join(filter(None, sentences)))
+        console.output.print("\n".join(filter(None, sentences)))
     for problem in ranking.problems:
         print_message(problem)
 
 
-def to_record(ranking: Ranking | None) -> dict[str, Any] | None:
+def make_ranking_record(ranking: Ranking | None) -> dict[str, Any] | None:
     """Return the record of a ranking for JSON; None stays None."""
     if ranking is None:
         return None

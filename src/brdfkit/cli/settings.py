@@ -119,7 +119,7 @@ def fit_options(
 
     def add_options(command: Command) -> Command:
         @functools.wraps(command)
-        def with_settings(
+        def call_with_settings(
             *args: Any,
             names: tuple[str, ...],
             albedo_at_most: float | None,
@@ -140,11 +140,11 @@ def fit_options(
             return command(*args, names=names, how=how, **kwargs)
 
         for option, attributes in reversed(FIT_OPTIONS.items()):
-            with_settings = click.option(option, **attributes)(with_settings)
+            call_with_settings = click.option(option, **attributes)(call_with_settings)
         model = click.option(
             "-m", "--model", "names", multiple=True, metavar="MODEL", help=help_text
         )
-        return model(with_settings)
+        return model(call_with_settings)
 
     return add_options
 

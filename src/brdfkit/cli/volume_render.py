@@ -13,7 +13,7 @@ import brdfkit
 from brdfkit.cli.console import Console
 from brdfkit.cli.errors import print_message
 from brdfkit.cli.settings import Command, parse_settings
-from brdfkit.core.errors import BrdfkitError, nearest, no_such
+from brdfkit.core.errors import BrdfkitError, find_nearest, no_such_error
 
 if TYPE_CHECKING:
     from brdfkit.rendering import Rendering
@@ -61,15 +61,15 @@ def volume_options(command: Command) -> Command:
     names = [option.removeprefix("--") for option in VOLUME_OPTIONS]
 
     @functools.wraps(command)
-    def with_settings(*args: Any, **kwargs: Any) -> Any:
+    def call_with_settings(*args: Any, **kwargs: Any) -> Any:
         values = {name: kwargs.pop(name) for name in names}
         settings = {name: v for name, v in values.items() if not (v is None or v is False)}
         return command(*args, volume_settings=settings, **kwargs)
 
     for option, attributes in reversed(VOLUME_OPTIONS.items()):
         text = {"help": f"For a volume: {attributes['help']}"}
-        with_settings = click.option(option, **attributes | text)(with_settings)
-    return with_settings
+        call_with_settings = click.option(option, **attributes | text)(call_with_settings)
+    return call_with_settings
 
 
 def find_volume(things: Sequence[str], settings: dict[str, Any]) -> str | None:
@@ -97,8 +97,8 @@ def _refuse_misspelt_volume(word: str) -> None:
     known = [*labels.models(), *catalogue.list_materials(), *made.list_volume_names()]
     if word in known or labels.is_label(word) or Path(word).suffix or Path(word).exists():
         return
-    if nearest(word, known) in made.list_volume_names():
-        raise no_such("file, model, material or volume", word, known)
+    if find_nearest(word, known) in made.list_volume_names():
+        raise no_such_error("file, model, material or volume", word, known)
 
 
 def render_volume(

@@ -17,10 +17,10 @@ from brdfkit.core.errors import BrdfkitError
 LONGEST = 80  # characters of a value in an error
 
 
-def wrong_argument(what: str, value: object, expected: str) -> BrdfkitError:
+def wrong_value_error(what: str, value: object, expected: str) -> BrdfkitError:
     """Return the error for an argument whose value is not as `expected`.
 
-    >>> wrong_argument("spp", -3, "a whole number, at least 1")
+    >>> wrong_value_error("spp", -3, "a whole number, at least 1")
     BrdfkitError('spp = -3 should be a whole number, at least 1.')
     """
     text = " ".join(repr(value).split())
@@ -68,10 +68,10 @@ def to_number(
         low = (least is None or number >= least) and (above is None or number > above)
         if low and (most is None or number <= most):
             return number
-    raise wrong_argument(what, value, describe_range("a number", least, most, above))
+    raise wrong_value_error(what, value, describe_range("a number", least, most, above))
 
 
-def to_positive(what: str, value: object) -> float:
+def to_positive_number(what: str, value: object) -> float:
     """Return a number as a finite float above 0."""
     return to_number(what, value, above=0)
 
@@ -84,22 +84,22 @@ def to_whole_number(
         number = int(value)
         if (least is None or number >= least) and (most is None or number <= most):
             return number
-    raise wrong_argument(what, value, describe_range("a whole number", least, most))
+    raise wrong_value_error(what, value, describe_range("a whole number", least, most))
 
 
-def to_pair(what: str, value: Any) -> tuple[float, float]:
+def to_number_pair(what: str, value: Any) -> tuple[float, float]:
     """Return two numbers as floats (low, high)."""
     try:
         low, high = map(float, value)
     except (TypeError, ValueError):
-        raise wrong_argument(what, value, "two numbers, (low, high)") from None
+        raise wrong_value_error(what, value, "two numbers, (low, high)") from None
     return low, high
 
 
 def to_dictionary(what: str, value: Any) -> dict[str, Any]:
     """Return a mapping from names of parameters as a dictionary, which is empty for None."""
     if not isinstance(value, Mapping | None):
-        raise wrong_argument(what, value, "a dictionary by parameter")
+        raise wrong_value_error(what, value, "a dictionary by parameter")
     return dict(value or {})
 
 
@@ -122,7 +122,7 @@ def to_array(what: str, value: Any, shape: tuple[int, ...] | None = None) -> Flo
     return array
 
 
-def check_numbers(solver: Any) -> None:
+def check_number_fields(solver: Any) -> None:
     """Check that the fields of a frozen dataclass are above 0, and whole where their defaults are.
 
     The fields then hold plain ints and floats.
@@ -130,5 +130,5 @@ def check_numbers(solver: Any) -> None:
     for field in fields(solver):
         what, value = f"{type(solver).__name__}: {field.name}", getattr(solver, field.name)
         whole = isinstance(field.default, int)
-        checked = to_whole_number(what, value, least=1) if whole else to_positive(what, value)
+        checked = to_whole_number(what, value, 1) if whole else to_positive_number(what, value)
         object.__setattr__(solver, field.name, checked)

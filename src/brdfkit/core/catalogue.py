@@ -9,19 +9,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.core.files import sha256
+from brdfkit.core.errors import BrdfkitError, no_such_error
+from brdfkit.core.files import compute_sha256
 
 MEASURED, ENVIRONMENTS = "measured", "environments"
 
 
 def read_index(kind: str = MEASURED) -> dict[str, Any]:
     """Return the content of an index by name; the entry "collections" holds public collections."""
-    with (find_folder(kind) / "index.toml").open("rb") as stream:
+    with (find_data_folder(kind) / "index.toml").open("rb") as stream:
         return tomllib.load(stream)
 
 
-def find_folder(kind: str = MEASURED) -> Path:
+def find_data_folder(kind: str = MEASURED) -> Path:
     """Return the folder of an index, in the installed package or at the top of a checkout."""
     package = Path(__file__).resolve().parents[1]
     installed, checkout = (place / "data" / kind for place in (package, package.parents[1]))
@@ -108,7 +108,7 @@ def find_material_file(name: str) -> Path:
     >>> find_material_file("dusty_gold").name
     'dusty_gold.binary.xz'
     """
-    return _verified_path("material", name, list_materials(), find_folder(MEASURED))
+    return _find_verified_file("material", name, list_materials(), find_data_folder(MEASURED))
 
 
 def find_environment_file(name: str) -> Path:
@@ -119,8 +119,8 @@ def find_environment_file(name: str) -> Path:
     >>> find_environment_file("studio").name
     'studio.exr'
     """
-    folder = find_folder(ENVIRONMENTS)
-    return _verified_path("environment map", name, list_environments(), folder)
+    folder = find_data_folder(ENVIRONMENTS)
+    return _find_verified_file("environment map", name, list_environments(), folder)
 
 
 def _list_shipped(kind: str) -> dict[str, Shipped]:
@@ -129,14 +129,14 @@ def _list_shipped(kind: str) -> dict[str, Shipped]:
     return {name: Shipped(name, **entry) for name, entry in entries if name != "collections"}
 
 
-def _verified_path(what: str, name: str, known: dict[str, Shipped], folder: Path) -> Path:
+def _find_verified_file(what: str, name: str, known: dict[str, Shipped], folder: Path) -> Path:
     """Return the file of a known entry in a folder; `what` names its kind in errors."""
     if name not in known:
-        raise no_such(what, name, known)
+        raise no_such_error(what, name, known)
     file = folder / known[name].file
     if not file.is_file():
         raise BrdfkitError(f"{file}: the file of {name!r} is missing; install brdfkit again.")
-    if sha256(file) != known[name].sha256:
+    if compute_sha256(file) != known[name].sha256:
         raise BrdfkitError(
             f"{file}: is not the {name!r} that brdfkit came with (its checksum differs); "
             "install brdfkit again."

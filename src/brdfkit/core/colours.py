@@ -49,7 +49,7 @@ def from_srgb(values: ArrayLike) -> FloatArray:
     return np.where(y <= 0.04045, y / 12.92, ((y + 0.055) / 1.055) ** 2.4)
 
 
-def import_colour() -> Any:
+def import_colour_package() -> Any:
     """Import the package `colour` without letting it change how NumPy prints arrays."""
     with np.printoptions():
         import colour
@@ -69,7 +69,7 @@ def compute_rgb_weights(wavelengths: ArrayLike, name: str) -> FloatArray:
             f"nm, do not span {REQUIRED_RANGE[0]} to {REQUIRED_RANGE[1]} nm and give no colour; "
             "choose one channel with `mix_channels`."
         )
-    colour = import_colour()
+    colour = import_colour_package()
     observer = colour.MSDS_CMFS[OBSERVER]
     light = np.interp(
         observer.wavelengths,

@@ -11,20 +11,20 @@ class BrdfkitError(ValueError):
     """
 
 
-def no_such(what: str, name: object, known: Iterable[object], where: str = "") -> BrdfkitError:
+def no_such_error(what: str, name: object, known: Iterable[Any], where: str = "") -> BrdfkitError:
     """Return the error for an unknown `name`; it proposes the nearest of the `known` names.
 
-    >>> no_such("model", "wrad", ["ggx", "ward"])
+    >>> no_such_error("model", "wrad", ["ggx", "ward"])
     BrdfkitError("There is no model 'wrad'; did you mean ward? There are ggx, ward.")
     """
     names = list(map(str, known))
     place = f"{where}: there" if where else "There"
-    near = nearest(name, names)
+    near = find_nearest(name, names)
     guess = f"did you mean {near}? There are" if near else "there are"
     return BrdfkitError(f"{place} is no {what} {name!r}; {guess} {', '.join(names) or 'none'}.")
 
 
-def nearest(name: object, known: Iterable[Any]) -> Any:
+def find_nearest(name: object, known: Iterable[Any]) -> Any:
     """Return the known name that is most similar to `name`, None where none is similar."""
     import difflib  # only here: `--help` should be instant
 

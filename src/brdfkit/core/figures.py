@@ -55,14 +55,14 @@ def _with_visible_greys(figure: Figure) -> Iterator[None]:
     ]
     try:
         for artist, name, colour in before:
-            getattr(artist, f"set_{name}")(_to_visible(colour))
+            getattr(artist, f"set_{name}")(_replace_greys(colour))
         yield
     finally:
         for artist, name, colour in before:
             getattr(artist, f"set_{name}")(colour)
 
 
-def _to_visible(colours: Any) -> AnyArray | tuple[float, ...] | str:
+def _replace_greys(colours: Any) -> AnyArray | tuple[float, ...] | str:
     """Return colours with black and greys replaced by a middle grey, fainter for lighter greys.
 
     White becomes transparent; other colours stay.

@@ -6,7 +6,7 @@ from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
 
-from brdfkit.core.errors import BrdfkitError, nearest
+from brdfkit.core.errors import BrdfkitError, find_nearest
 
 SIZE_LIMIT = 2**30  # bytes, decompressed; the largest MERL table has 70 MB
 CHUNK_SIZE = 2**20  # bytes
@@ -30,7 +30,7 @@ def write_safely(path: str | os.PathLike[str]) -> Iterator[Path]:
     ...     beside.write_text("{}")
     """
     target = require_writable(path)
-    with _utf8_folder(target.parent) as folder:
+    with _link_as_utf8(target.parent) as folder:
         beside = folder / f".brdfkit-{os.urandom(4).hex()}{target.suffix}"
         try:
             beside.touch(exist_ok=False)
@@ -40,8 +40,8 @@ def write_safely(path: str | os.PathLike[str]) -> Iterator[Path]:
                 after(target)
         except OSError as error:
             raise BrdfkitError(
-                f"{path}: cannot be written ({_describe(error)}); choose another folder or make "
-                "room."
+                f"{path}: cannot be written ({_describe_cause(error)}); choose another folder or "
+                "make room."
             ) from error
         finally:
             with suppress(OSError):
@@ -49,9 +49,9 @@ def write_safely(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 @contextmanager
-def _utf8_folder(folder: Path) -> Iterator[Path]:
+def _link_as_utf8(folder: Path) -> Iterator[Path]:
     """Yield a path of the folder in UTF-8 for native libraries; if necessary, a link's path."""
-    if is_utf8(folder):
+    if is_utf8_path(folder):
         yield folder
         return
     from tempfile import TemporaryDirectory  # only here: `--help` should be instant
@@ -62,7 +62,7 @@ def _utf8_folder(folder: Path) -> Iterator[Path]:
         yield link
 
 
-def is_utf8(path: str | os.PathLike[str]) -> bool:
+def is_utf8_path(path: str | os.PathLike[str]) -> bool:
     """Return whether the bytes of a path are UTF-8; others appear as lone surrogates in Python."""
     try:
         str(path).encode()
@@ -84,7 +84,7 @@ def make_folder(path: str | os.PathLike[str]) -> None:
             raise PermissionError("it is write-protected")
     except OSError as error:
         raise BrdfkitError(
-            f"{path}: cannot be made a folder for results ({_describe(error)}); name another."
+            f"{path}: cannot be made a folder for results ({_describe_cause(error)}); name another."
         ) from error
 
 
@@ -110,7 +110,7 @@ def require_writable(path: str | os.PathLike[str]) -> Path:
             before(target)
     except OSError as error:
         raise BrdfkitError(
-            f"{path}: cannot be written ({_describe(error)}); choose another folder or name."
+            f"{path}: cannot be written ({_describe_cause(error)}); choose another folder or name."
         ) from error
     except UnicodeEncodeError:
         raise BrdfkitError(
@@ -145,14 +145,14 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
     b'Z\\x00\\x00\\x00'
     """
     path = require_file(path)
-    with _reading(path):
-        data = _read(path)
+    with _translate_read_errors(path):
+        data = _read_unpacked(path)
     if not data:
         raise BrdfkitError(f"{path}: the file is empty; fetch it again.")
     return data
 
 
-def sha256(path: str | os.PathLike[str]) -> str:
+def compute_sha256(path: str | os.PathLike[str]) -> str:
     """Compute the SHA-256 of a file, in hexadecimal.
 
     Raises `BrdfkitError` for a file that is missing, not regular or unreadable.
@@ -160,18 +160,18 @@ def sha256(path: str | os.PathLike[str]) -> str:
     import hashlib  # only here: `--help` should be instant
 
     path = require_file(path)
-    with _reading(path), path.open("rb") as stream:
+    with _translate_read_errors(path), path.open("rb") as stream:
         return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 @contextmanager
-def _reading(path: Path) -> Iterator[None]:
+def _translate_read_errors(path: Path) -> Iterator[None]:
     """Turn an `OSError` inside the block, which reads the file at `path`, into a `BrdfkitError`."""
     try:
         yield
     except OSError as error:
         raise BrdfkitError(
-            f"{path}: cannot be read ({_describe(error)}); check its permissions."
+            f"{path}: cannot be read ({_describe_cause(error)}); check its permissions."
         ) from error
 
 
@@ -181,7 +181,7 @@ def require_file(path: str | os.PathLike[str]) -> Path:
     Raises `BrdfkitError` where there is none; it proposes the file beside it with a similar name.
     """
     path = Path(path)
-    with _reading(path):
+    with _translate_read_errors(path):
         if path.is_dir():
             raise BrdfkitError(f"{path}: is a folder; name a file in it.")
         if path.is_file():
@@ -189,12 +189,12 @@ def require_file(path: str | os.PathLike[str]) -> Path:
         if path.exists():
             raise BrdfkitError(f"{path}: is no regular file; name one.")
         beside = {file.name for file in path.parent.glob("*")} if path.parent.is_dir() else set()
-    near = nearest(path.name, sorted(beside - {path.name}))
+    near = find_nearest(path.name, sorted(beside - {path.name}))
     remedy = f"did you mean {path.with_name(near)}? Else check" if near else "check"
     raise BrdfkitError(f"{path}: there is no such file; {remedy} the path.")
 
 
-def _read(path: Path) -> bytes:
+def _read_unpacked(path: Path) -> bytes:
     """Read the bytes of a file, decompressed, up to `SIZE_LIMIT`."""
     with path.open("rb") as stream:
         first = stream.read(8)
@@ -202,7 +202,7 @@ def _read(path: Path) -> bytes:
         if first and (path.suffix.lower() == suffix or first.startswith(magic)):
             return _decompress(path, suffix)
     if path.stat().st_size > SIZE_LIMIT:
-        raise _size_error(path)
+        raise _too_large_error(path)
     return path.read_bytes()
 
 
@@ -218,16 +218,16 @@ def _decompress(path: Path, suffix: str) -> bytes:
             while chunk := stream.read(CHUNK_SIZE):
                 data += chunk
                 if len(data) > SIZE_LIMIT:
-                    raise _size_error(path)
+                    raise _too_large_error(path)
     except (gzip.BadGzipFile, zlib.error, lzma.LZMAError, EOFError) as error:
         raise BrdfkitError(
-            f"{path}: the compressed data are damaged or cut short ({_describe(error)}); "
+            f"{path}: the compressed data are damaged or cut short ({_describe_cause(error)}); "
             "fetch the file again."
         ) from error
     return bytes(data)
 
 
-def _size_error(path: Path) -> BrdfkitError:
+def _too_large_error(path: Path) -> BrdfkitError:
     """Return the error for a file that is too large."""
     return BrdfkitError(
         f"{path}: holds more than {SIZE_LIMIT:,} bytes, which no BRDF file needs; "
@@ -235,6 +235,6 @@ def _size_error(path: Path) -> BrdfkitError:
     )
 
 
-def _describe(error: BaseException) -> str:
+def _describe_cause(error: BaseException) -> str:
     """Return the reason of an error in words."""
     return getattr(error, "strerror", None) or str(error).strip().rstrip(".") or "unknown cause"

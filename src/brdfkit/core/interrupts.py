@@ -1,7 +1,7 @@
 """Handles Ctrl-C and SIGTERM, the signal that `kill` and batch systems send to end a program.
 
 A search that Ctrl-C ends raises `Interrupted` with its best result so far. A command turns both
-signals into KeyboardInterrupt by `stop_on_signals`; `hold_signals` delays them while native code
+signals into KeyboardInterrupt by `stop_on_signals`; `delay_signals` delays them while native code
 runs that could not bear them.
 """
 
@@ -35,7 +35,7 @@ class Interrupted(KeyboardInterrupt):
 
 @contextmanager
 def stop_on_signals() -> Iterator[None]:
-    """Let Ctrl-C and SIGTERM raise KeyboardInterrupt within the block; `is_stopped` tells of it.
+    """Let Ctrl-C and SIGTERM raise KeyboardInterrupt within the block.
 
     A Ctrl-C that the shell has the command ignore, in the background, stays ignored.
     """
@@ -47,7 +47,7 @@ def stop_on_signals() -> Iterator[None]:
     before = {number: signal.getsignal(number) for number in SIGNALS}
     for number, handler in before.items():
         if handler is not signal.SIG_IGN:
-            signal.signal(number, _stop)
+            signal.signal(number, _raise_interrupt)
     try:
         yield
     finally:
@@ -55,12 +55,12 @@ def stop_on_signals() -> Iterator[None]:
             signal.signal(number, handler or signal.SIG_DFL)
 
 
-def is_stopped() -> bool:
+def is_stopped_by_signal() -> bool:
     """Return whether a signal ended the command: native code may have raised another error then."""
     return _received is not None
 
 
-def exit_status() -> int:
+def find_exit_status() -> int:
     """Return the exit status of a command that a signal ended: 130 by Ctrl-C, 143 by SIGTERM."""
     # After Ctrl-C within exec, as in making a dataclass, Python would end by the signal itself and
     # without a status; the next exec clears that
@@ -68,7 +68,7 @@ def exit_status() -> int:
     return 128 + (_received or signal.SIGINT)
 
 
-def _stop(number: int, _frame: FrameType | None) -> None:
+def _raise_interrupt(number: int, _frame: FrameType | None) -> None:
     """Remember a signal and raise KeyboardInterrupt."""
     global _received
     _received = number
@@ -76,7 +76,7 @@ def _stop(number: int, _frame: FrameType | None) -> None:
 
 
 @contextmanager
-def hold_signals() -> Iterator[None]:
+def delay_signals() -> Iterator[None]:
     """Delay Ctrl-C and SIGTERM to the end of the block, where they have their usual effect.
 
     A KeyboardInterrupt within the import of Dr.Jit or Mitsuba is lost in native code, or ends the
@@ -99,7 +99,7 @@ def hold_signals() -> Iterator[None]:
             signal.raise_signal(received[0])
 
 
-def give_back_interrupts() -> None:
+def restore_interrupt_handler() -> None:
     """Let Ctrl-C raise KeyboardInterrupt again after native code replaced Python's handler.
 
     Mitsuba sets a handler of its own while it renders. Where the Python method `render` of an

@@ -4,8 +4,8 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from brdfkit.core.arguments import wrong_argument
-from brdfkit.core.errors import no_such
+from brdfkit.core.arguments import wrong_value_error
+from brdfkit.core.errors import no_such_error
 from brdfkit.core.files import require_file
 
 
@@ -24,14 +24,14 @@ def find_file_or_name(
     known = list(known)
     if not isinstance(given, str | os.PathLike) or not str(given):
         names = f", or one of {', '.join(known)}" if known else ""
-        raise wrong_argument(what, given, f"the path of a file{names}")
+        raise wrong_value_error(what, given, f"the path of a file{names}")
     path, name = Path(given), os.fspath(given)
     if os.path.exists(path) if folders else os.path.isfile(path):
         return path
     if name in known:
         return name
     if looks_like_name(name):
-        raise no_such(f"file or {what}", name, known)
+        raise no_such_error(f"file or {what}", name, known)
     return require_file(path)
 
 
@@ -41,12 +41,12 @@ def looks_like_name(text: str) -> bool:
     return len(path.parts) == 1 and not path.suffix and not os.path.exists(path)
 
 
-def split_part(text: str | os.PathLike[str]) -> tuple[Path, str | None]:
+def split_file_and_part(text: str | os.PathLike[str]) -> tuple[Path, str | None]:
     """Split "FILE#PART" into the path and the name of the part; None where there is no part.
 
     A '#' in the name of an existing file, or in the name of a folder, belongs to the path.
 
-    >>> split_part("abrdf.dat#12")
+    >>> split_file_and_part("abrdf.dat#12")
     (PosixPath('abrdf.dat'), '12')
     """
     whole = os.fspath(text)

@@ -30,12 +30,12 @@ def require_memory(size: tuple[int, int], pictures: int, where: object = "") -> 
         return
     what = "a picture" if pictures == 1 else f"{pictures} pictures"
     sentence = (
-        f"{what} of {width}×{height} pixels would take about {_gigabytes(needed)} GB of memory, of "
-        f"which {_gigabytes(available)} GB are available; give a smaller size."
+        f"{what} of {width}×{height} pixels would take about {_to_gigabytes(needed)} GB of memory, "
+        f"of which {_to_gigabytes(available)} GB are available; give a smaller size."
     )
     raise BrdfkitError(f"{where}: {sentence}" if where else sentence[0].upper() + sentence[1:])
 
 
-def _gigabytes(size: float) -> str:
+def _to_gigabytes(size: float) -> str:
     """Format a number of bytes in gigabytes."""
     return f"{size / 1e9:,.0f}" if size >= 1e10 else f"{size / 1e9:.2g}"

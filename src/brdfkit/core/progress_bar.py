@@ -23,14 +23,14 @@ def count_steps(function: Progress | None, total: int) -> Callable[[], None]:
     """Return a function that reports one more step, of about `total`, to a progress function."""
     done = 0
 
-    def report() -> None:
+    def report_step() -> None:
         """Count a step and report it."""
         nonlocal done
         done += 1
         if function:
             function(done, max(done, total))
 
-    return report
+    return report_step
 
 
 @contextmanager
@@ -64,11 +64,11 @@ def progress(what: str) -> Iterator[Progress]:
         raise BrdfkitError(
             f"progress: what = {what!r} should be text, as in: with progress('fit') as bar."
         )
-    with (_show_in_notebook if _in_notebook() else _show_in_terminal)(what) as bar:
+    with (_show_in_notebook if _is_in_notebook() else _show_in_terminal)(what) as bar:
         yield bar
 
 
-def _in_notebook() -> bool:
+def _is_in_notebook() -> bool:
     """Return whether this process is the kernel of a notebook."""
     shell = "IPython" in sys.modules and sys.modules["IPython"].get_ipython()
     return hasattr(shell, "kernel")
@@ -81,7 +81,7 @@ def _show_in_notebook(what: str) -> Iterator[Callable[[int, int], object]]:
 
     handle, drawn = None, monotonic() + DELAY - INTERVAL
 
-    def show(done: int, total: int) -> None:
+    def update_bar(done: int, total: int) -> None:
         nonlocal handle, drawn
         if monotonic() - drawn < INTERVAL:
             return
@@ -96,7 +96,7 @@ def _show_in_notebook(what: str) -> Iterator[Callable[[int, int], object]]:
             handle = display(bar, display_id=True)
 
     try:
-        yield show
+        yield update_bar
     finally:
         if handle:
             handle.update({"text/plain": ""}, raw=True)

@@ -7,7 +7,7 @@ from dataclasses import Field, fields, replace
 from typing import Any
 
 from brdfkit.core.array_types import ArrayLike, FloatArray, JitFloat, JitVector
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.distance_fields import parameters as kinds
 from brdfkit.distance_fields.boxes import EVERYWHERE, Box
 from brdfkit.distance_fields.export.conversions import Conversions
@@ -110,7 +110,7 @@ class Node(Operators, Conversions):
         known = self.parameters()
         for name in values:
             if name not in known:
-                raise no_such("parameter", name, known)
+                raise no_such_error("parameter", name, known)
         return self._replace_parameters(values)
 
     def _replace_parameters(self, values: Mapping[str, Any]) -> Node:

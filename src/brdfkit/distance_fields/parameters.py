@@ -7,8 +7,8 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from brdfkit.core.arguments import to_number, to_whole_number, wrong_argument
-from brdfkit.core.errors import no_such
+from brdfkit.core.arguments import to_number, to_whole_number, wrong_value_error
+from brdfkit.core.errors import no_such_error
 
 _KINDS: dict[str, type] = {}
 
@@ -21,7 +21,7 @@ def register_kind(cls: type) -> None:
 def find_kind(name: Any, where: str = "") -> type:
     """Return the class of nodes of this name; `where` begins the error for an unknown name."""
     if not isinstance(name, str) or name not in _KINDS:
-        raise no_such("node", name, sorted(_KINDS), where)
+        raise no_such_error("node", name, sorted(_KINDS), where)
     return _KINDS[name]
 
 
@@ -64,7 +64,7 @@ def _check_vector(what: str, value: Any, rules: Mapping[str, Any]) -> tuple[Any,
     if hasattr(value, "x"):
         value = value.x, value.y, value.z
     if not isinstance(value, tuple | list | np.ndarray) or len(value) != 3:
-        raise wrong_argument(what, value, "three numbers")
+        raise wrong_value_error(what, value, "three numbers")
     return tuple(_check_number(f"{what}[{i}]", v, rules) for i, v in enumerate(value))
 
 

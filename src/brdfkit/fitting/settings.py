@@ -8,9 +8,9 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from brdfkit.core.arguments import to_dictionary, to_number, to_pair, to_whole_number
+from brdfkit.core.arguments import to_dictionary, to_number, to_number_pair, to_whole_number
 from brdfkit.core.array_types import ArrayLike
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.fitting.target_albedo import find_target_albedo
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.resolve import MaterialLike, to_measured
@@ -68,7 +68,7 @@ class FitSettings:
         known = [field.name for field in fields(cls)]
         for name in given:
             if name not in known:
-                raise no_such("setting of a fit", name, known)
+                raise no_such_error("setting of a fit", name, known)
         settings = cls(**given)
         if not isinstance(settings.loss, str):
             raise BrdfkitError(
@@ -85,7 +85,7 @@ class FitSettings:
         before the names of parameters in error messages.
         """
         if self.robust not in (None, *WEIGHTS):
-            raise no_such("robust weight", self.robust, WEIGHTS)
+            raise no_such_error("robust weight", self.robust, WEIGHTS)
         solver, constraints = to_solver(self.solver), to_constraints(self.constraints)
         require_supported_constraints(solver, constraints, self.robust)
         starts = self.starts
@@ -99,7 +99,7 @@ class FitSettings:
             solver=solver,
             constraints=constraints,
             starts=starts,
-            bounds={n: to_pair(f"{where}the bounds of {n}", v) for n, v in bounds.items()},
+            bounds={n: to_number_pair(f"{where}the bounds of {n}", v) for n, v in bounds.items()},
             fixed=to_dictionary("fixed", self.fixed),
             seed=seed,
         )

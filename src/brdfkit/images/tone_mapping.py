@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from brdfkit.core.arguments import to_number
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.colours import luminance
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 
 BIAS = 0.85  # of the logarithm, as Drago recommends
 WHITE = 11.2  # the value that Hable's curve shows as white, for twice the light
@@ -93,9 +93,9 @@ class ToneMapping:
 
     def __post_init__(self) -> None:
         if self.curve not in CURVES:
-            raise no_such("tone mapping", self.curve, CURVES)
+            raise no_such_error("tone mapping", self.curve, CURVES)
         if self.by not in MEANS:
-            raise no_such("tone mapping by", self.by, MEANS)
+            raise no_such_error("tone mapping by", self.by, MEANS)
         to_number("exposure", self.exposure, least=0)
         if not to_number("low", self.low) < to_number("high", self.high):
             raise BrdfkitError(f"low = {self.low!r} should be below high = {self.high!r}.")

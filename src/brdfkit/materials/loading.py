@@ -8,7 +8,7 @@ from pathlib import Path
 from brdfkit.core import catalogue
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import read_bytes, write_safely
-from brdfkit.core.locate import find_file_or_name, split_part
+from brdfkit.core.locate import find_file_or_name, split_file_and_part
 from brdfkit.materials import formats
 from brdfkit.materials.collections import public
 from brdfkit.materials.measured import Measured
@@ -72,7 +72,7 @@ def locate(path: str | Path) -> tuple[Path, str | None]:
     """
     if not str(path):
         raise BrdfkitError("The path is empty; name a file, or a material that brdfkit knows.")
-    file, sample = split_part(path)
+    file, sample = split_file_and_part(path)
     collection, slash, _ = file.as_posix().partition("/")
     if slash and collection in catalogue.read_index()["collections"] and not os.path.isfile(file):
         return public.find_file(file.as_posix()), sample

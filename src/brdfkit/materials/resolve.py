@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from brdfkit.core import catalogue
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.locate import looks_like_name
 from brdfkit.materials.loading import load
 from brdfkit.materials.measured import Measured
@@ -55,7 +55,7 @@ def to_material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Mate
     if isinstance(thing, str | Path):
         return _find(str(thing))
     if isinstance(thing, dict):
-        return BsdfMaterial.of(thing)
+        return BsdfMaterial.from_dictionary(thing)
     if isinstance(thing, type) and hasattr(thing, "lobes"):
         name = thing.__name__
         raise BrdfkitError(f"{name} is a model without values; call it: {name}().")
@@ -106,7 +106,8 @@ def _find(name: str) -> Material:
     except BrdfkitError:
         if not looks_like_name(name):
             raise
-    raise no_such("file, model or material", name, [*labels.models(), *catalogue.list_materials()])
+    known = [*labels.models(), *catalogue.list_materials()]
+    raise no_such_error("file, model or material", name, known)
 
 
 def _describe(thing: object) -> str:

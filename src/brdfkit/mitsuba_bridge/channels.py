@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, ArrayLike, JitColour, JitFloat, JitInt, MitsubaObject
-from brdfkit.core.colours import LUMINANCE, import_colour
+from brdfkit.core.colours import LUMINANCE, import_colour_package
 from brdfkit.mitsuba_bridge.arrays import Nodes, Rows, find_bracket
 
 
@@ -87,7 +87,7 @@ class SmoothSpectrum:
     """
 
     def __init__(self) -> None:
-        basis = import_colour().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
+        basis = import_colour_package().recovery.MSDS_BASIS_FUNCTIONS_sRGB_MALLETT2019
         self.first, self.step = float(basis.shape.start), float(basis.shape.interval)
         self.count, self.basis = len(basis.values), Rows(basis.values)
 
@@ -119,11 +119,11 @@ class Wavelengths:
         corners, spectrum = list(corners), mi.UnpolarizedSpectrum(0)
         for k, wavelength in enumerate(si.wavelengths):
             lower, upper, t = self.nodes.find_bracket(wavelength)
-            first, second = (self._mean(corners, node) for node in (lower, upper))
+            first, second = (self._average_at_node(corners, node) for node in (lower, upper))
             spectrum[k] = dr.lerp(first, second, t)
         return spectrum
 
-    def _mean(self, corners: Iterable[tuple[JitInt, JitFloat]], node: JitInt) -> JitFloat:
+    def _average_at_node(self, corners: Iterable[tuple[JitInt, JitFloat]], node: JitInt) -> Any:
         """Return the mean of the stored values at one of the measured wavelengths, by its index."""
         import drjit as dr
 

@@ -14,7 +14,7 @@ from brdfkit.core.array_types import (
     MitsubaObject,
 )
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.interrupts import give_back_interrupts
+from brdfkit.core.interrupts import restore_interrupt_handler
 from brdfkit.core.projective.body import Empty
 from brdfkit.mitsuba_bridge.properties.declarations import derive_plugin
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
@@ -49,11 +49,13 @@ def derive_shadow_integrator(mi: MitsubaModule, parameters: dict[str, Any]) -> A
             require_vectorised(self.name)
             sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
             make_shadow = self.prepare_shadows(scene, sensor)
-            self.lights = [(each, find_shadow(make_shadow, each)) for each in scene.emitters()]
+            self.lights = [
+                (each, _find_or_omit_shadow(make_shadow, each)) for each in scene.emitters()
+            ]
             try:
                 return super().render(scene, sensor, seed, spp, develop, evaluate)
             finally:
-                give_back_interrupts()
+                restore_interrupt_handler()
 
         def sample(
             self,
@@ -81,7 +83,7 @@ class NoShadow:
         return 1
 
 
-def find_shadow(make_shadow: Callable[[Any], Any], emitter: MitsubaObject) -> Any:
+def _find_or_omit_shadow(make_shadow: Callable[[Any], Any], emitter: MitsubaObject) -> Any:
     """Return the shadow of an emitter, or `NoShadow` if it is `Empty`."""
     try:
         return make_shadow(emitter)

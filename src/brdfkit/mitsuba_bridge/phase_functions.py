@@ -59,7 +59,7 @@ def derive_phase_function(mi: MitsubaModule, parameters: dict[str, Any]) -> Any:
     return Deflection
 
 
-def density(n: float, mu: JitFloat) -> JitFloat:
+def even_and_forward_density(n: float, mu: JitFloat) -> JitFloat:
     """Return p(μ) = (1 + (n + 1) ((1 + μ) / 2)ⁿ) / 8π [sr⁻¹]."""
     return (1 + (n + 1) * (0.5 + 0.5 * mu) ** n) / (8 * dr.pi)
 
@@ -76,7 +76,7 @@ def define_even_and_forward(mi: MitsubaModule, n: float) -> Any:
 
     class EvenAndForward(Base):
         def density(self, mu: JitFloat) -> JitFloat:
-            return density(n, mu)
+            return even_and_forward_density(n, mu)
 
         def draw_cosine(self, lobe: JitFloat, u: JitFloat) -> JitFloat:
             return draw_cosine(n, lobe, u)

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from brdfkit.core.array_types import MitsubaObject
-from brdfkit.core.errors import BrdfkitError, nearest
+from brdfkit.core.errors import BrdfkitError, find_nearest
 from brdfkit.core.files import require_file
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
-from brdfkit.mitsuba_bridge.properties.radiance_rows import require_rows
+from brdfkit.mitsuba_bridge.properties.radiance_rows import require_intact_rows
 
 SUFFIX = ".xml"
 RADIANCE_FILE = re.compile(r"""["']([^"'\n]+\.(?:hdr|rgbe))["']""", re.IGNORECASE)
@@ -27,7 +27,7 @@ def load_scene_file(path: str | PathLike[str], **how: Any) -> MitsubaObject:
     import mitsuba as mi
 
     file = require_file(path)
-    _require_maps(file)
+    _require_intact_maps(file)
 
     def load(source: str, parallel: bool) -> MitsubaObject:
         return mi.load_file(source, parallel=parallel, **how)
@@ -63,23 +63,23 @@ def make_scene_builder(source: str | PathLike[str]) -> Callable[[Any, Any], Mits
         for shape in by_id[place]:
             shape.set_bsdf(bsdf)
         if size:
-            _resize(scene.sensors()[0], size)
+            _resize_film(scene.sensors()[0], size)
         return scene
 
     return build
 
 
-def _require_maps(path: Path) -> None:
+def _require_intact_maps(path: Path) -> None:
     """Raise `BrdfkitError` for a damaged Radiance map that a scene file refers to."""
     for name in RADIANCE_FILE.findall(path.read_text(encoding="utf-8", errors="replace")):
         file = path.parent / unescape(name)
         if file.is_file():
-            require_rows(file, f"{path}: {file}")
+            require_intact_rows(file, f"{path}: {file}")
 
 
 def _missing_id_error(path: Path, place: str, known: Sequence[str]) -> BrdfkitError:
     """Return the error where no shape has the BSDF that the material should replace."""
-    near = nearest(place, known)
+    near = find_nearest(place, known)
     guess = f"did you mean {path}#{near}? " if near else ""
     return BrdfkitError(
         f"{path}: no shape has a BSDF of the id {place!r}, for the material to replace; {guess}"
@@ -87,7 +87,7 @@ def _missing_id_error(path: Path, place: str, known: Sequence[str]) -> BrdfkitEr
     )
 
 
-def _resize(sensor: MitsubaObject, size: tuple[int, int]) -> None:
+def _resize_film(sensor: MitsubaObject, size: tuple[int, int]) -> None:
     """Give the pictures of a sensor another (width, height) [pixels]."""
     import mitsuba as mi
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, ClassVar, Self
 
 from brdfkit.core.discovery import plugin_files
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.model.parameters import Option, Parameter
 
 
@@ -50,7 +50,7 @@ class Declaration:
         """
         for name, value in options.items():
             if name not in cls.options:
-                raise no_such("option", name, cls.options, cls.type_name())
+                raise no_such_error("option", name, cls.options, cls.type_name())
             options[name] = cls.options[name].read(value, f"{cls.type_name()}: {name}")
         changed = {n: v for n, v in options.items() if v != getattr(cls, n)}
         base: Any = cls
@@ -105,7 +105,7 @@ class Declaration:
                 f"{cls.type_name()}: {name} is an option; write {cls.type_name()}:{name}=VALUE."
             )
         if name not in cls.parameters:
-            raise no_such("parameter", name, cls.parameters, cls.type_name())
+            raise no_such_error("parameter", name, cls.parameters, cls.type_name())
         return cls.parameters[name]
 
     @classmethod

@@ -18,7 +18,7 @@ from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.core.discovery.plugin_pages import read_page
 from brdfkit.core.documents import Cell, Document, Shown, Table
 from brdfkit.core.documents.parts import STRONG
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.model.model import Model
 
 
@@ -26,7 +26,7 @@ class Models(Shown, dict[str, type[Model]]):
     """A dictionary of model classes by name, which prints as a table."""
 
     def __missing__(self, name: str) -> type[Model]:
-        raise no_such("model", name, self)
+        raise no_such_error("model", name, self)
 
     def document(self) -> Document:
         """Return a table of the models: the name of each, and a sentence that describes it."""
@@ -147,5 +147,5 @@ def _find_named_model(name: str) -> type[Model]:
     source = plugin_files.find_plugins(MODELS).get(name)
     named = source and find_model_in(source)
     if not named:
-        raise no_such("model", name, models())
+        raise no_such_error("model", name, models())
     return named

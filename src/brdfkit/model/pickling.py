@@ -13,7 +13,7 @@ from typing import Any
 
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import sha256
+from brdfkit.core.files import compute_sha256
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class UsersClass:
                 f"{path}: the file of the model {path.stem!r} is missing; load it from where it "
                 'is now, with brdfkit.load_plugins("FILE.py").'
             )
-        if sha256(file) != self.checksum:
+        if compute_sha256(file) != self.checksum:
             warnings.warn(
                 f"{file} has changed since the model {path.stem!r} was pickled: its parameters may "
                 "mean something else now.",
@@ -68,4 +68,4 @@ def _make_portable(cls: type) -> Any:
     if cls.__module__.rpartition(".")[0] != plugin_files.USERS:
         return cls
     file = Path(str(sys.modules[cls.__module__].__file__))
-    return UsersClass(cls.__name__, str(file), sha256(file))
+    return UsersClass(cls.__name__, str(file), compute_sha256(file))

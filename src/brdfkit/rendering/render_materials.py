@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from brdfkit.core.arguments import to_positive, to_whole_number
+from brdfkit.core.arguments import to_positive_number, to_whole_number
 from brdfkit.core.array_types import BoolArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
@@ -110,7 +110,7 @@ def render(
     >>> print(render(["car_paint", "ggx"], noise_floor=45).errors())    # doctest: +SKIP
     >>> render("kitchen.xml", spp=64).write("kitchen.exr")    # doctest: +SKIP
     """
-    noise_floor = None if noise_floor is None else to_positive("noise_floor", noise_floor)
+    noise_floor = None if noise_floor is None else to_positive_number("noise_floor", noise_floor)
     if isinstance(materials, FunctionType):
         materials = from_function(materials)
     file, is_field = _find_scene_file(materials), isinstance(materials, Node)

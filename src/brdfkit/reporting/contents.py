@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.names import make_unique
-from brdfkit.core.pages.images import encode_jpeg, halve
+from brdfkit.core.pages.images import encode_jpeg, halve_picture
 from brdfkit.core.version import __version__
 from brdfkit.fitting.ranking import Ranking
 from brdfkit.fitting.ranking.result import COLUMNS
@@ -151,7 +151,7 @@ def collect_contents(
         picture_errors=[*picture_errors.values()],
         findings=audited.findings(),
         warnings=[*chain(*warnings)],
-        thumbnails=[encode_jpeg(halve(picture)) for picture in pictures[:2]],
+        thumbnails=[encode_jpeg(halve_picture(picture)) for picture in pictures[:2]],
         spp=rendering.spp,
         requested=rendering.requested or rendering.spp,
     )

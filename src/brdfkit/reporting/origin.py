@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from brdfkit.core.files import sha256
+from brdfkit.core.files import compute_sha256
 from brdfkit.core.version import find_versions
 from brdfkit.fitting.settings import FitSettings
 from brdfkit.materials.loading import locate
@@ -31,7 +31,7 @@ def describe_provenance(
     """
     provenance = {"file": str(file) if file else f"{material.name}, from memory"}
     if file:
-        provenance["SHA-256 of the file"] = sha256(locate(file)[0])
+        provenance["SHA-256 of the file"] = compute_sha256(locate(file)[0])
     provenance["SHA-256 of its data"] = material.checksum
     settings = f"{size}×{size} pixels, {spp} samples per pixel, seed {seed}"
     provenance["pictures"] = f"{describe_scene(scene, environment)}; {settings}"

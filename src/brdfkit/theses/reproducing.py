@@ -11,7 +11,7 @@ from pathlib import Path
 from types import ModuleType
 
 from brdfkit.core.documents import Document, Shown, Table
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import make_folder, require_writable
 from brdfkit.core.progress_bar import Progress
 from brdfkit.theses.claims import Claim, count_verdicts
@@ -103,11 +103,11 @@ def reproduce(
     >>> print(reproduce("kurt2007", path="docs/reproduce"))    # doctest: +SKIP
     """
     if name not in list_theses():
-        raise no_such("thesis", name, list_theses())
+        raise no_such_error("thesis", name, list_theses())
     thesis = _import_thesis(name)
     for part in parts or ():
         if part not in thesis.PARTS:
-            raise no_such("part", part, thesis.PARTS, where=name)
+            raise no_such_error("part", part, thesis.PARTS, where=name)
     sources = find_sources(data, tables, thesis.NEEDS)
     _require_packages(thesis, sources)
     if path is not None:

@@ -16,7 +16,7 @@ import psutil
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.locate import find_file_or_name, split_part
+from brdfkit.core.locate import find_file_or_name, split_file_and_part
 from brdfkit.volumes import downsampling, formats, made
 from brdfkit.volumes.formats import StoredVolume, VolumeFile
 from brdfkit.volumes.summary.histograms import FEW_VALUES
@@ -91,7 +91,7 @@ def load(
             f"A volume is a Volume, or the path or name of one, and no {kind}; make a volume of an "
             "array by brdfkit.volumes.Volume(array)."
         ) from None
-    found, part = split_part(text)
+    found, part = split_file_and_part(text)
     place = find_file_or_name(found, "volume", made.list_volume_names(), folders=True)
     if isinstance(place, str):
         if any(setting is not None for setting in (part, labels, dtype, spacing, offset)):
@@ -117,7 +117,7 @@ def looks_like_volume(name: str) -> bool:
     suffix of a volume format. An environment map `.hdr` of Radiance's is no volume, although NIfTI
     has that suffix as well.
     """
-    path, _ = split_part(name)
+    path, _ = split_file_and_part(name)
     if name in made.list_volume_names() or formats.is_image_series(path):
         return True
     return formats.has_format(str(path)) and not _is_radiance_map(path)

@@ -54,13 +54,13 @@ def _find_subject(name: str, settings: Sequence[str]) -> Any:
 def _print_reports(reports: Sequence[Report], console: Console) -> None:
     """Print the reports of the checks, one after another."""
     if console.as_json:
-        console.json([_to_record(report) for report in reports])
+        console.print_json([_make_report_record(report) for report in reports])
         return
     for report in reports:
-        console.out.print(str(report))
+        console.output.print(str(report))
 
 
-def _to_record(report: Report) -> dict[str, Any]:
+def _make_report_record(report: Report) -> dict[str, Any]:
     """Return the record of a report for JSON."""
     findings = [
         {"check": f.check, "passed": bool(f.passed), "figure": f.figure} for f in report.findings

@@ -64,7 +64,7 @@ def convert(
             raise BrdfkitError(f"{thing} is an environment map: --set works for models only.")
         with console.progress(f"convert {thing}"):
             path = environments.convert(thing, output, **given)
-        _print_result(path, (), path, console)
+        _print_conversion(path, (), path, console)
         return
     if given:
         raise BrdfkitError(
@@ -74,12 +74,12 @@ def convert(
     with console.progress(f"convert {thing}"):
         material = find_measured(thing, mends) if mends else find_material(thing, values)
         conversion = convert_material(material, output)
-    _print_result(conversion.path, conversion.changes, conversion, console)
+    _print_conversion(conversion.path, conversion.changes, conversion, console)
 
 
-def _print_result(path: Path, changes: Sequence[str], text: object, console: Console) -> None:
+def _print_conversion(path: Path, changes: Sequence[str], text: object, console: Console) -> None:
     """Print the file that was written and what changed, which `text` says for people."""
     if console.as_json:
-        console.json({"written": path, "changes": changes})
+        console.print_json({"written": path, "changes": changes})
     else:
-        console.out.print(f"written: {text}")
+        console.output.print(f"written: {text}")

@@ -34,7 +34,7 @@ def data(context: click.Context, console: Console) -> None:
     from brdfkit.materials.collections.public import list_collections
 
     if context.invoked_subcommand is None:
-        _print_all(list_collections(), list_map_collections(), console)
+        _print_public_data(list_collections(), list_map_collections(), console)
 
 
 @data.command("list")
@@ -52,9 +52,9 @@ def data_list(collection: str, console: Console) -> None:
     if maps is None:
         _print_collection(public.find_collection(collection), console)
     elif console.as_json:
-        console.json(asdict(maps))
+        console.print_json(asdict(maps))
     else:
-        console.out.print(str(maps))
+        console.output.print(str(maps))
 
 
 @data.command("get")
@@ -78,7 +78,7 @@ def data_get(names: tuple[str, ...], console: Console) -> None:
     _print_files(files, collections.values(), console)
 
 
-def _print_all(
+def _print_public_data(
     collections: Mapping[str, Collection], map_collections: Mapping[str, Any], console: Console
 ) -> None:
     """Print the materials and maps that come with brdfkit, and the public collections."""
@@ -86,14 +86,14 @@ def _print_all(
 
     if console.as_json:
         maps = {name: asdict(c) for name, c in map_collections.items()}
-        records = {name: _to_record(c) for name, c in collections.items()}
-        console.json(records | {"environment maps": maps})
+        records = {name: _make_collection_record(c) for name, c in collections.items()}
+        console.print_json(records | {"environment maps": maps})
         return
     _print_collections(collections, console)
-    console.out.print("The materials of a collection: brdfkit data list NAME")
-    console.out.print(f"Downloaded files lie in {cache_folder()}")
+    console.output.print("The materials of a collection: brdfkit data list NAME")
+    console.output.print(f"Downloaded files lie in {cache_folder()}")
     _print_map_collections(map_collections, console)
-    console.out.print("Download a map from its page, and look at it: brdfkit info MAP.hdr")
+    console.output.print("Download a map from its page, and look at it: brdfkit info MAP.hdr")
 
 
 def _print_collections(collections: Mapping[str, Collection], console: Console) -> None:
@@ -106,7 +106,7 @@ def _print_collections(collections: Mapping[str, Collection], console: Console) 
     for name, c in collections.items():
         here, download = len(c.files_on_disk()), sum(bool(f.url) for f in c.files.values())
         rows.append((name, c.title, str(here), str(download or "by hand"), c.licence))
-    console.table(columns, rows)
+    console.print_table(columns, rows)
 
 
 def _print_map_collections(collections: Mapping[str, Any], console: Console) -> None:
@@ -116,13 +116,13 @@ def _print_map_collections(collections: Mapping[str, Any], console: Console) -> 
     licence = next(iter(list_environments().values())).licence
     rows = [("brdfkit's own", ", ".join(list_environments()), "--envmap NAME", licence)]
     rows += [(name, c.title, c.page, c.licence) for name, c in collections.items()]
-    console.table(("environment maps", "what they are", "where", "licence"), rows)
+    console.print_table(("environment maps", "what they are", "where", "licence"), rows)
 
 
 def _print_collection(collection: Collection, console: Console) -> None:
     """Print the materials of a collection."""
     if console.as_json:
-        console.json(_to_record(collection))
+        console.print_json(_make_collection_record(collection))
         return
     files, here = collection.files, collection.files_on_disk()
     rows = []
@@ -131,10 +131,10 @@ def _print_collection(collection: Collection, console: Console) -> None:
         state = "here" if name in here else "to download" if files[name].url else "by hand"
         rows.append((name, f"{size / 1e6:.1f}" if size else "", state))
     if rows:
-        console.table(["material", ">size [MB]", ""], rows)
-    console.out.print(str(collection))
+        console.print_table(["material", ">size [MB]", ""], rows)
+    console.output.print(str(collection))
     if not any(listed.url for listed in files.values()):
-        console.out.print(f"To use one, {collection.explain_by_hand()}.")
+        console.output.print(f"To use one, {collection.explain_by_hand()}.")
 
 
 def _print_files(
@@ -142,15 +142,15 @@ def _print_files(
 ) -> None:
     """Print the paths of downloaded files, and the terms of their publishers."""
     if console.as_json:
-        console.json({"files": files, "terms": {c.name: c.terms for c in collections}})
+        console.print_json({"files": files, "terms": {c.name: c.terms for c in collections}})
         return
     for name, file in files.items():
-        console.out.print(f"{name}: {file}")
+        console.output.print(f"{name}: {file}")
     for collection in collections:
-        console.out.print(str(collection))
+        console.output.print(str(collection))
 
 
-def _to_record(collection: Collection) -> dict[str, Any]:
+def _make_collection_record(collection: Collection) -> dict[str, Any]:
     """Return the record of a collection for JSON, with the path or the address of each file."""
     here = collection.files_on_disk()
     files: dict[str, dict[str, Any]] = {

@@ -23,7 +23,7 @@ from brdfkit.cli.options import (
 from brdfkit.cli.picture_output import path_trace, write_picture
 from brdfkit.cli.settings import fit_options
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.interrupts import Interrupted, exit_status
+from brdfkit.core.interrupts import Interrupted, find_exit_status
 
 if TYPE_CHECKING:
     from brdfkit.materials.measured import Measured
@@ -102,10 +102,10 @@ def fit(
     elif judge:
         raise BrdfkitError("--judge is for several FILEs; -m best judges all models of one FILE.")
     else:
-        _fit_one(files[0], models, how, mends, output, pictures if rendered else None, console)
+        _fit_one_file(files[0], models, how, mends, output, pictures if rendered else None, console)
 
 
-def _fit_one(
+def _fit_one_file(
     file: str,
     names: list[str],
     how: dict[str, Any],
@@ -118,8 +118,8 @@ def _fit_one(
 
     `pictures` are the arguments of `brdfkit.render`.
     """
-    from brdfkit.cli.arguments import find_measured, results_folder
-    from brdfkit.cli.rank_output import recommend
+    from brdfkit.cli.arguments import find_measured, use_results_folder
+    from brdfkit.cli.rank_output import recommend_model
     from brdfkit.core.memory import require_memory
     from brdfkit.core.names import to_file_stem, to_fit_path
     from brdfkit.fitting.compare import compare
@@ -127,7 +127,7 @@ def _fit_one(
 
     with console.progress(f"read {file}"):
         material = find_measured(file, mends)
-    names, ranking = recommend(names, material, how, console)
+    names, ranking = recommend_model(names, material, how, console)
     if pictures:
         size = pictures["size"]
         require_scene(pictures["scene"], pictures["environment"])
@@ -135,9 +135,9 @@ def _fit_one(
         output = output or Path(to_file_stem(material.name))
 
     errors = None  # of the pictures
-    with results_folder(output):
+    with use_results_folder(output):
         _check_output(output, names, rendered=pictures is not None)
-        fits, failed, interrupted = _fit_each(names, material, how, output, console)
+        fits, failed, interrupted = _fit_each_model(names, material, how, output, console)
         paths = [to_fit_path(output, fit.name) for fit in fits] if output else []
         written = [path for path in paths if path.is_file()]
         if pictures and output and not interrupted:
@@ -161,7 +161,7 @@ def _fit_one(
     for error in failed.values():
         print_message(error)
     if interrupted or failed:
-        click.get_current_context().exit(exit_status() if interrupted else 2)
+        click.get_current_context().exit(find_exit_status() if interrupted else 2)
 
 
 def _check_output(folder: Path | None, names: Sequence[str], rendered: bool) -> None:
@@ -209,7 +209,7 @@ def _refuse_picture_options(pictures: Mapping[str, Any]) -> None:
             raise BrdfkitError(f"{options[name]} is for pictures; add --render, or leave it out.")
 
 
-def _fit_each(
+def _fit_each_model(
     names: Sequence[str],
     material: Measured,
     how: Mapping[str, Any],

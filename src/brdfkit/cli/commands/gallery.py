@@ -44,7 +44,7 @@ def gallery(things: tuple[str, ...], output: Path, size: int, console: Console) 
     if output.suffix.lower() != ".png":
         raise BrdfkitError(f"{output}: a gallery is written as .png; choose that.")
     output = check_figure_path(output)
-    names = _list_names(things, output)
+    names = _list_material_names(things, output)
     balls, skipped, interrupted = _draw_balls(names, size, console)
     if balls:
         from brdfkit.rendering.contact_sheet import draw_contact_sheet
@@ -54,7 +54,7 @@ def gallery(things: tuple[str, ...], output: Path, size: int, console: Console) 
             sheet.save(temporary, "PNG")
     written = [output] if balls else []
     if console.as_json:
-        console.json({"materials": list(balls), "skipped": skipped, "written": written})
+        console.print_json({"materials": list(balls), "skipped": skipped, "written": written})
     else:
         console.print_written(written)
     for name, reason in skipped.items():
@@ -65,7 +65,7 @@ def gallery(things: tuple[str, ...], output: Path, size: int, console: Console) 
         click.get_current_context().exit(2)
 
 
-def _list_names(things: Sequence[str], output: Path) -> list[str]:
+def _list_material_names(things: Sequence[str], output: Path) -> list[str]:
     """Return the names of materials: `things`, or the files in folders, except the `output`."""
     names: list[str] = []
     for thing in things:

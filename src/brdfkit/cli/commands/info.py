@@ -113,17 +113,17 @@ def _choose_audit(
 def print_audit(audit: Any, written: Sequence[Path], console: Console) -> None:
     """Print the properties and doubts of an audit, and the files that were `written`."""
     if console.as_json:
-        console.json(to_record(audit, written))
+        console.print_json(make_audit_record(audit, written))
         return
     notes = [(key.replace("_", " "), str(value)) for key, value in _find_notes(audit).items()]
-    console.out.print(audit.name, style="bold")
-    console.table(["", ""], list(audit.rows().items()), notes)
+    console.output.print(audit.name, style="bold")
+    console.print_table(["", ""], list(audit.rows().items()), notes)
     for finding in audit.findings():
-        console.out.print(f"! {finding}")
+        console.output.print(f"! {finding}")
     console.print_written(written)
 
 
-def to_record(audit: Any, written: Sequence[Path]) -> dict[str, Any]:
+def make_audit_record(audit: Any, written: Sequence[Path]) -> dict[str, Any]:
     """Return the record of an audit for JSON, with the files that were `written`."""
     return {
         **{f.name: getattr(audit, f.name) for f in fields(audit) if f.name != "data"},
@@ -143,10 +143,10 @@ def _print_shipped(
 ) -> None:
     """Print the materials and environment maps that come with brdfkit."""
     if console.as_json:
-        console.json({name: asdict(m) for name, m in {**materials, **environments}.items()})
+        console.print_json({name: asdict(m) for name, m in {**materials, **environments}.items()})
         return
     kinds = {"material": materials, "environment map": environments}
     for kind, things in kinds.items():
         rows = [(name, m.title, m.licence) for name, m in things.items()]
-        console.table([kind, "what it is", "licence"], rows)
-    console.out.print("A name may replace a file: brdfkit fit NAME, --envmap NAME")
+        console.print_table([kind, "what it is", "licence"], rows)
+    console.output.print("A name may replace a file: brdfkit fit NAME, --envmap NAME")

@@ -83,10 +83,10 @@ def measure(
     from brdfkit.materials.goniometer import microgeometry
     from brdfkit.materials.loading import save
 
-    path = _check_path(output or Path(f"{geometry}.npz"))
+    path = _check_table_path(output or Path(f"{geometry}.npz"))
     given = {name: value for name, value in relief.items() if value is not None}
     surface = microgeometry.make(geometry, **given, seed=specimen)
-    bsdfs, cells = _to_bsdfs(facets, facet_alpha), _to_shape(shape)
+    bsdfs, cells = _make_bsdfs(facets, facet_alpha), _parse_shape(shape)
     context = click.get_current_context()
     with console.progress(f"measure {geometry}") as progress:
         measured = measure_surface(
@@ -108,18 +108,18 @@ def measure(
         exit_interrupted(f"measured with {measured.info['interrupted']}")
 
 
-def _to_bsdfs(words: Sequence[str], alpha: float) -> list[dict[str, Any]]:
+def _make_bsdfs(words: Sequence[str], alpha: float) -> list[dict[str, Any]]:
     """Return Mitsuba's dictionary of a BSDF for each word METAL, paint:R,G,B or plastic:R,G,B.
 
-    >>> _to_bsdfs(["paint:0.8,0.7,0.6"], alpha=0.2)[0]["type"]
+    >>> _make_bsdfs(["paint:0.8,0.7,0.6"], alpha=0.2)[0]["type"]
     'diffuse'
     """
     if not 0.01 <= alpha <= 1:
         raise BrdfkitError(f"facet-alpha = {alpha:g} is out of bounds; give one from 0.01 to 1.")
-    return [_to_bsdf(word, alpha) for word in words]
+    return [_make_bsdf(word, alpha) for word in words]
 
 
-def _to_bsdf(word: str, alpha: float) -> dict[str, Any]:
+def _make_bsdf(word: str, alpha: float) -> dict[str, Any]:
     """Return the dictionary of a BSDF for one word, with the GGX roughness `alpha`."""
     kind, colon, colour = word.partition(":")
     rough = {"distribution": "ggx", "alpha": alpha}
@@ -137,7 +137,7 @@ def _to_bsdf(word: str, alpha: float) -> dict[str, Any]:
     raise BrdfkitError(message)
 
 
-def _to_shape(text: str | None) -> list[Any] | None:
+def _parse_shape(text: str | None) -> list[Any] | None:
     """Return the shape of a table from the text N,N,N or N,N,N,N; None stays None."""
     message = f"The shape {text!r} should read N,N,N or N,N,N,N."
     return _parse_numbers(text, int, message) if text else None
@@ -161,7 +161,7 @@ def _format_command(parameters: Mapping[str, Any]) -> str:
     return shlex.join(words)
 
 
-def _check_path(path: Path) -> Path:
+def _check_table_path(path: Path) -> Path:
     """Check that `path` can be written and that its format holds standard errors; return it."""
     if path.suffix.lower() != ".npz":
         raise BrdfkitError(

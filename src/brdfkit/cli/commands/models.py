@@ -23,21 +23,21 @@ def models(name: str | None, console: Console) -> None:
     from brdfkit.model import labels
 
     if name is None:
-        _print_list(labels.models(), console)
+        _print_models(labels.models(), console)
     else:
         print_model(labels.model(labels.load_files(name)), console)
 
 
-def _print_list(models: Mapping[str, Any], console: Console) -> None:
+def _print_models(models: Mapping[str, Any], console: Console) -> None:
     """Print the names of models, what they are, and their parameters."""
     from brdfkit.core.discovery.plugin_pages import read_page
 
     if console.as_json:
-        console.json({name: _describe_parameters(model) for name, model in models.items()})
+        console.print_json({name: _describe_parameters(model) for name, model in models.items()})
         return
     rows = [(name, read_page(m).sentence, ", ".join(m.parameters)) for name, m in models.items()]
-    console.table(["model", "what it is", "parameters"], rows)
-    console.out.print("One model's page: brdfkit models NAME")
+    console.print_table(["model", "what it is", "parameters"], rows)
+    console.output.print("One model's page: brdfkit models NAME")
 
 
 def print_model(model: Any, console: Console) -> None:
@@ -45,24 +45,24 @@ def print_model(model: Any, console: Console) -> None:
     from brdfkit.core.discovery.plugin_pages import read_page
 
     if console.as_json:
-        console.json({model.type_name(): _describe_parameters(model)})
+        console.print_json({model.type_name(): _describe_parameters(model)})
         return
-    console.out.print(str(read_page(model)))
+    console.output.print(str(read_page(model)))
     rows = []
     for name, p in model.parameters.items():
         low, high = ("" if math.isinf(v) else f"{v:g}" for v in p.bounds)
         default = p.follows or f"{p.default:g}"
         per_channel = " (per channel)" if p.linear else ""
         rows.append((name, default, low, high, p.meaning + per_channel))
-    console.table(["parameter", ">default", ">from", ">to", "meaning"], rows)
+    console.print_table(["parameter", ">default", ">from", ">to", "meaning"], rows)
     if model.options:
         choices = [
             (n, str(o.default), format_choices(o), o.meaning) for n, o in model.options.items()
         ]
-        console.table(["option", "default", "choices", "meaning"], choices)
+        console.print_table(["option", "default", "choices", "meaning"], choices)
         with_another = make_example_label(model, next(iter(model.options)))
-        console.out.print(f"With another choice: brdfkit fit FILE -m {with_another}")
-    console.out.print(
+        console.output.print(f"With another choice: brdfkit fit FILE -m {with_another}")
+    console.output.print(
         f'Mitsuba: {{"type": "{model.type_name()}", ...}}; every parameter may be a texture.'
     )
     print_references(read_page(model), console)
@@ -71,7 +71,7 @@ def print_model(model: Any, console: Console) -> None:
 def print_references(page: Any, console: Console) -> None:
     """Print the works that the page of a plugin cites."""
     for n, work in enumerate(page.references):
-        console.out.print(f"\n{work}" if n == 0 else str(work))
+        console.output.print(f"\n{work}" if n == 0 else str(work))
 
 
 def _describe_parameters(model: Any) -> dict[str, dict[str, Any]]:

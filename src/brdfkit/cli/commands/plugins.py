@@ -19,24 +19,24 @@ def plugins(word: str | None, console: Console) -> None:
 
     With a KIND, the command lists the plugins of that kind. FILE.py is a file with your own plugin.
     """
-    from brdfkit.core.discovery.plugin_files import KINDS, find_kind, find_plugins
-    from brdfkit.core.errors import no_such
+    from brdfkit.core.discovery.plugin_files import KINDS, find_plugin_kind, find_plugins
+    from brdfkit.core.errors import no_such_error
     from brdfkit.mitsuba_bridge.registration.users_plugins import load_plugins
 
     if word and word.endswith(".py"):
         (word,) = load_plugins(word)
     if word is None:
-        _print_list(KINDS, console)
+        _print_plugins(KINDS, console)
     elif word in KINDS:
-        _print_list([word], console)
-    elif kind := find_kind(word):
-        _print_page(kind, word, console)
+        _print_plugins([word], console)
+    elif kind := find_plugin_kind(word):
+        _print_plugin_page(kind, word, console)
     else:
         names = [name for kind in KINDS for name in find_plugins(kind)]
-        raise no_such("plugin or kind of plugins", word, [*KINDS, *names])
+        raise no_such_error("plugin or kind of plugins", word, [*KINDS, *names])
 
 
-def _print_list(kinds: Iterable[str], console: Console) -> None:
+def _print_plugins(kinds: Iterable[str], console: Console) -> None:
     """Print the plugins of these kinds, and what they are."""
     from brdfkit.core.discovery.plugin_files import find_plugins
     from brdfkit.core.discovery.plugin_pages import read_page
@@ -45,18 +45,18 @@ def _print_list(kinds: Iterable[str], console: Console) -> None:
         kind: {n: read_page(s).sentence for n, s in find_plugins(kind).items()} for kind in kinds
     }
     if console.as_json:
-        console.json(sentences)
+        console.print_json(sentences)
         return
     rows = [
         (kind, name, sentence)
         for kind, named in sentences.items()
         for name, sentence in named.items() or [("", "none yet")]
     ]
-    console.table(["kind", "plugin", "what it is"], rows)
-    console.out.print("One plugin's page: brdfkit plugins NAME")
+    console.print_table(["kind", "plugin", "what it is"], rows)
+    console.output.print("One plugin's page: brdfkit plugins NAME")
 
 
-def _print_page(kind: str, name: str, console: Console) -> None:
+def _print_plugin_page(kind: str, name: str, console: Console) -> None:
     """Print the page of a plugin, with its parameters."""
     from brdfkit.cli.commands.models import print_model, print_references
     from brdfkit.core.discovery.plugin_files import MODELS, find_plugins, import_plugin
@@ -73,9 +73,9 @@ def _print_page(kind: str, name: str, console: Console) -> None:
             n: {"default": p.default, "bounds": p.bounds, "meaning": p.meaning}
             for n, p in parameters.items()
         }
-        console.json({name: {"kind": kind, "parameters": records}})
+        console.print_json({name: {"kind": kind, "parameters": records}})
         return
-    console.out.print(str(read_page(source)))
+    console.output.print(str(read_page(source)))
     if parameters:
         rows = []
         for n, p in parameters.items():
@@ -83,6 +83,6 @@ def _print_page(kind: str, name: str, console: Console) -> None:
             rows.append(
                 (n, "" if p.default in (None, "") else f"{p.default}", low, high, p.meaning)
             )
-        console.table(["parameter", ">default", ">from", ">to", "meaning"], rows)
-    console.out.print(f'Mitsuba: {{"type": "{name}", ...}}')
+        console.print_table(["parameter", ">default", ">from", ">to", "meaning"], rows)
+    console.output.print(f'Mitsuba: {{"type": "{name}", ...}}')
     print_references(read_page(source), console)

@@ -55,7 +55,7 @@ class Request:
     seed: int
     volume_settings: dict[str, Any]
 
-    def pick(self, *names: str) -> dict[str, Any]:
+    def pick_arguments(self, *names: str) -> dict[str, Any]:
         """Return the arguments of `brdfkit.render` with these names, and those that all take."""
         return {name: getattr(self, name) for name in ("spp", "noise_floor", "seed", *names)}
 
@@ -166,8 +166,8 @@ def _render_field(name: str, request: Request, console: Console) -> Rendered:
 
     options = "--set", "--scene", "--envmap", "--preview"
     request.require_alone(name, "a distance field", *options)
-    path = _choose_path(request, name)
-    return path_trace(load(name), None, console, **request.pick("size")), path
+    path = _choose_picture_path(request, name)
+    return path_trace(load(name), None, console, **request.pick_arguments("size")), path
 
 
 def _find_scene(request: Request) -> str | None:
@@ -179,8 +179,8 @@ def _render_scene(name: str, request: Request, console: Console) -> Rendered:
     """Render the scene file `name` with its own camera, size and number of samples."""
     options = "--set", "--scene", "--envmap", "--size", "--preview"
     request.require_alone(name, "a scene", *options)
-    path = _choose_path(request, name)
-    return path_trace(name, None, console, **request.pick()), path
+    path = _choose_picture_path(request, name)
+    return path_trace(name, None, console, **request.pick_arguments()), path
 
 
 def _find_volume(request: Request) -> str | None:
@@ -197,12 +197,12 @@ def _render_volume(name: str, request: Request, console: Console) -> Rendered:
     if "orbit" in request.volume_settings:
         path = check_film_path(request.output or f"{stem}.gif")
     else:
-        path = _choose_path(request, stem)
-    how = request.pick("size", "environment")
+        path = _choose_picture_path(request, stem)
+    how = request.pick_arguments("size", "environment")
     return render_volume(name, request.volume_settings, request.values, console, **how), path
 
 
-def _find_first(request: Request) -> str | None:
+def _find_material(request: Request) -> str | None:
     """Return the first thing, which is a material since it is nothing else."""
     return request.things[0]
 
@@ -217,7 +217,7 @@ def _render_materials(name: str, request: Request, console: Console) -> Rendered
     path = check_picture_path(request.output or f"{to_file_stem(materials[0].name)}.png")
     if request.preview:
         return _preview(materials, request), path
-    how = request.pick("size", "scene", "environment")
+    how = request.pick_arguments("size", "scene", "environment")
     return path_trace(materials, SPP, console, **how), path
 
 
@@ -242,11 +242,11 @@ KINDS: tuple[tuple[Callable[[Request], str | None], Callable[..., Rendered]], ..
     (_find_field, _render_field),
     (_find_scene, _render_scene),
     (_find_volume, _render_volume),
-    (_find_first, _render_materials),
+    (_find_material, _render_materials),
 )
 
 
-def _choose_path(request: Request, name: str) -> Path:
+def _choose_picture_path(request: Request, name: str) -> Path:
     """Check that the picture can be written; return its path, by default `name` with .png."""
     from brdfkit.cli.arguments import check_picture_path
 

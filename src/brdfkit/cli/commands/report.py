@@ -20,7 +20,7 @@ from brdfkit.cli.options import (
 )
 from brdfkit.cli.settings import fit_options
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.interrupts import exit_status
+from brdfkit.core.interrupts import find_exit_status
 from brdfkit.reporting.pictures.defaults import LARGEST_SIZE, MODELS, SIZE, SMALLEST_SIZE, SPP
 
 if TYPE_CHECKING:
@@ -69,12 +69,12 @@ def report(
     pictures["size"] = SIZE if pictures["size"] is None else pictures["size"]
     check_pictures(pictures["size"], pictures["scene"], pictures["environment"])
     if len(files) > 1:
-        _report_many(files, models, how, output or Path("reports"), pictures, console)
+        _report_many_files(files, models, how, output or Path("reports"), pictures, console)
     else:
-        _report_one(files[0], models, how, output, pictures, console)
+        _report_one_file(files[0], models, how, output, pictures, console)
 
 
-def _report_one(
+def _report_one_file(
     file: str,
     names: list[str],
     how: dict[str, Any],
@@ -83,7 +83,7 @@ def _report_one(
     console: Console,
 ) -> None:
     """Fit the models to one file, and write and print its report."""
-    from brdfkit.cli.rank_output import recommend
+    from brdfkit.cli.rank_output import recommend_model
     from brdfkit.fitting.settings import FitSettings
     from brdfkit.materials.resolve import to_measured
     from brdfkit.reporting.fits import fit_each
@@ -92,12 +92,12 @@ def _report_one(
     with console.progress(f"read {file}"):
         material = to_measured(file)
     path = check_page(output or choose_file_name(material))
-    names, ranking = recommend(names, material, how, console)
+    names, ranking = recommend_model(names, material, how, console)
     fits, failed = fit_each(names, material, FitSettings(**how), console.progress)
     with console.progress("render") as progress:
         contents = write_report(material, fits, path, file, ranking, **pictures, progress=progress)
     if console.as_json:
-        console.json({**_to_record(contents), "written": [path]})
+        console.print_json({**_make_report_record(contents), "written": [path]})
     else:
         _print_verdict(contents, console)
         console.print_written([path])
@@ -107,20 +107,20 @@ def _report_one(
         print_message(
             f"interrupted; rendered with {contents.spp} of {contents.requested} samples per pixel."
         )
-        click.get_current_context().exit(exit_status())
+        click.get_current_context().exit(find_exit_status())
     if failed:
         click.get_current_context().exit(2)
 
 
 def _print_verdict(contents: Contents, console: Console) -> None:
     """Print the verdict of a report, its warnings, and the doubts about the measurement."""
-    console.out.print(f"{contents.material}: {contents.verdict}")
+    console.output.print(f"{contents.material}: {contents.verdict}")
     for warning in contents.warnings:
-        console.out.print(f"! {warning}")
+        console.output.print(f"! {warning}")
     console.print_doubts(contents.findings)
 
 
-def _to_record(contents: Contents) -> dict[str, Any]:
+def _make_report_record(contents: Contents) -> dict[str, Any]:
     """Return the record of a report for JSON."""
     return {
         "material": contents.material,
@@ -133,7 +133,7 @@ def _to_record(contents: Contents) -> dict[str, Any]:
     }
 
 
-def _report_many(
+def _report_many_files(
     files: Sequence[str],
     names: list[str],
     how: dict[str, Any],
@@ -142,7 +142,7 @@ def _report_many(
     console: Console,
 ) -> None:
     """Write a report of each file to `folder`, and a page that lists them."""
-    from brdfkit.cli.arguments import results_folder
+    from brdfkit.cli.arguments import use_results_folder
     from brdfkit.cli.rank_output import refuse_best
     from brdfkit.fitting.settings import FitSettings
     from brdfkit.reporting.many_files import report_many
@@ -150,13 +150,13 @@ def _report_many(
     refuse_best(names)
     if folder.suffix.lower() in (".html", ".htm"):
         raise BrdfkitError(f"{folder} is one page; for several FILEs, name a folder behind -o.")
-    with results_folder(folder), console.progress(f"report on {len(files)} materials") as progress:
-        settings = FitSettings(**how)
+    settings, what = FitSettings(**how), f"report on {len(files)} materials"
+    with use_results_folder(folder), console.progress(what) as progress:
         reports = report_many(files, names, folder, settings, **pictures, progress=progress)
     if console.as_json:
-        console.json(
+        console.print_json(
             {
-                "reports": [_to_record(entry.contents) for entry in reports.entries],
+                "reports": [_make_report_record(entry.contents) for entry in reports.entries],
                 "failed": reports.problems,
                 "written": reports.written,
             }
@@ -174,4 +174,4 @@ def _report_many(
             f"interrupted; {reports.finished} of {len(files)} reports are finished{noisy}."
         )
     if reports.interrupted or reports.problems:
-        click.get_current_context().exit(exit_status() if reports.interrupted else 2)
+        click.get_current_context().exit(find_exit_status() if reports.interrupted else 2)

@@ -57,14 +57,14 @@ def reproduce(
     third-party files; if one is missing, the command names its source. After Ctrl-C, the parts that
     are finished are kept.
     """
-    from brdfkit.cli.arguments import results_folder
+    from brdfkit.cli.arguments import use_results_folder
     from brdfkit.theses import list_theses
     from brdfkit.theses import reproduce as reproduce_thesis
 
     if name is None:
         _print_theses(list_theses(), console)
         return
-    with results_folder(output), console.progress(f"reproduce {name}") as progress:
+    with use_results_folder(output), console.progress(f"reproduce {name}") as progress:
         result = reproduce_thesis(
             name,
             path=output,
@@ -81,9 +81,9 @@ def reproduce(
 def _print_theses(titles: Mapping[str, str], console: Console) -> None:
     """Print the names and titles of the theses."""
     if console.as_json:
-        console.json(titles)
+        console.print_json(titles)
         return
-    console.table(["thesis", "title"], list(titles.items()))
+    console.print_table(["thesis", "title"], list(titles.items()))
 
 
 def _print_claims(result: Reproduction, console: Console) -> None:
@@ -91,9 +91,9 @@ def _print_claims(result: Reproduction, console: Console) -> None:
     from brdfkit.theses.claims import count_verdicts
 
     if console.as_json:
-        console.json(result)
+        console.print_json(result)
         return
     rows = [(c.verdict, c.says, c.where, c.printed, c.ours) for c in result.claims]
     title = f"{result.name}: {len(rows)} claims: {count_verdicts(result.claims)}"
-    console.table(["verdict", "claim", "where", "printed", "ours"], rows, title=title)
+    console.print_table(["verdict", "claim", "where", "printed", "ours"], rows, title=title)
     console.print_written(result.written)

@@ -60,7 +60,7 @@ def samplers(
             environment, material, scene=scene, rounds=rounds, seed=seed, progress=progress
         )
     if console.as_json:
-        console.json(
+        console.print_json(
             {
                 "best": comparison.best,
                 "costs": comparison.costs,
@@ -70,8 +70,8 @@ def samplers(
             }
         )
     else:
-        console.table(COLUMNS, comparison.table(), title=comparison.head)
-        console.out.print(comparison.verdict)
+        console.print_table(COLUMNS, comparison.table(), title=comparison.head)
+        console.output.print(comparison.verdict)
     if comparison.rounds < comparison.rounds_requested:
         exit_interrupted(
             f"{comparison.rounds} of {comparison.rounds_requested} rounds are finished"

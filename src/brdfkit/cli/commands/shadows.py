@@ -99,8 +99,8 @@ def shadows(
             progress=progress,
         )
     if not console.as_json:
-        console.table(comparison.columns, comparison.table())
-        console.out.print(comparison.meaning)
+        console.print_table(comparison.columns, comparison.table())
+        console.output.print(comparison.meaning)
     written = [] if output is None else [output]
     for path in written:
         with console.progress("draw pictures") as progress:
@@ -109,7 +109,7 @@ def shadows(
         each = {
             label: [asdict(one) for one in all_of] for label, all_of in comparison.scores.items()
         }
-        console.json({"scores": each, "lights": comparison.lights, "written": written})
+        console.print_json({"scores": each, "lights": comparison.lights, "written": written})
     else:
         console.print_written(written)
     if comparison.interrupted:

@@ -70,14 +70,14 @@ def svbrdf(
     flash, and the file capture.toml with the positions of the camera and the lights. The camera may
     move, like a phone with its flash. See docs/how_to/photographs.md.
     """
-    from brdfkit.cli.arguments import results_folder
+    from brdfkit.cli.arguments import use_results_folder
     from brdfkit.inverse.photographs import svbrdf as fit_maps
     from brdfkit.inverse.photographs.result.files import check_folder
     from brdfkit.model import labels
 
     values, output = parse_settings(fixed, "--fixed"), output or folder / "maps"
     interrupted = False
-    with results_folder(output), console.progress("fit maps") as progress:
+    with use_results_folder(output), console.progress("fit maps") as progress:
         check_folder(labels.model(labels.load_files(model)), output)
         try:
             maps = fit_maps(
@@ -94,10 +94,10 @@ def svbrdf(
             maps, interrupted = stop.best, True
         written = maps.write(output)
     if not console.as_json:
-        console.out.print(str(maps), markup=False, highlight=False)
+        console.output.print(str(maps), markup=False, highlight=False)
     if console.as_json:
         names = ("smoothness", "residual", "held_out", "predicted", "notes", "seconds")
-        console.json({**{name: getattr(maps, name) for name in names}, "written": written})
+        console.print_json({**{name: getattr(maps, name) for name in names}, "written": written})
     else:
         console.print_written(written)
     if interrupted:

@@ -64,7 +64,7 @@ def find_plugins(kind: str) -> dict[str, Any]:
     return _find_own_plugins(kind) | {name: s for name, (k, s) in _users.items() if k == kind}
 
 
-def find_kind(name: str) -> str | None:
+def find_plugin_kind(name: str) -> str | None:
     """Return the kind of the plugin `name`, None where there is no such plugin."""
     return next((kind for kind in KINDS if name in find_plugins(kind)), None)
 
@@ -84,7 +84,7 @@ def add_plugins(kind: str, added: Mapping[str, Path | type]) -> None:
         listener()
 
 
-def call_when_added(listener: Callable[[], None]) -> None:
+def call_when_plugins_added(listener: Callable[[], None]) -> None:
     """Have `listener()` called each time that plugins have been added."""
     _listeners.append(listener)
 
@@ -113,7 +113,7 @@ def import_plugin(file: Path) -> ModuleType:
         raise BrdfkitError(f"{file} does not exist any more; write it again.")
     if not file.is_file():
         raise BrdfkitError(f"{file} is not a Python file.")
-    return _import_file(file, file.stat().st_mtime_ns)
+    return _import_user_file(file, file.stat().st_mtime_ns)
 
 
 @cache
@@ -124,7 +124,7 @@ def _find_own_plugins(kind: str) -> dict[str, Path]:
 
 
 @cache
-def _import_file(file: Path, _modified: int) -> ModuleType:
+def _import_user_file(file: Path, _modified: int) -> ModuleType:
     """Import a user's file; another time of its last change makes the cache import it anew."""
     name = f"{USERS}.{file.stem}"
     if file.suffix != ".py":

@@ -27,7 +27,7 @@ class Page:
         return "\n".join([f"{self.title}: {self.sentence}", *self.lines])
 
     @property
-    def shows(self) -> str:
+    def shown_materials(self) -> str:
         """The sentence that says which materials a model shows and which it does not, or ""."""
         match = SHOWS.search(" ".join(self.lines))
         return f"S{match.group(1)}" if match else ""

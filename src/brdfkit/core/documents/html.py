@@ -98,11 +98,11 @@ def _format_cell(cell: str | Cell, is_number: bool) -> str:
     kinds = " ".join(filter(None, ["number" if is_number else "", cell.kind]))
     attributes = f' class="{kinds}"' if kinds else ""
     attributes += f' title="{_escape(cell.hint)}"' if cell.hint else ""
-    content = _format_chip(cell.colour) + _escape(cell.text) + _format_bar(cell.place)
+    content = _format_colour_square(cell.colour) + _escape(cell.text) + _format_bar(cell.place)
     return f"<td{attributes}>{content}</td>"
 
 
-def _format_chip(colour: Sequence[float]) -> str:
+def _format_colour_square(colour: Sequence[float]) -> str:
     """Return a square of a linear colour, scaled down to 1 if it is brighter, or "" for none."""
     if len(colour) != 3:
         return ""

@@ -31,16 +31,16 @@ def directional_albedo(f: Brdf, wi: FloatArray) -> AnyArray:
     1024 points. The albedo of a `ward` that is a hundred times narrower along one axis is then
     accurate to 2e-5.
     """
-    coarse = _integrate(f, wi, POINTS[0])
+    coarse = _integrate_albedo(f, wi, POINTS[0])
     for points in POINTS[1:]:
-        fine = _integrate(f, wi, points)
+        fine = _integrate_albedo(f, wi, points)
         if abs(fine.sum() - coarse.sum()) <= TOLERANCE * abs(fine.sum()):
             break
         coarse = fine
     return fine
 
 
-def _integrate(f: Brdf, wi: FloatArray, points: int) -> AnyArray:
+def _integrate_albedo(f: Brdf, wi: FloatArray, points: int) -> AnyArray:
     """Compute the albedo (channels,) by 2 `points` rings of `points` points."""
     wo, weight = make_ring_rule(wi, points)
     return weight @ f(np.broadcast_to(wi, wo.shape), wo)
@@ -56,7 +56,7 @@ def make_ring_rule(wi: FloatArray, points: int) -> tuple[FloatArray, FloatArray]
     cos_theta, sin_theta = mirror[2], np.hypot(mirror[0], mirror[1])
     # Angle gamma of each ring to the mirror direction: half of the rings lie wholly above the
     # horizon (gamma < whole), the others cross it
-    t, weight = _gauss_legendre(points)
+    t, weight = _make_gauss_legendre_rule(points)
     whole = np.arctan2(cos_theta, sin_theta)
     gamma = np.concatenate([whole * t**3, whole + (np.pi - 2 * whole) * t**2])
     width = np.concatenate([whole * 3 * t**2, (np.pi - 2 * whole) * 2 * t]) * np.tile(weight, 2)
@@ -65,7 +65,7 @@ def make_ring_rule(wi: FloatArray, points: int) -> tuple[FloatArray, FloatArray]
     half = np.arccos(np.clip(-np.cos(gamma) * cos_theta / highest, -1, 1))
 
     # Azimuth psi of each point on its ring, from the highest point, and the point's direction wo
-    t, weight = _gauss_legendre(points, pieces=4)
+    t, weight = _make_gauss_legendre_rule(points, pieces=4)
     psi = np.outer(half, 2 * t - 1)
     up = normalize(np.cross(mirror, [-mirror[1], mirror[0], 0]) if sin_theta else [1.0, 0, 0])
     ring = np.cos(psi)[..., None] * up + np.sin(psi)[..., None] * np.cross(mirror, up)
@@ -78,14 +78,14 @@ def make_ring_rule(wi: FloatArray, points: int) -> tuple[FloatArray, FloatArray]
 
 
 @cache
-def _gauss_legendre(points: int, pieces: int = 1) -> tuple[FloatArray, FloatArray]:
+def _make_gauss_legendre_rule(points: int, pieces: int = 1) -> tuple[FloatArray, FloatArray]:
     """Return Gauss-Legendre nodes and weights (points,) of the unit interval in equal `pieces`."""
     nodes, weights = np.polynomial.legendre.leggauss(points // pieces)
     nodes = np.arange(pieces)[:, None] + (nodes + 1) / 2
     return nodes.ravel() / pieces, np.tile(weights / 2 / pieces, pieces)
 
 
-def spread_by_cosine(n: int) -> FloatArray:
+def make_cosine_directions(n: int) -> FloatArray:
     """Return unit vectors (n, 3) whose density is proportional to the cosine.
 
     The mean of π f over them is the albedo of a BRDF f.

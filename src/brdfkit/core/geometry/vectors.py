@@ -48,7 +48,7 @@ def one_minus_dot(a: JitVector, b: JitVector) -> JitFloat:
     return 0.5 * dot(d, d)
 
 
-def angle(w: JitVector) -> JitFloat:
+def polar_angle(w: JitVector) -> JitFloat:
     """Return the polar angle [rad] of a unit vector, accurate near the normal."""
     return dr.atan2(dr.sqrt(w.x * w.x + w.y * w.y), w.z)
 

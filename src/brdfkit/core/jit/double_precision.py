@@ -43,11 +43,11 @@ class Vector:
 
 
 @cache
-def float_type() -> type:
+def choose_float_type() -> type:
     """Return the array type: Dr.Jit's `Float64` of the LLVM or CUDA backend, else `ArrayXf64`."""
     import drjit as dr
 
-    if llvm.loaded_version() >= llvm.OLDEST:
+    if llvm.find_loaded_version() >= llvm.OLDEST:
         return dr.llvm.ad.Float64
     if dr.has_backend(dr.JitBackend.CUDA):
         return dr.cuda.ad.Float64
@@ -55,15 +55,15 @@ def float_type() -> type:
 
 
 def has_derivatives() -> bool:
-    """Return whether the arrays of `float_type()` have derivatives."""
+    """Return whether the arrays of `choose_float_type()` have derivatives."""
     import drjit as dr
 
-    return bool(dr.is_diff_v(float_type()))
+    return bool(dr.is_diff_v(choose_float_type()))
 
 
 def to_array(values: ArrayLike) -> JitFloat:
-    """Convert a NumPy array (n,) to `float_type()`."""
-    return float_type()(pad(np.asarray(values, float)))
+    """Convert a NumPy array (n,) to `choose_float_type()`."""
+    return choose_float_type()(pad(np.asarray(values, float)))
 
 
 def to_vector(w: FloatArray) -> Vector:
@@ -75,7 +75,7 @@ def to_scalar(value: float) -> JitFloat:
     """Convert a number to an opaque array of size 1, which kernels do not contain as a constant."""
     import drjit as dr
 
-    number = float_type()(float(value))
+    number = choose_float_type()(float(value))
     dr.make_opaque(number)
     return number
 

@@ -18,7 +18,7 @@ import warnings
 from pathlib import Path
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.interrupts import hold_signals
+from brdfkit.core.interrupts import delay_signals
 from brdfkit.core.jit.threads import in_turn
 
 VARIABLE = "DRJIT_LIBLLVM_PATH"
@@ -29,7 +29,7 @@ VARIANTS = ("cuda_ad_rgb", "llvm_ad_rgb", "scalar_rgb")
 NO_LIBRARY = "no-LLVM-17-or-newer-found"
 
 
-def choose_library() -> None:
+def choose_llvm_library() -> None:
     """Point Dr.Jit to a usable libLLVM when brdfkit is imported.
 
     If Dr.Jit was imported before, its choice stands; a warning says so if it is a bad one.
@@ -37,7 +37,7 @@ def choose_library() -> None:
     if "drjit" in sys.modules:
         _warn_of_bad_choice()
     elif sys.platform == "linux":
-        chosen = find_library()
+        chosen = find_llvm_library()
         named = os.environ.get(VARIABLE)
         if named and named not in (chosen, NO_LIBRARY):
             instead = f"{chosen} is used instead" if chosen else "the scalar variants remain"
@@ -49,21 +49,21 @@ def choose_library() -> None:
         os.environ[VARIABLE] = str(chosen or NO_LIBRARY)
 
 
-def find_library() -> str | None:
+def find_llvm_library() -> str | None:
     """Return the path of the libLLVM to use, None where none of version 17 or newer is found."""
     named = os.environ.get(VARIABLE)
-    if named and library_version(named) >= OLDEST:
+    if named and read_llvm_version(named) >= OLDEST:
         return named
     for prefix in (sys.prefix, site.getuserbase()):
         bundled = Path(prefix, "lib", "libLLVM.so")
-        if library_version(bundled) >= OLDEST:
+        if read_llvm_version(bundled) >= OLDEST:
             return str(bundled)
     paths = [p for folder in SYSTEM_FOLDERS for p in Path("/").glob(f"{folder[1:]}/libLLVM*.so*")]
-    newest = max(paths, key=library_version, default=None)
-    return str(newest) if newest and library_version(newest) >= OLDEST else None
+    newest = max(paths, key=read_llvm_version, default=None)
+    return str(newest) if newest and read_llvm_version(newest) >= OLDEST else None
 
 
-def library_version(path: str | Path) -> int:
+def read_llvm_version(path: str | Path) -> int:
     """Return the major version of a libLLVM, by its name or from itself; 0 if it does not load."""
     by_name = re.search(r"libLLVM(?:-|\.so\.)(\d+)", os.path.realpath(path))
     if by_name and Path(path).exists():
@@ -79,12 +79,12 @@ def library_version(path: str | Path) -> int:
         return 0
 
 
-def describe_remedy() -> str:
+def describe_llvm_remedy() -> str:
     """Say what to do where Dr.Jit has no usable LLVM, as the end of a sentence.
 
     If the machine has a usable LLVM, it was not chosen or not installed when Dr.Jit was imported.
     """
-    if find_library():
+    if find_llvm_library():
         return "start Python anew and import brdfkit before mitsuba and drjit"
     return (
         "install karellen-llvm-core (Linux x86-64) or set DRJIT_LIBLLVM_PATH to a libLLVM of "
@@ -92,7 +92,7 @@ def describe_remedy() -> str:
     )
 
 
-def loaded_version() -> int:
+def find_loaded_version() -> int:
     """Return the major version of the LLVM that Dr.Jit has loaded, -1 where it has none."""
     import drjit as dr
 
@@ -101,7 +101,7 @@ def loaded_version() -> int:
 
 def require_safe_variant(variant: str | None) -> None:
     """Raise `BrdfkitError` where kernels of a variant of Mitsuba would abort the process."""
-    if variant and variant.startswith("llvm") and 0 < loaded_version() < OLDEST:
+    if variant and variant.startswith("llvm") and 0 < find_loaded_version() < OLDEST:
         raise BrdfkitError(_describe_bad_choice())
 
 
@@ -114,13 +114,13 @@ def use_variant() -> str:
     import mitsuba as mi
 
     if mi.variant() is None:
-        usable = loaded_version() >= OLDEST
-        with hold_signals():
+        usable = find_loaded_version() >= OLDEST
+        with delay_signals():
             mi.set_variant(*(v for v in VARIANTS if usable or not v.startswith("llvm")))
         if mi.variant() == "scalar_rgb":
             warnings.warn(
                 f"Mitsuba has no CUDA device and no LLVM {OLDEST} or newer: its slow variant "
-                f"scalar_rgb is used; to mend it, {describe_remedy()}.",
+                f"scalar_rgb is used; to mend it, {describe_llvm_remedy()}.",
                 stacklevel=3,  # the caller of use_variant, above the wrapper of `in_turn`
             )
     variant = str(mi.variant())
@@ -130,13 +130,13 @@ def use_variant() -> str:
 
 def _warn_of_bad_choice() -> None:
     """Warn where Dr.Jit has loaded an LLVM that aborts the process."""
-    if 0 < loaded_version() < OLDEST:
+    if 0 < find_loaded_version() < OLDEST:
         warnings.warn(_describe_bad_choice(), stacklevel=4)
 
 
 def _describe_bad_choice() -> str:
     """Say which LLVM Dr.Jit has loaded, and what to do."""
     return (
-        f"Dr.Jit was imported before brdfkit and took LLVM {loaded_version()}, which aborts the "
-        f"process in Mitsuba's llvm variants: {describe_remedy()}."
+        f"Dr.Jit was imported before brdfkit and took LLVM {find_loaded_version()}, which aborts "
+        f"the process in Mitsuba's llvm variants: {describe_llvm_remedy()}."
     )

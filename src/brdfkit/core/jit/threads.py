@@ -42,7 +42,7 @@ class cached_in_turn(functools.cached_property[R]):
 
 
 @in_turn
-def use_threads(count: int) -> None:
+def set_thread_count(count: int) -> None:
     """Run the kernels of this process in `count` threads, since other processes run beside it."""
     import drjit as dr
 

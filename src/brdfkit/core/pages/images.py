@@ -12,7 +12,7 @@ from brdfkit.core.colours import to_srgb
 
 def encode_jpeg(linear: AnyArray) -> str:
     """Return a picture (height, width, 3) of linear sRGB as the address of a JPEG."""
-    return _encode(_to_bytes(to_srgb(linear)), "JPEG", quality=92, subsampling=0)
+    return _encode_as_address(_convert_to_bytes(to_srgb(linear)), "JPEG", quality=92, subsampling=0)
 
 
 def encode_webp(colours: AnyArray, **options: Any) -> str:
@@ -20,10 +20,10 @@ def encode_webp(colours: AnyArray, **options: Any) -> str:
 
     `options` are those of Pillow, such as `quality` or `lossless`.
     """
-    return _encode(_to_bytes(colours), "WEBP", **options)
+    return _encode_as_address(_convert_to_bytes(colours), "WEBP", **options)
 
 
-def halve(linear: AnyArray) -> AnyArray:
+def halve_picture(linear: AnyArray) -> AnyArray:
     """Average blocks of 2×2 pixels of a picture (height, width, n)."""
     height, width = (n // 2 for n in linear.shape[:2])
     return linear[: 2 * height, : 2 * width].reshape(height, 2, width, 2, -1).mean(axis=(1, 3))
@@ -32,13 +32,13 @@ def halve(linear: AnyArray) -> AnyArray:
 def shrink(picture: AnyArray, longest: int) -> AnyArray:
     """Halve a picture (height, width, n) until no side is longer than `longest` pixels."""
     while max(picture.shape[:2]) > longest:
-        picture = halve(picture)
+        picture = halve_picture(picture)
     return picture
 
 
 def encode_png(colours: AnyArray) -> str:
     """Return colours (height, width, 3 or 4) in 0..1 as the address of a PNG, without loss."""
-    return _encode(_to_bytes(colours), "PNG", optimize=True)
+    return _encode_as_address(_convert_to_bytes(colours), "PNG", optimize=True)
 
 
 def apply_colour_map(name: str, shares: ArrayLike) -> AnyArray:
@@ -53,12 +53,12 @@ def draw_colour_bar(name: str, steps: int = 128) -> str:
     return encode_png(apply_colour_map(name, np.linspace(0, 1, steps))[None, :, :3])
 
 
-def _to_bytes(shares: AnyArray) -> AnyArray:
+def _convert_to_bytes(shares: AnyArray) -> AnyArray:
     """Convert numbers in 0..1 to bytes; nan becomes 0."""
     return (np.clip(np.nan_to_num(shares), 0, 1) * 255 + 0.5).astype(np.uint8)
 
 
-def _encode(pixels: AnyArray, kind: str, **options: Any) -> str:
+def _encode_as_address(pixels: AnyArray, kind: str, **options: Any) -> str:
     """Return the `data:` address of pixels (height, width, channels) in a format of Pillow."""
     from PIL import Image
 

@@ -36,22 +36,22 @@ def _make_environment() -> Any:
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
-        finalize=_clean,
+        finalize=_remove_control_characters,
     )
     environment.globals |= {
         "source": lambda name: Markup(read_template(name)),
-        "policy": make_policy,
+        "policy": make_security_policy,
     }
     return environment
 
 
-def _clean(value: Any) -> Any:
+def _remove_control_characters(value: Any) -> Any:
     """Remove the control characters, which HTML forbids, from a text; other values stay."""
     plain = isinstance(value, str) and not hasattr(value, "__html__")
     return to_printable(value, keep="\n") if plain else value
 
 
-def make_policy(style: str, *scripts: str) -> str:
+def make_security_policy(style: str, *scripts: str) -> str:
     """Return a content security policy that allows only the style and the scripts of this page.
 
     `style` and `scripts` are files of `templates/`, each in an element of its own.

@@ -25,7 +25,7 @@ class Body:
     planes: np.ndarray
 
     @classmethod
-    def around(cls, points: ArrayLike) -> Body:
+    def from_points(cls, points: ArrayLike) -> Body:
         """Return the convex hull of points (n, 3).
 
         Raises `Empty` where they enclose no volume.
@@ -40,7 +40,7 @@ class Body:
         return cls(points[hull.vertices], hull.equations)
 
     @cached_property
-    def middle(self) -> FloatArray:
+    def centroid(self) -> FloatArray:
         """The centre of the volume (3,), which moves as steadily as the body does."""
         from scipy.spatial import ConvexHull
 
@@ -57,11 +57,11 @@ class Body:
         middle, size = self.corners.mean(axis=0), np.ptp(self.corners, axis=0).max()
         planes = np.vstack([self.planes, other.planes])
         planes[:, 3] = (planes[:, :3] @ middle + planes[:, 3]) / size
-        inside = _find_inner_centre(planes)
+        inside = _find_inscribed_centre(planes)
         if inside is None:
             raise Empty("no part of the scene is before the camera and in the light.")
         corners = HalfspaceIntersection(planes, inside).intersections
-        return Body.around(middle + size * corners)
+        return Body.from_points(middle + size * corners)
 
     def extend_to_light(self, light: FloatArray, length: float) -> Body:
         """Return the body with the space between it and a light, over at least a `length`.
@@ -72,7 +72,7 @@ class Body:
         share = 2 * length / max(np.linalg.norm(to_light, axis=1).min(), 1e-30)
         # Not to the light itself if it is far, since hulls of long needles are inexact
         share = share if light[3] == 0 else min(share, 1)
-        return Body.around(np.vstack([self.corners, self.corners + share * to_light]))
+        return Body.from_points(np.vstack([self.corners, self.corners + share * to_light]))
 
 
 def make_box(low: ArrayLike, high: ArrayLike) -> Body:
@@ -80,11 +80,11 @@ def make_box(low: ArrayLike, high: ArrayLike) -> Body:
     low, high = np.asarray(low, float), np.asarray(high, float)
     least = 1e-4 * max((high - low).max(), 1e-30)
     grown = np.maximum(least - (high - low), 0) / 2
-    ends = np.stack([low - grown, high + grown])
-    return Body.around([[ends[i, 0], ends[j, 1], ends[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
+    x, y, z = np.stack([low - grown, high + grown], axis=1)
+    return Body.from_points([[x[i], y[j], z[k]] for i, j, k in np.ndindex(2, 2, 2)])
 
 
-def _find_inner_centre(planes: AnyArray) -> FloatArray | None:
+def _find_inscribed_centre(planes: AnyArray) -> FloatArray | None:
     """Return the centre (3,) of the largest ball within the planes of a body of about the size 1.
 
     None where there is no such ball.

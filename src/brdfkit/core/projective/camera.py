@@ -12,7 +12,7 @@ import numpy as np
 from brdfkit.core.array_types import ArrayLike, FloatArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.body import Empty
-from brdfkit.core.projective.homogeneous import project_all, transform
+from brdfkit.core.projective.homogeneous import project_points, transform
 
 FROM_MITSUBA = np.diag([-1.0, 1, -1, 1])  # Mitsuba's cameras look along z, x points left
 CUBE = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], float)
@@ -49,9 +49,9 @@ class Camera:
                 "perspective one."
             )
         offsets = [f"principal_point_offset_{axis}" for axis in "xy"]  # a thin lens has none
-        if any(_number(parameters, name) for name in offsets if name in parameters):
+        if any(_read_number(parameters, name) for name in offsets if name in parameters):
             raise BrdfkitError("the camera's principal point is off the middle; move it there.")
-        slope = math.tan(math.radians(_number(parameters, "x_fov")) / 2)
+        slope = math.tan(math.radians(_read_number(parameters, "x_fov")) / 2)
         width, height = sensor.film().size()
         to_world = np.array(sensor.world_transform().matrix, float).reshape(4, 4)
         to_world[:3, :3] /= np.linalg.norm(to_world[:3, :3], axis=0)
@@ -67,14 +67,14 @@ class Camera:
     def projection(self) -> FloatArray:
         """P (4, 4), from the camera to the cube [-1, 1]³, with z = -1 near [Ergun 2008, 2.1.7]."""
         n, f = self.near, self.far
-        return self._projection(-(f + n) / (f - n), -2 * f * n / (f - n))
+        return self._make_projection(-(f + n) / (f - n), -2 * f * n / (f - n))
 
     @property
     def infinite_projection(self) -> FloatArray:
         """P∞ (4, 4), the limit of P for a far plane at infinity; points there have the depth 1."""
-        return self._projection(-1, -2 * self.near)
+        return self._make_projection(-1, -2 * self.near)
 
-    def _projection(self, along: float, shift: float) -> FloatArray:
+    def _make_projection(self, along: float, shift: float) -> FloatArray:
         matrix = np.diag([1 / self.slope_x, 1 / self.slope_y, along, 0])
         matrix[2, 3], matrix[3, 2] = shift, -1
         return matrix
@@ -94,7 +94,7 @@ class Camera:
         """The direction of the view, a unit vector (3,)."""
         return -self.view[2, :3]
 
-    def rays(self, size: tuple[int, int]) -> FloatArray:
+    def make_pixel_rays(self, size: tuple[int, int]) -> FloatArray:
         """Return vectors (height, width, 3) from the eye through the middles of a picture's pixels.
 
         size : (width, height) [pixels]. The vectors have the length 1 along the view.
@@ -105,22 +105,22 @@ class Camera:
         x, y = np.meshgrid(across, upwards)
         return np.stack([x, y, np.full_like(x, -1)], axis=-1) @ self.view[:3, :3]
 
-    def corners(self) -> FloatArray:
+    def find_frustum_corners(self) -> FloatArray:
         """Return the corners (8, 3) of the visible space; the first four are on the near plane."""
-        return project_all(np.linalg.inv(self.matrix), CUBE)
+        return project_points(np.linalg.inv(self.matrix), CUBE)
 
-    def depths(self, points: ArrayLike) -> FloatArray:
+    def compute_depths(self, points: ArrayLike) -> FloatArray:
         """Return the distances (n,) of points (n, 3) along the view."""
         return -transform(self.view, *np.asarray(points, float).T)[2]
 
-    def with_planes(self, near: float, far: float) -> Camera:
+    def replace_planes(self, near: float, far: float) -> Camera:
         """Return the camera with other near and far planes."""
         return replace(self, near=near, far=far)
 
-    def move_back(self, points: ArrayLike) -> Camera:
+    def move_behind(self, points: ArrayLike) -> Camera:
         """Return the camera moved back behind all points (n, 3), and opened to see them."""
         view = self.view.copy()
-        view[2, 3] -= max(0, self.near - self.depths(points).min())
+        view[2, 3] -= max(0, self.near - self.compute_depths(points).min())
         x, y, z, _ = transform(view, *np.asarray(points, float).T)
         near, far = (
             -z.max(),
@@ -133,13 +133,13 @@ class Camera:
 
         Raises `Empty` where all of them are behind its near plane or beyond its far plane.
         """
-        depths = self.depths(points)
+        depths = self.compute_depths(points)
         near, far = max(self.near, depths.min()), min(self.far, depths.max())
         if far <= near:
             raise Empty("the camera does not see the scene: turn it, or move its planes.")
-        return self.with_planes(near, far)
+        return self.replace_planes(near, far)
 
 
-def _number(parameters: Mapping[str, Any], name: str) -> float:
+def _read_number(parameters: Mapping[str, Any], name: str) -> float:
     """Return a parameter of a camera as a float."""
     return float(np.ravel(parameters[name])[0])

@@ -39,12 +39,12 @@ def normalise(x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, JitFloat
     return x / length, y / length, z / length
 
 
-def project_all(matrix: AnyArray, points: ArrayLike) -> AnyArray:
+def project_points(matrix: AnyArray, points: ArrayLike) -> AnyArray:
     """Transform points (n, 3) and divide them by w."""
     return np.column_stack(project(matrix, *np.asarray(points, float).T))
 
 
-def make_rigid(rotation: ArrayLike, origin: ArrayLike) -> FloatArray:
+def make_rigid_matrix(rotation: ArrayLike, origin: ArrayLike) -> FloatArray:
     """Return the matrix (4, 4) into a frame whose axes are the rows of `rotation` (3, 3)."""
     matrix = np.eye(4)
     matrix[:3, :3] = rotation
@@ -52,10 +52,10 @@ def make_rigid(rotation: ArrayLike, origin: ArrayLike) -> FloatArray:
     return matrix
 
 
-def to_unit_cube(low: ArrayLike, high: ArrayLike) -> FloatArray:
+def make_unit_cube_matrix(low: ArrayLike, high: ArrayLike) -> FloatArray:
     """Return the matrix (4, 4) that maps the box from `low` (3,) to `high` (3,) onto [-1, 1]³.
 
-    >>> np.array(project(to_unit_cube([0, 0, 0], [1, 2, 4]), 1.0, 1.0, 0.0))
+    >>> np.array(project(make_unit_cube_matrix([0, 0, 0], [1, 2, 4]), 1.0, 1.0, 0.0))
     array([ 1.,  0., -1.])
     """
     low, high = np.asarray(low, float), np.asarray(high, float)

@@ -63,10 +63,10 @@ class Light:
 
     @property
     def is_bounded(self) -> bool:
-        """Whether a `bounding_pyramid` holds all of the light."""
+        """Whether a `make_bounding_pyramid` holds all of the light."""
         return self.cutoff is not None and self.cutoff <= WIDEST_CUTOFF
 
-    def bounding_pyramid(self, reach: float) -> Body:
+    def make_bounding_pyramid(self, reach: float) -> Body:
         """Return the square pyramid about a spot's cone, from 1/1000 of `reach` to `reach`."""
         axis, cutoff = self.axis, self.cutoff
         assert axis is not None, "only a spot has a pyramid"
@@ -79,7 +79,7 @@ class Light:
             for i in (-1, 1)
             for j in (-1, 1)
         ]
-        return Body.around(self.point[:3] + np.array(ends))
+        return Body.from_points(self.point[:3] + np.array(ends))
 
     def path_length(self, x: JitFloat, y: JitFloat, z: JitFloat) -> JitFloat:
         """Return the distance that light has travelled at a point.
@@ -98,7 +98,7 @@ class Light:
         a, b, c = (self.point[i] for i in range(3))
         return (-a, -b, -c) if self.is_directional else normalise(x - a, y - b, z - c)
 
-    def directions_from(self, points: ArrayLike) -> FloatArray:
+    def directions_to_light(self, points: ArrayLike) -> FloatArray:
         """Return the unit vectors (n, 3) from points (n, 3) to the light."""
         to_light = self.point[:3] - self.point[3] * np.asarray(points, float)
         return to_light / np.linalg.norm(to_light, axis=1, keepdims=True)

@@ -9,7 +9,7 @@ from typing import Any
 import drjit as dr
 import numpy as np
 
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import read_bytes, write_safely
 from brdfkit.distance_fields.boxes import to_numbers
 from brdfkit.distance_fields.parameters import find_kind
@@ -130,7 +130,7 @@ def _to_node(data: Any, where: str) -> Any:
     arguments = {name: value for name, value in data.items() if name != "kind"}
     for name in arguments:
         if name not in known:
-            raise no_such(f"parameter of {data['kind']}", name, known, where)
+            raise no_such_error(f"parameter of {data['kind']}", name, known, where)
     for name, field in known.items():
         if name not in arguments and field.default is MISSING:
             raise BrdfkitError(f"{where}: {data['kind']} needs {name}; add it.")

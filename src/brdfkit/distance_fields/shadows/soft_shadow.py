@@ -9,7 +9,7 @@ import numpy as np
 
 from brdfkit.core.arguments import to_number, to_whole_number
 from brdfkit.core.array_types import JitFloat, JitVector
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.distance_fields.shadows.cone import LightCone, light_cone
 from brdfkit.distance_fields.shadows.marches import convex, hard, linear
 from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
@@ -96,10 +96,10 @@ def soft_shadow(
     [0.573]
     """
     if shadow not in METHODS:
-        raise no_such("shadow", shadow, METHODS, "shadow")
+        raise no_such_error("shadow", shadow, METHODS, "shadow")
     epsilon = to_number("epsilon", epsilon, most=0.5, above=0)
     if direction not in DIRECTIONS:
-        raise no_such("direction", direction, DIRECTIONS, "direction")
+        raise no_such_error("direction", direction, DIRECTIONS, "direction")
     if not dr.all((radius >= 0) & (ball >= 0) & (radius + ball > 0)):
         raise BrdfkitError(
             "radius and ball should not be negative, nor both 0: a light of radius 0 needs a ball "

@@ -8,7 +8,7 @@ from weakref import WeakValueDictionary
 import drjit as dr
 import numpy as np
 
-from brdfkit.core.arguments import to_positive
+from brdfkit.core.arguments import to_positive_number
 from brdfkit.core.array_types import FloatArray, JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit import double_precision
@@ -48,7 +48,7 @@ class function(Node):
         _FUNCTIONS[name] = f
         object.__setattr__(self, "_function", f)
         object.__setattr__(self, "f", name)
-        object.__setattr__(self, "lipschitz", to_positive("lipschitz", self.lipschitz))
+        object.__setattr__(self, "lipschitz", to_positive_number("lipschitz", self.lipschitz))
         if self.box is not None:
             object.__setattr__(self, "box", tuple(tuple(map(float, c)) for c in self.box))
 

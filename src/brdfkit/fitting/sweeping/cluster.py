@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.jit.threads import use_threads
+from brdfkit.core.jit.threads import set_thread_count
 from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, make_failure
 
 
@@ -69,5 +69,5 @@ def fit_on_worker(task: Task) -> list[Outcome]:
     """Carry out a task in a thread of a worker of the cluster, and return its outcomes."""
     from distributed import get_worker
 
-    use_threads(get_worker().state.nthreads)
+    set_thread_count(get_worker().state.nthreads)
     return list(fit_models(task))

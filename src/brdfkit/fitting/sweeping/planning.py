@@ -9,7 +9,7 @@ from typing import Any
 
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import sha256
+from brdfkit.core.files import compute_sha256
 from brdfkit.core.names import make_unique, to_file_stem
 from brdfkit.fitting.settings import FitSettings
 from brdfkit.fitting.sweeping.tasks import Task
@@ -62,7 +62,7 @@ def _plan_file(file: Any, models: dict[str, dict[str, str]], settings: FitSettin
     file = str(file)
     try:
         path, sample = locate(file)
-        checksum = sha256(path)
+        checksum = compute_sha256(path)
     except BrdfkitError as error:
         return Task(
             _name_material(Path(file)), file, file, {}, models, settings, failure=str(error)
@@ -90,7 +90,7 @@ def _compute_checksums(model: type[Model]) -> dict[str, str]:
             )
         if part.__module__.rpartition(".")[0] == plugin_files.USERS:
             path = str(sys.modules[part.__module__].__file__)
-            checksums[path] = sha256(path)
+            checksums[path] = compute_sha256(path)
     return checksums
 
 

@@ -22,8 +22,8 @@ from typing import Any
 
 import psutil
 
-from brdfkit.core.interrupts import hold_signals
-from brdfkit.core.jit.threads import use_threads
+from brdfkit.core.interrupts import delay_signals
+from brdfkit.core.jit.threads import set_thread_count
 from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, make_failure
 
 MEMORY = 10**9  # memory of a process [bytes]; fitting a MERL table takes 0.55 GB
@@ -134,7 +134,7 @@ def _start_worker(threads: int) -> Worker:
     ours, theirs = context.Pipe()
     process = context.Process(target=_carry_out_tasks, args=(theirs, threads), daemon=True)
     # An interrupted start would leave a process that nobody ends
-    with hold_signals(), _prepare_for_spawn():
+    with delay_signals(), _prepare_for_spawn():
         process.start()
     theirs.close()
     return Worker(process, ours)
@@ -167,7 +167,7 @@ def _prepare_for_spawn() -> Iterator[None]:
 def _carry_out_tasks(pipe: Connection, threads: int) -> None:
     """Carry out tasks from the `pipe` until it is closed; this is what a process runs."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    use_threads(threads)
+    set_thread_count(threads)
     with suppress(EOFError, OSError):
         while True:
             for outcome in fit_models(pipe.recv()):

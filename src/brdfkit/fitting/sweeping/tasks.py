@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import sha256
+from brdfkit.core.files import compute_sha256
 from brdfkit.core.version import __version__
 from brdfkit.fitting.fit import fit
 from brdfkit.fitting.settings import FitSettings
@@ -111,5 +111,5 @@ def _read_measurement(task: Task) -> Measured:
 def _require_unchanged(checksums: dict[str, str]) -> None:
     """Raise `BrdfkitError` if a file no longer has its SHA-256; `checksums` are by path."""
     for path, checksum in checksums.items():
-        if sha256(path) != checksum:
+        if compute_sha256(path) != checksum:
             raise BrdfkitError(f"{path}: has changed since the sweep began; begin it again.")

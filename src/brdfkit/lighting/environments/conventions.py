@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.lighting.environments.cubes import CROSS, STRIP, VERTICAL_CROSS, Cube
 from brdfkit.lighting.environments.layouts import Angular, LatitudeLongitude, Paraboloids
 
@@ -60,7 +60,7 @@ def parse_convention(name: str) -> Convention:
     """
     layout, _, axes = NAMED.get(str(name), str(name)).partition(":")
     if layout not in LAYOUTS:
-        raise no_such("convention of maps", name, [*NAMED, *LAYOUTS])
+        raise no_such_error("convention of maps", name, [*NAMED, *LAYOUTS])
     return Convention(LAYOUTS[layout], _parse_axes(axes or NAMED["mitsuba"].partition(":")[2]))
 
 

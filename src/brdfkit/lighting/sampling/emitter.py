@@ -26,19 +26,21 @@ from brdfkit.lighting.sampling.power_map import require_light, subtract_mean
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 from brdfkit.mitsuba_bridge.properties.declarations import (
     Setting,
+    declare_bool,
+    declare_number,
+    declare_picture,
+    declare_text,
     derive_plugin,
-    flag,
-    number,
-    picture,
-    text,
 )
 from brdfkit.mitsuba_bridge.properties.picture_file import read_pixels, to_pixels
 
 MAP_PARAMETERS = {
-    "filename": text("", "the map: a picture, azimuth across and polar angle down"),
-    "bitmap": picture("the map itself, in place of a file"),
-    "scale": number(1.0, (0.0, math.inf), "what the map is multiplied by"),
-    "compensated": flag(False, "sample only what is brighter than the mean; surfaces do the rest"),
+    "filename": declare_text("", "the map: a picture, azimuth across and polar angle down"),
+    "bitmap": declare_picture("the map itself, in place of a file"),
+    "scale": declare_number(1.0, (0.0, math.inf), "what the map is multiplied by"),
+    "compensated": declare_bool(
+        False, "sample only what is brighter than the mean; surfaces do the rest"
+    ),
 }
 ENVIRONMENT_DISTANCE = 1e7  # Mitsuba does not tell a plugin how large the scene is
 SMALLEST_SINE = 1e-4  # of the polar angle: nearer the poles, the density divides by this

@@ -14,7 +14,7 @@ import numpy as np
 
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.errors import no_such
+from brdfkit.core.errors import no_such_error
 from brdfkit.core.geometry.directions import normalize, rotate_z, to_angles
 from brdfkit.core.geometry.multilinear import (
     find_bracket,
@@ -114,7 +114,7 @@ def lobe_table(
     (24, 16, 3)
     """
     if method not in METHODS:
-        raise no_such("method", method, METHODS)
+        raise no_such_error("method", method, METHODS)
     lobes = to_whole_number("lobes", lobes, least=1)
     theta_o = np.linspace(0, LARGEST_THETA_O, to_whole_number("views", views, least=2))
     phi_o = np.arange(to_whole_number("azimuths", azimuths, least=1)) * 2 * np.pi / azimuths

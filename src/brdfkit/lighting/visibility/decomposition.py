@@ -26,7 +26,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import make_folder, write_safely
-from brdfkit.core.interrupts import give_back_interrupts
+from brdfkit.core.interrupts import restore_interrupt_handler
 from brdfkit.lighting.visibility.hull import Hull, make_hull
 from brdfkit.lighting.visibility.pieces import split_solids
 
@@ -140,7 +140,7 @@ def _run_coacd(
 
 def _run(command: list[str | Path]) -> int:
     """Run a program and return its exit status; Ctrl-C ends it, too."""
-    give_back_interrupts()  # Mitsuba's handler, while it renders, waits for the picture
+    restore_interrupt_handler()  # Mitsuba's handler, while it renders, waits for the picture
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
     try:
         return process.wait()

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.array_types import JitFloat, JitInt, JitMask, MitsubaObject
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.lighting.visibility.convex_ray import find_entry
 from brdfkit.lighting.visibility.hierarchy import Hierarchy
 from brdfkit.lighting.visibility.hull import Frames, Hull
@@ -60,7 +60,7 @@ class Occluders:
         Raises `BrdfkitError` for an unknown object, and for a matrix that cannot be inverted.
         """
         if name not in self._parts:
-            raise no_such("object", name, self._parts)
+            raise no_such_error("object", name, self._parts)
         matrix = np.asarray(to_world, float)
         if matrix.shape != (4, 4) or not abs(np.linalg.det(matrix)) > 0:
             raise BrdfkitError(f"{name}: to_world should be an invertible matrix (4, 4).")

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from brdfkit.core import catalogue
-from brdfkit.core.errors import BrdfkitError, no_such
-from brdfkit.core.files import sha256
+from brdfkit.core.errors import BrdfkitError, no_such_error
+from brdfkit.core.files import compute_sha256
 from brdfkit.materials import formats
 
 PART = ".part"  # suffix of a file whose download is not complete
@@ -94,7 +94,7 @@ def find_collection(name: str) -> Collection:
     """Return the collection with a name, ``merl``, or with a material, ``merl/alum-bronze``."""
     collections, first = list_collections(), name.partition("/")[0]
     if first not in collections:
-        raise no_such("collection", first, collections, where=name)
+        raise no_such_error("collection", first, collections, where=name)
     return collections[first]
 
 
@@ -113,7 +113,7 @@ def find_file(name: str) -> Path:
     remedy = f"run 'brdfkit data get {name}'" if listed.url else owner.explain_by_hand(listed.file)
     if not listed.path.is_file():
         raise BrdfkitError(f"{name}: is not here; {remedy}.")
-    if listed.sha256 and sha256(listed.path) != listed.sha256:
+    if listed.sha256 and compute_sha256(listed.path) != listed.sha256:
         raise BrdfkitError(
             f"{listed.path}: is not the {name} that was published (its checksum differs); "
             f"delete it and {remedy}."
@@ -140,7 +140,7 @@ def _make_collection(name: str, entry: dict[str, Any]) -> Collection:
     """Make the `Collection` of an `entry` of the index; its files are there or in a table."""
     rows, url = entry.pop("files"), entry.pop("url", "")
     if isinstance(rows, str):
-        with (catalogue.find_folder() / rows).open(encoding="utf-8", newline="") as stream:
+        with (catalogue.find_data_folder() / rows).open(encoding="utf-8", newline="") as stream:
             rows = list(csv.DictReader(stream, delimiter="\t"))
     listed = [_make_listed(name, url=row.get("url", url), row=row) for row in rows]
     return Collection(name, **entry, files={file.name: file for file in listed})

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.arguments import to_number, to_whole_number, wrong_argument
+from brdfkit.core.arguments import to_number, to_whole_number, wrong_value_error
 from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
@@ -134,9 +134,9 @@ def measure(
     (54000, 3)
     """
     if not isinstance(surface, HeightField):
-        raise wrong_argument("surface", surface, "a HeightField, such as gaussian()")
+        raise wrong_value_error("surface", surface, "a HeightField, such as gaussian()")
     if isinstance(facets, str):
-        raise wrong_argument("facets", facets, "the dictionary of a BSDF")
+        raise wrong_value_error("facets", facets, "the dictionary of a BSDF")
     shape = _check_shape(shape, surface.isotropic)
     error = to_number("error", error, LEAST_ERROR, 1)
     spp, seed = to_whole_number("spp", spp, 2, MOST_SPP), to_whole_number("seed", seed, 0)

@@ -15,7 +15,7 @@ import numpy as np
 
 from brdfkit.core.arguments import to_number, to_whole_number
 from brdfkit.core.array_types import FloatArray, IntArray
-from brdfkit.core.errors import no_such
+from brdfkit.core.errors import no_such_error
 
 SIZE = 512  # grid cells along a side of the tile
 
@@ -118,10 +118,10 @@ def make(name: str, **parameters: float) -> HeightField:
     True
     """
     if name not in GEOMETRIES:
-        raise no_such("geometry", name, GEOMETRIES)
+        raise no_such_error("geometry", name, GEOMETRIES)
     known = inspect.signature(GEOMETRIES[name]).parameters
     for parameter in parameters.keys() - known.keys():
-        raise no_such("parameter", parameter, known, where=name)
+        raise no_such_error("parameter", parameter, known, where=name)
     geometry: Any = GEOMETRIES[name]
     return geometry(**parameters)
 

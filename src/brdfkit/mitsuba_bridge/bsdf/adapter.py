@@ -12,15 +12,15 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitMask, JitVector, MitsubaModule, MitsubaObject
-from brdfkit.core.geometry.quadrature import spread_by_cosine
-from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate
+from brdfkit.core.geometry.quadrature import make_cosine_directions
+from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate_lobe_sum
 from brdfkit.mitsuba_bridge.bsdf.surface_response import Point
 from brdfkit.mitsuba_bridge.bsdf.textures import define_textured_frame
 from brdfkit.model import Model
 from brdfkit.model.lobes import group_components
 
 # Outgoing directions over which `eval_diffuse_reflectance` averages
-DIRECTIONS = spread_by_cosine(64)
+DIRECTIONS = make_cosine_directions(64)
 
 
 def define_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
@@ -44,13 +44,14 @@ def define_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
             if signed:  # a sum of signed lobes is drawn by a table
-                shapes, weights = self.means()
-                self.tables = {k: tabulate(model(**shapes), weights, groups[k]) for k in signed}
+                shapes, weights = self.average_textures()
+                averaged = model(**shapes)
+                self.tables = {k: tabulate_lobe_sum(averaged, weights, groups[k]) for k in signed}
 
-        def at(
+        def make_response(
             self, ctx: MitsubaObject, si: MitsubaObject, wi: JitVector, active: JitMask
         ) -> Point:
-            weights, lobes = self.terms(si, active)
+            weights, lobes = self.evaluate(si, active)
             samplings = [
                 self.tables.get(k, lobes[group[0]].sampling) for k, group in enumerate(groups)
             ]
@@ -61,7 +62,7 @@ def define_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
 
         def eval_diffuse_reflectance(self, si: MitsubaObject, active: JitMask = True) -> JitColour:
             """Compute the albedo of the diffuse lobes at normal incidence by quadrature."""
-            normal = self.at(mi.BSDFContext(), si, mi.Vector3f(0, 0, 1), active)
+            normal = self.make_response(mi.BSDFContext(), si, mi.Vector3f(0, 0, 1), active)
             diffuse = [i for i, lobe in enumerate(normal.lobes) if lobe.diffuse]
             total = mi.UnpolarizedSpectrum(0)
             for direction in DIRECTIONS:

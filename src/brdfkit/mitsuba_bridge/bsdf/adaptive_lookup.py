@@ -52,7 +52,7 @@ class AdaptiveLookup:
 
     def find_incidences(self, wi: JitVector) -> list[tuple[JitInt, JitFloat]]:
         """Return (index, share) of the stored incidences around `wi`; the shares add up to 1."""
-        angles = self._angles(self._fold(wi, wi))
+        angles = self._incident_angles(self._fold_azimuth(wi, wi))
         axes = [(nodes, x) for nodes, x in zip(self.nodes, angles, strict=True) if nodes.count > 1]
         brackets, shape = [nodes.find_bracket(x) for nodes, x in axes], [n.count for n, _ in axes]
         return [
@@ -66,12 +66,12 @@ class AdaptiveLookup:
         A row is an index among all stored values (a b n n,).
         """
         incidences = self.find_incidences(wi)
-        wi, wo = self._fold(wi, wi), self._fold(wo, wi)
-        m, u, _ = self._locate(wi, wo)
+        wi, wo = self._fold_azimuth(wi, wi), self._fold_azimuth(wo, wi)
+        m, u, _ = self._find_half_vector(wi, wo)
         factor = 1 / wo.z
         if self.divided:
-            phi_i, theta_i = self._angles(wi)
-            factor *= self.ndf.eval(m) / (4 * self.sigma.eval(_to_square(theta_i, phi_i)))
+            phi_i, theta_i = self._incident_angles(wi)
+            factor *= self.ndf.eval(m) / (4 * self.sigma.eval(_to_unit_square(theta_i, phi_i)))
         n = self.n
         for cell, share in multilinear.list_corners(
             [find_bracket(x * (n - 1), n) for x in (u.y, u.x)]
@@ -86,8 +86,8 @@ class AdaptiveLookup:
         """Draw a direction, possibly below the surface, for x and y of a point `u`."""
         import mitsuba as mi
 
-        folded = self._fold(wi, wi)
-        angles = self._angles(folded)
+        folded = self._fold_azimuth(wi, wi)
+        angles = self._incident_angles(folded)
         # A point on the square of stored values is warped to the square of directions: the normal
         point, _ = self.density.sample(mi.Point2f(u.x, u.y), angles)
         m, _ = self.normals.sample(point, angles)
@@ -95,18 +95,18 @@ class AdaptiveLookup:
         phi_m = (2 * m.y - 1) * dr.pi
         sin_phi, cos_phi = dr.sincos(phi_m + angles[0] if self.isotropic else phi_m)
         normal = type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
-        return self._fold(reflect(folded, normal), wi)
+        return self._fold_azimuth(reflect(folded, normal), wi)
 
     def pdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
         """Return the density of `wo` per solid angle."""
-        wi, wo = self._fold(wi, wi), self._fold(wo, wi)
-        m, u, density = self._locate(wi, wo)
-        density *= self.density.eval(u, self._angles(wi))
+        wi, wo = self._fold_azimuth(wi, wi), self._fold_azimuth(wo, wi)
+        m, u, density = self._find_half_vector(wi, wo)
+        density *= self.density.eval(u, self._incident_angles(wi))
         # dω_m / dx dy on the square of directions
         solid_angle = 2 * dr.pi**2 * m.x * dr.sin(m.x * m.x * (dr.pi / 2))
         return density / (solid_angle * 4 * cos_theta_d(wi, wo))
 
-    def _locate(
+    def _find_half_vector(
         self, wi: JitVector, wo: JitVector
     ) -> tuple[MitsubaObject, MitsubaObject, JitFloat]:
         """Return (m, u, density) of a folded direction pair.
@@ -116,19 +116,19 @@ class AdaptiveLookup:
         """
         import mitsuba as mi
 
-        angles, h = self._angles(wi), half_vector(wi, wo)
+        angles, h = self._incident_angles(wi), half_vector(wi, wo)
         phi_m = dr.atan2(h.y, h.x)
-        m = _to_square(_theta(h), phi_m - angles[0] if self.isotropic else phi_m)
+        m = _to_unit_square(_polar_angle(h), phi_m - angles[0] if self.isotropic else phi_m)
         m = mi.Point2f(dr.maximum(m.x, LEAST_X), m.y - dr.floor(m.y))
         return m, *self.normals.invert(m, angles)
 
-    def _angles(self, wi: JitVector) -> list[JitFloat]:
+    def _incident_angles(self, wi: JitVector) -> list[JitFloat]:
         """Return [phi_i, theta_i] of a direction in the stored part of the circle."""
         phi_i = dr.atan2(wi.y, wi.x)
         # The nodes of a part of the circle begin at -π, so that the azimuth π becomes -π
-        return [phi_i if self.parts < 2 else -dr.abs(phi_i), _theta(wi)]
+        return [phi_i if self.parts < 2 else -dr.abs(phi_i), _polar_angle(wi)]
 
-    def _fold(self, w: JitVector, wi: JitVector) -> JitVector:
+    def _fold_azimuth(self, w: JitVector, wi: JitVector) -> JitVector:
         """Rotate or reflect `w` as brings `wi` to the stored part of the circle of phi_i.
 
         The transformation is its own inverse.
@@ -140,12 +140,12 @@ class AdaptiveLookup:
         return type(w)(w.x * sign_x, w.y * sign_y, w.z)
 
 
-def _theta(w: JitVector) -> JitFloat:
+def _polar_angle(w: JitVector) -> JitFloat:
     """Return the polar angle [rad], eight times as exact in single precision as by `dr.atan2`."""
     return 2 * dr.safe_asin(0.5 * dr.norm(w - type(w)(0, 0, 1)))
 
 
-def _to_square(theta: JitFloat, phi: JitFloat) -> MitsubaObject:
+def _to_unit_square(theta: JitFloat, phi: JitFloat) -> MitsubaObject:
     """Return the point (x, y) of a direction on the square of directions.
 
     θ = x² π/2 and φ = (2y - 1) π.

@@ -27,8 +27,8 @@ COSINE = Cosine()
 def define_frame(mi: MitsubaModule) -> Any:
     """Define the base class of brdfkit's BSDFs in the current variant.
 
-    A derived class defines `at(ctx, si, wi, active)`, which returns the BSDF at a point of a
-    surface for light from `wi`, an object with
+    A derived class defines `make_response(ctx, si, wi, active)`, which returns the BSDF at a point
+    of a surface for light from `wi`, as an object with
 
     - `draw(sample1, sample2)`: returns an outgoing direction and the number of its component;
     - `pdf(wo)`: the density of `draw`, per solid angle;
@@ -48,7 +48,7 @@ def define_frame(mi: MitsubaModule) -> Any:
             active: JitMask = True,
         ) -> tuple[MitsubaObject, JitColour]:
             wi, active = mask_below_horizon(si.wi, active)
-            here = self.at(ctx, si, wi, active)
+            here = self.make_response(ctx, si, wi, active)
             wo, component = here.draw(sample1, sample2)
 
             # Neither the direction nor its density in the weight has derivatives
@@ -71,7 +71,7 @@ def define_frame(mi: MitsubaModule) -> Any:
         ) -> tuple[JitColour, JitFloat]:
             wi, active = mask_below_horizon(si.wi, active)
             wo, active = mask_below_horizon(wo, active)
-            here = self.at(ctx, si, wi, active)
+            here = self.make_response(ctx, si, wi, active)
             value, pdf = here.value(wo) * wo.z, here.pdf(wo)
             return mi.depolarizer(dr.select(active, value, 0)), dr.select(active, pdf, 0)
 

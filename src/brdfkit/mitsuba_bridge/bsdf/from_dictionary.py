@@ -26,7 +26,7 @@ class BsdfMaterial:
     entries: dict[str, Any]
 
     @classmethod
-    def of(cls, entries: dict[str, Any]) -> BsdfMaterial:
+    def from_dictionary(cls, entries: dict[str, Any]) -> BsdfMaterial:
         """Return the material of a dictionary; its name is the entry "name" or else "type".
 
         Raises `BrdfkitError` for a dictionary without "type".

@@ -17,7 +17,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray, JitFloat, JitInt, JitVector
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.multilinear import list_corners, to_flat_index
-from brdfkit.core.geometry.vectors import angle, azimuth, cos_theta_d, half_vector, reflect
+from brdfkit.core.geometry.vectors import azimuth, cos_theta_d, half_vector, polar_angle, reflect
 from brdfkit.mitsuba_bridge.arrays import BELOW_ONE, Rows, find_bracket, find_periodic_bracket
 
 
@@ -51,14 +51,14 @@ class HalfVectorTable:
         # Shares by which a row of cells (theta_h) and a cell in it (phi_h) are drawn
         masses = light.mean(axis=-1)
         masses[masses.sum(axis=(1, 2)) == 0] = 1  # any direction will do for a black incidence
-        rows = _cumulative_shares(masses.sum(axis=2))
-        columns = _cumulative_shares(masses)
+        rows = _cumulate_shares(masses.sum(axis=2))
+        columns = _cumulate_shares(masses)
         self.rows, self.columns = Rows(rows.ravel()), Rows(columns.ravel())
 
         # The density per solid angle of these shares, which are rounded to single precision
-        shares = _differences(rows)[..., None] * _differences(columns)
+        shares = _compute_shares(rows)[..., None] * _compute_shares(columns)
         self.density = Rows((shares / _solid_angles(cells)[:, None]).ravel())
-        self.edges = Rows(_versines(cells[0]))
+        self.edges = Rows(_edge_versines(cells[0]))
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
         """Draw a direction, possibly below the surface, for a point `u` (x, y, z)."""
@@ -76,7 +76,7 @@ class HalfVectorTable:
         """Return the density of `wo` per solid angle."""
         n_h, n_p = self.cells
         h = half_vector(wi, wo)
-        row = _find_cell(dr.sqrt(angle(h) / (dr.pi / 2)), n_h)
+        row = _find_cell(dr.sqrt(polar_angle(h) / (dr.pi / 2)), n_h)
         turn = (azimuth(h) - azimuth(wi)) / (2 * dr.pi)
         cell = row * n_p + _find_cell(turn - dr.floor(turn), n_p)
         density = 0
@@ -92,7 +92,7 @@ class HalfVectorTable:
 
     def _find_brackets(self, wi: JitVector) -> list[tuple[JitInt, JitInt, JitFloat]]:
         """Return the brackets of `wi` among azimuths, if there are several, and polar angles."""
-        theta = find_bracket(angle(wi) / (dr.pi / 2) * self.angles - 0.5, self.angles)
+        theta = find_bracket(polar_angle(wi) / (dr.pi / 2) * self.angles - 0.5, self.angles)
         if self.azimuths == 1:
             return [theta]
         phi = find_periodic_bracket(azimuth(wi) / (2 * dr.pi) * self.azimuths, self.azimuths)
@@ -124,7 +124,7 @@ def _integrate_cells(
     """
     # Half vectors h on a grid of points in every cell, even in solid angle within the cell
     n_h, n_p = cells
-    edges = _versines(n_h)
+    edges = _edge_versines(n_h)
     inside = (np.arange(points) + 0.5) / points
     cos_theta = 1 - (edges[:-1, None] + np.diff(edges)[:, None] * inside).ravel()
     phi = phi_i + (np.arange(n_p * points) + 0.5) / (n_p * points) * 2 * np.pi
@@ -144,17 +144,17 @@ def _integrate_cells(
     return means * _solid_angles(cells)[:, None, None]
 
 
-def _versines(n: int) -> FloatArray:
+def _edge_versines(n: int) -> FloatArray:
     """Return 1 - cosθ_h (n + 1,) at the edges of `n` cells, which are even in √θ_h."""
     return 2 * np.sin((np.arange(n + 1) / n) ** 2 * np.pi / 4) ** 2
 
 
 def _solid_angles(cells: tuple[int, int]) -> FloatArray:
     """Return the solid angle [sr] of a cell of each row (n_h,)."""
-    return np.diff(_versines(cells[0])) * 2 * np.pi / cells[1]
+    return np.diff(_edge_versines(cells[0])) * 2 * np.pi / cells[1]
 
 
-def _cumulative_shares(masses: AnyArray) -> AnyArray:
+def _cumulate_shares(masses: AnyArray) -> AnyArray:
     """Return cumulative shares of the `masses` along the last axis, in single precision.
 
     Where all masses are 0, the shares are equal.
@@ -166,7 +166,7 @@ def _cumulative_shares(masses: AnyArray) -> AnyArray:
         return np.where(total > 0, sums / total, even).astype(np.float32)
 
 
-def _differences(sums: AnyArray) -> AnyArray:
+def _compute_shares(sums: AnyArray) -> AnyArray:
     """Return the shares whose cumulative sums are `sums`."""
     return np.diff(sums.astype(float), axis=-1, prepend=0)
 

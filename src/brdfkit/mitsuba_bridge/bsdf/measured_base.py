@@ -22,7 +22,7 @@ from brdfkit.model.lobes import Sampling
 def define_measured_frame(mi: MitsubaModule) -> Any:
     """Define the base class of a measurement's plugins in the current variant.
 
-    A derived class calls `draw_by` in its constructor and defines
+    A derived class calls `set_sampling` in its constructor and defines
 
     - `brdf(wi, wo, si)`: the BRDF in sr⁻¹;
     - `albedo(wi, si)`: the share of the light from `wi` that is reflected. It stands for the
@@ -35,7 +35,7 @@ def define_measured_frame(mi: MitsubaModule) -> Any:
     Base: Any = define_frame(mi)
 
     class MeasuredFrame(Base):
-        def draw_by(
+        def set_sampling(
             self, sampling: Sampling, anisotropic: bool, cosine_share: float = COSINE_SHARE
         ) -> None:
             """Set the `Sampling` of directions, and the share of samples that follow the cosine."""
@@ -44,7 +44,7 @@ def define_measured_frame(mi: MitsubaModule) -> Any:
             self.m_components = [flags.GlossyReflection | flags.FrontSide | azimuth]
             self.m_flags = self.m_components[0]
 
-        def at(
+        def make_response(
             self, ctx: MitsubaObject, si: MitsubaObject, wi: JitVector, active: JitMask
         ) -> Point:
             return Point(mi, self, si, wi, ctx.is_enabled(flags.GlossyReflection, 0))

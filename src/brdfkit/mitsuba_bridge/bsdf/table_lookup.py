@@ -6,7 +6,7 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitInt, JitVector
 from brdfkit.core.geometry import multilinear
-from brdfkit.core.geometry.vectors import angle, azimuth, half_vector
+from brdfkit.core.geometry.vectors import azimuth, half_vector, polar_angle
 from brdfkit.mitsuba_bridge.arrays import find_bracket, find_periodic_bracket
 from brdfkit.model.samples import Table
 
@@ -40,4 +40,4 @@ def to_half_difference(
     cos_p, sin_p = dr.select(off, h.x * inverse, 1), h.y * inverse
     x, y = cos_p * wi.x + sin_p * wi.y, cos_p * wi.y - sin_p * wi.x
     d = type(wi)(h.z * x - sin_h * wi.z, y, sin_h * x + h.z * wi.z)
-    return angle(h), angle(d), azimuth(d), azimuth(h)
+    return polar_angle(h), polar_angle(d), azimuth(d), azimuth(h)

@@ -52,24 +52,26 @@ def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
                     kind |= mi.ParamFlags.Discontinuous
                 callback.put(name, texture, kind)
 
-        def scale(self, name: str) -> float:
+        def find_scale(self, name: str) -> float:
             """Return the factor of a texture's values, not 1 for a normalised colour."""
             return self.scales.get(name, 1)
 
-        def terms(self, si: MitsubaObject, active: JitMask) -> tuple[list[Any], tuple[Lobe, ...]]:
+        def evaluate(
+            self, si: MitsubaObject, active: JitMask
+        ) -> tuple[list[Any], tuple[Lobe, ...]]:
             """Return the weights and the lobes at a point of a surface."""
             values = {}
             for name, texture in self.textures.items():
                 parameter = model.parameters[name]
                 value = (texture.eval if parameter.linear else texture.eval_1)(si, active)
-                values[name] = clamp(value * self.scale(name), parameter)
+                values[name] = clamp_to_bounds(value * self.find_scale(name), parameter)
             return [values[name] for name in model.weights()], model.bind(values).lobes()
 
-        def means(self) -> tuple[dict[str, Any], AnyArray]:
+        def average_textures(self) -> tuple[dict[str, Any], AnyArray]:
             """Return the textures' means: shape parameters by name, weights (lobes, channels)."""
             means = {}
             for name, texture in self.textures.items():
-                mean = average_texture(texture, getattr(defaults, name)) * self.scale(name)
+                mean = average_texture(texture, getattr(defaults, name)) * self.find_scale(name)
                 means[name] = np.clip(mean, *model.parameters[name].bounds)
             weights = [means.pop(name) for name in model.weights()]
             return {name: m[0] for name, m in means.items()}, np.stack(
@@ -77,22 +79,22 @@ def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
             )
 
         def has_attribute(self, name: str, active: JitMask = True) -> JitMask:
-            return super().has_attribute(self.texture_name(name), active)
+            return super().has_attribute(self.find_texture_name(name), active)
 
         def eval_attribute(self, name: str, si: MitsubaObject, active: JitMask = True) -> JitColour:
-            return self.eval_attribute_by("eval", super().eval_attribute, name, si, active)
+            return self.eval_texture_attribute("eval", super().eval_attribute, name, si, active)
 
         def eval_attribute_1(
             self, name: str, si: MitsubaObject, active: JitMask = True
         ) -> JitFloat:
-            return self.eval_attribute_by("eval_1", super().eval_attribute_1, name, si, active)
+            return self.eval_texture_attribute("eval_1", super().eval_attribute_1, name, si, active)
 
         def eval_attribute_3(
             self, name: str, si: MitsubaObject, active: JitMask = True
         ) -> JitColour:
-            return self.eval_attribute_by("eval_3", super().eval_attribute_3, name, si, active)
+            return self.eval_texture_attribute("eval_3", super().eval_attribute_3, name, si, active)
 
-        def eval_attribute_by(
+        def eval_texture_attribute(
             self,
             method: str,
             inherited: Callable[..., Any],
@@ -105,12 +107,12 @@ def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
             Other attributes go to `inherited`, Mitsuba's own method. Parameters do not, because
             that method calls the plugin's method once more.
             """
-            key = self.texture_name(name)
+            key = self.find_texture_name(name)
             if key not in self.textures:
                 return inherited(name, si, active)
-            return getattr(self.textures[key], method)(si, active) * self.scale(key)
+            return getattr(self.textures[key], method)(si, active) * self.find_scale(key)
 
-        def texture_name(self, name: str) -> str | None:
+        def find_texture_name(self, name: str) -> str | None:
             """Return the name of a parameter's texture, or of the parameter that it follows."""
             follows = name in model.parameters and name not in self.textures
             return model.parameters[name].follows if follows else name
@@ -123,7 +125,7 @@ def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
     return TexturedFrame
 
 
-def clamp(value: Any, parameter: Parameter) -> Any:
+def clamp_to_bounds(value: Any, parameter: Parameter) -> Any:
     """Clamp the value of a texture, which may hold anything, to the bounds of the parameter."""
     # dr.clip would have half the derivative on a bound
     low, high = parameter.bounds

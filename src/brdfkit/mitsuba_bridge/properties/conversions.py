@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.array_types import MitsubaObject
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.model import Model
 
 
-def require_known(props: MitsubaObject, plugin: str, known: Iterable[str]) -> None:
+def require_known_properties(props: MitsubaObject, plugin: str, known: Iterable[str]) -> None:
     """Raise `BrdfkitError` for a property that the new `plugin` did not ask for.
 
     Mitsuba would print all such properties, objects with all that is in them. `known` are the names
@@ -19,7 +19,7 @@ def require_known(props: MitsubaObject, plugin: str, known: Iterable[str]) -> No
     """
     unknown = props.unqueried()
     if unknown:
-        raise no_such("parameter", unknown[0], known, plugin)
+        raise no_such_error("parameter", unknown[0], known, plugin)
 
 
 def require_within_bounds(props: MitsubaObject, model: type[Model], name: str) -> None:

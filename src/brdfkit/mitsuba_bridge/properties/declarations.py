@@ -38,7 +38,7 @@ class Setting:
     differentiable: bool = False
 
 
-def number(default: float, bounds: tuple[float, float], meaning: str) -> Setting:
+def declare_number(default: float, bounds: tuple[float, float], meaning: str) -> Setting:
     """Declare a differentiable number within `bounds`; any value of it uses the same kernel."""
 
     def read(value: Any) -> Any:
@@ -52,7 +52,7 @@ def number(default: float, bounds: tuple[float, float], meaning: str) -> Setting
     return Setting(default, bounds, meaning, read, differentiable=True)
 
 
-def count(default: int, bounds: tuple[float, float], meaning: str) -> Setting:
+def declare_int(default: int, bounds: tuple[float, float], meaning: str) -> Setting:
     """Declare a whole number within `bounds`, a Python value with a kernel for each value."""
 
     def read(value: Any) -> int:
@@ -64,7 +64,7 @@ def count(default: int, bounds: tuple[float, float], meaning: str) -> Setting:
     return Setting(default, bounds, meaning, read)
 
 
-def plain_number(default: float, bounds: tuple[float, float], meaning: str) -> Setting:
+def declare_float(default: float, bounds: tuple[float, float], meaning: str) -> Setting:
     """Declare a number within `bounds`, a Python value, for computations before a render."""
 
     def read(value: Any) -> float:
@@ -73,7 +73,7 @@ def plain_number(default: float, bounds: tuple[float, float], meaning: str) -> S
     return Setting(default, bounds, meaning, read)
 
 
-def text(default: str, meaning: str) -> Setting:
+def declare_text(default: str, meaning: str) -> Setting:
     """Declare a word or the name of a file."""
 
     def read(value: Any) -> str:
@@ -84,7 +84,7 @@ def text(default: str, meaning: str) -> Setting:
     return Setting(default, None, meaning, read)
 
 
-def word(
+def declare_choice(
     allowed: Sequence[str] | Mapping[str, Any], meaning: str, default: str | None = None
 ) -> Setting:
     """Declare one of the `allowed` words; the `default` is by default the first of them."""
@@ -98,7 +98,7 @@ def word(
     return Setting(default, None, f"{meaning}: {', '.join(allowed)}", read)
 
 
-def flag(default: bool, meaning: str) -> Setting:
+def declare_bool(default: bool, meaning: str) -> Setting:
     """Declare a parameter that is true or false."""
 
     def read(value: Any) -> bool:
@@ -109,7 +109,7 @@ def flag(default: bool, meaning: str) -> Setting:
     return Setting(default, None, meaning, read)
 
 
-def picture(meaning: str) -> Setting:
+def declare_picture(meaning: str) -> Setting:
     """Declare a `mi.Bitmap`, which is None where the scene gives none."""
 
     def read(value: Any) -> Any:
@@ -122,7 +122,7 @@ def picture(meaning: str) -> Setting:
     return Setting(None, None, meaning, read)
 
 
-def bsdf(meaning: str) -> Setting:
+def declare_bsdf(meaning: str) -> Setting:
     """Declare a BSDF, which is white and matt where the scene gives none."""
 
     def read(value: Any) -> Any:
@@ -138,7 +138,7 @@ def bsdf(meaning: str) -> Setting:
     return Setting(None, None, meaning, read, differentiable=True)
 
 
-def texture(default: float, meaning: str) -> Setting:
+def declare_texture(default: float, meaning: str) -> Setting:
     """Declare a texture of numbers; one number makes a constant texture."""
 
     def read(value: Any) -> Any:
@@ -153,7 +153,7 @@ def texture(default: float, meaning: str) -> Setting:
     return Setting(default, None, meaning, read, differentiable=True)
 
 
-def phase(meaning: str) -> Setting:
+def declare_phase(meaning: str) -> Setting:
     """Declare a phase function, which is isotropic where the scene gives none."""
 
     def read(value: Any) -> Any:
@@ -168,7 +168,7 @@ def phase(meaning: str) -> Setting:
     return Setting(None, None, meaning, read, differentiable=True)
 
 
-def volume(default: Any, meaning: str, coloured: bool = True, least: float = 0.0) -> Setting:
+def declare_volume(default: Any, meaning: str, coloured: bool = True, least: float = 0) -> Setting:
     """Declare a volume of values from `least` on, such as Mitsuba's gridvolume.
 
     A number or a colour makes a constant volume. If not `coloured`, it has one channel.

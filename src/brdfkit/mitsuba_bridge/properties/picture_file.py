@@ -9,9 +9,9 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import is_utf8, require_file
+from brdfkit.core.files import is_utf8_path, require_file
 from brdfkit.core.jit.threads import use_two_threads
-from brdfkit.mitsuba_bridge.properties.radiance_rows import require_rows
+from brdfkit.mitsuba_bridge.properties.radiance_rows import require_intact_rows
 
 OWN_ERROR = "BrdfkitError: "  # in Mitsuba's report of an error in one of brdfkit's plugins
 
@@ -22,7 +22,7 @@ def load_by_mitsuba(function: Callable[..., Any], source: Any, name: object) -> 
     Raises `BrdfkitError`, which calls the object `name`, where Mitsuba cannot load it. The message
     of one of brdfkit's own plugins is kept.
     """
-    if isinstance(source, str) and not is_utf8(source):
+    if isinstance(source, str) and not is_utf8_path(source):
         raise BrdfkitError(f"{name}: its path is no UTF-8, as Mitsuba needs it; rename the file.")
     try:
         with use_two_threads():
@@ -73,7 +73,7 @@ def read_pixels(path: str | PathLike[str], name: object) -> AnyArray:
     import mitsuba as mi
 
     if Path(path).is_file():
-        require_rows(path, name)
+        require_intact_rows(path, name)
     return load_by_mitsuba(lambda file, parallel: to_pixels(mi.Bitmap(file)), str(path), name)
 
 

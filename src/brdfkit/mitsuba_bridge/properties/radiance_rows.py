@@ -13,7 +13,7 @@ SIZE = re.compile(rb"\n\n-Y (\d+) \+X (\d+)\n")
 NARROWEST, WIDEST = 8, 32767  # pixels; rows of another length are not packed
 
 
-def require_rows(path: str | PathLike[str], name: object) -> None:
+def require_intact_rows(path: str | PathLike[str], name: object) -> None:
     """Raise `BrdfkitError`, which calls it `name`, for a Radiance file with damaged rows.
 
     Files of other kinds, and files without packed rows, are not checked.

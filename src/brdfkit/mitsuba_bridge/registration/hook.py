@@ -16,17 +16,17 @@ from types import ModuleType
 from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.interrupts import hold_signals
+from brdfkit.core.interrupts import delay_signals
 from brdfkit.core.jit import llvm
 
 
-def install() -> None:
+def install_import_hook() -> None:
     """Register the plugins now if Mitsuba is imported already, or else when it gets imported."""
     sys.meta_path.insert(0, _After("drjit", lambda: None))
     if "mitsuba" in sys.modules:
-        _connect()
+        _register_in_mitsuba()
     else:
-        sys.meta_path.insert(0, _After("mitsuba", _connect))
+        sys.meta_path.insert(0, _After("mitsuba", _register_in_mitsuba))
 
 
 class _After:
@@ -45,8 +45,8 @@ class _After:
             load = spec.loader.exec_module
 
             def exec_module(module: ModuleType) -> None:
-                with hold_signals():
-                    with _without_llvm_noise():
+                with delay_signals():
+                    with _silence_missing_llvm():
                         load(module)
                     _forward_to_successor(module)
                     self.then()
@@ -72,14 +72,14 @@ def _forward_to_successor(module: ModuleType) -> None:
         vars(module)["__getattr__"] = functools.partial(getattr, sys.modules[module.__name__])
 
 
-def _connect() -> None:
+def _register_in_mitsuba() -> None:
     """Register the plugins in Mitsuba's current variant, and in each one that is set later."""
     import mitsuba as mi
 
     from brdfkit.core.discovery import plugin_files
     from brdfkit.mitsuba_bridge.registration.registering import register_all
 
-    def on_variant(before: str | None = None, variant: str | None = None) -> None:
+    def register_in_variant(before: str | None = None, variant: str | None = None) -> None:
         try:
             llvm.require_safe_variant(variant)
         except BrdfkitError:
@@ -87,13 +87,13 @@ def _connect() -> None:
             raise
         register_all()
 
-    mi.detail.add_variant_callback(on_variant)
-    plugin_files.call_when_added(register_all)
+    mi.detail.add_variant_callback(register_in_variant)
+    plugin_files.call_when_plugins_added(register_all)
     register_all()
 
 
 @contextmanager
-def _without_llvm_noise() -> Iterator[None]:
+def _silence_missing_llvm() -> Iterator[None]:
     """Silence Dr.Jit's message that it found no LLVM, which brdfkit reports when it matters."""
     if os.environ.get(llvm.VARIABLE) != llvm.NO_LIBRARY:
         yield

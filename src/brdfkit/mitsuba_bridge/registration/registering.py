@@ -14,7 +14,7 @@ from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS, MODELS
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.bsdf import adapter
-from brdfkit.mitsuba_bridge.properties.conversions import require_known
+from brdfkit.mitsuba_bridge.properties.conversions import require_known_properties
 from brdfkit.model import Model, labels
 
 
@@ -67,7 +67,7 @@ def _make_plugin(kind: str, name: str, props: MitsubaObject) -> MitsubaObject:
         made = _define_plugin(configured, mi.variant())(props)
         known = [*model.parameters, *model.options]
     if known is not None:  # otherwise the plugin reads its properties by itself
-        require_known(props, name, known)
+        require_known_properties(props, name, known)
     return made
 
 

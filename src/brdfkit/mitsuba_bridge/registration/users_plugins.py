@@ -4,7 +4,7 @@ from pathlib import Path
 
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS, MODELS
-from brdfkit.core.errors import BrdfkitError, nearest
+from brdfkit.core.errors import BrdfkitError, find_nearest
 from brdfkit.model import labels
 
 
@@ -41,32 +41,32 @@ def load_plugins(path: str | Path) -> dict[str, str]:
     files = {}
     if not str(path):
         raise BrdfkitError("The path is empty; name a folder of plugins, or a file.")
-    for file in _find_files(Path(path).absolute()):
+    for file in _find_plugin_files(Path(path).absolute()):
         plugin_files.require_free_name(file.stem, file)
-        files[file] = _find_kind(file)
+        files[file] = _find_kind_of_file(file)
     for kind in KINDS:
         plugin_files.add_plugins(kind, {file.stem: file for file, k in files.items() if k == kind})
     return {file.stem: kind for file, kind in sorted(files.items())}
 
 
-def _find_files(path: Path) -> list[Path]:
+def _find_plugin_files(path: Path) -> list[Path]:
     """Return the plugin files at `path`, a file or a folder, perhaps of folders of kinds."""
-    _refuse_misspelt(path)
+    _refuse_misspelt_folder(path)
     folders = [path / kind for kind in KINDS if (path / kind).is_dir()]
     if not folders:
         return plugin_files.find_python_files(path)
     return sorted(file for f in (path, *folders) for file in f.glob("[!_]*.py"))
 
 
-def _refuse_misspelt(path: Path) -> None:
+def _refuse_misspelt_folder(path: Path) -> None:
     """Raise `BrdfkitError` for a folder in `path` whose name is nearly a kind."""
     for folder in sorted(path.iterdir()) if path.is_dir() else ():
-        kind = nearest(folder.name.lower(), KINDS)
+        kind = find_nearest(folder.name.lower(), KINDS)
         if folder.is_dir() and folder.name not in KINDS and kind and any(folder.glob("*.py")):
             raise BrdfkitError(f"{folder} is no kind of plugin; rename it {kind}/.")
 
 
-def _find_kind(file: Path) -> str:
+def _find_kind_of_file(file: Path) -> str:
     """Return the kind of a plugin file: its folder's name, or "bsdfs" if it defines a model.
 
     Raises `BrdfkitError` for a file that holds no plugin or lies in no folder of a kind.

@@ -22,7 +22,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.double_precision import differentiate
 from brdfkit.core.jit.threads import in_turn
@@ -73,7 +73,7 @@ class Loss:
 
     def __post_init__(self) -> None:
         if self.measure not in MEASURES:
-            raise no_such("measure of directions", self.measure, MEASURES)
+            raise no_such_error("measure of directions", self.measure, MEASURES)
 
     @cached_property
     def linear(self) -> bool:

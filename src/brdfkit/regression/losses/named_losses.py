@@ -16,7 +16,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitFloat
 from brdfkit.core.documents import Cell, Document, Shown, Table
 from brdfkit.core.documents.parts import STRONG
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.regression.losses.loss import Loss, make_loss, require_working_loss
 from brdfkit.regression.losses.picture import Picture
 
@@ -80,7 +80,7 @@ class Losses(Shown, dict[str, Loss | Picture]):
         return {name: loss for name, loss in self.items() if isinstance(loss, Loss)}
 
     def __missing__(self, name: str) -> Loss | Picture:
-        raise no_such("loss", name, self)
+        raise no_such_error("loss", name, self)
 
     def document(self) -> Document:
         """Return a table of the losses and their meanings."""
@@ -150,7 +150,7 @@ def to_loss(value: Any) -> Loss | Picture:
     if isinstance(value, Picture):
         return value
     if not callable(value) and not isinstance(value, Loss):
-        raise no_such("loss", value, named)
+        raise no_such_error("loss", value, named)
     loss = value if isinstance(value, Loss) else make_loss(value)
     if loss is named.get(loss.name):
         return loss

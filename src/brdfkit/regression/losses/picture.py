@@ -13,7 +13,7 @@ from functools import cached_property
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.names import join_words
 from brdfkit.images.ball import LIGHTS
 from brdfkit.regression.losses.loss import Loss
@@ -60,7 +60,7 @@ class Picture:
             raise BrdfkitError(f"Picture: lights is empty; name some of {', '.join(LIGHTS)}.")
         for light in named:
             if light not in LIGHTS:
-                raise no_such("light of pictures", light, LIGHTS)
+                raise no_such_error("light of pictures", light, LIGHTS)
         object.__setattr__(self, "lights", named)
         try:
             share = float(self.share)

@@ -56,13 +56,13 @@ class Block:
         )
         size = rows.stop - rows.start
         point = np.repeat(np.arange(count, dtype=np.uint32), size)
-        index = dr.uint32_array_t(double_precision.float_type())
+        index = dr.uint32_array_t(double_precision.choose_float_type())
         measured = [array(channel) for channel in samples.values.T]
         return cls(loss, rows, count, wi, wo, measured, array(importance), index(pad(point)))
 
     def repeat_for_samples(self, table: FloatArray) -> list[JitFloat]:
         """Return the columns of `table` (count, columns) as arrays with one value per sample."""
-        float64, columns = double_precision.float_type(), table.shape[1]
+        float64, columns = double_precision.choose_float_type(), table.shape[1]
         if not double_precision.has_derivatives():  # these arrays do not support dr.gather
             size = self.rows.stop - self.rows.start
             return [float64(np.repeat(column, size)) for column in table.T]

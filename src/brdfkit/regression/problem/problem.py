@@ -237,7 +237,7 @@ class Problem:
         def extended(value: JitFloat) -> JitFloat:
             return clamped(value) + slope * dr.minimum(value, 0)
 
-        value = double_precision.float_type()(value) + 0 * block.wi.z
+        value = double_precision.choose_float_type()(value) + 0 * block.wi.z
         if not self.clamped:
             return differentiate(difference, value)
         if not self.extended:

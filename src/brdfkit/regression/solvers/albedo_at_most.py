@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from brdfkit.core.arguments import to_positive
+from brdfkit.core.arguments import to_positive_number
 from brdfkit.core.array_types import FloatArray, IntArray, JitFloat
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
@@ -52,7 +52,7 @@ class AlbedoAtMost:
     phi: tuple[float, ...] = (0.0,)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "limit", to_positive("AlbedoAtMost: limit", self.limit))
+        object.__setattr__(self, "limit", to_positive_number("AlbedoAtMost: limit", self.limit))
         object.__setattr__(self, "theta", _to_angles("theta", self.theta, 0, 90))
         object.__setattr__(self, "phi", _to_angles("phi", self.phi, -np.inf, np.inf))
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.arguments import to_positive
+from brdfkit.core.arguments import to_positive_number
 from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import Model
@@ -40,7 +40,7 @@ class WeightsAtMost:
     limit: float = 1.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "limit", to_positive("WeightsAtMost: limit", self.limit))
+        object.__setattr__(self, "limit", to_positive_number("WeightsAtMost: limit", self.limit))
 
     def values(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
         """Return the values (m,) at a point, at least 0 where the constraint is met."""

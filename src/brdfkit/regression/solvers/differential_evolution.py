@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.core.arguments import check_numbers
+from brdfkit.core.arguments import check_number_fields
 from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt
@@ -45,7 +45,7 @@ class DifferentialEvolution:
     tolerance: float = 1e-3
 
     def __post_init__(self) -> None:
-        check_numbers(self)
+        check_number_fields(self)
 
     def minimise(self, objective: Objective) -> End:
         """Return the end of the search."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.core.arguments import check_numbers
+from brdfkit.core.arguments import check_number_fields
 from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.search.multistart import EXACT, LARGEST_STEPS, search_from_starts
 from brdfkit.regression.solvers.objective import End, Objective
@@ -36,7 +36,7 @@ class LevenbergMarquardt:
     tolerance: float = EXACT
 
     def __post_init__(self) -> None:
-        check_numbers(self)
+        check_number_fields(self)
 
     def minimise(self, objective: Objective) -> End:
         """Return the end of the search."""

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.json_values import to_json
 from brdfkit.regression.solvers.albedo_at_most import AlbedoAtMost
 from brdfkit.regression.solvers.constraints import WeightsAtMost
@@ -93,9 +93,9 @@ def _make_from_data(kind: str, classes: Mapping[str, Any], data: Mapping[str, An
     numbers = dict(data)
     name = numbers.pop("name", None)
     if not isinstance(name, str) or name not in classes:
-        raise no_such(kind, name, classes)
+        raise no_such_error(kind, name, classes)
     known = classes[name].__dataclass_fields__
     for number in numbers:
         if number not in known:
-            raise no_such(f"parameter of {name}", number, known)
+            raise no_such_error(f"parameter of {name}", number, known)
     return classes[name](**numbers)

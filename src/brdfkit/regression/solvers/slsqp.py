@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brdfkit.core.arguments import check_numbers
+from brdfkit.core.arguments import check_number_fields
 from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt
 from brdfkit.regression.solvers.objective import End, Objective
@@ -48,7 +48,7 @@ class SLSQP:
     constrained = True  # takes constraints
 
     def __post_init__(self) -> None:
-        check_numbers(self)
+        check_number_fields(self)
 
     def minimise(self, objective: Objective) -> End:
         """Return the end of the search."""

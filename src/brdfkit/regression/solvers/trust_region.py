@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from brdfkit.core.arguments import check_numbers
+from brdfkit.core.arguments import check_number_fields
 from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.solvers.objective import End, Objective
@@ -43,7 +43,7 @@ class TrustRegion:
     starts: int = 8
 
     def __post_init__(self) -> None:
-        check_numbers(self)
+        check_number_fields(self)
 
     def minimise(self, objective: Objective) -> End:
         """Return the end of the search."""

@@ -6,7 +6,7 @@ from typing import Any
 
 from brdfkit.core.array_types import BoolArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.locate import find_file_or_name, split_part
+from brdfkit.core.locate import find_file_or_name, split_file_and_part
 from brdfkit.lighting.environments.map_files import find_map
 from brdfkit.mitsuba_bridge import scene_file
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
@@ -73,7 +73,7 @@ def find_scene(scene: Any) -> Callable[..., Any]:
     """
     if callable(scene):
         return scene
-    file = split_part(scene)[0] if isinstance(scene, str | Path) and str(scene) else scene
+    file = split_file_and_part(scene)[0] if isinstance(scene, str | Path) and str(scene) else scene
     place = find_file_or_name(file, "scene", scene_names())
     if isinstance(place, str):
         return find_scene_by_name(place)

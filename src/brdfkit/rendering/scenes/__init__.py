@@ -18,7 +18,7 @@ from collections.abc import Callable
 from typing import Any
 
 from brdfkit.core.discovery.plugin_files import find_module_names
-from brdfkit.core.errors import no_such
+from brdfkit.core.errors import no_such_error
 
 
 def scene_names() -> list[str]:
@@ -37,5 +37,5 @@ def find_scene(name: str) -> Callable[..., dict[str, Any]]:
     'scene'
     """
     if name not in scene_names():
-        raise no_such("scene", name, scene_names())
+        raise no_such_error("scene", name, scene_names())
     return getattr(importlib.import_module(f"{__name__}.{name}"), name)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit import volumes
-from brdfkit.core.arguments import to_number, to_positive, to_whole_number
+from brdfkit.core.arguments import to_number, to_positive_number, to_whole_number
 from brdfkit.core.progress_bar import Progress
 from brdfkit.rendering.film import Film
 from brdfkit.rendering.volumes.render_volume import (
@@ -101,7 +101,7 @@ def render_orbit(
     """
     frames = to_whole_number("frames", frames, least=2)
     azimuth = to_number("azimuth", azimuth)
-    frame_seconds = None if seconds is None else to_positive("seconds", seconds) / frames
+    frame_seconds = None if seconds is None else to_positive_number("seconds", seconds) / frames
     volume = volume if isinstance(volume, Volume) else volumes.load(volume)
     start, frame_spp = time.perf_counter(), 0
     pictures: list[NDArray[np.float32]] = []

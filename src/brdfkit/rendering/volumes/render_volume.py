@@ -10,8 +10,8 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from brdfkit import volumes
-from brdfkit.core.arguments import to_dictionary, to_number, to_positive, to_whole_number
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.arguments import to_dictionary, to_number, to_positive_number, to_whole_number
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
@@ -122,8 +122,8 @@ def render_volume(
     >>> render_volume("smoke", renderer="emission_absorption", spp=4, size=64)    # doctest: +SKIP
     """
     settings = to_dictionary("settings", settings)
-    noise_floor = None if noise_floor is None else to_positive("noise_floor", noise_floor)
-    limit = None if seconds is None else to_positive("seconds", seconds)
+    noise_floor = None if noise_floor is None else to_positive_number("noise_floor", noise_floor)
+    limit = None if seconds is None else to_positive_number("seconds", seconds)
     most = (
         (UNLIT_SPP if renderer in UNLIT else SPP)
         if noise_floor is None and limit is None
@@ -134,13 +134,13 @@ def render_volume(
     view = to_number("azimuth", azimuth), to_number("elevation", elevation)
     light = environment, _to_background(background)
     if renderer not in RENDERERS:
-        raise no_such("renderer", renderer, RENDERERS)
+        raise no_such_error("renderer", renderer, RENDERERS)
     volume = volume if isinstance(volume, Volume) else volumes.load(volume)
     require_memory(size, 1)
     mi = load_mitsuba()  # sets a variant, on which the dictionaries depend
     if mi.variant().startswith("scalar"):
         raise BrdfkitError(f"Volumes do not render in {mi.variant()}; set llvm_ad_rgb.")
-    function = _choose_function(volume, transfer, renderer, to_positive("density", density))
+    function = _choose_function(volume, transfer, renderer, to_positive_number("density", density))
     if function is None and "level" in settings:
         _require_surface(volume, to_number("level", settings["level"]))
     described = volume, function, renderer, size, view, light, settings, all_around

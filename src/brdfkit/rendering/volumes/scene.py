@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.errors import no_such
+from brdfkit.core.errors import no_such_error
 from brdfkit.materials.resolve import to_material
 from brdfkit.rendering.scenes._studio import make_camera
 from brdfkit.rendering.volumes import defaults
@@ -88,7 +88,7 @@ def describe_integrator(
     Raises `BrdfkitError` for an unknown renderer.
     """
     if renderer not in RENDERERS:
-        raise no_such("renderer", renderer, RENDERERS)
+        raise no_such_error("renderer", renderer, RENDERERS)
     entries: dict[str, Any] = {"type": renderer}
     entries[RENDERERS[renderer]] = volume.scene_dict(transfer)
     if renderer != "single_scattering":

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from brdfkit.core.arguments import to_whole_number, wrong_argument
+from brdfkit.core.arguments import to_whole_number, wrong_value_error
 from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.locate import find_file_or_name
@@ -21,7 +21,7 @@ def to_names(what: str, names: Any) -> tuple[str, ...]:
     try:
         return tuple(names)
     except TypeError:
-        raise wrong_argument(what, names, "names of techniques") from None
+        raise wrong_value_error(what, names, "names of techniques") from None
 
 
 def to_texels(resolution: Any) -> int:
@@ -34,7 +34,7 @@ def to_size(size: Any) -> tuple[int, int]:
     try:
         width, height = size
     except (TypeError, ValueError):
-        raise wrong_argument("size", size, "(width, height) in pixels") from None
+        raise wrong_value_error("size", size, "(width, height) in pixels") from None
     width = to_whole_number("the width in size", width, 1, MAX_SIDE)
     return width, to_whole_number("the height in size", height, 1, MAX_SIDE)
 

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.core.progress_bar import Progress
@@ -155,7 +155,7 @@ def choose_techniques(
     """
     for name in others:
         if name not in WITHOUT_MAPS:
-            raise no_such("technique without maps", name, WITHOUT_MAPS)
+            raise no_such_error("technique without maps", name, WITHOUT_MAPS)
     techniques: dict[str, Technique] = {
         label: partial(make_map_shadow, **names, resolution=resolution)
         for label, names in combine_names(kinds).items()
@@ -181,7 +181,7 @@ def combine_names(names: Mapping[str, tuple[str, ...]]) -> dict[str, dict[str, A
     for kind, its in names.items():
         for name in its:
             if name not in FILES[kind]:
-                raise no_such(kind, name, FILES[kind])
+                raise no_such_error(kind, name, FILES[kind])
     several = [kind for kind, its in names.items() if len(its) > 1] or list(names)[:1]
     chosen = [
         dict(zip(names, picked, strict=True)) for picked in itertools.product(*names.values())

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, MitsubaObject
-from brdfkit.core.projective.homogeneous import make_rigid, project_all
+from brdfkit.core.projective.homogeneous import make_rigid_matrix, project_points
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.comparison.quality import flicker
@@ -80,7 +80,7 @@ def camera_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
     for step in range(steps):
         c, s = np.cos(CAMERA_TURN * step), np.sin(CAMERA_TURN * step)
         turn = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
-        moved = make_rigid(turn, np.array([CAMERA_STEP * step * nearest, 0, 0])) @ camera.view
+        moved = make_rigid_matrix(turn, [CAMERA_STEP * step * nearest, 0, 0]) @ camera.view
         path.append(replace(placement, camera=replace(camera, view=moved)))
     return path
 
@@ -88,7 +88,7 @@ def camera_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
 def is_visible_to_all(placements: list[Placement], points: FloatArray) -> BoolArray:
     """Return whether points (n, 3) are within the pictures of all cameras: (n,)."""
     matrices = [placement.camera.matrix for placement in placements]
-    within = [(np.abs(project_all(m, points)) <= 1).all(axis=1) for m in matrices]
+    within = [(np.abs(project_points(m, points)) <= 1).all(axis=1) for m in matrices]
     visible: BoolArray = np.all(within, axis=0)
     return visible
 
@@ -96,7 +96,7 @@ def is_visible_to_all(placements: list[Placement], points: FloatArray) -> BoolAr
 def light_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
     """Return the placements of a light that moves across its direction, in equal steps."""
     light = placement.light
-    way = light.point[:3] - light.point[3] * placement.visible.middle
+    way = light.point[:3] - light.point[3] * placement.visible.centroid
     step = LIGHT_TURN * perpendicular(way) * (1 if light.is_directional else placement.reach)
     return [replace(placement, light=move_light(light, k * step)) for k in range(steps)]
 
@@ -121,7 +121,8 @@ def is_facing_all(
     placements: list[Placement], points: FloatArray, normals: FloatArray
 ) -> BoolArray:
     """Return whether points (n, 3) with `normals` (n, 3) turn one side to all lights: (n,)."""
-    cosines = [(normals * each.light.directions_from(points)).sum(axis=1) for each in placements]
+    to_lights = (each.light.directions_to_light(points) for each in placements)
+    cosines = [(normals * to_light).sum(axis=1) for to_light in to_lights]
     facing: BoolArray = (np.min(cosines, axis=0) > 0) | (np.max(cosines, axis=0) < 0)
     return facing
 

@@ -10,7 +10,12 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.body import Body
-from brdfkit.core.projective.homogeneous import make_axes, make_rigid, project_all, to_unit_cube
+from brdfkit.core.projective.homogeneous import (
+    make_axes,
+    make_rigid_matrix,
+    make_unit_cube_matrix,
+    project_points,
+)
 from brdfkit.core.projective.light import NEAREST, Light
 from brdfkit.shadows.maps.projection import Projection
 
@@ -20,7 +25,8 @@ def enclose_body(light: Light, body: Body) -> Projection:
 
     Raises `BrdfkitError` for a point light that the body surrounds.
     """
-    return fit_to_corners(view_matrix(light.point, body.corners, body.middle), light, body.corners)
+    view = view_matrix(light.point, body.corners, body.centroid)
+    return fit_to_corners(view, light, body.corners)
 
 
 def fit_to_corners(matrix: FloatArray, light: Light, corners: FloatArray) -> Projection:
@@ -28,8 +34,8 @@ def fit_to_corners(matrix: FloatArray, light: Light, corners: FloatArray) -> Pro
 
     Its cube just encloses the corners (n, 3).
     """
-    ends = project_all(matrix, corners)
-    to_cube = to_unit_cube(ends.min(axis=0), ends.max(axis=0))
+    ends = project_points(matrix, corners)
+    to_cube = make_unit_cube_matrix(ends.min(axis=0), ends.max(axis=0))
     return Projection.from_matrix(to_cube @ matrix, light)
 
 
@@ -41,7 +47,7 @@ def view_matrix(light: FloatArray, corners: FloatArray, middle: FloatArray) -> F
 
     Raises `BrdfkitError` if no plane separates the light from the corners.
     """
-    to_middle = make_rigid(np.eye(3), middle)
+    to_middle = make_rigid_matrix(np.eye(3), middle)
     *components, w = to_middle @ light
     q = np.array(components)
     rays = w * (corners - middle) - q
@@ -56,9 +62,9 @@ def view_matrix(light: FloatArray, corners: FloatArray, middle: FloatArray) -> F
     matrix[:3, :3] = make_axes(-q / np.linalg.norm(q))
     matrix[3] = [*(w * axis), -axis @ q]
     matrix = matrix @ to_middle
-    depths = project_all(matrix, corners)[:, 2]
+    depths = project_points(matrix, corners)[:, 2]
     low, high = depths.min(), depths.max()
-    view: FloatArray = to_unit_cube([-1, -1, low], [1, 1, high]) @ matrix
+    view: FloatArray = make_unit_cube_matrix([-1, -1, low], [1, 1, high]) @ matrix
     return view
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitMask, JitVector, MitsubaObject
-from brdfkit.core.errors import no_such
+from brdfkit.core.errors import no_such_error
 from brdfkit.shadows.maps.depth_pass import render_depths
 from brdfkit.shadows.maps.map_point import AUTOMATIC, Bias, find_map_point
 from brdfkit.shadows.maps.partition import Partition, Setup
@@ -106,7 +106,7 @@ def _use_depth(
 ) -> Callable[[Placement], Projection]:
     """Return `project`, changed to hold this kind of depth, which `whole` scales if linear."""
     if depth not in DEPTHS:
-        raise no_such("depth", depth, DEPTHS)
+        raise no_such_error("depth", depth, DEPTHS)
     if depth == "projected":
         return project
     linear = LightDepth.from_placement(whole)

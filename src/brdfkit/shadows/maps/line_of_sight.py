@@ -17,14 +17,19 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray
-from brdfkit.core.projective.homogeneous import make_rigid, project, project_all, transform
+from brdfkit.core.projective.homogeneous import (
+    make_rigid_matrix,
+    project,
+    project_points,
+    transform,
+)
 from brdfkit.core.projective.light import Light
-from brdfkit.mitsuba_bridge.properties.declarations import plain_number
+from brdfkit.mitsuba_bridge.properties.declarations import declare_float
 from brdfkit.shadows.maps.light_camera import fit_to_corners, view_matrix
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 
-APEX = plain_number(
+APEX = declare_float(
     1.0,
     (1e-3, np.inf),
     "of light_space_ and logarithmic_perspective: n over the formula's; less favours what is near",
@@ -51,7 +56,7 @@ class LineOfSight:
     @property
     def ends(self) -> tuple[float, float]:
         """The y at which the body of the map begins along the line, y_0, and at which it ends."""
-        y = project_all(self.matrix, self.corners)[:, 1]
+        y = project_points(self.matrix, self.corners)[:, 1]
         return y.min(), y.max()
 
     @property
@@ -82,16 +87,16 @@ def find_line_of_sight(placement: Placement) -> LineOfSight | None:
     belongs to what is near the eye.
     """
     light, corners = placement.light, placement.body.corners
-    eye, middle = placement.camera.position, placement.visible.middle
-    matrix = view_matrix(light.point, corners, placement.body.middle)
+    eye, middle = placement.camera.position, placement.visible.centroid
+    matrix = view_matrix(light.point, corners, placement.body.centroid)
     x, y, _, w = transform(matrix, *eye)
     if w < 1e-6 * transform(matrix, *middle)[3]:
         return None
     origin = np.array([x / w, y / w, 0])
     line = np.array(project(matrix, *middle)) - origin
     length = np.hypot(line[0], line[1])
-    if length < 1e-6 * np.ptp(project_all(matrix, corners), axis=0)[:2].max():
+    if length < 1e-6 * np.ptp(project_points(matrix, corners), axis=0)[:2].max():
         return None
     a, b = line[:2] / length
-    turned = make_rigid(np.array([[b, -a, 0], [a, b, 0], [0, 0, 1]]), origin)
+    turned = make_rigid_matrix(np.array([[b, -a, 0], [a, b, 0], [0, 0, 1]]), origin)
     return LineOfSight(turned @ matrix, light, corners, eye, middle)

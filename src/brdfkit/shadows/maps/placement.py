@@ -46,7 +46,8 @@ class Placement:
     def scene(self) -> Body:
         """S, the box of the scene, within the pyramid of a spot light."""
         whole = make_box(self.low, self.high)
-        return whole & self.light.bounding_pyramid(self.reach) if self.light.is_bounded else whole
+        light = self.light
+        return whole & light.make_bounding_pyramid(self.reach) if light.is_bounded else whole
 
     @property
     def size(self) -> float:
@@ -64,12 +65,12 @@ class Placement:
     @cached_property
     def visible(self) -> Body:
         """V ∩ S, the part of the scene's box in the camera's frustum V."""
-        return Body.around(self.camera.corners()) & self.scene
+        return Body.from_points(self.camera.find_frustum_corners()) & self.scene
 
     @cached_property
     def depths(self) -> tuple[float, float]:
         """The distances z_n and z_f along the view between which there are visible surfaces."""
-        depths = self.camera.depths(self.visible.corners)
+        depths = self.camera.compute_depths(self.visible.corners)
         return min(max(depths.min(), self.nearest), depths.max()), depths.max()
 
     @cached_property
@@ -90,4 +91,4 @@ def find_nearest_depth(
     ray, _ = sensor.sample_ray(0.0, 0.5, (place + 0.5) / side, mi.Point2f(0.5))
     si = scene.ray_intersect(ray)
     hit = np.array(si.is_valid())
-    return float(camera.depths(np.array(si.p).T[hit]).min()) if hit.any() else 0.0
+    return float(camera.compute_depths(np.array(si.p).T[hit]).min()) if hit.any() else 0.0

@@ -17,12 +17,12 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitInt, JitVector
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import transform
-from brdfkit.mitsuba_bridge.properties.declarations import count, word
+from brdfkit.mitsuba_bridge.properties.declarations import declare_choice, declare_int
 
 SPACINGS = ("logarithmic", "mean", "uniform")
 SETTINGS = {
-    "parts": count(4, (1, 8), "parts along the view"),
-    "spacing": word(SPACINGS, "distances of the planes between parts"),
+    "parts": declare_int(4, (1, 8), "parts along the view"),
+    "spacing": declare_choice(SPACINGS, "distances of the planes between parts"),
 }
 
 

@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any
 
 from brdfkit.core.discovery import plugin_files
-from brdfkit.core.errors import no_such
+from brdfkit.core.errors import no_such_error
 from brdfkit.mitsuba_bridge.properties.declarations import Setting, read_settings
 from brdfkit.shadows.maps import filters, partitions, projections
 from brdfkit.shadows.maps.depth_pass import render_depths
@@ -35,7 +35,7 @@ FILES = {
 def find_settings(kind: str, name: str) -> dict[str, Setting]:
     """Return name → `Setting` of a file of a kind; raise `BrdfkitError` if there is none."""
     if name not in FILES[kind]:
-        raise no_such(kind, name, FILES[kind])
+        raise no_such_error(kind, name, FILES[kind])
     return getattr(FILES[kind][name], "SETTINGS", {})
 
 
@@ -69,7 +69,7 @@ def make_techniques(names: Mapping[str, str], values: Mapping[str, Any]) -> dict
     known = [name for its in settings.values() for name in its]
     for name in values:
         if name not in known:
-            raise no_such("setting", name, known, " + ".join(names.values()))
+            raise no_such_error("setting", name, known, " + ".join(names.values()))
     return {
         kind: partial(
             getattr(FILES[kind][name], MAKERS[kind][1]),

@@ -9,10 +9,10 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitInt, JitMask, MitsubaObject
-from brdfkit.mitsuba_bridge.properties.declarations import count
+from brdfkit.mitsuba_bridge.properties.declarations import declare_int
 from brdfkit.shadows.maps.map_point import MapPoint
 
-WIDTH = count(3, (1, 15), "texels along a side of the window")
+WIDTH = declare_int(3, (1, 15), "texels along a side of the window")
 
 
 class Texels:

@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, BoolArray, MitsubaObject
 from brdfkit.core.projective.body import Empty
 from brdfkit.core.projective.camera import Camera
-from brdfkit.core.projective.homogeneous import project_all
+from brdfkit.core.projective.homogeneous import project_points
 from brdfkit.core.projective.light import Light
 from brdfkit.mitsuba_bridge.surface_points import spawn_ray
 
@@ -37,7 +37,7 @@ def find_visible_surfaces(scene: MitsubaObject, camera: Camera) -> VisibleSurfac
     places = (np.arange(SIDE) + 0.5) / SIDE * 2 - 1
     x, y = (grid.ravel() for grid in np.meshgrid(places, places))
     near, far = (
-        project_all(np.linalg.inv(camera.matrix), np.column_stack([x, y, np.full_like(x, z)]))
+        project_points(np.linalg.inv(camera.matrix), np.column_stack([x, y, np.full_like(x, z)]))
         for z in (-1, 1)
     )
     ray = mi.Ray3f(mi.Point3f(near.T), dr.normalize(mi.Vector3f((far - near).T)))
@@ -53,7 +53,7 @@ def is_lit(scene: MitsubaObject, light: Light, surfaces: VisibleSurfaces) -> Boo
     """Return whether a light reaches each of the visible points (n,), by shadow rays."""
     import mitsuba as mi
 
-    to_light = light.directions_from(surfaces.points)
+    to_light = light.directions_to_light(surfaces.points)
     p, n = mi.Point3f(surfaces.points.T), mi.Normal3f(surfaces.normals.T)
     d = mi.Vector3f(to_light.T)
     ray = spawn_ray(p, n, mi.Float(surfaces.distances), d)

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.errors import no_such
+from brdfkit.core.errors import no_such_error
 from brdfkit.volumes.formats._streams import CUT_SHORT, DType, read_layers
 from brdfkit.volumes.formats._volume_file import (
     Shape,
@@ -154,7 +154,7 @@ def _find_data_array(
     if not arrays:
         raise file.error("has neither point nor cell data; it should have one array")
     if file.part is not None and file.part not in arrays:
-        raise no_such("array", file.part, arrays, str(file.path))
+        raise no_such_error("array", file.part, arrays, str(file.path))
     active = [name for name, (*_, is_active) in arrays.items() if is_active] or list(arrays)
     if file.part is None and len(active) > 1:
         raise file.error(

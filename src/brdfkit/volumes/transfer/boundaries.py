@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.arguments import to_pair, to_positive
+from brdfkit.core.arguments import to_number_pair, to_positive_number
 from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
@@ -33,7 +33,10 @@ def convert_boundaries(
 
     See `Conversions.from_boundaries` for the arguments.
     """
-    thickness, (low, high) = to_positive("thickness", thickness), to_pair("values", values)
+    thickness, (low, high) = (
+        to_positive_number("thickness", thickness),
+        to_number_pair("values", values),
+    )
     v = np.linspace(low, high, VALUES)
     rows = _check_boundaries(boundaries)
     g = np.linspace(0, (1 + FADE) * rows[:, 1].max(), GRADIENTS)[:, None]

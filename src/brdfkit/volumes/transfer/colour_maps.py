@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.arguments import to_pair
+from brdfkit.core.arguments import to_number_pair
 from brdfkit.core.array_types import ArrayLike, FloatArray, IntArray
 from brdfkit.core.colours import from_srgb
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 
 
 def require_rising(given: ArrayLike, what: str) -> FloatArray:
@@ -66,7 +66,7 @@ def convert_colormap(
 
     See `Conversions.from_colormap` for the arguments.
     """
-    low, high = to_pair("values", values)
+    low, high = to_number_pair("values", values)
     name, shares, rgba = _read_colormap(colormap, opacity)
     return cls(low + (high - low) * shares, rgba, extinction, colour, name=name)
 
@@ -82,7 +82,7 @@ def _read_colormap(colormap: Any, opacity: ArrayLike) -> tuple[str, FloatArray, 
         try:
             colormap = matplotlib.colormaps[colormap]
         except KeyError:
-            raise no_such("colour map", colormap, sorted(matplotlib.colormaps)) from None
+            raise no_such_error("colour map", colormap, sorted(matplotlib.colormaps)) from None
     ramp = np.asarray(opacity, float)
     if ramp.ndim != 2 or ramp.shape[1] != 2:
         raise BrdfkitError("opacity should be points (share of the range, A), (k, 2).")

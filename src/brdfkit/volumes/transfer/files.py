@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import read_bytes, write_safely
 from brdfkit.core.names import to_printable
 from brdfkit.volumes.transfer import slicer_presets
@@ -42,7 +42,7 @@ def load_transfer_function(cls: Any, path: str | os.PathLike[str]) -> Any:
         return slicer_presets.read_preset(cls, Path(xml), name)
     file = presets.get(text, Path(text))
     if not file.suffix and not file.exists():
-        raise no_such("transfer function", text, presets)
+        raise no_such_error("transfer function", text, presets)
     return parse_json(cls, read_bytes(file), file)
 
 
@@ -84,7 +84,7 @@ def parse_json(cls: Any, text: str | bytes, where: str | Path) -> Any:
         raise BrdfkitError(f'{where}: is no transfer function; its "kind" should be "{KIND}".')
     unknown = sorted(set(record) - ALLOWED)
     if unknown:
-        raise no_such("field", unknown[0], sorted(ALLOWED), str(where))
+        raise no_such_error("field", unknown[0], sorted(ALLOWED), str(where))
     try:
         return _parse_record(cls, record)
     except BrdfkitError as error:

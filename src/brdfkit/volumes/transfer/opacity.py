@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.arguments import to_positive
+from brdfkit.core.arguments import to_positive_number
 from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 
 OPAQUE = 0.9999  # larger opacities count as this one, since 1 would need an infinite σ_t
@@ -41,7 +41,7 @@ def convert_opacities(
     See `Conversions.from_opacity` for the arguments.
     """
     opacities = cls(values, rgba, colour=colour)  # the class checks the arguments
-    points, coefficients = _refine_points(opacities, to_positive("unit_distance", distance))
+    points, coefficients = _refine_points(opacities, to_positive_number("unit_distance", distance))
     largest = float(coefficients[:, 3].max()) or 1.0
     coefficients[:, 3] /= largest
     return cls(points, coefficients, largest, colour)

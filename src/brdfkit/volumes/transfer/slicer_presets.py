@@ -26,7 +26,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.colours import from_srgb
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import read_bytes
 from brdfkit.volumes.transfer.colour_maps import find_bracketing_points, require_rising
 
@@ -51,7 +51,7 @@ def read_preset(cls: Any, path: Path, name: str) -> Any:
             f"{path}: has {len(presets)} presets; name one: {path}#{next(iter(presets))}."
         )
     if name and name not in presets:
-        raise no_such("preset", name, presets, str(path))
+        raise no_such_error("preset", name, presets, str(path))
     preset = presets[name] if name else next(iter(presets.values()))
     try:
         return _convert_preset(cls, preset)

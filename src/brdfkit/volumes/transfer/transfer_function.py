@@ -23,9 +23,9 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from brdfkit.core.arguments import to_pair, to_positive, to_whole_number
+from brdfkit.core.arguments import to_number_pair, to_positive_number, to_whole_number
 from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.volumes.transfer.colour_maps import find_bracketing_points, require_rising
 from brdfkit.volumes.transfer.conversions import Conversions
 
@@ -89,14 +89,14 @@ class TransferFunction(Conversions):
 
     def __post_init__(self) -> None:
         if self.colour not in COLOURS:
-            raise no_such("meaning of RGB", self.colour, COLOURS, self.name)
+            raise no_such_error("meaning of RGB", self.colour, COLOURS, self.name)
         values = require_rising(self.values, f"{self.name}: values")
         shape: tuple[int, ...] = (len(values), 4)
         gradients = self.gradients
         if gradients is not None:
             gradients = require_rising(gradients, f"{self.name}: gradients")
             shape = (len(gradients), *shape)
-        extinction = to_positive(f"{self.name}: extinction", self.extinction)
+        extinction = to_positive_number(f"{self.name}: extinction", self.extinction)
         checked = {
             "values": values,
             "gradients": gradients,
@@ -189,7 +189,7 @@ class TransferFunction(Conversions):
         Gradients are scaled likewise. MRI has no unit, so that presets for it need this:
         ``TransferFunction.load("mri_head").scaled_to(*volume.window)``.
         """
-        low, high = to_pair("range", (low, high))
+        low, high = to_number_pair("range", (low, high))
         first, last = self.range
         if not low < high:
             raise BrdfkitError(f"{self.name}: the range {low:g} to {high:g} does not rise.")

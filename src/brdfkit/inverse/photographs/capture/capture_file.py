@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.arguments import to_number, wrong_argument
+from brdfkit.core.arguments import to_number, wrong_value_error
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.camera_from_corners import camera_from_corners
@@ -175,7 +175,7 @@ def _read_numbers(what: str, value: object, shape: tuple[int, ...]) -> FloatArra
         array: FloatArray = numbers.astype(float)
         if (np.abs(array) < LARGEST_NUMBER).all():
             return array
-    raise wrong_argument(what, value, f"{' × '.join(map(str, shape))} numbers below 1e30")
+    raise wrong_value_error(what, value, f"{' × '.join(map(str, shape))} numbers below 1e30")
 
 
 def _check_keys(path: Path, table: object, known: Iterable[str], where: str) -> None:

@@ -11,7 +11,7 @@ from brdfkit.core.arguments import to_array
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.camera import Camera
-from brdfkit.core.projective.homogeneous import make_axes, make_rigid, project_all
+from brdfkit.core.projective.homogeneous import make_axes, make_rigid_matrix, project_points
 
 CLIP_DISTANCES = 1e-2, 1e4  # near and far, in heights of the camera above the sample
 SMALLEST_SINE = 1e-5  # with a smaller angle between view and up, Mitsuba finds no axes
@@ -63,7 +63,7 @@ class Pinhole:
     def camera(self, size: tuple[int, int]) -> Camera:
         """Return the camera with matrices for pictures of `size` (width, height) [pixels]."""
         slope, clips = np.tan(np.radians(self.fov) / 2), self.clips()
-        view = make_rigid(self.axes, self.origin)
+        view = make_rigid_matrix(self.axes, self.origin)
         return Camera(view, slope, slope * size[1] / size[0], clips["near_clip"], clips["far_clip"])
 
     def project(self, points: FloatArray, size: tuple[int, int]) -> FloatArray:
@@ -74,9 +74,9 @@ class Pinhole:
         """
         camera = self.camera(size)
         with np.errstate(divide="ignore", invalid="ignore"):
-            x, y, _ = project_all(camera.infinite_projection @ camera.view, points).T
+            x, y, _ = project_points(camera.infinite_projection @ camera.view, points).T
         places = np.stack([(1 + x) / 2 * size[0], (1 - y) / 2 * size[1]], axis=1)
-        return np.where(camera.depths(points)[:, None] > 0, places, np.nan)
+        return np.where(camera.compute_depths(points)[:, None] > 0, places, np.nan)
 
     def on_sample(self, size: tuple[int, int]) -> FloatArray:
         """Return where the middle of each pixel of a picture is in the plane z = 0.
@@ -84,7 +84,7 @@ class Pinhole:
         The result holds x and y (height, width, 2) [m], inf where the pixel looks beside the plane;
         `size` is (width, height) [pixels].
         """
-        ray = self.camera(size).rays(size)
+        ray = self.camera(size).make_pixel_rays(size)
         steps = np.where(ray[..., 2] < 0, -self.origin[2] / np.minimum(ray[..., 2], -1e-12), np.inf)
         with np.errstate(invalid="ignore"):
             return np.nan_to_num((self.origin + steps[..., None] * ray)[..., :2], nan=np.inf)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.arguments import to_array, wrong_argument
+from brdfkit.core.arguments import to_array, wrong_value_error
 from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.documents.parts import SOFT
@@ -230,7 +230,7 @@ def _to_place(what: str, point: Any) -> FloatArray:
     """Return a point above the sample as an array (3,) [m]."""
     place = to_array(what, point, (3,))
     if place[2] <= 0:
-        raise wrong_argument(what, point, "above the sample, its z [m] above 0")
+        raise wrong_value_error(what, point, "above the sample, its z [m] above 0")
     return place
 
 
@@ -241,5 +241,5 @@ def _to_intensity(value: Any) -> FloatArray:
         intensity.shape not in ((), (1,), (3,))
         or not (np.isfinite(intensity) & (intensity >= 0)).all()
     ):
-        raise wrong_argument("intensity", value, "a number, or three, 0 or above")
+        raise wrong_value_error("intensity", value, "a number, or three, 0 or above")
     return np.broadcast_to(intensity, (1, 3))

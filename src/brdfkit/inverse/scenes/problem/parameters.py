@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.arguments import to_pair
+from brdfkit.core.arguments import to_number_pair
 from brdfkit.core.array_types import AnyArray, FloatArray, IntArray, MitsubaObject
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.inverse.scenes.problem.scene_parameters import (
     default_bounds,
     find_model,
@@ -146,7 +146,7 @@ def choose_unknowns(
                 "textures that Mitsuba differentiates can."
             )
         if short_name(name) not in known:
-            raise no_such("parameter", name, known, "the scene")
+            raise no_such_error("parameter", name, known, "the scene")
     if not bounds:
         raise BrdfkitError("parameters is empty; name some, as mitsuba.traverse does.")
     once = {known[short_name(name)]: limits for name, limits in bounds.items()}
@@ -198,7 +198,7 @@ def _make_unknown(parameters: MitsubaObject, key: str, bounds: Bounds | None) ->
 
 def _to_bounds(key: str, value: Any, lowest: float, highest: float) -> Bounds:
     """Return bounds (low, high) that a user gave, which must lie within `lowest` to `highest`."""
-    low, high = to_pair(f"{key}: bounds", value)
+    low, high = to_number_pair(f"{key}: bounds", value)
     if not lowest <= low < high <= highest:
         raise BrdfkitError(
             f"{key}: the bounds {low:g} and {high:g} should be a low and a higher value within "

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, MitsubaObject
-from brdfkit.core.errors import BrdfkitError, no_such
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.inverse.scenes.problem.tensors import (
     find_shape,
     is_tensor,
@@ -103,7 +103,7 @@ def put_values(scene: MitsubaObject, values: Mapping[str, Any]) -> None:
     known = find_searchable(parameters)
     for name, value in values.items():
         if name not in known:
-            raise no_such("parameter", name, known)
+            raise no_such_error("parameter", name, known)
         parameters[known[name]] = _to_entry(parameters, known[name], value)
     parameters.update()
 

@@ -14,7 +14,7 @@ single precision, 3e38, limits exponents.
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, MitsubaObject
-from brdfkit.mitsuba_bridge.properties.declarations import plain_number
+from brdfkit.mitsuba_bridge.properties.declarations import declare_float
 from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.moments import moving_depths
 from brdfkit.shadows.maps.moments.bounds import bound_by_two_moments
@@ -23,8 +23,8 @@ from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap
 SETTINGS = {
     "blur": BLUR,
     "bleeding": BLEEDING,
-    "exponent": plain_number(20.0, (0.1, 40.0), "c⁺, of depths in [-1, 1]"),
-    "negative_exponent": plain_number(5.0, (0.0, 40.0), "c⁻; 0 leaves this bound out"),
+    "exponent": declare_float(20.0, (0.1, 40.0), "c⁺, of depths in [-1, 1]"),
+    "negative_exponent": declare_float(5.0, (0.0, 40.0), "c⁻; 0 leaves this bound out"),
 }
 render_map = moving_depths.render_map
 LEAST_DEVIATION = 1e-3  # of depths, over half the map's range, so that rounding does no harm

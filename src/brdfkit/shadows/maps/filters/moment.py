@@ -15,7 +15,7 @@ within half a texel.
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat
-from brdfkit.mitsuba_bridge.properties.declarations import plain_number
+from brdfkit.mitsuba_bridge.properties.declarations import declare_float
 from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.moments import moving_depths
 from brdfkit.shadows.maps.moments.bounds import bound_by_four_moments
@@ -24,7 +24,7 @@ from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap
 SETTINGS = {
     "blur": BLUR,
     "bleeding": BLEEDING,
-    "rounding": plain_number(3e-5, (0.0, 0.1), "by how much moments are drawn to the middle"),
+    "rounding": declare_float(3e-5, (0.0, 0.1), "by how much moments are drawn to the middle"),
 }
 render_map = moving_depths.render_map
 

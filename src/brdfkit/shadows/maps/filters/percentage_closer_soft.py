@@ -21,13 +21,13 @@ from collections.abc import Iterator
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, MitsubaObject
-from brdfkit.mitsuba_bridge.properties.declarations import count, plain_number
+from brdfkit.mitsuba_bridge.properties.declarations import declare_float, declare_int
 from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.texels import Texels
 
 SETTINGS = {
-    "light_size": plain_number(0.01, (0.0, 1e9), "diameter of the light [unit], or its tangent"),
-    "taps": count(32, (1, 256), "look-ups of the search, and as many of the filter"),
+    "light_size": declare_float(0.01, (0.0, 1e9), "diameter of the light [unit], or its tangent"),
+    "taps": declare_int(32, (1, 256), "look-ups of the search, and as many of the filter"),
 }
 
 

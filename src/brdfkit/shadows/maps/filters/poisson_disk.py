@@ -14,7 +14,7 @@ import functools
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, JitFloat, MitsubaObject
-from brdfkit.mitsuba_bridge.properties.declarations import plain_number
+from brdfkit.mitsuba_bridge.properties.declarations import declare_float
 from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.texels import Texels
 
@@ -22,8 +22,8 @@ TAPS = 12
 LEAST_DISTANCE = 0.5  # between two taps, in radii of the disk
 
 SETTINGS = {
-    "radius": plain_number(2.0, (0.0, 256.0), "of the disk [texels]"),
-    "taper": plain_number(0.0, (0.0, 1.0), "by how much of it the radius falls up to the top"),
+    "radius": declare_float(2.0, (0.0, 256.0), "of the disk [texels]"),
+    "taper": declare_float(0.0, (0.0, 1.0), "by how much of it the radius falls up to the top"),
 }
 
 

@@ -13,7 +13,7 @@ borders are soft and have derivatives.
 """
 
 from brdfkit.core.array_types import JitFloat
-from brdfkit.mitsuba_bridge.properties.declarations import plain_number
+from brdfkit.mitsuba_bridge.properties.declarations import declare_float
 from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.moments import moving_depths
 from brdfkit.shadows.maps.moments.bounds import bound_by_two_moments
@@ -22,7 +22,7 @@ from brdfkit.shadows.maps.moments.moment_map import BLEEDING, BLUR, MomentMap
 SETTINGS = {
     "blur": BLUR,
     "bleeding": BLEEDING,
-    "least_deviation": plain_number(3e-4, (0.0, 1.0), "of depths, over half the map's range"),
+    "least_deviation": declare_float(3e-4, (0.0, 1.0), "of depths, over half the map's range"),
 }
 render_map = moving_depths.render_map
 

@@ -9,12 +9,12 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat
-from brdfkit.mitsuba_bridge.properties.declarations import count, plain_number
+from brdfkit.mitsuba_bridge.properties.declarations import declare_float, declare_int
 from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.moments.moving_depths import MovingDepths
 
-BLUR = count(2, (0, 31), "texels on each side over which moments are averaged")
-BLEEDING = plain_number(0.2, (0.0, 0.99), "share of the light below which a point counts as dark")
+BLUR = declare_int(2, (0, 31), "texels on each side over which moments are averaged")
+BLEEDING = declare_float(0.2, (0.0, 0.99), "share of the light below which a point counts as dark")
 
 
 class MomentMap:

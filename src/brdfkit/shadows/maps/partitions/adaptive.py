@@ -19,13 +19,13 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
-from brdfkit.mitsuba_bridge.properties.declarations import count
+from brdfkit.mitsuba_bridge.properties.declarations import declare_int
 from brdfkit.shadows.maps.cells import Cell, make_cell_finder
 from brdfkit.shadows.maps.partition import Part, Partition, Setup
 from brdfkit.shadows.maps.resolution import footprints, places_on_map
 from brdfkit.shadows.maps.visible_surfaces import VisibleSurfaces, find_visible_surfaces, is_lit
 
-SETTINGS = {"budget": count(16, (1, 256), "maps at most, of the full resolution each")}
+SETTINGS = {"budget": declare_int(16, (1, 256), "maps at most, of the full resolution each")}
 MAX_LEVEL = 7  # how often a square may be divided
 Leaf: TypeAlias = tuple[int, int, int]  # level, row and column of a square
 

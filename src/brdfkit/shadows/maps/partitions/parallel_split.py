@@ -16,14 +16,14 @@ shadows crawl (those of `stable_cascades` do not).
 from dataclasses import replace
 from itertools import pairwise
 
-from brdfkit.mitsuba_bridge.properties.declarations import word
+from brdfkit.mitsuba_bridge.properties.declarations import declare_choice
 from brdfkit.shadows.maps import split_planes
 from brdfkit.shadows.maps.partition import Partition, Setup, make_parts
 from brdfkit.shadows.maps.visible_surfaces import find_visible_surfaces
 
 SETTINGS = {
     **split_planes.SETTINGS,
-    "ends": word(("surfaces", "camera"), "what the first and last plane are set to"),
+    "ends": declare_choice(("surfaces", "camera"), "what the first and last plane are set to"),
 }
 MARGIN = 0.05  # of the depths, for nearer or farther surfaces between the rays
 
@@ -32,10 +32,10 @@ def make_partition(setup: Setup, parts: int, spacing: str, ends: str) -> Partiti
     """Make a partition of at most `parts` slices of the camera's view."""
     camera = setup.placement.camera
     if ends == "surfaces":
-        depths = camera.depths(find_visible_surfaces(setup.scene, camera).points)
+        depths = camera.compute_depths(find_visible_surfaces(setup.scene, camera).points)
         near, far = (1 - MARGIN) * depths.min(), (1 + MARGIN) * depths.max()
-        camera = camera.with_planes(max(near, camera.near), min(far, camera.far))
+        camera = camera.replace_planes(max(near, camera.near), min(far, camera.far))
     planes = split_planes.compute_split_planes(camera.near, camera.far, parts, spacing)
-    cameras = [camera.with_planes(*pair) for pair in pairwise(planes)]
+    cameras = [camera.replace_planes(*pair) for pair in pairwise(planes)]
     slices = [replace(setup.placement, camera=each) for each in cameras]
     return make_parts(setup, slices, split_planes.make_slice_finder(camera, planes))

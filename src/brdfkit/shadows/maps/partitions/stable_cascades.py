@@ -29,7 +29,12 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitFloat, JitInt, JitVector, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.camera import Camera
-from brdfkit.core.projective.homogeneous import make_axes, make_rigid, to_unit_cube, transform
+from brdfkit.core.projective.homogeneous import (
+    make_axes,
+    make_rigid_matrix,
+    make_unit_cube_matrix,
+    transform,
+)
 from brdfkit.shadows.maps import split_planes
 from brdfkit.shadows.maps.cells import GUTTER
 from brdfkit.shadows.maps.partition import Part, Partition, Setup
@@ -61,7 +66,7 @@ def find_stable_depths(scene: MitsubaObject, placement: Placement) -> tuple[floa
 
     They are the scene's diagonal times 2^k, so that they seldom change.
     """
-    depths = placement.camera.depths(find_visible_surfaces(scene, placement.camera).points)
+    depths = placement.camera.compute_depths(find_visible_surfaces(scene, placement.camera).points)
     near, far = (1 - MARGIN) * depths.min(), (1 + MARGIN) * depths.max()
     size = placement.size
     return size * 2 ** np.floor(np.log2(near / size)), size * 2 ** np.ceil(np.log2(far / size))
@@ -70,7 +75,7 @@ def find_stable_depths(scene: MitsubaObject, placement: Placement) -> tuple[floa
 def snap_projection(placement: Placement, near: float, far: float, resolution: int) -> Projection:
     """Return the projection along the light that encloses a slice's ball, at a whole texel."""
     light, camera = placement.light, placement.camera
-    view = make_rigid(make_axes(-light.point[:3]), np.zeros(3))
+    view = make_rigid_matrix(make_axes(-light.point[:3]), np.zeros(3))
     *sides, depths = transform(view, *placement.scene.corners.T)[:3]
     along, radius = bounding_ball(camera, near, far)
     centre = transform(view, *(camera.position + along * camera.direction))
@@ -79,7 +84,7 @@ def snap_projection(placement: Placement, near: float, far: float, resolution: i
         for place, side in zip(centre[:2], sides, strict=True)
     ]
     low, high = np.transpose([*ends, (depths.min(), depths.max())])
-    return Projection.from_matrix(to_unit_cube(low, high) @ view, light)
+    return Projection.from_matrix(make_unit_cube_matrix(low, high) @ view, light)
 
 
 def snap_window(

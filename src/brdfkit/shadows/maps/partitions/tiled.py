@@ -13,13 +13,13 @@ the eye; costs a pass for each tile, with the same number of texels in all.
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, IntArray
-from brdfkit.mitsuba_bridge.properties.declarations import count
+from brdfkit.mitsuba_bridge.properties.declarations import declare_int
 from brdfkit.shadows.maps.cells import GUTTER, Cell, make_cell_finder
 from brdfkit.shadows.maps.partition import Part, Partition, Setup
 from brdfkit.shadows.maps.resolution import footprints, places_on_map
 from brdfkit.shadows.maps.visible_surfaces import find_visible_surfaces
 
-SETTINGS = {"tiles": count(4, (1, 16), "tiles along a side of the map")}
+SETTINGS = {"tiles": declare_int(4, (1, 16), "tiles along a side of the map")}
 LEAST_TEXELS = 4 * GUTTER  # along a side of a tile in which no ray hit a surface
 
 

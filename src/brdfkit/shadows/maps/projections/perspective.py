@@ -10,7 +10,7 @@ Texels are distributed as the picture's pixels are. Good where nothing is near t
 all of the map shows that; and every step of the camera moves all texels.
 """
 
-from brdfkit.core.projective.homogeneous import project_all
+from brdfkit.core.projective.homogeneous import project_points
 from brdfkit.shadows.maps.light_camera import fit_to_corners, view_matrix
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
@@ -20,9 +20,10 @@ NEAREST = 1 / 200  # the near plane over the far one, as depths grow like 1 / z
 
 def make_projection(placement: Placement) -> Projection:
     """Make the projection through the camera's perspective and a camera at the light in it."""
-    corners, middle = placement.body.corners, placement.body.middle
+    corners, middle = placement.body.corners, placement.body.centroid
     z_n, z_f = placement.depths
-    camera = placement.camera.with_planes(max(z_n, NEAREST * z_f), z_f).move_back(corners).matrix
-    cube, (middle,) = project_all(camera, corners), project_all(camera, [middle])
+    near_camera = placement.camera.replace_planes(max(z_n, NEAREST * z_f), z_f)
+    camera = near_camera.move_behind(corners).matrix
+    cube, (middle,) = project_points(camera, corners), project_points(camera, [middle])
     light_view = view_matrix(camera @ placement.light.point, cube, middle)
     return fit_to_corners(light_view @ camera, placement.light, corners)

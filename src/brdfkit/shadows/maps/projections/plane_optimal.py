@@ -17,7 +17,7 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.projective.homogeneous import project_all
+from brdfkit.core.projective.homogeneous import project_points
 from brdfkit.mitsuba_bridge.properties.declarations import Setting
 from brdfkit.shadows.maps.light_camera import fit_to_corners
 from brdfkit.shadows.maps.placement import Placement
@@ -62,7 +62,8 @@ def project_onto(placement: Placement, plane: AnyArray) -> Projection:
     """Return the projection that is best on a `plane` (4,) that takes the shadows."""
     light, corners = placement.light, placement.body.corners
     flat = (plane @ light.point) * np.eye(4) - np.outer(light.point, plane)
-    camera = placement.camera.with_planes(*placement.depths).move_back(project_all(flat, corners))
+    camera = placement.camera.replace_planes(*placement.depths)
+    camera = camera.move_behind(project_points(flat, corners))
     if abs(height_over(plane, camera.position)) < 1e-3 * placement.size:
         return focused.make_projection(placement)
     matrix = camera.matrix @ flat

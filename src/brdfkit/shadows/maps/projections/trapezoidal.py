@@ -14,7 +14,7 @@ Good where the focus is known. Depth is divided by the width of the trapezoid, a
 end; where the map becomes the focused one shadows change at once.
 """
 
-from brdfkit.mitsuba_bridge.properties.declarations import plain_number
+from brdfkit.mitsuba_bridge.properties.declarations import declare_float
 from brdfkit.shadows.maps.line_of_sight import find_line_of_sight
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
@@ -22,7 +22,7 @@ from brdfkit.shadows.maps.projections import focused
 
 XI = -0.6  # where the focus ends on the map, from 1 at its near side to -1 at its far side
 SETTINGS = {
-    "focus": plain_number(
+    "focus": declare_float(
         0.3, (0.01, 0.79), "of trapezoidal: the share of what is seen that has 80 % of a map"
     )
 }

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.errors import no_such
+from brdfkit.core.errors import no_such_error
 
 VIEWS = {
     "V1": 90,  # at right angles to the light
@@ -43,9 +43,9 @@ def make_stage(
     import mitsuba as mi
 
     if view not in VIEWS:
-        raise no_such("view", view, VIEWS)
+        raise no_such_error("view", view, VIEWS)
     if light not in LIGHTS:
-        raise no_such("light", str(light), map(str, LIGHTS))
+        raise no_such_error("light", str(light), map(str, LIGHTS))
     azimuth = np.radians(VIEWS[view])
     origin = np.asarray(eye(azimuth), float)
     target = origin + unit_vector(azimuth, -np.radians(down))
