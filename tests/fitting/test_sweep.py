@@ -312,7 +312,7 @@ def test_a_model_of_ones_own_is_fitted_again_when_its_file_changes(here, fitted)
 
 @pytest.mark.quick
 def test_a_file_that_changes_meanwhile_fails(here):
-    (task,) = plan_tasks("chalk.npz", "lambert", FitSettings.read({}))
+    (task,) = plan_tasks("chalk.npz", "lambert", FitSettings.from_dictionary({}))
     Path("chalk.npz").write_bytes(Path("paint.npz").read_bytes())
     (outcome,) = fit_models(task)
     assert outcome.failure == "chalk.npz: has changed since the sweep began; begin it again."
@@ -322,7 +322,7 @@ def test_a_file_that_changes_meanwhile_fails(here):
 
 @pytest.mark.quick
 def test_a_task_is_plain_data_and_is_cut_where_there_are_few(here):
-    tasks = plan_tasks(FILES, [*LINEAR, "ward"], FitSettings.read({}))
+    tasks = plan_tasks(FILES, [*LINEAR, "ward"], FitSettings.from_dictionary({}))
     assert pickle.loads(pickle.dumps(tasks)) == tasks
     for workers, parts in ((1, 6), (2, 9), (8, 9)):
         cut = split_tasks(tasks, workers)

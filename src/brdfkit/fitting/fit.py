@@ -154,13 +154,13 @@ def fit(
         max_angle=max_angle,
         spectral=spectral,
         seed=seed,
-    ).checked(f"{model_class.type_name()}: ")
+    ).check_and_convert(f"{model_class.type_name()}: ")
     error = to_loss(loss)
     samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
 
     light = find_target_albedo(data if spectral else data.rgb, weights, max_angle)
 
-    def to_fit(solution: Any) -> Fit:
+    def make_fit(solution: Any) -> Fit:
         """Return the `Fit` of a `Solution`, with its albedo, notes and warnings."""
         known = wavelengths(data) if spectral else ()
         fitted = make_model(model_class, solution.shapes, solution.weights, known)
@@ -198,13 +198,13 @@ def fit(
     # A loss that weighs all samples alike does not know their solid angles, so it cannot compare
     # the albedo of the fit with the measured one
     without_light = getattr(error, "measure", None) == "samples" or light.has_another_unit
-    search: dict[str, Any] = settings.search_arguments() | {
+    search: dict[str, Any] = settings.to_search_arguments() | {
         "target_albedo": None if without_light else light
     }
     try:
-        return to_fit(solve(model_class, samples, error, **search, report=progress))
+        return make_fit(solve(model_class, samples, error, **search, report=progress))
     except Interrupted as stop:
-        best = to_fit(stop.best)
+        best = make_fit(stop.best)
         raise Interrupted(
             best, f"{best.name}: the best fit so far has the loss {best.loss:.6g}"
         ) from None

@@ -38,7 +38,7 @@ Bounds: TypeAlias = Mapping[str, tuple[float, float]]
 class FitSettings:
     """The arguments of `fit` besides the material, the model, the weights and the progress.
 
-    The attributes have the names, meanings and defaults of these arguments. `checked` converts the
+    The attributes have the names, meanings and defaults of these arguments. `check_and_convert` converts the
     solver, the constraints, the bounds and the fixed values to the types that the search needs.
     """
 
@@ -56,13 +56,13 @@ class FitSettings:
     seed: int = 0
 
     @classmethod
-    def read(cls, given: Any) -> FitSettings:
+    def from_dictionary(cls, given: Any) -> FitSettings:
         """Return checked settings from the dictionary that a user gave to `sweep` or `report`.
 
         The loss must be a name, because other processes may fit. Raises `BrdfkitError` for unknown
         names, and for values that `fit` refuses for every model and every material.
 
-        >>> FitSettings.read({"loss": "log"}).max_angle
+        >>> FitSettings.from_dictionary({"loss": "log"}).max_angle
         80.0
         """
         known = [field.name for field in fields(cls)]
@@ -76,9 +76,9 @@ class FitSettings:
                 "of brdfkit.losses.named."
             )
         to_loss(settings.loss)
-        return settings.checked()
+        return settings.check_and_convert()
 
-    def checked(self, where: str = "") -> FitSettings:
+    def check_and_convert(self, where: str = "") -> FitSettings:
         """Return these settings in the types that the search needs.
 
         Raises `BrdfkitError` for values that are wrong for every model and material. `where` is put
@@ -104,7 +104,7 @@ class FitSettings:
             seed=seed,
         )
 
-    def search_arguments(self) -> dict[str, Any]:
+    def to_search_arguments(self) -> dict[str, Any]:
         """Return the arguments of `regress` that these settings determine, by name."""
         names = "robust", "seed", "starts", "bounds", "fixed", "solver", "constraints"
         return {name: getattr(self, name) for name in (*names, "anisotropic")}
@@ -127,7 +127,7 @@ class FitSettings:
 
 
 def prepare_refit(fit: Fit, material: MaterialLike) -> Refit:
-    """Return a `Refit`, with which a fit to `material` can be repeated on changed samples."""
+    """Return a `Refit`, with which the bootstrap and profiles repeat a fit to `material`."""
     samples = select_fitted_samples(fit, material)
     data = to_measured(material)
     data = data if fit.wavelengths else data.rgb

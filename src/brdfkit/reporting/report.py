@@ -89,7 +89,7 @@ def report(
     >>> report("car_paint", ["ward", "ggx"], path="car_paint.html")    # doctest: +SKIP
     """
     require_material_first("report(material, models)", material)
-    chosen = FitSettings.read(to_dictionary("settings", settings))
+    chosen = FitSettings.from_dictionary(to_dictionary("settings", settings))
     check_pictures(size, scene, environment)
     data, file = to_measured(material), material if isinstance(material, str | Path) else None
     path = check_page(choose_file_name(data) if path is None else path)

@@ -155,8 +155,8 @@ def assign_regions(pixels: Pixels) -> IntArray:
 
     Regions are numbered from the middle of the ball's disc outwards.
     """
-    # A pixel has one direction to the eye, in the frame of its point of the ball; pairs that only
-    # fill up the array point along the normal, so the lowest direction is not one of them
+    # A pixel stores several direction pairs, all with the same direction to the eye. Unused pairs
+    # have the normal in its place, so the lowest of the directions belongs to a used pair
     wo = pixels.wo.reshape(-1, pixels.pairs, 3)
     x, y, z = wo[np.arange(len(wo)), wo[..., 2].argmin(axis=1)].T
     ring = np.minimum(np.floor(DISC_RINGS * (1 - z**2)), DISC_RINGS - 1)

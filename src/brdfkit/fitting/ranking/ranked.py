@@ -111,7 +111,10 @@ def rank_results(results: Mapping[str, Any], shares: FloatArray) -> tuple[Ranked
 
 
 def _beats(one: Validated, other: Validated, shares: FloatArray) -> bool:
-    """Return whether `one` has a better picture and a smaller error, beyond the noise."""
+    """Return whether `one` has a better picture than `other` and a smaller error, beyond the noise.
+
+    `shares` (blocks,) are the weights of the blocks of directions.
+    """
     if one.picture >= other.picture:
         return False
     return not is_tied(*compare_with_best(other.errors, one.errors, shares))

@@ -49,7 +49,7 @@ class Judge:
         """
         if self.held_out is None:
             return math.nan
-        how = self.settings.search_arguments()
+        how = self.settings.to_search_arguments()
         del how["starts"]  # every search starts from the values of the fit instead
         if how["anisotropic"] is None:
             how["anisotropic"] = self.anisotropic

@@ -74,7 +74,7 @@ def run_in_processes(tasks: list[Task], workers: int) -> Iterator[Outcome]:
     """Yield the outcomes of tasks in the order in which up to `workers` processes finish them.
 
     If a process dies during a fit, a new process tries the fit once more; then the fit counts as
-    failed. The processes end with the generator.
+    failed. All processes are killed when the generator ends.
     """
     workers = min(workers, len(tasks))
     waiting, deaths = deque(tasks), Counter[tuple[str, str]]()
@@ -111,7 +111,7 @@ def _replace_dead_worker(
     `deaths` counts the dead processes by material and model. A fit that has killed `LIVES`
     processes is not repeated; its failure is yielded.
     """
-    worker.process.join(timeout=5)  # the process ends, and has an exit code, after its pipe
+    worker.process.join(timeout=5)  # its pipe closes before it has an exit code
     task, label, code = worker.task, worker.left[0], worker.kill_process()
     assert task is not None
     deaths[task.material, label] += 1

@@ -83,7 +83,7 @@ def sweep(
     >>> print(sweep(Path("merl").glob("*.binary"), ["ward", "ggx"]))    # doctest: +SKIP
     """
     began = time.perf_counter()
-    checked = FitSettings.read(to_dictionary("settings", settings))
+    checked = FitSettings.from_dictionary(to_dictionary("settings", settings))
     require_plain_data(checked.solver, checked.constraints)
     slots = _count_slots(workers, client)
     tasks = [replace(task, judge=bool(judge)) for task in plan_tasks(materials, models, checked)]

@@ -109,7 +109,7 @@ def _read_measurement(task: Task) -> Measured:
 
 
 def _require_unchanged(checksums: dict[str, str]) -> None:
-    """Raise `BrdfkitError` if a file no longer has its SHA-256; `checksums` are by path."""
+    """Raise `BrdfkitError` if a file has changed; `checksums` are the expected SHA-256 by path."""
     for path, checksum in checksums.items():
         if compute_sha256(path) != checksum:
             raise BrdfkitError(f"{path}: has changed since the sweep began; begin it again.")
