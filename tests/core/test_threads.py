@@ -69,7 +69,7 @@ def test_mitsuba_itself_may_be_imported_by_many_threads():
 def inside(monkeypatch, llvm_variant):
     """The threads that trace: at each time they are noted by how many there are."""
     counts, now = [], []
-    trace = render_materials.trace
+    trace = render_materials.trace_scenes
 
     def traced(*args):
         now.append(threading.get_ident())
@@ -80,7 +80,7 @@ def inside(monkeypatch, llvm_variant):
         finally:
             now.remove(threading.get_ident())
 
-    monkeypatch.setattr(render_materials, "trace", traced)
+    monkeypatch.setattr(render_materials, "trace_scenes", traced)
     return counts
 
 
@@ -102,7 +102,7 @@ def test_renders_of_several_threads_run_one_after_the_other(inside, tmp_path):
 def test_a_scene_ends_in_its_turn(monkeypatch, llvm_variant):
     """Mitsuba traces through the BSDFs of every scene, also of one that another thread frees."""
     seen = []
-    load_and_trace, trace = render_materials._load_and_trace, render_materials.trace
+    load_and_trace, trace = render_materials._load_and_trace, render_materials.trace_scenes
 
     def noted(loaded, *others):
         for scene in loaded.values():
@@ -114,7 +114,7 @@ def test_a_scene_ends_in_its_turn(monkeypatch, llvm_variant):
         assert [plugin() for plugin in seen] == [None, None]
         return result
 
-    monkeypatch.setattr(render_materials, "trace", noted)
+    monkeypatch.setattr(render_materials, "trace_scenes", noted)
     monkeypatch.setattr(render_materials, "_load_and_trace", counted)
     bk.render(["ward", "ggx"], size=4, spp=1)
 

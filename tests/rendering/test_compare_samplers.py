@@ -9,7 +9,7 @@ from click.testing import CliRunner
 import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.rendering import map_sampling
-from brdfkit.rendering.map_sampling import SamplerComparison
+from brdfkit.rendering.sampler_comparison import SamplerComparison
 
 
 def comparison(rng, rounds=8, **costs):
@@ -57,11 +57,13 @@ def test_the_noise_is_the_distance_to_a_picture_of_many_samples(llvm_variant, mo
     found = bk.rendering.compare_samplers(
         "studio", "plaster", scene="ball", rounds=8, spp=spp, size=size
     )
-    scenes = map_sampling._load_scenes("studio", bk.load("plaster"), "ball", size)
-    truth = map_sampling._render(scenes["envmap"], 8192, 1000)
+    scenes = map_sampling._load_scene_for_each_sampler("studio", bk.load("plaster"), "ball", size)
+    truth = map_sampling._render_luminance(scenes["envmap"], 8192, 1000)
     scale = np.maximum(truth, map_sampling.DARK * truth.mean())
     for name, loaded in scenes.items():
-        pictures = np.array([map_sampling._render(loaded, spp, 500 + k) for k in range(16)])
+        pictures = np.array(
+            [map_sampling._render_luminance(loaded, spp, 500 + k) for k in range(16)]
+        )
         distance = np.mean((pictures - truth) ** 2 / scale**2)
         assert found.noise[name].mean() == pytest.approx(distance, rel=0.2), name
         assert pictures.mean() == pytest.approx(truth.mean(), rel=0.01), name

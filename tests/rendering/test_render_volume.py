@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from brdfkit import BrdfkitError, render, render_volume, volumes
-from brdfkit.rendering.tracing import _passes_within
+from brdfkit.rendering.tracing import _estimate_passes_within_time
 from brdfkit.rendering.volumes import defaults
 from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, describe_integrator
 from brdfkit.volumes import TransferFunction, Volume
@@ -181,9 +181,9 @@ def test_samples_are_added_for_so_long():
     found = render_volume("sphere", renderer="maximum_intensity", size=16, seconds=1e-3)
     assert found.spp == found.requested == 4
     assert found.standard_error is None
-    assert _passes_within(10, seconds=2, done=4) == 20
-    assert _passes_within(2.5, seconds=2, done=1) == 2  # the first one compiles
-    assert _passes_within(1, seconds=2, done=4) == 4
+    assert _estimate_passes_within_time(10, seconds=2, done=4) == 20
+    assert _estimate_passes_within_time(2.5, seconds=2, done=1) == 2  # the first one compiles
+    assert _estimate_passes_within_time(1, seconds=2, done=4) == 4
 
 
 def test_ctrl_c_keeps_the_passes():

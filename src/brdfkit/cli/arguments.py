@@ -13,8 +13,8 @@ from brdfkit.core.files import make_folder, require_writable, write_safely
 from brdfkit.materials import resolve
 from brdfkit.materials.measured import Measured
 from brdfkit.model import labels
-from brdfkit.rendering.film import film_suffix
-from brdfkit.rendering.montage import picture_suffix
+from brdfkit.rendering.film import find_film_suffix
+from brdfkit.rendering.montage import find_picture_suffix
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -68,7 +68,7 @@ def use_results_folder(path: Path | None) -> Iterator[None]:
 def check_picture_path(name: str | Path) -> Path:
     """Check, before a long rendering, that a picture can be written; return its path."""
     path = Path(name)
-    picture_suffix(path)
+    find_picture_suffix(path)
     require_writable(path)
     require_writable(path.with_suffix(".png"))
     return path
@@ -77,7 +77,7 @@ def check_picture_path(name: str | Path) -> Path:
 def check_film_path(name: str | Path) -> Path:
     """Check, before a long rendering, that a film can be written; return its path."""
     path = Path(name)
-    film_suffix(path)
+    find_film_suffix(path)
     require_writable(path)
     return path
 

@@ -38,8 +38,8 @@ Bounds: TypeAlias = Mapping[str, tuple[float, float]]
 class FitSettings:
     """The arguments of `fit` besides the material, the model, the weights and the progress.
 
-    The attributes have the names, meanings and defaults of these arguments. `check_and_convert` converts the
-    solver, the constraints, the bounds and the fixed values to the types that the search needs.
+    The attributes have the names, meanings and defaults of these arguments. `check_and_convert`
+    returns them in the types that the search needs.
     """
 
     loss: Any = "cbrt"

@@ -1,10 +1,10 @@
 from .film import Film as Film
 from .galleries import Gallery as Gallery
 from .galleries import gallery as gallery
-from .map_sampling import SamplerComparison as SamplerComparison
 from .map_sampling import compare_samplers as compare_samplers
 from .previewing.preview import preview as preview
 from .render_materials import render as render
 from .result import Rendering as Rendering
+from .sampler_comparison import SamplerComparison as SamplerComparison
 from .volumes.orbit import render_orbit as render_orbit
 from .volumes.render_volume import render_volume as render_volume

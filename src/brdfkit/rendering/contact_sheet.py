@@ -1,4 +1,4 @@
-"""Draws the contact sheet of a folder of materials: a ball of each material under its name."""
+"""Draws the contact sheet of a folder of materials: a ball of each material, and its name above."""
 
 from __future__ import annotations
 
@@ -12,20 +12,21 @@ from brdfkit.rendering.montage import (
     GAP,
     WHITE_GROUND,
     draw_caption,
-    to_displayed,
-    to_tile,
+    to_image,
+    to_visible_srgb,
 )
 
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
-BALLS_IN_ROW = 6  # or COLUMNS, where few materials would leave the rows too wide
+BALLS_IN_ROW = 6  # pictures in a row of a large sheet; a small one has COLUMNS, like a montage
 
 
 def draw_contact_sheet(balls: Mapping[str, tuple[FloatArray, str]]) -> PillowImage:
-    """Draw pictures in a grid, each under its name and a line of text.
+    """Draw pictures in a grid, each below its name and a line of text.
 
-    `balls` is ``{name: (picture, line)}``; the pictures are (side, side, 3), linear sRGB.
+    `balls` contains for each name a pair (picture, line); the pictures are (side, side, 3), linear
+    sRGB.
     """
     from PIL import Image, ImageDraw
 
@@ -42,5 +43,5 @@ def draw_contact_sheet(balls: Mapping[str, tuple[FloatArray, str]]) -> PillowIma
     for place, (name, (picture, line)) in enumerate(balls.items()):
         x, y = GAP + place % across * (width + GAP), GAP + place // across * row
         draw_caption(draw, (x, y), name, line, width, text, inks)
-        page.paste(to_tile(to_displayed(picture), 1), (x, y + caption))
+        page.paste(to_image(to_visible_srgb(picture), 1), (x, y + caption))
     return page

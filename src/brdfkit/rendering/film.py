@@ -1,4 +1,4 @@
-"""`Film`: the frames of a camera that goes once around, and the files that show them."""
+"""`Film`: the frames of a camera that moves once around a volume, and their animation files."""
 
 from __future__ import annotations
 
@@ -17,28 +17,32 @@ from brdfkit.images.tone_mapping import ToneMapping
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
-SUFFIXES = {".gif": "GIF", ".png": "PNG", ".webp": "WEBP"}  # and the formats' names in Pillow
+SUFFIXES = {
+    ".gif": "GIF",
+    ".png": "PNG",
+    ".webp": "WEBP",
+}  # suffix of a file → Pillow's name of its format
 TURN = 4.0  # duration of a whole film [s]
-SHORTEST_FRAME = 20  # [ms]; browsers slow down films with shorter frames
-PALETTE_FRAMES = 16  # about the number of frames that choose the palette of a GIF
+SHORTEST_FRAME = 20  # duration of a frame [ms]; browsers slow down films with shorter frames
+PALETTE_FRAMES = 16  # approximate number of frames from which the palette of a GIF is chosen
 
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """The pictures of a camera that goes once around a volume, made by `render_orbit`.
+    """Pictures from a camera that moves once around a volume, made by `render_orbit`.
 
     Attributes
     ----------
     frames : list of ndarray, shape (height, width, 3)
         The pictures: float32, linear sRGB; fewer than `requested` after Ctrl-C.
     requested : int
-        Frames of a whole turn.
+        Number of frames of a whole turn.
     spp : int
         Samples per pixel of each frame.
     seconds : float
-        Wall-clock time.
+        Wall-clock time of the rendering.
     tone_mapping : ToneMapping
-        The curve that shows the pictures, with the exposure of the brightest frame for all.
+        The curve that maps radiance to displayed values, with the exposure of the brightest frame.
     """
 
     frames: list[NDArray[np.float32]] = field(repr=False)
@@ -72,10 +76,10 @@ class Film:
         --------
         >>> render_orbit("smoke", frames=24).write("smoke.gif")    # doctest: +SKIP
         """
-        kind = SUFFIXES[film_suffix(path)]
+        kind = SUFFIXES[find_film_suffix(path)]
         images = self._to_images()
         if kind == "GIF":
-            images = _with_one_palette(images)
+            images = _reduce_to_one_palette(images)
         duration = max(SHORTEST_FRAME, 10 * round(100 * TURN / self.requested))
         options: dict[str, Any] = {"quality": 90} if kind == "WEBP" else {}
         with write_safely(Path(path)) as beside:
@@ -98,16 +102,16 @@ class Film:
         return [Image.fromarray((255 * to_srgb(s) + 0.5).astype(np.uint8)) for s in shown]
 
 
-def film_suffix(path: str | Path) -> str:
-    """Return the suffix of a film's path; raise `BrdfkitError` for one that no film has."""
+def find_film_suffix(path: str | Path) -> str:
+    """Return the suffix of a path; raise `BrdfkitError` if films are not written in this format."""
     suffix = Path(path).suffix.lower()
     if suffix not in SUFFIXES:
         raise BrdfkitError(f"{path}: films are written as {', '.join(SUFFIXES)}; choose one.")
     return suffix
 
 
-def _with_one_palette(images: list[PillowImage]) -> list[PillowImage]:
-    """Reduce the images to the 256 colours that suit all of them best."""
+def _reduce_to_one_palette(images: list[PillowImage]) -> list[PillowImage]:
+    """Reduce images to the 256 colours that suit all of them best; without this, GIFs flicker."""
     from PIL import Image
 
     chosen = images[:: -(-len(images) // PALETTE_FRAMES)]

@@ -16,26 +16,27 @@ from brdfkit.core.names import make_unique, to_printable
 from brdfkit.core.progress_bar import Progress
 from brdfkit.rendering.render_materials import SceneLike, render
 from brdfkit.rendering.result import Rendering
-from brdfkit.rendering.scene_input.arguments import Renderable, to_list, to_named_material
+from brdfkit.rendering.scene_input.arguments import Renderable, to_material_list, to_named_material
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-# Space in the grid for names above and at the left, captions below, and between columns [pixels]
+# Space above and at the left of the pictures for names, below for captions, and between columns
+# [pixels]
 HEAD, SIDE, BELOW, GAP = 26, 26, 22, 6
 DPI = 100  # pixels of the grid per inch of the figure
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Gallery(Shown):
-    """Pictures of materials (rows) by models (columns), which print as a table of PSNR.
+    """Pictures of materials and of models fitted to them, made by `gallery`.
 
-    Made by `gallery`.
+    A gallery prints as a table of the PSNR of each fit's picture to its material's picture.
 
     Attributes
     ----------
     rows : dict of str to Rendering
-        The rows by the material's name; the first picture in a row is the material itself.
+        The pictures of each row by the material's name; the first one shows the material itself.
     """
 
     rows: dict[str, Rendering] = field(repr=False)
@@ -72,11 +73,11 @@ class Gallery(Shown):
             (name, *(f"{value:.1f}" for value in rendering.psnr().values()))
             for name, rendering in self.rows.items()
         ]
-        width_of_grid, _ = _extent(self.rows)
+        width_of_grid, _ = _compute_grid_size(self.rows)
         picture = Picture(self._to_png, f"pictures of {', '.join(self.rows)}", width_of_grid)
-        peak = (Paragraph("PSNR to the material [dB].", SOFT),) if first.differences else ()
+        unit = (Paragraph("PSNR to the material [dB].", SOFT),) if first.differences else ()
         title = f"{len(rows)} × {len(columns)} pictures, {width}×{height} pixels, {first.spp} spp"
-        return Document(title, (picture, Table(tuple(rows), columns), *peak))
+        return Document(title, (picture, Table(tuple(rows), columns), *unit))
 
     def _to_png(self) -> bytes:
         """Draw the grid as a PNG for notebooks."""
@@ -132,7 +133,7 @@ def gallery(
             f"materials = {materials!r:.60} should be rows of materials, as in "
             "[[material, fit, fit]]."
         )
-    listed = [to_list(row) for row in materials]
+    listed = [to_material_list(row) for row in materials]
     if not listed:
         raise BrdfkitError("There is nothing to render; give at least one row.")
     columns = [[to_named_material(fit)[0] for fit in row[1:]] for row in listed]
@@ -152,12 +153,15 @@ def gallery(
 
 
 def draw_grid(rows: Mapping[str, Rendering]) -> Figure:
-    """Draw renderings, given by name, as the rows of a matplotlib `Figure`, at their own pixels."""
+    """Draw renderings, given by material name, as the rows of a matplotlib `Figure`.
+
+    The pictures are not resized.
+    """
     from matplotlib.figure import Figure
 
     first = next(iter(rows.values()))
     height, width = first.pictures[first.reference].shape[:2]
-    total = _extent(rows)
+    total = _compute_grid_size(rows)
 
     figure = Figure(figsize=(total[0] / DPI, total[1] / DPI), dpi=DPI)
     for i, (material, rendering) in enumerate(rows.items()):
@@ -169,10 +173,8 @@ def draw_grid(rows: Mapping[str, Rendering]) -> Figure:
             axes.imshow(to_srgb(picture), interpolation="none")
             axes.set(xticks=[], yticks=[], frame_on=False)
             axes.set_xlabel(f"{psnr[name]:.1f} dB" if name in psnr else "", fontsize=8, labelpad=3)
-            plain: dict[str, Any] = {
-                "fontsize": 9,
-                "parse_math": False,
-            }  # names may contain dollar signs
+            # Names may contain dollar signs, which must not begin formulas
+            plain: dict[str, Any] = {"fontsize": 9, "parse_math": False}
             if i == 0:
                 axes.set_title(to_printable(name) if j else "reference", pad=4, **plain)
             if j == 0:
@@ -180,8 +182,8 @@ def draw_grid(rows: Mapping[str, Rendering]) -> Figure:
     return figure
 
 
-def _extent(rows: Mapping[str, Rendering]) -> tuple[int, int]:
-    """Return (width, height) of the grid [pixels]."""
+def _compute_grid_size(rows: Mapping[str, Rendering]) -> tuple[int, int]:
+    """Return the (width, height) of the grid of pictures, with names and captions [pixels]."""
     first = next(iter(rows.values()))
     height, width = first.pictures[first.reference].shape[:2]
     columns = max(len(r.pictures) for r in rows.values())

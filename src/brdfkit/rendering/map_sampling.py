@@ -1,10 +1,8 @@
-"""`compare_samplers`: which sampler of an environment map costs least on a user's map and mesh."""
+"""`compare_samplers`: measures which sampler of an environment map gives least noise per time."""
 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -13,13 +11,13 @@ import numpy as np
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.array_types import FloatArray, MitsubaObject
 from brdfkit.core.colours import luminance
-from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress
 from brdfkit.materials import resolve
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.progressive import to_rgb
+from brdfkit.rendering.sampler_comparison import SamplerComparison
 from brdfkit.rendering.scene_input.arguments import load_mitsuba
 from brdfkit.rendering.scene_input.environment import describe_environment, replace_light
 from brdfkit.rendering.scene_input.loading import find_scene, find_suffix
@@ -34,125 +32,7 @@ SAMPLERS: dict[str, dict[str, Any]] = {
     "alias, compensated": {"type": "sampled_envmap", "sampler": "alias", "compensated": True},
 }
 SPP, SIZE, ROUNDS, FEWEST_ROUNDS = 16, 96, 10, 3
-LEVEL = 0.05  # of significance, for all pairs of samplers together
-DARK = 0.01  # share of the mean brightness; darker pixels weigh no more than one this dark
-COLUMNS = "sampler", ">noise", ">time [ms]", ">cost", ">± [%]", "beside the best"
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class SamplerComparison(Shown):
-    """Samplers of an environment map, by the cost of equally good pictures, the least first.
-
-    Made by `compare_samplers`.
-
-    Attributes
-    ----------
-    environment, material, scene : str
-        What was rendered.
-    noise : dict of str to ndarray, shape (rounds,)
-        The variance of a pixel over the square of its mean, in the mean over the picture.
-    seconds : dict of str to ndarray, shape (rounds,)
-        Processor time of a picture, the lesser of the two of a round.
-    rounds_requested : int
-        Rounds that were requested; Ctrl-C leaves fewer.
-    """
-
-    environment: str
-    material: str
-    scene: str
-    noise: dict[str, np.ndarray] = field(repr=False)
-    seconds: dict[str, np.ndarray] = field(repr=False)
-    rounds_requested: int
-
-    @property
-    def rounds(self) -> int:
-        """Rounds that were finished."""
-        return len(self.noise["envmap"])
-
-    @cached_property
-    def costs(self) -> dict[str, float]:
-        """Noise times time over that of Mitsuba's `envmap`, by sampler, the least first."""
-        each = {n: float(v.mean() * np.median(self.seconds[n])) for n, v in self.noise.items()}
-        return {name: each[name] / each["envmap"] for name in sorted(each, key=each.__getitem__)}
-
-    @property
-    def best(self) -> str:
-        """The sampler of the least cost."""
-        return next(iter(self.costs))
-
-    @cached_property
-    def p_values(self) -> dict[str, float]:
-        """How probable a difference to the best as large as this one is if there is none.
-
-        Tukey's test on the logarithms of costs, with the rounds as blocks: it holds for all pairs
-        together, and so for the one that turned out best.
-        """
-        from scipy.stats import studentized_range
-
-        logs = {name: np.log(self.noise[name] * self.seconds[name]) for name in self.noise}
-        freedom = (len(logs) - 1) * (self.rounds - 1)
-        p_values = {}
-        for name, costs in logs.items():
-            apart = abs(costs.mean() - logs[self.best].mean()) / max(self._spread, 1e-12)
-            p_values[name] = (
-                float(studentized_range.sf(apart, len(logs), freedom)) if apart else 1.0
-            )
-        return p_values
-
-    def significant(self, name: str) -> bool:
-        """Whether a sampler costs more than the best, beyond chance at 5 %."""
-        return self.p_values[name] < LEVEL
-
-    @property
-    def _spread(self) -> float:
-        """The standard error of the mean logarithm of a cost, pooled over samplers."""
-        x = np.log([self.noise[name] * self.seconds[name] for name in self.noise])
-        residuals = x - x.mean(axis=0) - x.mean(axis=1, keepdims=True) + x.mean()
-        freedom = (x.shape[0] - 1) * (x.shape[1] - 1)
-        return float(np.sqrt((residuals**2).sum() / freedom / x.shape[1]))
-
-    @property
-    def verdict(self) -> str:
-        """Which sampler to take, how much it saves, and whether that is more than chance."""
-        p, costs = self.p_values, self.costs
-        alike = [name for name in costs if name != self.best and not p[name] < LEVEL]
-        chance = "envmap" in alike
-        alike = [name for name in alike if name != "envmap"]
-        tied = f"; {', '.join(alike)} may be as good (5 %)" if alike else ""
-        if self.best == "envmap":
-            return f"Take envmap, Mitsuba's own{tied}."
-        saved = f"{self.best} costs {costs[self.best]:.2f} times what Mitsuba's envmap does"
-        if chance:
-            return f"{saved}, which may be chance: take either{tied}."
-        return f"Take {self.best}: it costs {saved.partition(' costs ')[2]}{tied}."
-
-    def table(self) -> list[tuple[str, ...]]:
-        """A row of texts for each sampler, under `COLUMNS`; noise and cost over envmap's."""
-        noise, p = self.noise, self.p_values
-        rows: list[tuple[str, ...]] = []
-        for name, cost in self.costs.items():
-            ratio = float(noise[name].mean() / noise["envmap"].mean())
-            said = "worse" if p[name] < LEVEL else "no clear difference"
-            chance = "p < 0.001" if p[name] < 1e-3 else f"p = {p[name]:.2g}"
-            beside = "best" if name == self.best else f"{said}, {chance}"
-            time_of = 1e3 * float(np.median(self.seconds[name]))
-            error = 100 * np.sqrt(2) * self._spread
-            shown = f"{ratio:.2f}", f"{time_of:.0f}", f"{cost:.2f}", f"{error:.0f}", beside
-            rows.append((name, *shown))
-        return rows
-
-    @property
-    def head(self) -> str:
-        """What was compared, in a line."""
-        return (
-            f"{self.environment} on {self.scene} of {self.material}: {self.rounds} rounds; noise "
-            "and cost, noise × time, over Mitsuba's envmap"
-        )
-
-    def document(self) -> Document:
-        """The table and the verdict."""
-        table = Table(tuple(self.table()), COLUMNS)
-        return Document(self.head, (table, Paragraph(self.verdict)))
+DARK = 0.01  # relative noise is limited in pixels darker than this share of the mean brightness
 
 
 def compare_samplers(
@@ -168,11 +48,11 @@ def compare_samplers(
 ) -> SamplerComparison:
     """Measure which sampler of an environment map needs least time for an equally good picture.
 
-    The picture is path-traced, so that light and surfaces are both sampled. In each round every
-    sampler renders two pictures with seeds of their own, the same for all samplers; half of the
-    squared difference is the variance of a pixel. The order of the samplers changes from round to
-    round, so that a busy machine disturbs all alike. Ctrl-C keeps the finished rounds, from three
-    on.
+    The pictures are path-traced, so light and surfaces are both sampled. In each round every
+    sampler renders two pictures with different seeds, which are the same for all samplers; half of
+    their squared difference estimates the variance of a pixel. The order of the samplers changes
+    from round to round, so that other work on the machine disturbs all alike. After Ctrl-C the
+    finished rounds count, if there are three or more.
 
     Parameters
     ----------
@@ -181,7 +61,8 @@ def compare_samplers(
     material : Measured, Fit, Model, str, Path or dict, default "plaster"
         The material that is lit.
     scene : str or Path, default "ball"
-        A scene under the sky, or a mesh (.obj, .ply; "FILE.obj#z" where z points up).
+        The name of a scene without lamps of its own, or a mesh (.obj, .ply; "FILE.obj#z" where z
+        points up).
     rounds : int, default 10
         Number of repetitions, at least 3.
     spp : int, default 16
@@ -196,7 +77,7 @@ def compare_samplers(
     Returns
     -------
     SamplerComparison
-        Prints as a table, with the sampler to take.
+        Noise, time and cost of each sampler; prints as a table, with the sampler to take.
 
     Raises
     ------
@@ -214,13 +95,15 @@ def compare_samplers(
         raise BrdfkitError(f"scene = {scene!r:.60} should be a scene's name or a mesh's file.")
     load_mitsuba()
     found = resolve.to_material(material)
-    noise, seconds = _measure(environment, found, scene, rounds, spp, size, seed, progress)
+    noise, seconds = _measure_noise_and_time(
+        environment, found, scene, rounds, spp, size, seed, progress
+    )
     where = str(Path(str(environment)).name), found.name, Path(str(scene)).name
     return SamplerComparison(*where, noise, seconds, rounds)
 
 
 @in_turn
-def _measure(
+def _measure_noise_and_time(
     environment: str | Path,
     material: resolve.Material,
     scene: str | Path,
@@ -230,11 +113,14 @@ def _measure(
     seed: int,
     progress: Progress | None,
 ) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
-    """Return the noise and the seconds of the rounds by sampler; the arrays are (rounds,)."""
-    lights = _load_scenes(environment, material, scene, size)
-    names = list(lights)
-    for loaded in lights.values():  # compile the kernels before anything is timed
-        _render(loaded, spp, seed)
+    """Return the noise and the processor time [s] of each round, (rounds,), by sampler.
+
+    The noise is the variance of a pixel divided by its squared mean, as a mean over the picture.
+    """
+    scenes = _load_scene_for_each_sampler(environment, material, scene, size)
+    names = list(scenes)
+    for loaded in scenes.values():  # the first rendering compiles, which should not be timed
+        _render_luminance(loaded, spp, seed)
     pairs: list[dict[str, Any]] = []
     seconds: list[dict[str, float]] = []
     try:
@@ -245,9 +131,9 @@ def _measure(
                 pair[name], each = [], []
                 for k in (0, 1):
                     start = time.process_time()
-                    pair[name].append(_render(lights[name], spp, seed + 2 * r + k))
+                    pair[name].append(_render_luminance(scenes[name], spp, seed + 2 * r + k))
                     each.append(time.process_time() - start)
-                took[name] = min(each)  # other programs may have slowed the other one
+                took[name] = min(each)  # other programs may have delayed the slower one
             pairs.append(pair)
             seconds.append(took)
             if progress:
@@ -265,7 +151,7 @@ def _measure(
     return noise, {n: np.array([took[n] for took in seconds]) for n in names}
 
 
-def _load_scenes(
+def _load_scene_for_each_sampler(
     environment: str | Path, material: resolve.Material, scene: str | Path, size: int
 ) -> dict[str, MitsubaObject]:
     """Load a `mitsuba.Scene` for each sampler, by the sampler's name."""
@@ -279,8 +165,8 @@ def _load_scenes(
     return scenes
 
 
-def _render(loaded: MitsubaObject, spp: int, seed: int) -> FloatArray:
-    """Render a picture, and return its luminance (height, width)."""
+def _render_luminance(loaded: MitsubaObject, spp: int, seed: int) -> FloatArray:
+    """Render a picture of a `mitsuba.Scene`, and return its luminance (height, width)."""
     import mitsuba as mi
 
     return luminance(to_rgb(mi.render(loaded, spp=spp, seed=seed)).astype(float))

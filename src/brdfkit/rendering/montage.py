@@ -1,4 +1,4 @@
-"""Writes the files of a rendering: an OpenEXR with all its data, and a montage to look at."""
+"""Writes the files of a rendering: an OpenEXR with all its data, and a montage of its pictures."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
 
 COLUMNS = 4  # pictures in a row of a montage
 TILE = 320  # narrower pictures are enlarged to this width [pixels], so that captions fit
-GAP = 20
-# The mode of a page, and the colours of its paper, of names, and of the lines below them
+GAP = 20  # space around each picture [pixels]
+# Pillow's mode of a page, and the colours of its ground, of names, and of the text below them
 WHITE_GROUND = "RGB", (255, 255, 255), (26, 26, 26), (105, 105, 105)
-# In notebooks, light or dark: a middle grey, on a ground that is transparent
+# In a notebook the ground is transparent, and the middle grey can be read on white and on black
 ANY_GROUND = "RGBA", (125, 125, 125, 0), (125, 125, 125, 255), (125, 125, 125, 255)
-LARGEST_DIFFERENCE = 20  # ΔE of the brightest false colour; fixed, so that montages can be compared
+LARGEST_DIFFERENCE = 20  # ΔE of the brightest false colour; fixed, so montages can be compared
 
 
-def picture_suffix(path: Path) -> str:
+def find_picture_suffix(path: Path) -> str:
     """Return the suffix of a path, ".exr" or ".png"; raise `BrdfkitError` for any other."""
     suffix = path.suffix.lower()
     if suffix not in (".exr", ".png"):
@@ -39,11 +39,11 @@ def picture_suffix(path: Path) -> str:
 
 
 def write_exr(rendering: Any, path: Path) -> None:
-    """Write every picture, difference and error as a named part; see `Rendering.write`."""
+    """Write each picture, difference and standard error of a `Rendering` as a part of an EXR."""
     import OpenEXR
 
     parts = []
-    # title of a part → (name of the picture, its values)
+    # Maps the title of each part to the name of its picture and to its values
     named = {name: (name, p) for name, p in rendering.pictures.items()}
     named |= {f"difference: {n}": (n, d) for n, d in rendering.differences.items()}
     if rendering.standard_error is not None:
@@ -64,7 +64,7 @@ def write_exr(rendering: Any, path: Path) -> None:
         parts.append(OpenEXR.Part(header, channels, to_printable(title)))
     try:
         OpenEXR.File(parts).write(str(path))
-    except RuntimeError as error:  # a full disk, for instance
+    except RuntimeError as error:  # for example, the disk is full
         raise OSError(str(error)) from error
 
 
@@ -72,16 +72,15 @@ def draw_montage(rendering: Any, on_any_ground: bool = False) -> PillowImage:
     """Draw the pictures of a `Rendering` with captions, up to four in a row.
 
     The page is white or, with `on_any_ground`, transparent for notebooks. Below each picture is its
-    colour difference to the reference (CIEDE2000), in false colours that a legend explains.
+    colour difference from the reference (CIEDE2000), in false colours that a legend explains.
     """
     from PIL import Image, ImageDraw
 
-    captions, differences = rendering.captions, colour_differences(rendering)
+    captions, differences = rendering.captions, compute_colour_differences(rendering)
     tone = rendering.tone_mapping
     brightest = tone.brightest_of(rendering.pictures[rendering.reference])
     names = list(rendering.pictures)
 
-    # sizes [pixels]
     zoom = ceil(TILE / rendering.pictures[names[0]].shape[1])
     height, width = (zoom * n for n in rendering.pictures[names[0]].shape[:2])
     text = max(15, width // 24)
@@ -97,45 +96,48 @@ def draw_montage(rendering: Any, on_any_ground: bool = False) -> PillowImage:
         x, y = GAP + i % COLUMNS * (width + GAP), GAP + i // COLUMNS * row
         draw_caption(draw, (x, y), name, captions[name], width, text, inks)
         shown = tone(rendering.pictures[name], brightest)
-        page.paste(to_tile(to_displayed(shown), zoom), (x, y + caption))
+        page.paste(to_image(to_visible_srgb(shown), zoom), (x, y + caption))
         y += caption + height + GAP
         if name in differences:
-            page.paste(to_tile(_false_colour(differences[name]), zoom), (x, y))
+            page.paste(to_image(_to_false_colours(differences[name]), zoom), (x, y))
             draw.rectangle((x, y, x + width - 1, y + height - 1), outline=(200, 200, 200))
         elif differences:
             _draw_legend(page, draw, (x, y, width, height), text, inks)
     return page
 
 
-def to_tile(rgb: FloatArray, zoom: int) -> PillowImage:
-    """Return an image of sRGB values (height, width, 3) in 0..1, enlarged by the factor `zoom`."""
+def to_image(rgb: FloatArray, zoom: int) -> PillowImage:
+    """Convert sRGB values (height, width, 3) in 0..1 to an image, enlarged by the factor `zoom`."""
     from PIL import Image
 
     image = Image.fromarray((np.clip(rgb, 0, 1) * 255 + 0.5).astype(np.uint8))
     return image.resize((image.width * zoom, image.height * zoom), Image.Resampling.NEAREST)
 
 
-def to_displayed(linear: FloatArray) -> FloatArray:
-    """Convert linear values (height, width, 3) to sRGB in 0..1.
+def to_visible_srgb(linear: FloatArray) -> FloatArray:
+    """Convert linear values (height, width, 3) to sRGB in 0..1, and make faulty pixels visible.
 
-    Pixels that are not finite become magenta, which stands out.
+    Pixels that are not finite become magenta.
     """
     finite = np.isfinite(linear).all(axis=-1, keepdims=True)
     return np.where(finite, to_srgb(linear), (1, 0, 1))
 
 
-def colour_differences(rendering: Any) -> dict[str, FloatArray]:
-    """Return ΔE2000 to the reference (height, width), by the name of every other picture."""
+def compute_colour_differences(rendering: Any) -> dict[str, FloatArray]:
+    """Return ΔE2000 (height, width) between the reference and each other picture of a `Rendering`.
+
+    The keys are the names of the other pictures.
+    """
     pictures = rendering.pictures
     reference = pictures[rendering.reference]
     return {n: ciede2000(reference, pictures[n]) for n in rendering.differences}
 
 
-def _false_colour(difference: FloatArray) -> AnyArray:
-    """Return false colours (height, width, 3), sRGB in 0..1, of differences ΔE (height, width)."""
+def _to_false_colours(difference: FloatArray) -> AnyArray:
+    """Return sRGB values (height, width, 3) in 0..1 for colour differences (height, width)."""
     import matplotlib as mpl
 
-    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # for values that are not finite
+    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # ΔE that is nan
     return colours(difference / LARGEST_DIFFERENCE)[..., :3]
 
 
@@ -144,7 +146,7 @@ def _load_font(size: int, bold: bool = False) -> Any:
     import matplotlib as mpl
     from PIL import ImageFont
 
-    file = f"fonts/ttf/DejaVuSans{'-Bold' if bold else ''}.ttf"  # comes with matplotlib
+    file = f"fonts/ttf/DejaVuSans{'-Bold' if bold else ''}.ttf"  # a font in matplotlib's package
     return ImageFont.truetype(str(Path(mpl.get_data_path(), file)), size)
 
 
@@ -157,10 +159,10 @@ def draw_caption(
     size: int,
     inks: list[Any],
 ) -> None:
-    """Draw a picture's name, and the line of text `below` it.
+    """Draw the name of a picture, and the line of text `below` the name.
 
-    A name wider than `width` [pixels] is shortened in its middle. `size` is that of the font, and
-    `inks` are the colours of the name and of the line.
+    A name wider than `width` [pixels] is shortened in its middle. `size` is the size of the font
+    [pixels]; `inks` are the colours of the name and of the line.
     """
     x, y = corner
     bold = _load_font(size, bold=True)
@@ -176,9 +178,10 @@ def draw_caption(
 def _draw_legend(
     page: PillowImage, draw: Any, box: tuple[int, int, int, int], size: int, inks: list[Any]
 ) -> None:
-    """Draw the scale of the false colours, in the empty place below the reference.
+    """Draw the scale of the false colours in the empty place below the reference.
 
-    `box` is (x, y, width, height), and `size` the size of the font, all in pixels.
+    `box` is (x, y, width, height), `size` the size of the font, all in pixels, and `inks` are the
+    colours of the title and of the text.
     """
     x, y, width, height = box
     font, small = _load_font(size), _load_font(round(0.85 * size))
@@ -186,7 +189,7 @@ def _draw_legend(
     draw.text((x, middle - 3 * size), "difference in colour ΔE", inks[0], font)
     draw.text((x, middle - round(1.6 * size)), "CIEDE2000; 1 is just seen", inks[1], small)
     bar = np.broadcast_to(np.linspace(0, LARGEST_DIFFERENCE, width), (size, width))
-    page.paste(to_tile(_false_colour(bar), 1), (x, middle))
+    page.paste(to_image(_to_false_colours(bar), 1), (x, middle))
     draw.rectangle((x, middle, x + width - 1, middle + size - 1), outline=(200, 200, 200))
     below = middle + round(1.35 * size)
     for place, anchor, label in (

@@ -1,9 +1,9 @@
-"""`Progressive`: pictures that become better pass by pass [Lesar 2018, chapter 6].
+"""`Progressive`: pictures that improve pass by pass [Lesar 2018, chapter 6].
 
-The three steps are named as in the thesis. *Generate* renders a pass, *integrate* adds it to the
-sums, whose mean is the picture, and *reset* discards all passes after a change of the scene.
+The names of the three steps are those of the thesis. *Generate* renders a pass, *integrate* adds it
+to the sums, whose mean is the picture, and *reset* discards all passes after a change of the scene.
 `tracing.py` repeats the first two until the pictures are good enough; an interactive program can do
-so as well.
+the same.
 """
 
 from collections.abc import Mapping
@@ -46,16 +46,16 @@ class Progressive:
         self.accumulated = dict.fromkeys(self.scenes, Accumulated())
 
     def generate(self, name: str, spp: int) -> NDArray[np.float32]:
-        """Render a scene's next pass alone, (height, width, 3), with `spp` samples per pixel.
+        """Render the next pass of a scene, (height, width, 3), with `spp` samples per pixel.
 
-        The pass does not count before it is integrated.
+        The pass is not in the picture until `integrate` adds it.
         """
         import mitsuba as mi
 
         number = self.accumulated[name].passes
         seed = np.random.SeedSequence(self.seed).generate_state(number + 1)[number]
         scene = self.scenes[name]
-        # mi.render would turn Ctrl-C into a RuntimeError; drjit.freeze makes this no faster
+        # mi.render would turn Ctrl-C into a RuntimeError, and drjit.freeze does not save time here
         with raise_first_cause():
             return to_rgb(scene.integrator().render(scene, seed=mi.UInt32(int(seed)), spp=spp))
 
@@ -64,14 +64,14 @@ class Progressive:
         return {name: a.picture for name, a in self.accumulated.items() if a.passes}
 
     def integrate(self, generated: Mapping[str, NDArray[Any]], spp: int) -> None:
-        """Add the pictures of a pass, which are those of all scenes by name."""
+        """Add a pass of all scenes, with its pictures by scene name, to the accumulated passes."""
         self.accumulated = {
             name: before.plus(generated[name], spp) for name, before in self.accumulated.items()
         }
 
 
 def to_rgb(image: Any) -> NDArray[np.float32]:
-    """Convert Mitsuba's image to an array (height, width, 3).
+    """Convert an image of Mitsuba to an array (height, width, 3).
 
     A single channel becomes grey, and alpha is dropped.
     """

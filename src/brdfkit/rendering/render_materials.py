@@ -1,7 +1,7 @@
 """`render`: path-traced pictures of materials, in the same scene and with the same samples.
 
 The first picture is the reference, usually of the measured material. Each pass renders every
-picture once, so that after Ctrl-C all pictures have equally many samples.
+picture once, so that after Ctrl-C all pictures have the same number of samples.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from brdfkit.rendering.scene_input.arguments import (
     Renderable,
     describe_materials,
     load_mitsuba,
-    to_list,
+    to_material_list,
 )
 from brdfkit.rendering.scene_input.loading import SIZE, load_scenes
-from brdfkit.rendering.tracing import Traced, trace
+from brdfkit.rendering.tracing import Traced, trace_scenes
 
-SPP = 256  # samples per pixel
-MOST_SPP = 16_384  # samples per pixel, where a noise floor is requested
+SPP = 256  # samples per pixel by default
+MOST_SPP = 16_384  # largest number of samples per pixel, if a noise floor is requested
 Scene: TypeAlias = Callable[[dict[str, Any], tuple[int, int]], dict[str, Any]]
 SceneLike: TypeAlias = str | Path | Scene
 Renderables: TypeAlias = Renderable | Iterable[Renderable] | Node | Callable[[Any], Any]
@@ -52,7 +52,7 @@ def render(
 ) -> Rendering:
     """Path-trace one or several materials in the same scene, with the same samples.
 
-    It runs in the current variant of Mitsuba; if none is set, in the best that works. Ctrl-C keeps
+    The current variant of Mitsuba is used or, if none is set, the best one that works. Ctrl-C keeps
     the passes that every picture has; before the first of them it raises KeyboardInterrupt.
     Renderings in several threads run one after the other.
 
@@ -121,13 +121,13 @@ def render(
     seed = to_whole_number("seed", seed, least=0)
     if file:
         return _render_scene_file(file, spp, seed, progress, noise_floor)
-    spp = _to_samples(spp, field.SPP if is_field else SPP, noise_floor)
+    spp = _to_sample_count(spp, field.SPP if is_field else SPP, noise_floor)
     size = None if size is None else to_size(size)
     if isinstance(materials, Node):
         return _render_field(materials, spp, size or field.SIZE, seed, progress, noise_floor)
-    subjects = to_list(materials)
+    subjects = to_material_list(materials)
     require_memory(size or SIZE, len(subjects))
-    load_mitsuba()  # sets a variant, on which the dictionaries depend
+    load_mitsuba()  # the BSDF dictionaries below depend on the variant that this sets
     described, parameters = describe_materials(subjects)
     where = scene, size, environment
     traced, mask = _load_and_trace(described, where, spp, seed, progress, noise_floor)
@@ -135,9 +135,9 @@ def render(
 
 
 def _find_scene_file(materials: object) -> Path | None:
-    """Return the scene file that is to be rendered, or None where there is none.
+    """Return the scene file among the things to render, or None if they are materials.
 
-    Raises `BrdfkitError` for a scene file among several things to render.
+    Raises `BrdfkitError` for a scene file together with something else.
     """
     several = materials if isinstance(materials, list | tuple) else [materials]
     paths = [Path(one) for one in several if isinstance(one, str | Path)]
@@ -155,17 +155,17 @@ def _render_scene_file(
     progress: PictureProgress | None,
     noise_floor: float | None,
 ) -> Rendering:
-    """Render a scene file of Mitsuba's."""
+    """Render a Mitsuba scene file with its own camera and integrator."""
     load_mitsuba()
     scene = load_scene_file(path)
     require_memory(scene.sensors()[0].film().size(), 1, path)
-    spp = _to_samples(spp, scene.sensors()[0].sampler().sample_count(), noise_floor)
-    traced = trace({path.stem: scene}, spp, seed, progress, noise_floor)
+    spp = _to_sample_count(spp, scene.sensors()[0].sampler().sample_count(), noise_floor)
+    traced = trace_scenes({path.stem: scene}, spp, seed, progress, noise_floor)
     return to_rendering(traced, seed, noise_floor)
 
 
 def to_size(size: int | tuple[int, int]) -> tuple[int, int]:
-    """Return (width, height); raise `BrdfkitError` unless both are whole numbers above 0."""
+    """Return (width, height) from a side or a pair; raise `BrdfkitError` for invalid sizes."""
     sides = (size, size) if isinstance(size, int | np.integer) else size
     try:
         width, height = (to_whole_number("size", side, least=1) for side in sides)
@@ -176,8 +176,12 @@ def to_size(size: int | tuple[int, int]) -> tuple[int, int]:
     return width, height
 
 
-def _to_samples(spp: int | None, default: int, noise_floor: float | None) -> int:
-    """Return the samples per pixel; with a `noise_floor` their largest number, 2 or more."""
+def _to_sample_count(spp: int | None, default: int, noise_floor: float | None) -> int:
+    """Return the number of samples per pixel, or its limit if a `noise_floor` is requested.
+
+    The `default` holds if the user gave none; the limit is at least 2, because one sample shows no
+    noise.
+    """
     if noise_floor is None:
         return to_whole_number("spp", default if spp is None else spp, least=1)
     return to_whole_number("spp", MOST_SPP if spp is None else spp, least=2)
@@ -190,7 +194,7 @@ def to_rendering(
     parameters: dict[str, dict[str, Any]] | None = None,
     mask: BoolArray | None = None,
 ) -> Rendering:
-    """Convert `Traced` pictures to a `Rendering`."""
+    """Convert `Traced` pictures to the `Rendering` that users receive."""
     return Rendering(
         traced.pictures,
         traced.spp,
@@ -214,10 +218,15 @@ def _render_field(
     progress: PictureProgress | None,
     noise_floor: float | None,
 ) -> Rendering:
-    """Render a distance field; its scene is freed before another thread renders."""
+    """Render a distance field.
+
+    As this is a function of its own, the scene is freed before another thread renders.
+    """
     require_memory(size, 1)
     load_mitsuba()
-    traced = trace({"field": field.load_field_scene(node, size)}, spp, seed, progress, noise_floor)
+    traced = trace_scenes(
+        {"field": field.load_field_scene(node, size)}, spp, seed, progress, noise_floor
+    )
     return to_rendering(traced, seed, noise_floor)
 
 
@@ -230,12 +239,13 @@ def _load_and_trace(
     progress: PictureProgress | None,
     noise_floor: float | None,
 ) -> tuple[Traced, BoolArray | None]:
-    """Trace materials, BSDF dictionaries by name; return the pictures and the material's mask.
+    """Path-trace `materials`, BSDF dictionaries by name; return the pictures and the mask.
 
-    `where` is (scene, size, environment). The scenes are freed when this function returns, before
-    another thread renders: a kernel of Mitsuba's calls the BSDFs of all scenes in the process, even
-    of a scene that another thread is about to free.
+    The mask is True in the pixels that show the material. `where` is (scene, size, environment).
+    The scenes are freed when this function returns, before another thread renders: a kernel of
+    Mitsuba calls the BSDFs of all scenes in the process, even of a scene that another thread is
+    about to free.
     """
     loaded, mask = load_scenes(materials, *where)
     require_memory(next(iter(loaded.values())).sensors()[0].film().size(), len(loaded))
-    return trace(loaded, spp, seed, progress, noise_floor, mask), mask
+    return trace_scenes(loaded, spp, seed, progress, noise_floor, mask), mask

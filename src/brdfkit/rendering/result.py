@@ -1,4 +1,4 @@
-"""`Rendering`, the result of `render`: the pictures, their differences, and their files."""
+"""`Rendering`, the result of `render`: pictures, differences, and the files that show them."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from brdfkit.images.errors import ImageErrors, compare_pictures
 from brdfkit.images.errors.noise import estimate_samples
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.images.tone_mapping import ToneMapping
-from brdfkit.rendering.montage import COLUMNS, TILE, draw_montage, picture_suffix, write_exr
+from brdfkit.rendering.montage import COLUMNS, TILE, draw_montage, find_picture_suffix, write_exr
 
-BILLION = 1e9  # samples per pixel; larger estimates are not printed
-WIDEST = 1100  # largest width of the pictures in a notebook [pixels]
+BILLION = 1e9  # larger estimates of the samples per pixel are printed as "more than a billion"
+WIDEST = 1100  # largest width of the montage in a notebook [pixels]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Rendering(Shown):
-    """Pictures of one scene with several materials; the first is the reference.
+    """Pictures of one scene with several materials, made by `render` and `preview`.
 
-    Made by `render` and `preview`.
+    The first picture is the reference, to which the others are compared.
 
     Attributes
     ----------
@@ -36,28 +36,30 @@ class Rendering(Shown):
     spp : int
         Samples per pixel that every picture has; fewer than `requested` after Ctrl-C.
     seconds : float
-        Wall-clock time.
+        Wall-clock time of the rendering.
     seed : int
         Seed of the samples.
     parameters : dict of str to dict
-        The material's parameters by the picture's name, where it has any.
+        Parameters of the materials that have any, by the picture's name.
     mask : ndarray of bool, shape (height, width), or None
-        Where the material shows; None for everywhere.
+        True in the pixels that show the material; None if all pixels count.
     requested : int or None
         Samples per pixel that were requested; with a noise floor, an estimate of the number that
-        reaches it.
+        is needed to reach it.
     other_seed : ndarray, shape (height, width, 3), or None
-        An estimate of the reference with another seed, which differs from it by the noise. None
-        with one sample per pixel.
+        An estimate of the reference picture as another seed would give it, which shows the noise.
+        None with one sample per pixel.
     requested_noise_floor : float or None
         The noise floor that was requested [dB].
     standard_error : ndarray, shape (height, width, 3), or None
-        The standard error of the reference's values, estimated from its passes; rough for a few
+        The standard error of the reference picture, estimated from its passes; inaccurate for few
         passes, and None for one.
     shadows : str
-        Whether pictures of `preview` show shadows, in words; "" for path-traced ones, which do.
+        Words on the shadows in pictures of `preview`, such as "no shadows"; "" for path-traced
+        pictures, which contain all shadows.
     tone_mapping : ToneMapping
-        The curve that shows the pictures; by default radiance 1 is white. The values do not change.
+        The curve with which PNG files and notebooks show the pictures; by default radiance 1 is
+        white. The values of the pictures do not change.
     """
 
     pictures: dict[str, np.ndarray] = field(repr=False)
@@ -75,21 +77,21 @@ class Rendering(Shown):
 
     @property
     def reference(self) -> str:
-        """Name of the picture that the others are compared to."""
+        """Name of the reference picture, to which the others are compared."""
         return next(iter(self.pictures))
 
     @property
     def differences(self) -> dict[str, np.ndarray]:
-        """Picture minus reference, (height, width, 3), by the name of every other picture."""
+        """Difference of every other picture from the reference, (height, width, 3), by name."""
         first = self.pictures[self.reference]
         return {n: p - first for n, p in self.pictures.items() if n != self.reference}
 
     def psnr(self) -> dict[str, float]:
-        """Peak signal-to-noise ratio [dB] to the reference, by the name of every other picture.
+        """Return the PSNR [dB], peak signal-to-noise ratio, of each other picture to the reference.
 
-        10·log10(peak² / mean squared difference), linear values, all channels, over the pixels
-        that show the material; peak is the 99.9th percentile of the reference there. inf for
-        equal pictures.
+        It is 10·log10(peak² / mean squared difference) of the linear values in the pixels that show
+        the material; the peak is the 99.9th percentile of the reference there. It is inf for equal
+        pictures.
 
         Examples
         --------
@@ -102,22 +104,22 @@ class Rendering(Shown):
     def noise_floor(self) -> float:
         """PSNR [dB] of the reference to itself with another seed; nan with one sample per pixel.
 
-        The pictures share their samples, so that they may be closer than this to each other.
+        The PSNR of other pictures may exceed it, because they have the same seed as the reference.
         """
         return nan if self.other_seed is None else self._psnr(self.other_seed)
 
     def _psnr(self, picture: np.ndarray) -> float:
-        """Return the PSNR [dB] of a picture to the reference, over the mask."""
+        """Return the PSNR [dB] of a picture to the reference, in the pixels of the mask."""
         return psnr(self.pictures[self.reference], picture, self.mask)
 
     def errors(self) -> ImageErrors:
-        """The other pictures compared to the reference by several metrics, and their noise floor.
+        """Compare every other picture with the reference by several metrics.
 
         Returns
         -------
         ImageErrors
             PSNR, ΔE2000, ΔE ITP and, with brdfkit[metrics] installed, HDR-FLIP and SSIM, over the
-            pixels that show the material; prints as a table.
+            pixels that show the material, and the noise floor of PSNR; prints as a table.
 
         Examples
         --------
@@ -128,11 +130,11 @@ class Rendering(Shown):
     def write(self, path: str | Path) -> None:
         """Write the pictures to a file.
 
-        The EXR has one named part a picture and one a difference ("difference: NAME"), each
-        with R, G, B float32 and, in its header, spp, seed, brdfkit (the version), parameters (JSON)
-        and noise_floor [dB]. A difference is picture minus reference, linear. "standard error:
-        NAME" is that of the reference. The PNG shows the pictures side by side, captioned, over
-        their differences in colour (CIEDE2000).
+        The EXR has a part for each picture, with the picture's name, a part "difference: NAME" for
+        each linear difference from the reference, and a part "standard error: NAME" for the
+        reference. Each part has R, G and B as float32 and, in its header, spp, seed, brdfkit (the
+        version), parameters (JSON) and noise_floor [dB]. The PNG shows the pictures side by side
+        with captions and, below them, their differences in colour (CIEDE2000).
 
         Parameters
         ----------
@@ -149,7 +151,7 @@ class Rendering(Shown):
         >>> render(["car_paint", "ward"]).write("paint.exr")    # doctest: +SKIP
         """
         path = Path(path)
-        suffix = picture_suffix(path)
+        suffix = find_picture_suffix(path)
         png = io.BytesIO()
         draw_montage(self).save(png, "PNG")
         if suffix == ".exr":
@@ -159,9 +161,9 @@ class Rendering(Shown):
             beside.write_bytes(png.getvalue())
 
     def tone_mapped(self, tone_mapping: ToneMapping | str) -> Rendering:
-        """Return the pictures as another curve shows them, in notebooks and PNG files.
+        """Return a copy that PNG files and notebooks show with another tone-mapping curve.
 
-        An EXR file and all errors and differences are of the radiance itself, as before.
+        EXR files, errors and differences do not change: they are computed from radiance.
 
         Parameters
         ----------
@@ -171,12 +173,12 @@ class Rendering(Shown):
         Returns
         -------
         Rendering
-            It shares the pictures.
+            A copy with this curve, which shares the pictures.
 
         Raises
         ------
         BrdfkitError
-            For the name of no curve.
+            For an unknown name of a curve.
 
         Examples
         --------
@@ -189,7 +191,7 @@ class Rendering(Shown):
 
     @property
     def captions(self) -> dict[str, str]:
-        """A short description of each picture, by its name: PSNR, noise, shadows and curve."""
+        """A short text on each picture, by name: PSNR, noise, shadows and tone-mapping curve."""
         floor = self.noise_floor
         noise = "" if isnan(floor) else "no noise" if floor == inf else f"noise {floor:.1f} dB"
         beside = f", {noise}" if noise else ""
@@ -204,14 +206,14 @@ class Rendering(Shown):
 
     @property
     def head(self) -> str:
-        """The size, samples per pixel and time of the rendering, in one line."""
+        """A line with the size, the samples per pixel and the time of the rendering."""
         height, width = self.pictures[self.reference].shape[:2]
         shadows = f", {self.shadows}" if self.shadows else ""
         return f"{width}×{height} pixels, {self.spp} spp, {self.seconds:.1f} s{shadows}"
 
     @property
     def shortfall(self) -> str:
-        """A sentence where the requested noise floor was not reached; otherwise an empty text."""
+        """A sentence on a requested noise floor that was not reached; otherwise ""."""
         floor, requested = self.noise_floor, self.requested_noise_floor
         if requested is None or not isfinite(floor) or floor >= requested:
             return ""
@@ -220,7 +222,7 @@ class Rendering(Shown):
         return f"The noise floor is {floor:.1f} dB; {requested:g} dB take {many} samples per pixel."
 
     def document(self) -> Document:
-        """Return the pictures, their PSNR to the reference, and a line on how they were made."""
+        """Return the montage of the pictures, the captions and a line on the rendering."""
         names = ", ".join(self.pictures)
         width = max(self.pictures[self.reference].shape[1], TILE)
         shown = min(len(self.pictures), COLUMNS) * width
@@ -233,7 +235,7 @@ class Rendering(Shown):
         return Document(self.head, (picture, Table(tuple(self.captions.items())), *short))
 
     def drawn(self) -> bytes:
-        """Draw the montage as a WebP on a transparent ground, small enough for a notebook."""
+        """Draw the montage as a WebP with a transparent ground, small enough for a notebook."""
         stream, page = io.BytesIO(), draw_montage(self, on_any_ground=True)
         page.thumbnail((WIDEST, 4 * WIDEST))
         page.save(stream, "WEBP", quality=90)

@@ -1,4 +1,4 @@
-"""Path-traces several scenes together: each pass renders every picture once."""
+"""Path-traces several scenes together, in passes that render every picture once."""
 
 from __future__ import annotations
 
@@ -20,18 +20,19 @@ from brdfkit.images.errors.noise import Accumulated, Halves, estimate_samples
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.rendering.progressive import Progressive
 
-# Samples per pixel in one pass, at most; progress is reported after each. A power of two, so that a
-# block of one thread holds all samples of a pixel: see `brdfkit.reporting.pictures.pictures`
+# Largest number of samples per pixel in one pass. It is a power of two, so that one thread renders
+# all samples of a pixel: see `brdfkit.reporting.pictures.pictures`
 PASS = 16
-RAYS = 2**22  # camera rays in one pass, at most; bounds the memory, and how long Ctrl-C waits
+RAYS = 2**22  # largest number of camera rays in a pass, which limits memory and Ctrl-C's delay
 
 
 @dataclass(frozen=True)
 class Traced:
-    """The result of `trace`: the pictures by name, and how they were made.
+    """The result of `trace_scenes`: the pictures by name, and how they were rendered.
 
-    `first` has the accumulated passes of the first picture, the reference. `spp` and `requested`
-    are the samples per pixel that were reached and requested. `seconds` is the wall-clock time.
+    `first`: the accumulated passes of the first picture, which is the reference.
+    `spp`, `requested`: numbers of samples per pixel that were reached and requested.
+    `seconds`: wall-clock time of the rendering.
     """
 
     pictures: dict[str, np.ndarray]
@@ -41,7 +42,7 @@ class Traced:
     seconds: float
 
 
-def trace(
+def trace_scenes(
     loaded: Mapping[str, MitsubaObject],
     spp: int,
     seed: int,
@@ -53,14 +54,15 @@ def trace(
 ) -> Traced:
     """Path-trace scenes, given by name, with `spp` samples per pixel; the first is the reference.
 
-    Each pass renders every picture once, with at most `most` samples per pixel, by default PASS.
-    From two samples on there are at least two passes, which tell the noise. With a `noise_floor`
-    [dB], measured over the `mask`, the passes end as soon as it is reached; with a `limit` [s],
-    they end after the pass in which the time is over. `spp` is then the largest number of samples.
+    Each pass renders every picture once, with at most `most` samples per pixel, by default PASS. If
+    `spp` is at least 2, there are at least two passes, from which the noise is estimated. With a
+    `noise_floor` [dB], measured over the `mask`, the passes end as soon as it is reached; with a
+    `limit` [s], they end after the pass in which this time is over. Then `spp` is the largest
+    number of samples.
 
-    Ctrl-C keeps the passes that all pictures have, and is raised if there is none. `progress` is
-    called with (done, total) after each picture of a pass. If it has a parameter `pictures`, it
-    also gets a function that returns the pictures so far.
+    After Ctrl-C the pictures contain the passes that all of them have; if there is none, it is
+    raised. `progress` is called with (done, total) after each picture of a pass. If it has a
+    parameter `pictures`, it also receives a function that returns the pictures so far.
     """
     if seed >= 2**31:
         raise BrdfkitError(f"The seed {seed} is out of bounds; give one from 0 to 2³¹ - 1.")
@@ -70,7 +72,7 @@ def trace(
         divide_into_passes(spp, max(1, min(most or PASS, RAYS // pixels, (spp + 1) // 2)))
     )
     growing, reference = Progressive(loaded, seed), next(iter(loaded))
-    expected, keywords = len(passes), _progress_keywords(progress, growing)
+    expected, keywords = len(passes), _find_progress_arguments(progress, growing)
     try:
         for number, count in enumerate(passes):
             generated: dict[str, NDArray[np.float32]] = {}
@@ -80,8 +82,12 @@ def trace(
                     growing.integrate(generated, count)
                     halves = growing.accumulated[reference].halves
                     expected = min(
-                        _passes_needed(passes, number + 1, halves, noise_floor, mask),
-                        _passes_within(limit, time.perf_counter() - start, number + 1),
+                        _estimate_passes_to_noise_floor(
+                            passes, number + 1, halves, noise_floor, mask
+                        ),
+                        _estimate_passes_within_time(
+                            limit, time.perf_counter() - start, number + 1
+                        ),
                     )
                 if progress:
                     done = number * len(loaded) + len(generated)
@@ -97,51 +103,52 @@ def trace(
     return Traced(pictures, first, first.spp, requested, time.perf_counter() - start)
 
 
-def _progress_keywords(
+def _find_progress_arguments(
     progress: Callable[..., object] | None, growing: Progressive
 ) -> dict[str, Callable[[], Any]]:
-    """Return the keyword arguments of `progress`: `pictures`, if it has such a parameter.
+    """Return further keyword arguments for `progress`: `pictures`, if it has such a parameter.
 
     The argument is a function, so that the pictures are computed only when it is called.
     """
-    with suppress(TypeError, ValueError):  # raised for objects without a signature
+    with suppress(TypeError, ValueError):  # some callables, such as built-ins, have no signature
         if progress and "pictures" in inspect.signature(progress).parameters:
             return {"pictures": growing.pictures}
     return {}
 
 
-def _passes_needed(
+def _estimate_passes_to_noise_floor(
     passes: Sequence[int],
     done: int,
     halves: Halves,
     noise_floor: float | None,
     mask: BoolArray | None,
 ) -> int:
-    """Estimate how many of the `passes` reach the noise floor [dB], at least the `done` ones.
+    """Estimate how many passes reach the noise floor [dB]; `done` passes are finished.
 
-    `passes` are their samples per pixel. `halves` are two pictures from half of the passes each.
+    `passes` are the samples per pixel of each pass, `halves` two pictures from half of the finished
+    passes each, and `mask` the pixels that count.
     """
     if noise_floor is None or done == 1:
         return len(passes)
     floor = psnr(halves.picture, halves.other_seed, mask)
-    if not floor < noise_floor:  # the floor is nan where no pixel shows the material
+    if not floor < noise_floor:  # also if the floor is nan, because no pixel shows the material
         return done
     samples = estimate_samples(noise_floor, floor, sum(halves.spp))
     needed = np.searchsorted(np.cumsum(passes), samples) + 1
     return int(np.clip(needed, done + 1, len(passes)))
 
 
-def _passes_within(limit: float | None, seconds: float, done: int) -> int:
-    """Estimate how many passes begin within a time `limit` [s]; the `done` ones took `seconds`."""
+def _estimate_passes_within_time(limit: float | None, seconds: float, done: int) -> int:
+    """Estimate how many passes begin before the `limit` [s]; `done` passes took `seconds`."""
     if limit is None:
         return sys.maxsize
     return done if seconds >= limit else max(done + 1, int(limit / seconds * done))
 
 
 def divide_into_passes(spp: int, largest: int) -> Iterator[int]:
-    """Divide `spp` samples per pixel into passes of at most `largest`; yield the count of each.
+    """Divide `spp` samples per pixel into passes of at most `largest` samples; yield their numbers.
 
-    Each count is a product of two nearly equal integers, which stratifies well.
+    Each number is a product of two nearly equal integers, so that stratified samplers work well.
 
     >>> list(divide_into_passes(64, 32))
     [30, 30, 4]

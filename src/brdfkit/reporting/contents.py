@@ -16,7 +16,7 @@ from brdfkit.fitting.ranking.result import COLUMNS
 from brdfkit.materials.auditing import audit
 from brdfkit.materials.measured import Measured
 from brdfkit.regression import Fit, losses
-from brdfkit.rendering.montage import colour_differences
+from brdfkit.rendering.montage import compute_colour_differences
 from brdfkit.rendering.result import Rendering
 from brdfkit.reporting.charts.albedos import draw_albedo, is_extrapolated
 from brdfkit.reporting.charts.lobes import draw_lobes
@@ -88,7 +88,7 @@ def collect_contents(
     loss = choose_ranking_loss(fits)
     errors = compute_fit_errors(material, fits, loss)
     picture_errors = compute_picture_errors(rendering)
-    differences = [*colour_differences(rendering).values()]
+    differences = [*compute_colour_differences(rendering).values()]
     pictures = [*rendering.pictures.values()]
 
     # The fits are sorted from here on: the first is the recommended one

@@ -53,7 +53,8 @@ def samplers(
     other work on the machine still disturbs them. Compensated samplers suit only path tracing,
     which also samples BSDFs. After Ctrl-C, the finished rounds are kept.
     """
-    from brdfkit.rendering.map_sampling import COLUMNS, compare_samplers
+    from brdfkit.rendering.map_sampling import compare_samplers
+    from brdfkit.rendering.sampler_comparison import COLUMNS
 
     with console.progress("compare samplers") as progress:
         comparison = compare_samplers(

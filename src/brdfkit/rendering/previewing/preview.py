@@ -35,7 +35,7 @@ from brdfkit.rendering.scene_input.arguments import (
     collect_parameters,
     load_mitsuba,
     name_materials,
-    to_list,
+    to_material_list,
 )
 from brdfkit.rendering.scene_input.environment import describe_environment, replace_lower_half
 from brdfkit.rendering.scene_input.loading import find_suffix
@@ -102,7 +102,10 @@ def preview(
     >>> preview(["car_paint", "ggx"]).write("paint.png")    # doctest: +SKIP
     >>> preview("ward", environment="probe.exr", scene="teapot.obj", size=512)    # doctest: +SKIP
     """
-    size, subjects = to_size(size), [read_cached(subject) for subject in to_list(materials)]
+    size, subjects = (
+        to_size(size),
+        [read_cached(subject) for subject in to_material_list(materials)],
+    )
     spp = to_whole_number("spp", spp, least=1)
     require_memory(size, len(subjects))
     load_mitsuba()  # sets a variant, on which the dictionaries depend

@@ -22,7 +22,7 @@ def load_mitsuba() -> MitsubaModule:
     return mi
 
 
-def to_list(materials: Any) -> list[Renderable]:
+def to_material_list(materials: Any) -> list[Renderable]:
     """Return one material or several as a list; raise `BrdfkitError` if there is none."""
     is_single = (
         _is_pair(materials)

@@ -18,7 +18,7 @@ from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.render_materials import PictureProgress, to_rendering, to_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input.arguments import load_mitsuba
-from brdfkit.rendering.tracing import Traced, trace
+from brdfkit.rendering.tracing import Traced, trace_scenes
 from brdfkit.rendering.volumes import defaults
 from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, describe_scene
 from brdfkit.volumes import TransferFunction, Volume
@@ -157,15 +157,16 @@ def render_volume(
 
 @in_turn
 def _load_and_trace(described: tuple[Any, ...], **settings: Any) -> Traced:
-    """Trace the scene that `describe_scene` makes from `described`, with `settings` of `trace`.
+    """Path-trace the scene that `describe_scene` makes from the arguments `described`.
 
-    The scene is freed when this function returns, before another thread renders.
+    `settings` are further arguments of `trace_scenes`. The scene is freed when this function
+    returns, before another thread renders.
     """
     import mitsuba as mi
 
     volume, *_ = described
     loaded = load_by_mitsuba(mi.load_dict, describe_scene(*described), volume.name)
-    return trace({volume.name: loaded}, **settings)
+    return trace_scenes({volume.name: loaded}, **settings)
 
 
 def _is_plain(value: object) -> bool:
