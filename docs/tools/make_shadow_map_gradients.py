@@ -72,7 +72,7 @@ class Case:
         import mitsuba as mi
 
         shadow = LightShadow(self.scene, self.placement, **{"resolution": RESOLUTION} | technique)
-        return shadow.lit_share(self.p, mi.Normal3f(0, 0, 1))
+        return shadow.visibility(self.p, mi.Normal3f(0, 0, 1))
 
     def by_map(self, **technique):
         """The derivatives of what arrives by a technique, as Dr.Jit finds them."""

@@ -25,7 +25,7 @@ from brdfkit.core.array_types import FloatArray, MitsubaModule, MitsubaObject
 from brdfkit.mitsuba_bridge.check_scenes import make_shadow_scene
 from brdfkit.mitsuba_bridge.direct_light import derive_shadow_integrator
 from brdfkit.mitsuba_bridge.properties.declarations import declare_float, declare_int
-from brdfkit.shadows.hybrid import hybrid_shadow
+from brdfkit.shadows.hybrid import make_hybrid_shadow
 
 PARAMETERS = {
     "resolution": declare_int(256, (2, 4096), "texels along a side of each map"),
@@ -41,7 +41,9 @@ def define(mi: MitsubaModule) -> type:
         def prepare_shadows(
             self, scene: MitsubaObject, sensor: MitsubaObject
         ) -> Callable[[MitsubaObject], Any]:
-            return partial(hybrid_shadow, scene, sensor, resolution=self.resolution, jump=self.jump)
+            return partial(
+                make_hybrid_shadow, scene, sensor, resolution=self.resolution, jump=self.jump
+            )
 
     return HybridShadows
 

@@ -43,7 +43,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import (
 from brdfkit.shadows.volumes.casters import CASTERS
 from brdfkit.shadows.volumes.light_volumes import FAR_PLANES, METHODS, LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
-from brdfkit.shadows.volumes.projected_faces import to_pinhole
+from brdfkit.shadows.volumes.projected_faces import make_pinhole_camera
 from brdfkit.shadows.volumes.silhouettes import SILHOUETTES
 from brdfkit.shadows.volumes.volume import BACK_CAPS
 
@@ -76,7 +76,7 @@ def define(mi: MitsubaModule) -> type:
             return LightVolumes(
                 meshes,
                 Light.from_emitter(emitter),
-                to_pinhole(sensor),
+                make_pinhole_camera(sensor),
                 self.method,
                 self.far_plane,
                 max(sensor.film().size()),

@@ -61,7 +61,7 @@ def test_percentage_closer_is_the_mean_of_its_comparisons(width):
         t = np.floor(v - (width - 1) / 2) + j + 0.5
         expected += depth + a * (s - u) + b * (t - v) <= seen(depths, s, t)
     lookup = percentage_closer.Lookup(mi.TensorXf(depths), width)
-    found = np.array(lookup.lit_share(at(u, v, depth, a, b)))
+    found = np.array(lookup.visibility(at(u, v, depth, a, b)))
     assert np.abs(found - expected / width**2).max() < 1e-5
 
 
@@ -75,15 +75,15 @@ def test_bilinear_percentage_closer_of_three_texels():
     rows = mi.TensorXf(B.transpose(1, 0, 2).reshape(3, 600).astype(np.float32))
     wide = dr.concat([rows, dr.zeros(mi.TensorXf, (597, 600))])  # a square map, three rows used
     lookup = bilinear_percentage_closer.Lookup(wide, 3)
-    found = np.array(lookup.lit_share(at(3 * np.arange(200) + 1 + fx, 1 + fy, 0.5)))
+    found = np.array(lookup.visibility(at(3 * np.arange(200) + 1 + fx, 1 + fy, 0.5)))
     assert np.abs(found - D.mean(axis=(1, 2))).max() < 1e-4  # places are rounded at 600 texels
 
 
 @pytest.mark.quick
 def test_bilinear_weights():
     lookup = bilinear_percentage_closer.Lookup(mi.TensorXf(random_depths()), 3)
-    assert lookup.weights(0.0) == [0.5, 0.5, 0.0]
-    assert np.allclose(lookup.weights(0.3), [0.35, 0.5, 0.15])
+    assert lookup.window_weights(0.0) == [0.5, 0.5, 0.0]
+    assert np.allclose(lookup.window_weights(0.3), [0.35, 0.5, 0.15])
 
 
 def test_poisson_disk():
@@ -99,7 +99,7 @@ def test_poisson_disk():
         [seen(depths, u + radius * x, v + radius * y) >= 0.1 for x, y in taps], axis=0
     )
     lookup = poisson_disk.Lookup(mi.TensorXf(depths), 2.5, 0.7)
-    wrong = np.abs(np.array(lookup.lit_share(at(u, v, 0.1))) - expected) > 1e-5
+    wrong = np.abs(np.array(lookup.visibility(at(u, v, 0.1))) - expected) > 1e-5
     assert wrong.sum() <= 1  # a tap may be rounded to the next texel
 
 
@@ -127,9 +127,9 @@ def test_of_one_plane_above_another_moments_are_percentage_closer(lookup, settin
     depths = mi.TensorXf(np.where(near, -0.3, 0.4).astype(np.float32))
     u, v = (np.mgrid[3:29, 3:29] + 0.5).reshape(2, -1)
     point = at(u, v, 0.4)
-    expected = np.array(percentage_closer.Lookup(depths, 5).lit_share(point))
+    expected = np.array(percentage_closer.Lookup(depths, 5).visibility(point))
     found = np.array(
-        lookup(MovingDepths(depths), blur=2, bleeding=0.0, **settings).lit_share(point)
+        lookup(MovingDepths(depths), blur=2, bleeding=0.0, **settings).visibility(point)
     )
     assert np.abs(found - expected).max() < tolerance
 
@@ -173,12 +173,12 @@ def test_bleeding_is_cut_off():
     """Two occluders behind each other: the farther one's shadow, dark by comparisons."""
     depths = MovingDepths(mi.TensorXf(np.tile(np.float32([-0.9, 0.3]), (8, 4))))
     how = {"blur": 1, "least_deviation": 0.0}
-    leaks = variance.Lookup(depths, bleeding=0.0, **how).lit_share(at(4.0, 4.5, 0.4))[0]
+    leaks = variance.Lookup(depths, bleeding=0.0, **how).visibility(at(4.0, 4.5, 0.4))[0]
     assert 0.2 < leaks < 0.8
     assert (
-        variance.Lookup(depths, bleeding=leaks + 0.01, **how).lit_share(at(4.0, 4.5, 0.4))[0] == 0
+        variance.Lookup(depths, bleeding=leaks + 0.01, **how).visibility(at(4.0, 4.5, 0.4))[0] == 0
     )
-    assert variance.Lookup(depths, bleeding=0.9, **how).lit_share(at(4.0, 4.5, -0.9))[0] == 1
+    assert variance.Lookup(depths, bleeding=0.9, **how).visibility(at(4.0, 4.5, -0.9))[0] == 1
 
 
 # In scenes
@@ -191,7 +191,7 @@ def test_the_penumbra_of_a_half_plane(kind):
     shadow = LightShadow(
         scene, placement, filter="percentage_closer_soft", light_size=light_size, taps=64
     )
-    found = np.array(shadow.lit_share(mi.Point3f(mi.Float(x * w), 0, 0), mi.Normal3f(*n)))
+    found = np.array(shadow.visibility(mi.Point3f(mi.Float(x * w), 0, 0), mi.Normal3f(*n)))
     s = (2 * x).clip(-1, 1)
     disk = 0.5 + (np.arcsin(s) + s * np.sqrt(1 - s * s)) / np.pi
     assert np.abs(found - disk).max() < 0.04
@@ -202,7 +202,7 @@ def test_a_projective_texture_shadows_no_object_by_itself():
     scene = objects_on_a_ground("directional")
     si, facing, lit = seen_from(scene)
     shadow = LightShadow(scene, placement_of(scene), filter="projective_texture", resolution=256)
-    found = np.array(shadow.lit_share(si.p, si.n)) > 0.5
+    found = np.array(shadow.visibility(si.p, si.n)) > 0.5
     ground = np.array(si.p.z) < 1e-3
     away = np.array(si.is_valid()) & ~ground
     assert found[away & ~facing].mean() > 0.97  # the dark sides of the objects themselves
@@ -224,7 +224,7 @@ def test_the_automatic_bias_leaves_no_acne_in_grazing_light(name):
     scene = objects_on_a_ground([1, -0.5, -0.12])
     si, facing, lit, gap = seen_from(scene, with_gap=True)
     shadow = LightShadow(scene, placement_of(scene), filter=name, resolution=512)
-    found = np.array(shadow.lit_share(si.p, si.n))
+    found = np.array(shadow.visibility(si.p, si.n))
     picture = [a.reshape(128, 128) for a in (found, lit, facing)]
     assert acne(*picture, margin=6) < 0.003
     assert peter_panning(*picture, gap.reshape(128, 128), contact=3.0) < 0.05
@@ -246,7 +246,7 @@ def test_what_a_wrong_bias_does(bias, worse):
     def errors(bias):
         shadow = LightShadow(scene, placement_of(scene), resolution=256, bias=bias)
         picture = [
-            a.reshape(128, 128) for a in (np.array(shadow.lit_share(si.p, si.n)), lit, facing)
+            a.reshape(128, 128) for a in (np.array(shadow.visibility(si.p, si.n)), lit, facing)
         ]
         panning = peter_panning(*picture, gap.reshape(128, 128), contact=0.6)
         return {"acne": acne(*picture, margin=4), "panning": panning}
@@ -272,7 +272,7 @@ def test_derivatives_know_of_edges_that_move():
         parameters["cube.vertex_positions"] = dr.ravel(moved)
         parameters.update()
         shadow = LightShadow(scene, placement, filter="moment", resolution=512)
-        return dr.sum(shadow.lit_share(p, mi.Normal3f(0, 0, 1)) * weight)
+        return dr.sum(shadow.visibility(p, mi.Normal3f(0, 0, 1)) * weight)
 
     way = mi.Float(0)
     dr.enable_grad(way)

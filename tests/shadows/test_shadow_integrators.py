@@ -113,7 +113,7 @@ def test_a_spot_too_wide_for_one_map_is_right_or_refused(angle):
     for how in ({"integrator": "shadow_map", "partition": "cube"}, {"integrator": "shadow_volume"}):
         assert np.abs(picture(of, **how) - exact).sum() / exact.sum() < 0.005
     for integrator in ("shadow_map", "hybrid_shadow"):
-        with pytest.raises(BrdfkitError, match="one map cannot look all around"):
+        with pytest.raises(BrdfkitError, match="one shadow map cannot look all around"):
             picture(of, integrator)
     outside = scene([spot([-4, 2, 8], [0, 0, 0], angle)])
     exact = np.array(mi.load_dict(RAYS).render(outside, spp=4))
@@ -196,14 +196,14 @@ def compare(of, **how):
 
 def test_ctrl_c_within_a_look_up_keeps_what_is_finished(monkeypatch):
     """There Dr.Jit raises its own error in place of KeyboardInterrupt."""
-    finished, lit = [], ShadowMap.lit_share
+    finished, lit = [], ShadowMap.visibility
 
     def interrupted(*arguments):
         if finished[-1] == 1:
             raise KeyboardInterrupt
         return lit(*arguments)
 
-    monkeypatch.setattr(ShadowMap, "lit_share", interrupted)
+    monkeypatch.setattr(ShadowMap, "visibility", interrupted)
     of, how = scene([light("point")]), {"projections": ["focused", "uniform"]}
     found = compare(of, **how, progress=lambda done, total: finished.append(done))
     assert [*found.scores] == ["focused"]
@@ -275,7 +275,7 @@ def test_a_bad_scene_is_one_sentence():
     lens = {**camera(), "type": "orthographic"}
     lens.pop("fov")
     for of, sentence in (
-        (bare, "no scene yet; load it"),
+        (bare, "not a scene; load it"),
         (mi.load_dict(bare), "no camera"),
         (scene([]), "no light"),
         (scene([{"type": "constant"}]), "no single place or direction"),

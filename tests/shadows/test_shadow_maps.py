@@ -23,7 +23,7 @@ def test_the_error_falls_with_the_resolution(kind, projection):
 
     def wrong(resolution):
         shadow = LightShadow(scene, placement, projection, resolution=resolution)
-        return ((np.array(shadow.lit_share(si.p, si.n)) != lit) & facing).sum() / facing.sum()
+        return ((np.array(shadow.visibility(si.p, si.n)) != lit) & facing).sum() / facing.sum()
 
     coarse, fine = wrong(64), wrong(1024)
     assert coarse < 0.02
@@ -39,7 +39,7 @@ def test_linear_depth_has_the_shadows_of_projected_depth(kind):
         LightShadow(scene, placement, "trapezoidal", resolution=256, depth=depth)
         for depth in DEPTHS
     )
-    differ = np.array(projected.lit_share(si.p, si.n) != linear.lit_share(si.p, si.n)) & facing
+    differ = np.array(projected.visibility(si.p, si.n) != linear.visibility(si.p, si.n)) & facing
     assert differ.sum() / facing.sum() < 1e-3
 
 
@@ -62,7 +62,7 @@ def test_the_error_of_a_filter_falls_with_the_resolution(kind, filter):
 
     def wrong(resolution):
         shadow = LightShadow(scene, placement_of(scene), filter=filter, resolution=resolution)
-        return (np.abs(np.array(shadow.lit_share(si.p, si.n)) - lit) * facing).sum() / facing.sum()
+        return (np.abs(np.array(shadow.visibility(si.p, si.n)) - lit) * facing).sum() / facing.sum()
 
     coarse, fine = wrong(64), wrong(512)
     assert coarse < 0.08
@@ -73,7 +73,7 @@ def test_a_light_among_the_objects_is_one_sentence():
     scene = objects_on_a_ground("point")
     placement = placement_of(scene)
     placement.light.point[:3] = [2, 2, 1]
-    with pytest.raises(BrdfkitError, match="one map cannot look all around"):
+    with pytest.raises(BrdfkitError, match="one shadow map cannot look all around"):
         LightShadow(scene, placement)
 
 

@@ -56,7 +56,7 @@ def wrong(scene, resolution, **technique):
     """The share of the picture where a technique's shadow is not that of rays."""
     scene, placement, si, facing, lit = viewed(scene)
     shadow = LightShadow(scene, placement, resolution=resolution, **technique)
-    return ((np.array(shadow.lit_share(si.p, si.n)) != lit) & facing).sum() / facing.sum()
+    return ((np.array(shadow.visibility(si.p, si.n)) != lit) & facing).sum() / facing.sum()
 
 
 @pytest.mark.quick
@@ -74,12 +74,12 @@ def test_planes_are_those_of_the_thesis():
 def every_point_has_a_texel(shadow, si):
     """Whether each point has a part of the `LightShadow`, and is on its map."""
     part, seen = (
-        np.array(shadow.part_of(si.p) + dr.zeros(mi.UInt32, SIZE**2)),
+        np.array(shadow.find_part(si.p) + dr.zeros(mi.UInt32, SIZE**2)),
         np.array(si.is_valid()),
     )
     found = (part[seen] < len(shadow.maps)).all()
     for number, its_map in enumerate(shadow.maps):
-        places = np.array(mi.Point3f(*its_map.projection.to_map(*si.p)))[:2]
+        places = np.array(mi.Point3f(*its_map.projection.project_to_map(*si.p)))[:2]
         found &= (np.abs(places[:, seen & (part == number)]) <= 1 + 1e-4).all()
     return found
 
@@ -91,7 +91,7 @@ def test_every_point_seen_is_on_the_map_of_one_part(kind, partition, projection)
     scene, placement, si, facing, lit = viewed(objects(kind))
     shadow = LightShadow(scene, placement, projection, partition=partition, resolution=128)
     assert every_point_has_a_texel(shadow, si)
-    assert ((np.array(shadow.lit_share(si.p, si.n)) != lit) & facing).sum() / facing.sum() < 0.012
+    assert ((np.array(shadow.visibility(si.p, si.n)) != lit) & facing).sum() / facing.sum() < 0.012
 
 
 ANY = [name for name in FILES["partition"] if name not in (*ONLY, "whole")]
@@ -108,7 +108,7 @@ def test_every_projection_may_be_parted(projection, partition):
         shadow = LightShadow(scene, placement, projection, **parted)
         assert every_point_has_a_texel(shadow, si)
         wrong.append(
-            ((np.array(shadow.lit_share(si.p, si.n)) != lit) & facing).sum() / facing.sum()
+            ((np.array(shadow.visibility(si.p, si.n)) != lit) & facing).sum() / facing.sum()
         )
     assert wrong[1] < max(0.4 * wrong[0], 0.002)
 
@@ -140,7 +140,9 @@ def test_cascades_keep_their_texels_as_the_camera_moves_and_turns():
     camera = replace(placement.camera, slope_y=moved.camera.slope_y)
     for near, far in ((0, 4), (4, 11)):
         before, after = (
-            snap_projection(replace(moved, camera=c), near, far, resolution).to_map(*points)[:2]
+            snap_projection(replace(moved, camera=c), near, far, resolution).project_to_map(
+                *points
+            )[:2]
             for c in (camera, moved.camera)
         )
         steps = (np.array(after) - before) * resolution / 2
@@ -164,14 +166,14 @@ def test_a_light_among_the_objects_has_a_cube():
     si, facing, lit = seen_from(scene, SIZE)
     shadow = LightShadow(scene, placement, partition="cube", resolution=512)
     assert len(shadow.maps) >= 5
-    assert ((np.array(shadow.lit_share(si.p, si.n)) != lit) & facing).sum() / facing.sum() < 0.005
+    assert ((np.array(shadow.visibility(si.p, si.n)) != lit) & facing).sum() / facing.sum() < 0.005
     assert (~lit & facing).sum() > 500
 
 
 @pytest.mark.parametrize(("partition", "kind"), UNFIT)
 def test_lights_that_a_partition_cannot_have_are_one_sentence(partition, kind):
     scene, placement, *_ = viewed(objects(kind))
-    with pytest.raises(BrdfkitError, match=r"of directional lights|around a light at a place"):
+    with pytest.raises(BrdfkitError, match=r"need a directional light|surrounds a point"):
         LightShadow(scene, placement, partition=partition)
 
 
@@ -179,7 +181,7 @@ def test_tiles_share_the_texels_so_that_the_least_is_wrong():
     """r ∝ w^(1/3) has the least Σ w / r: less than any other with as many texels."""
     random = np.random.default_rng(3)
     weights = random.uniform(0, 5, (4, 4)) ** 3
-    sizes = tiled.share_texels(weights, 4096)
+    sizes = tiled.distribute_texels(weights, 4096)
     assert (sizes**2).sum() == pytest.approx(4096**2, rel=0.01)
     for _ in range(20):
         other = sizes * random.uniform(0.9, 1.1, (4, 4))
@@ -189,7 +191,7 @@ def test_tiles_share_the_texels_so_that_the_least_is_wrong():
 
 def test_a_tree_is_finest_where_the_weights_are():
     places = np.array([[0.3, 0.7], [0.31, 0.7], [-0.9, -0.9]])
-    leaves = adaptive.grow_tree(places, np.array([5.0, 5, 1]), budget=13)
+    leaves = adaptive.grow_quadtree(places, np.array([5.0, 5, 1]), budget=13)
     table = adaptive.make_leaf_table(leaves)
     level, row, column = leaves[table[int(0.85 * len(table)), int(0.65 * len(table))]]
     assert (level, row, column) == (4, int(0.85 * 16), int(0.65 * 16))
@@ -204,10 +206,10 @@ def test_what_the_parts_hold_has_derivatives():
     held = [mi.Float(1 + i) for i, _ in enumerate(shadow.maps)]
     dr.enable_grad(held)
     for its_map, number in zip(shadow.maps, held, strict=True):
-        its_map.lit_share = lambda p, n, active, number=number: p.x * number
+        its_map.visibility = lambda p, n, active, number=number: p.x * number
     seen = si.is_valid()
-    dr.backward(dr.sum(dr.select(seen, shadow.lit_share(si.p, si.n, seen), 0)))
-    part = np.array(shadow.part_of(si.p))
+    dr.backward(dr.sum(dr.select(seen, shadow.visibility(si.p, si.n, seen), 0)))
+    part = np.array(shadow.find_part(si.p))
     for i, number in enumerate(held):
         its_own = np.array(si.p.x)[np.array(seen) & (part == i)]
         assert its_own.size > 0

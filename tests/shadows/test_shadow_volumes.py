@@ -11,14 +11,14 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.comparison.exact_shadow import LitView
-from brdfkit.shadows.hybrid import hybrid_shadow
+from brdfkit.shadows.hybrid import make_hybrid_shadow
 from brdfkit.shadows.volumes.casters import CASTERS
 from brdfkit.shadows.volumes.light_volumes import METHODS, LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
 from brdfkit.shadows.volumes.projected_faces import picture_matrix, project_faces
 from brdfkit.shadows.volumes.silhouettes import SILHOUETTES
 from brdfkit.shadows.volumes.stencil import Stencil
-from brdfkit.shadows.volumes.volume import BACK_CAPS, Faces, extrude, make_shadow_volume
+from brdfkit.shadows.volumes.volume import BACK_CAPS, Faces, extrude_points, make_shadow_volume
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
 SIZE = 96
@@ -126,7 +126,7 @@ def wrong(scene, **how):
     the light is on the side of the surface that is seen."""
     si, lit, sides = shaded(scene)
     counted = sides & ~border(scene, lit)
-    found = np.array(volumes_of(scene, **how).lit_share(si.p, si.n)) == 1
+    found = np.array(volumes_of(scene, **how).visibility(si.p, si.n)) == 1
     return ((found != lit) & counted).sum() / counted.sum()
 
 
@@ -141,7 +141,7 @@ def test_no_pixel_differs_from_shadow_rays(shapes, kind):
     within = ~border(scene, lit)
     assert 0.03 < lit[sides & within].mean() < 0.97
     for method in METHODS:
-        found = np.array(volumes_of(scene, method=method).lit_share(si.p, si.n)) == 1
+        found = np.array(volumes_of(scene, method=method).visibility(si.p, si.n)) == 1
         # depth_pass has no caps: not for what is seen from the side without light
         asked = sides & within if method == "depth_pass" else np.array(si.is_valid()) & within
         assert not np.any((found != lit)[asked]), method
@@ -170,10 +170,10 @@ def test_the_scale_of_the_world_changes_nothing(factor):
     seen = LitView.from_sensor(scene, sensor, emitter, (SIZE, SIZE))
     assert not np.any((seen.exact != lit)[asked])
     for method in METHODS:
-        found = np.array(volumes_of(scene, method=method).lit_share(seen.si.p, seen.si.n)) == 1
+        found = np.array(volumes_of(scene, method=method).visibility(seen.si.p, seen.si.n)) == 1
         assert not np.any((found != lit)[asked]), method
-    volumes = hybrid_shadow(scene, sensor, emitter, resolution=256, jump=8)
-    found = np.array(volumes.lit_share(seen.si.p, seen.si.n)) == 1
+    volumes = make_hybrid_shadow(scene, sensor, emitter, resolution=256, jump=8)
+    found = np.array(volumes.visibility(seen.si.p, seen.si.n)) == 1
     assert (found != lit)[asked].mean() < 1e-3
 
 
@@ -226,7 +226,7 @@ def test_a_point_is_in_as_many_volumes_as_triangles_hide_it():
     p, seen = volumes.move_off_surface(si.p, si.n), np.array(si.is_valid())
     expected = crossings(np.array(p, float).T[seen], mesh, light("point")["position"])
     assert expected.max() >= 3
-    different = np.array(volumes.count(p))[seen] != expected
+    different = np.array(volumes.count_volumes_around(p))[seen] != expected
     assert different.sum() <= 2  # a ray through an edge, where rounding decides
 
 
@@ -241,7 +241,7 @@ def test_all_kinds_of_caps_silhouettes_and_ends_agree():
                 how = {"casters": casters, "silhouettes": silhouettes, "back_cap": back_cap}
                 for length in (0, 50):
                     volumes = volumes_of(scene, closed, length=length, **how)
-                    dark = np.array(volumes.lit_share(si.p, si.n)) == 0
+                    dark = np.array(volumes.visibility(si.p, si.n)) == 0
                     assert not np.any((dark == lit)[asked]), how
 
 
@@ -261,11 +261,11 @@ def test_volumes_are_closed(casters, kind):
     t, zero = np.linspace(-1, 1, 1001), np.zeros(1001)
     axes = np.concatenate([np.column_stack(way) for way in ((t, zero), (zero, t), (t, t), (t, -t))])
     places = mi.Point2f(np.concatenate([random, axes]).T)
-    total = stencil.count(*places, mi.Float(-dr.inf), mi.Float(dr.inf))
+    total = stencil.count_faces(*places, mi.Float(-dr.inf), mi.Float(dr.inf))
     assert np.all(np.array(total) == 0)
     walls = Faces.join([volume.walls for volume in volumes])
     walls = Stencil(project_faces(walls, to_picture), halvings=4)
-    assert np.any(np.array(walls.count(*places, mi.Float(-dr.inf), mi.Float(dr.inf))) != 0)
+    assert np.any(np.array(walls.count_faces(*places, mi.Float(-dr.inf), mi.Float(dr.inf))) != 0)
 
 
 # Wrong, where the thesis says so
@@ -321,7 +321,7 @@ def test_ghost_shadows_behind_walls_that_cast_none():
     meshes = meshes_of(scene)
 
     def dark(**how):
-        return 1 - np.array(volumes_of(scene, **how).lit_share(si.p, si.n))[below].mean()
+        return 1 - np.array(volumes_of(scene, **how).visibility(si.p, si.n))[below].mean()
 
     only_ball = [mesh for mesh in meshes if len(mesh.triangles) > 12]
     assert dark() == 1
@@ -337,7 +337,9 @@ def test_caps_fight_with_the_surfaces_that_they_lie_on():
     for casters, fights in (("light_facing", True), ("facing_away", False)):
         volumes = volumes_of(scene, its, casters=casters)
         moved = volumes.move_off_surface(si.p, si.n)
-        specks, others = ((np.array(volumes.count(p)) != 0) & lit & sides for p in (si.p, moved))
+        specks, others = (
+            (np.array(volumes.count_volumes_around(p)) != 0) & lit & sides for p in (si.p, moved)
+        )
         print(casters, specks.sum(), others.sum())
         assert (specks.sum() > 20) == fights
         assert others.sum() <= 1
@@ -395,7 +397,7 @@ def test_the_projection_with_no_far_plane_keeps_what_is_at_infinity():
     """P∞ (x, y, z, 0) has depth 1 [Ergun 2008, 2.1.8]."""
     camera = Camera(np.eye(4), 0.5, 0.4, 0.1, 10)
     points = np.random.default_rng(3).normal(size=(10, 3)) - [0, 0, 5]
-    ends = extrude(points, Light(np.array([0, 0, 3, 1.0])), 0) @ camera.infinite_projection.T
+    ends = extrude_points(points, Light(np.array([0, 0, 3, 1.0])), 0) @ camera.infinite_projection.T
     np.testing.assert_allclose(ends[:, 2] / ends[:, 3], 1, atol=1e-12)
 
 
@@ -409,7 +411,10 @@ def test_volumes_of_a_finer_map_are_nearer_to_rays(kind):
 
     def share(resolution):
         parts = scene.sensors()[0], scene.emitters()[0]
-        dark = np.array(hybrid_shadow(scene, *parts, resolution, jump=8).lit_share(si.p, si.n)) == 0
+        dark = (
+            np.array(make_hybrid_shadow(scene, *parts, resolution, jump=8).visibility(si.p, si.n))
+            == 0
+        )
         return (dark == lit)[sides].mean()
 
     assert share(256) < share(64) / 3
@@ -422,18 +427,20 @@ def test_a_slanted_ground_is_not_torn(kind):
     ground = {"type": "rectangle", "to_world": mi.ScalarTransform4f().scale(9)}
     scene = scene_of({"ground": ground}, kind)
     si, lit, _ = shaded(scene)
-    volumes = hybrid_shadow(scene, scene.sensors()[0], scene.emitters()[0], resolution=32, jump=8)
+    volumes = make_hybrid_shadow(
+        scene, scene.sensors()[0], scene.emitters()[0], resolution=32, jump=8
+    )
     assert lit.mean() > 0.8
-    assert np.all(np.array(volumes.lit_share(si.p, si.n))[lit] == 1)
+    assert np.all(np.array(volumes.visibility(si.p, si.n))[lit] == 1)
 
 
 def test_without_walls_all_is_lit():
     scene = scene_of(objects())
     si, _, _ = shaded(scene)
     parts = scene.sensors()[0], scene.emitters()[0]
-    torn = hybrid_shadow(scene, *parts, resolution=8, jump=0)
+    torn = make_hybrid_shadow(scene, *parts, resolution=8, jump=0)
     for volumes in (torn, volumes_of(scene, [])):
-        assert np.all(np.array(volumes.lit_share(si.p, si.n)) == 1)
+        assert np.all(np.array(volumes.visibility(si.p, si.n)) == 1)
 
 
 # What is refused
@@ -454,8 +461,8 @@ AROUND_THE_LIGHT = {"type": "sphere", "center": [-4, 2, 8], "radius": 1}
         ({}, {"casters": "light_facing"}, "ground: the mesh is not closed"),
         ({}, {"silhouettes": "shared_edges"}, "ground: the mesh is not closed"),
         ({"ground": AROUND_THE_LIGHT}, {"casters": "facing_away"}, "the light is inside this"),
-        ({"ground": AROUND_THE_LIGHT}, {"back_cap": "fan"}, "ground: .* all around the light"),
-        ({"group": GROUP, "tree": TREE}, {}, "tree: shadow volumes are made of"),
+        ({"ground": AROUND_THE_LIGHT}, {"back_cap": "fan"}, "ground: .* surrounds the light"),
+        ({"group": GROUP, "tree": TREE}, {}, "tree: shadow volumes need triangles"),
         ({"sky": {"type": "constant"}}, {}, "no single place or direction"),
     ],
 )
@@ -466,5 +473,5 @@ def test_what_cannot_be_right_is_one_sentence(shapes, how, sentence):
 
 def test_a_lens_is_one_sentence():
     lens = {"type": "thinlens", "aperture_radius": 0.1, "focus_distance": 5}
-    with pytest.raises(BrdfkitError, match="a whole lens"):
+    with pytest.raises(BrdfkitError, match="start on its lens"):
         picture(scene_of(objects(), **lens))

@@ -17,9 +17,14 @@ import brdfkit as bk
 from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.comparison.map_pictures import CHECKS, OUTSIDE, CompressedArray, MapPictures
 from brdfkit.shadows.comparison.page import draw_errors
-from brdfkit.shadows.comparison.quality import aliasing_error, share_used
-from brdfkit.shadows.comparison.scores import Scores, average, difference_of_lights
-from brdfkit.shadows.comparison.tracked_points import LIGHT_TURN, TrackedPoints, is_lit, light_path
+from brdfkit.shadows.comparison.quality import aliasing_error, share_of_texels_used
+from brdfkit.shadows.comparison.scores import Scores, average_light_differences, average_scores
+from brdfkit.shadows.comparison.tracked_points import (
+    LIGHT_TURN,
+    TrackedPoints,
+    is_lit,
+    make_light_path,
+)
 from brdfkit.shadows.maps.scenes import SCENES
 
 SCENE = """<scene version="3.0.0">
@@ -38,25 +43,25 @@ def test_means_and_relative_scores_are_those_of_the_thesis():
     """Q2 of PSM: eight printed numbers, of which Table 1 has the mean and the relative score."""
     lights = [24.35, 24.83, 25.20, 31.83], [25.47, 24.76, 30.16, 29.83]
     cells = [Scores(aliasing=value) for view in zip(*lights, strict=True) for value in view]
-    assert average(cells).aliasing == pytest.approx(27.05375)
-    assert difference_of_lights(cells).aliasing == pytest.approx(2.0375)
+    assert average_scores(cells).aliasing == pytest.approx(27.05375)
+    assert average_light_differences(cells).aliasing == pytest.approx(2.0375)
 
 
 def test_what_is_unknown_is_left_out_of_means():
-    known = average([Scores(psnr=10, acne=np.nan), Scores(psnr=np.inf, acne=0.5)])
+    known = average_scores([Scores(psnr=10, acne=np.nan), Scores(psnr=np.inf, acne=0.5)])
     assert (known.psnr, known.acne) == ((10 + 99) / 2, 0.5)
     assert np.isnan(known.texture_use)
     cut_short = [Scores(psnr=10), Scores(psnr=13), Scores(psnr=50)]
-    assert difference_of_lights(cut_short).psnr == 3
+    assert average_light_differences(cut_short).psnr == 3
 
 
 def test_the_share_of_a_map_that_is_used():
     rng = np.random.default_rng(3)
     a_quarter = rng.random((100_000, 2)) / 2
-    assert share_used([a_quarter]) == pytest.approx(0.25, rel=0.02)
-    assert share_used([a_quarter, a_quarter + 0.5]) == pytest.approx(0.25, rel=0.02)
-    assert share_used([a_quarter, a_quarter + 2]) == pytest.approx(0.125, rel=0.02)
-    assert np.isnan(share_used([a_quarter + 2]))
+    assert share_of_texels_used([a_quarter]) == pytest.approx(0.25, rel=0.02)
+    assert share_of_texels_used([a_quarter, a_quarter + 0.5]) == pytest.approx(0.25, rel=0.02)
+    assert share_of_texels_used([a_quarter, a_quarter + 2]) == pytest.approx(0.125, rel=0.02)
+    assert np.isnan(share_of_texels_used([a_quarter + 2]))
 
 
 def test_a_texel_of_one_pixel_is_48_decibels():
@@ -107,11 +112,11 @@ def test_a_moving_light_has_the_shadows_of_a_light_there_and_its_error_alone_fli
         assert np.mean(true != there) < 0.002
 
     first = tracked.true[0]
-    still = tracked.flicker(seen.exact, lambda *_: SimpleNamespace(lit_share=lambda p, n: first))
+    still = tracked.flicker(seen.exact, lambda *_: SimpleNamespace(visibility=lambda p, n: first))
     assert still == np.abs(np.diff(tracked.true.astype(float), axis=0)).mean() > 0.001
 
     def exact(seen, moved):
-        return SimpleNamespace(lit_share=partial(is_lit, seen.scene, moved.light))
+        return SimpleNamespace(visibility=partial(is_lit, seen.scene, moved.light))
 
     assert tracked.flicker(seen.exact, exact) == 0
 
@@ -120,7 +125,7 @@ def test_a_moving_light_has_the_shadows_of_a_light_there_and_its_error_alone_fli
 @pytest.mark.parametrize("kind", LIGHTS)
 def test_what_is_farthest_from_a_moving_light_sees_it_turn_by_one_step(kind):
     placement = placement_of(objects_on_a_ground(kind))
-    here, there = (each.light.point for each in light_path(placement, steps=2))
+    here, there = (each.light.point for each in make_light_path(placement, steps=2))
     reach = 1 if kind == "directional" else placement.reach
     assert np.linalg.norm(there - here) / reach == pytest.approx(LIGHT_TURN, rel=0.01)
 
@@ -176,7 +181,7 @@ def test_volumes_stand_beside_maps_and_a_page_has_the_pictures_of_all(tmp_path):
     assert len(re.findall('<img src="data:image/', page)) == 2 + 2 * 3 + 2 + 1
     assert not re.search(r'(src|href)="(?!data:)', page)
     assert "View 1 (camera), light 1 (light)" in page
-    with pytest.raises(bk.BrdfkitError, match=r"page\.txt: .* name it \.html"):
+    with pytest.raises(bk.BrdfkitError, match=r"page\.txt: .* end it in \.html"):
         found.write(tmp_path / "page.txt")
 
 

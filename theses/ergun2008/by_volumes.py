@@ -30,7 +30,7 @@ class ByVolumes:
         light = Light.from_emitter(self.view.seen.emitter)
         volumes = LightVolumes(self.meshes, light, self.camera, pixels=SIZE, **how)
         si = self.view.seen.si
-        return np.array(volumes.lit_share(si.p, si.n)) == 1
+        return np.array(volumes.visibility(si.p, si.n)) == 1
 
     def wrong(self, **how):
         """How many pixels differ from rays, and have no border of a shadow in them."""
@@ -74,7 +74,7 @@ def within_a_shadow():
     import mitsuba as mi
 
     view = View.by(bricks())
-    si, towards = view.seen.si, view.seen.to_light[0].d
+    si, towards = view.seen.si, view.seen.light_sample[0].d
     hit = view.scene.ray_intersect(si.spawn_ray(towards))
     length = dr.select(si.is_valid() & (si.p.z < 1e-3) & hit.is_valid(), hit.t, 0)
     longest = int(np.argmax(np.array(length)))

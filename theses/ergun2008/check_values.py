@@ -17,7 +17,7 @@ from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import light_space_perspective
 from brdfkit.shadows.maps.resolution import aliasing
 from brdfkit.shadows.maps.split_planes import compute_split_planes
-from brdfkit.shadows.volumes.volume import extrude
+from brdfkit.shadows.volumes.volume import extrude_points
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section
 
@@ -58,7 +58,7 @@ def agreed(says, where, expected, found, shown="{:.6f}"):
 def infinity():
     camera = Camera(np.eye(4), 0.5, 0.4, 0.1, 10)
     points = np.random.default_rng(3).normal(size=(1000, 3)) - [0, 0, 6]
-    ends = extrude(points, Light(np.array([0, 0, 3, 1.0])), 0) @ camera.infinite_projection.T
+    ends = extrude_points(points, Light(np.array([0, 0, 3, 1.0])), 0) @ camera.infinite_projection.T
     depth = ends[:, 2] / ends[:, 3]
     return agreed(
         "No point at infinity is clipped by P∞: its depth is 1.",
@@ -95,7 +95,7 @@ def trapezoid():
         to_sight = np.array([[-1, 0, 0, 0.1], [0, -1, 0, 0.6], [0, 0, 1, 0], [0, 0, 0, 1.0]])
         below = Light(-ABOVE.point)
         sight = LineOfSight(to_sight @ np.linalg.inv(placed), below, np.array(points), None, None)
-        u, v, _ = sight.warp(1.35 - 0.6).to_map(*np.transpose(points))
+        u, v, _ = sight.make_warped_projection(1.35 - 0.6).project_to_map(*np.transpose(points))
         off = max(off, np.abs(np.column_stack([-u, -v]) - mapped).max())
     found = project_points(trapezoid_to_square(), [(0, 0, 0), (0, 0.4, 0.25), (0, -0.7, 0)])
     expected = [(-0.022222222, -1 / 3, 0), (-0.115789474, 0.368421053, 0.197368421)]
@@ -160,7 +160,10 @@ def best_warp():
     def ratios(apex):
         warped = light_space_perspective.make_projection(place, apex)
         ends = [
-            [warped.derivative_along(p, (1.0, 0, 0))[0], warped.derivative_along(p, (0, 1.0, 0))[1]]
+            [
+                warped.directional_derivative(p, (1.0, 0, 0))[0],
+                warped.directional_derivative(p, (0, 1.0, 0))[1],
+            ]
             for p in ((0.3, 1.0, 0.2), (2.0, 10.0, -1.0))
         ]
         return np.abs(np.divide(*ends))
@@ -179,7 +182,7 @@ def footprint():
         Projection.from_matrix(looking(p, (0, 0, 0)).matrix, Light(np.append(p, 1))) for p in eyes
     )
     area = aliasing((light, 64), (eye, (64, 64)), (0, 0, 0), (0, 0, 1))
-    lengths = [abs(1 / p.derivative_along((0, 0, 0), (0, 1, 0))[1]) for p in (light, eye)]
+    lengths = [abs(1 / p.directional_derivative((0, 0, 0), (0, 1, 0))[1]) for p in (light, eye)]
     return agreed(
         "A texel beside a pixel: d r_s cosβ / (d_i r_i cosα), and the ratio of areas.",
         "3.1.1",

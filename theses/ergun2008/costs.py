@@ -6,7 +6,7 @@ from brdfkit.theses.ergun2008.views import RESOLUTION, SIZE, View
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.projective.camera import Camera
-from brdfkit.shadows.hybrid import hybrid_shadow
+from brdfkit.shadows.hybrid import make_hybrid_shadow
 from brdfkit.shadows.maps.scenes import SCENES
 from brdfkit.shadows.volumes.light_volumes import LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
@@ -76,7 +76,7 @@ def cost_of_volumes(view):
         return LightVolumes(meshes, view.placement.light, camera, pixels=SIZE)
 
     volumes = prepare()
-    shade = measure_least_seconds(lambda: np.array(volumes.lit_share(si.p, si.n)))
+    shade = measure_least_seconds(lambda: np.array(volumes.visibility(si.p, si.n)))
     return measure_least_seconds(prepare), shade, volumes.stencil.memory
 
 
@@ -140,7 +140,7 @@ def hybrid_claim():
     si, jump = view.seen.si, 8.0
 
     def by_hybrid():
-        return np.array(hybrid_shadow(*parts, RESOLUTION, jump).lit_share(si.p, si.n))
+        return np.array(make_hybrid_shadow(*parts, RESOLUTION, jump).visibility(si.p, si.n))
 
     def by_map():
         return view.lit(view.shadow())

@@ -8,7 +8,7 @@ from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import make_axes, make_rigid_matrix, project_points
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.projection import Projection
-from brdfkit.shadows.maps.resolution import magnification
+from brdfkit.shadows.maps.resolution import area_magnification
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section
 
@@ -130,7 +130,7 @@ def footprint_area():
         back = place / np.linalg.norm(place)
         camera = Camera(make_rigid_matrix(make_axes(back, [0, 0, 1]), place), 1.0, 1.0, 1.0, 100.0)
         light = Light(np.append(place, 1))
-        areas.append(1 / magnification(Projection.from_matrix(camera.matrix, light), *ground))
+        areas.append(1 / area_magnification(Projection.from_matrix(camera.matrix, light), *ground))
     growth = areas[1] / areas[0]
     return Claim(
         "d_s r_s / cosα is the area of a texel on a surface.",

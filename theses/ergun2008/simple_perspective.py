@@ -7,7 +7,7 @@ It is symmetric about its axis, and the camera's near plane is nearer than what 
 import numpy as np
 
 from brdfkit.core.projective.homogeneous import make_unit_cube_matrix, project_points
-from brdfkit.shadows.comparison.quality import aliasing_error, share_used
+from brdfkit.shadows.comparison.quality import aliasing_error, share_of_texels_used
 from brdfkit.shadows.maps.light_camera import view_matrix
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.resolution import aliasing
@@ -30,10 +30,12 @@ def simple_perspective(placement):
 
 def simple_scores(view, resolution):
     """(The unused share, the aliasing [dB]) of it."""
-    projection, seen = simple_perspective(view.placement).opaque(), view.seen
-    camera = Projection.from_matrix(view.placement.camera.matrix, view.placement.light).opaque()
-    x, y, _ = projection.to_map(*seen.si.p)
+    projection, seen = simple_perspective(view.placement).make_opaque(), view.seen
+    camera = Projection.from_matrix(
+        view.placement.camera.matrix, view.placement.light
+    ).make_opaque()
+    x, y, _ = projection.project_to_map(*seen.si.p)
     picture = camera, seen.size[::-1]
     e = np.array(aliasing((projection, resolution), picture, seen.si.p, seen.si.n))
     places = (np.array([x, y]).T[seen.facing] + 1) / 2
-    return 1 - share_used([places]), aliasing_error(e[seen.facing])
+    return 1 - share_of_texels_used([places]), aliasing_error(e[seen.facing])

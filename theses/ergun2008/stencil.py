@@ -165,7 +165,7 @@ def draw(inside):
         "rays": inside.exact,
     }
     for axes, (name, lit) in zip(drawn.subplots(1, 3), pictures.items(), strict=True):
-        picture = inside.view.seen.picture(lit * 0.9 + 0.1)
+        picture = inside.view.seen.compute_picture(lit * 0.9 + 0.1)
         axes.imshow((picture / picture.max()).clip(0, 1) ** (1 / 2.2))
         axes.set_title(name, size=10)
         axes.set_axis_off()

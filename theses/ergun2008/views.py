@@ -55,7 +55,7 @@ class View:
     def lit(self, shadow):
         """The shares (pixels,) of the light that a `LightShadow` lets through."""
         si = self.seen.si
-        return np.array(shadow.lit_share(si.p, si.n, si.is_valid()))
+        return np.array(shadow.visibility(si.p, si.n, si.is_valid()))
 
     def wrong(self, lit):
         """The mean error of shares of the light, where surfaces face it."""
@@ -64,7 +64,7 @@ class View:
     def psnr(self, lit):
         """Q3 [dB], of the picture with these shares against the one with exact shadows."""
         seen = self.seen
-        true, found = seen.picture(seen.exact), seen.picture(lit)
+        true, found = seen.compute_picture(seen.exact), seen.compute_picture(lit)
         return min(psnr(true, found, seen.facing.reshape(seen.size)), MOST)
 
     def draw(self, techniques):
@@ -73,7 +73,7 @@ class View:
         lit = {"exact": self.seen.exact} | lit
         drawn, most = figure(10, 2.8), self.seen.unshadowed.max()
         for axes, (name, shares) in zip(drawn.subplots(1, len(lit)), lit.items(), strict=True):
-            picture = self.seen.picture(0.85 * shares + 0.15) / most
+            picture = self.seen.compute_picture(0.85 * shares + 0.15) / most
             axes.imshow(picture.clip(0, 1) ** (1 / 2.2))
             axes.set_title(name, size=10)
             axes.set_axis_off()

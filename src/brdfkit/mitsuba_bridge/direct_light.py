@@ -79,7 +79,7 @@ def derive_shadow_integrator(mi: MitsubaModule, parameters: dict[str, Any]) -> A
 class NoShadow:
     """The shadow of a light that reaches nothing visible, for which any shadow is right."""
 
-    def lit_share(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:
+    def visibility(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:
         return 1
 
 
@@ -97,7 +97,7 @@ def direct_light(
     """Return the light that surfaces reflect to the camera: Σ ρ(ω_l, ω_o) cosθ_l E_l V.
 
     si : a `mi.SurfaceInteraction3f`.
-    lights : pairs of an emitter and its shadow, whose `lit_share(p, n, active)` is the visibility
+    lights : pairs of an emitter and its shadow, whose `visibility(p, n, active)` is the visibility
         V, in [0, 1], at points of surfaces with normals n.
     """
     import mitsuba as mi
@@ -108,6 +108,6 @@ def direct_light(
     for emitter, shadow in lights:
         ds, light = emitter.sample_direction(si, sampler.next_2d(valid), valid)
         value = bsdf.eval(context, si, si.to_local(ds.d), valid)
-        lit = shadow.lit_share(si.p, si.n, valid)
+        lit = shadow.visibility(si.p, si.n, valid)
         radiance += mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * lit
     return mi.depolarizer(dr.select(valid, radiance, 0))

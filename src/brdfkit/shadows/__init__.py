@@ -1,4 +1,7 @@
-"""Shadows by maps, by volumes and by both, and `compare`, which scores them."""
+"""Shadow techniques for point, spot and directional lights, and `compare`, which scores them.
+
+Shadow maps and shadow volumes each have a folder; `hybrid.py` makes volumes from a map.
+"""
 
 import lazy_loader
 

@@ -1,4 +1,4 @@
-"""Compares shadow techniques on a user's scene with exact shadows."""
+"""Compares shadow techniques with exact shadows, on a scene of the user's."""
 
 from brdfkit.shadows.comparison.comparing import compare as compare
 from brdfkit.shadows.comparison.comparison import ShadowComparison as ShadowComparison

@@ -9,13 +9,16 @@ from brdfkit.core.locate import find_file_or_name
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.light import Light
 from brdfkit.mitsuba_bridge.scene_file import load_scene_file
-from brdfkit.shadows.maps.scenes import SCENES, scene_in_all_views
+from brdfkit.shadows.maps.scenes import SCENES, make_scene_in_all_views
 
-MAX_SIDE = 16384  # texels of a map, or pixels of a picture
+MAX_SIDE = 16384  # the most texels along a side of a map, and pixels along a side of a picture
 
 
-def to_names(what: str, names: Any) -> tuple[str, ...]:
-    """Return names of techniques as a tuple; a single one may be a string."""
+def check_names(what: str, names: Any) -> tuple[str, ...]:
+    """Return names of techniques as a tuple; a single one may be given as a string.
+
+    what : name of the argument, for the error message.
+    """
     if isinstance(names, str):
         return (names,)
     try:
@@ -24,13 +27,13 @@ def to_names(what: str, names: Any) -> tuple[str, ...]:
         raise wrong_value_error(what, names, "names of techniques") from None
 
 
-def to_texels(resolution: Any) -> int:
-    """Return the number of texels along a side of a map."""
+def check_resolution(resolution: Any) -> int:
+    """Return the number of texels along a side of a map; raise `BrdfkitError` for a wrong one."""
     return to_whole_number("resolution", resolution, 1, MAX_SIDE)
 
 
-def to_size(size: Any) -> tuple[int, int]:
-    """Return the width and height of a picture [pixels]."""
+def check_picture_size(size: Any) -> tuple[int, int]:
+    """Return the width and height of a picture [pixels]; raise `BrdfkitError` for a wrong size."""
     try:
         width, height = size
     except (TypeError, ValueError):
@@ -39,22 +42,22 @@ def to_size(size: Any) -> tuple[int, int]:
     return width, to_whole_number("the height in size", height, 1, MAX_SIDE)
 
 
-def to_scene(scene: Any, size: tuple[int, int]) -> MitsubaObject:
-    """Return a `mi.Scene`, from a name in `SCENES`, from a file, or as it is.
+def load_scene(scene: Any, size: tuple[int, int]) -> MitsubaObject:
+    """Return a `mi.Scene`, given a name in `SCENES`, a file, or a loaded scene.
 
-    size : (width, height) of the pictures of a scene by name [pixels].
+    size : (width, height) of the pictures of a named scene [pixels].
 
     Raises `BrdfkitError` for anything else, for a file that cannot be loaded, and for a scene
-    without cameras or lights, or with kinds of them that shadows by projection do not support.
+    without cameras or lights, or with kinds of them that shadow maps do not support.
     """
     import mitsuba as mi
 
     if isinstance(scene, dict):
-        raise BrdfkitError("scene: a dictionary is no scene yet; load it by mitsuba.load_dict.")
+        raise BrdfkitError("scene: a dictionary is not a scene; load it by mitsuba.load_dict.")
     if not isinstance(scene, mi.Scene):
         place = find_file_or_name(scene, "scene", SCENES)
         if isinstance(place, str):
-            scene = mi.load_dict(scene_in_all_views(place, size), parallel=False)
+            scene = mi.load_dict(make_scene_in_all_views(place, size), parallel=False)
         else:
             scene = load_scene_file(place)
     if not scene.sensors():

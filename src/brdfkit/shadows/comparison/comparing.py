@@ -1,4 +1,4 @@
-"""`compare`: scores techniques of shadow maps on a user's scene against exact shadows."""
+"""`compare`: scores shadow techniques on a user's scene against exact shadows."""
 
 from __future__ import annotations
 
@@ -14,13 +14,18 @@ from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.core.progress_bar import Progress
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
-from brdfkit.shadows.comparison.arguments import to_names, to_scene, to_size, to_texels
+from brdfkit.shadows.comparison.arguments import (
+    check_names,
+    check_picture_size,
+    check_resolution,
+    load_scene,
+)
 from brdfkit.shadows.comparison.comparison import ShadowComparison
 from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.comparison.map_pictures import MapPictures
-from brdfkit.shadows.comparison.pictures import Pictures, title_of
+from brdfkit.shadows.comparison.pictures import Pictures, make_title
 from brdfkit.shadows.comparison.scores import Scores
-from brdfkit.shadows.comparison.scoring import score
+from brdfkit.shadows.comparison.scoring import score_technique
 from brdfkit.shadows.comparison.tracked_points import TrackedPoints
 from brdfkit.shadows.comparison.without_maps import WITHOUT_MAPS
 from brdfkit.shadows.maps.light_shadow import LightShadow
@@ -30,7 +35,7 @@ from brdfkit.shadows.maps.techniques import FILES
 PROJECTIONS = tuple(FILES["projection"])
 FILTERS = "depth", "percentage_closer", "variance", "moment"
 
-# Makes the shadow that a technique gives to a view: an object with `lit_share(p, n, active)`
+# A function that makes a view's shadow by a technique, an object with `visibility(p, n, active)`
 Technique: TypeAlias = Callable[[LitView, Placement], Any]
 
 
@@ -47,8 +52,8 @@ def compare(
 ) -> ShadowComparison:
     """Compare shadow techniques with exact shadows, in all views and lights of a scene.
 
-    After Ctrl-C the result has the views and lights that are finished; if it is in the first of
-    them, the techniques that are.
+    After Ctrl-C, the result has the views and lights that are finished; if not even the first of
+    them is, it has the techniques that are finished there.
 
     Parameters
     ----------
@@ -82,8 +87,8 @@ def compare(
     Raises
     ------
     BrdfkitError
-        For a name of no technique or scene, for a scene without a camera, with other lights, or in
-        which no light shines on a visible surface, and for shapes that have no shadow volume where
+        For an unknown technique or scene; for a scene without a camera, with other lights, or in
+        which no light shines on a visible surface; and for shapes that have no shadow volume where
         one is needed.
 
     Examples
@@ -95,17 +100,19 @@ def compare(
     projections = PROJECTIONS if projections is None else projections
     filters = FILTERS if filters is None else filters
     named = {"projection": projections, "filter": filters, "partition": partitions}
-    kinds = {kind: to_names(f"{kind}s", names) for kind, names in named.items()}
-    resolution, size = to_texels(resolution), to_size(size)
-    techniques = choose_techniques(kinds, to_names("others", others), resolution)
-    scene = to_scene(scene, size)
+    kinds = {kind: check_names(f"{kind}s", names) for kind, names in named.items()}
+    resolution, size = check_resolution(resolution), check_picture_size(size)
+    techniques = choose_techniques(kinds, check_names("others", others), resolution)
+    scene = load_scene(scene, size)
     places = list(itertools.product(enumerate(scene.sensors()), enumerate(scene.emitters())))
     report, requested = progress or (lambda done, total: None), len(places) * len(techniques)
     results: list[tuple[Pictures, dict[str, Scores]]] = []
     try:
         for (view_index, sensor), (light_index, emitter) in places:
             view = LitView.from_sensor(scene, sensor, emitter, size[::-1])
-            pictures = Pictures.from_view(view, title_of(view_index, sensor, light_index, emitter))
+            pictures = Pictures.from_view(
+                view, make_title(view_index, sensor, light_index, emitter)
+            )
             scores: dict[str, Scores] = {}
             results.append((pictures, scores))
             if not pictures.is_lit:
@@ -113,7 +120,7 @@ def compare(
                 continue
             placement = Placement.from_scene(scene, sensor, emitter)
             with raise_first_cause():
-                pictures.maps = picture_maps(view, placement, kinds, resolution)
+                pictures.maps = draw_maps(view, placement, kinds, resolution)
                 tracked = (
                     TrackedPoints.by_moving_camera(view, placement),
                     TrackedPoints.by_moving_light(view, placement),
@@ -121,7 +128,7 @@ def compare(
             for label, technique in techniques.items():
                 report((len(results) - 1) * len(techniques) + len(scores), requested)
                 with raise_first_cause():  # so that Ctrl-C arrives as KeyboardInterrupt
-                    scores_here, lit = score(view, placement, tracked, technique)
+                    scores_here, lit = score_technique(view, placement, tracked, technique)
                 pictures.add(label, lit)
                 scores[label] = scores_here
     except KeyboardInterrupt:
@@ -140,7 +147,10 @@ def compare(
 def score_unlit_view(
     pictures: Pictures, scores: dict[str, Scores], techniques: Mapping[str, Technique]
 ) -> None:
-    """Fill in unknown scores for a view without lit surfaces, where no technique can be wrong."""
+    """Fill in unknown scores for a view without lit surfaces, where no technique can be wrong.
+
+    pictures, scores : pictures and scores of the view, to which those of each technique are added.
+    """
     for label in techniques:
         pictures.add(label, np.ones(pictures.exact.size))
         scores[label] = Scores()
@@ -149,16 +159,19 @@ def score_unlit_view(
 def choose_techniques(
     kinds: Mapping[str, tuple[str, ...]], others: tuple[str, ...], resolution: int
 ) -> dict[str, Technique]:
-    """Return label → technique, for combinations of `kinds` (kind → names), and `others`.
+    """Return label → function that makes a technique's shadow, for all that are to be compared.
 
-    Raises `BrdfkitError` for an unknown name, and if there is none at all.
+    kinds : kind of map technique, such as "filter" → names; all their combinations are compared.
+    others : names of techniques without maps.
+
+    Raises `BrdfkitError` for an unknown name, and if there is no technique.
     """
     for name in others:
         if name not in WITHOUT_MAPS:
             raise no_such_error("technique without maps", name, WITHOUT_MAPS)
     techniques: dict[str, Technique] = {
         label: partial(make_map_shadow, **names, resolution=resolution)
-        for label, names in combine_names(kinds).items()
+        for label, names in combine_technique_names(kinds).items()
     }
     techniques |= {name: partial(WITHOUT_MAPS[name], resolution=resolution) for name in others}
     if not techniques:
@@ -169,14 +182,16 @@ def choose_techniques(
 
 
 def make_map_shadow(view: LitView, placement: Placement, **settings: Any) -> LightShadow:
-    """Make the shadow of a view by shadow maps."""
+    """Make the shadow of a view by shadow maps, with settings of `LightShadow`."""
     return LightShadow(view.scene, placement, **settings)
 
 
-def combine_names(names: Mapping[str, tuple[str, ...]]) -> dict[str, dict[str, Any]]:
-    """Return label → keyword arguments of `LightShadow`, for all combinations of names by kind.
+def combine_technique_names(names: Mapping[str, tuple[str, ...]]) -> dict[str, dict[str, Any]]:
+    """Return label → keyword arguments of `LightShadow`, for all combinations of techniques.
 
-    A label leaves out the kinds with a single name. Raises `BrdfkitError` for an unknown name.
+    A label leaves out the kinds that have a single name. Raises `BrdfkitError` for an unknown name.
+
+    names : kind of technique → names.
     """
     for kind, its in names.items():
         for name in its:
@@ -189,11 +204,14 @@ def combine_names(names: Mapping[str, tuple[str, ...]]) -> dict[str, dict[str, A
     return {" + ".join(each[kind] for kind in several): each for each in chosen}
 
 
-def picture_maps(
+def draw_maps(
     view: LitView, placement: Placement, kinds: Mapping[str, tuple[str, ...]], resolution: int
 ) -> dict[str, MapPictures]:
-    """Return label → pictures of the maps, for every projection in every partition."""
-    chosen = combine_names({kind: kinds[kind] for kind in ("projection", "partition")})
+    """Return label → pictures of the shadow maps, for every projection in every partition.
+
+    kinds : kind of technique → names.
+    """
+    chosen = combine_technique_names({kind: kinds[kind] for kind in ("projection", "partition")})
     return {
         label: MapPictures.from_view(view, placement, **names, resolution=resolution)
         for label, names in chosen.items()

@@ -15,9 +15,9 @@ from brdfkit.shadows.comparison.pictures import Pictures
 from brdfkit.shadows.comparison.scores import (
     COLUMNS,
     Scores,
-    average,
-    difference_of_lights,
-    to_texts,
+    average_light_differences,
+    average_scores,
+    format_scores,
 )
 
 
@@ -45,49 +45,50 @@ class ShadowComparison(Shown):
 
     @property
     def means(self) -> dict[str, Scores]:
-        """Technique → the means over views and lights, the best PSNR first, unknown ones last."""
-        means = {label: average(scores) for label, scores in self.scores.items()}
+        """Technique → mean scores over views and lights, sorted by descending PSNR, NaN last."""
+        means = {label: average_scores(scores) for label, scores in self.scores.items()}
         return dict(sorted(means.items(), key=lambda item: -np.nan_to_num(item[1].psnr, nan=-99)))
 
     @property
     def relative(self) -> dict[str, Scores]:
-        """Technique → the mean differences between the two lights of each view, as in `means`.
+        """Technique → mean absolute differences of the scores between the two lights of a view.
 
-        They show how much a small move of the light changes. Empty unless there are two lights, and
-        a view in which both shine.
+        They show how much a small move of the light changes. The techniques have the order of
+        `means`. The dictionary is empty unless there are two lights, and a view in which both
+        shine.
         """
         both = zip(self.pictures[::2], self.pictures[1::2], strict=False)
         if self.lights != 2 or not any(one.is_lit and other.is_lit for one, other in both):
             return {}
-        return {label: difference_of_lights(self.scores[label]) for label in self.means}
+        return {label: average_light_differences(self.scores[label]) for label in self.means}
 
     @property
     def best(self) -> str:
-        """The technique with the best PSNR."""
+        """The name of the technique with the best PSNR."""
         return next(iter(self.means))
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The headings of the table."""
+        """The headings of the table; ">" in front marks columns that are aligned to the right."""
         return ("technique", *(f">{head}" for _, head, *_ in COLUMNS))
 
     @property
     def interrupted(self) -> bool:
-        """True if Ctrl-C ended the comparison."""
+        """True if Ctrl-C ended the comparison before all requested scores were finished."""
         return self.finished < self.requested
 
     @property
     def finished(self) -> int:
-        """The number of scores that are finished."""
+        """The number of finished scores, over all techniques, views and lights."""
         return sum(map(len, self.scores.values()))
 
     def table(self) -> list[tuple[str, ...]]:
-        """Return the means as texts, a row for each technique."""
-        return to_texts(self.means)
+        """Return the mean scores as a table of texts, with a row for each technique."""
+        return format_scores(self.means)
 
     @property
     def meaning(self) -> str:
-        """The meaning of the columns, in a few sentences."""
+        """A few sentences that explain the columns of the table."""
         places = len(next(iter(self.scores.values())))
         pairs = "the only pair" if places == 1 else f"{places} pairs"
         return (
@@ -114,13 +115,13 @@ class ShadowComparison(Shown):
     def write(self, path: str | Path, progress: Callable[[int, int], object] | None = None) -> None:
         """Write a page with the table, which can be sorted, and all pictures.
 
-        For each view in each light it shows the exact shadows, and for each technique the shadows,
-        their errors and where the texels of its maps are.
+        For each view in each light, it shows the exact shadows, and for each technique its shadows,
+        its errors and how its maps' texels are spread over the scene.
 
         Parameters
         ----------
         path : str or Path
-            The page, .html; it needs no other file.
+            The file of the page, NAME.html; it needs no other file.
         progress : callable, optional
             Called with (done, total); see `brdfkit.progress`.
 
@@ -138,7 +139,7 @@ class ShadowComparison(Shown):
         write_page(self, path, progress)
 
     def document(self) -> Document:
-        """Return the means, a row for each technique, with the best of each column strong."""
+        """Return the mean scores, a row per technique, with the best of each column in bold."""
         means, texts = list(self.means.values()), self.table()
         best = []
         for name, *_, more in COLUMNS:

@@ -1,4 +1,4 @@
-"""What a camera sees of a scene in one light, with exact shadows, the reference of a comparison."""
+"""The surfaces that a camera sees in one light, with exact shadows as a comparison's reference."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +14,7 @@ from brdfkit.shadows.volumes.mesh import Mesh
 
 @dataclass(frozen=True)
 class LitView:
-    """The surfaces at the centres of all pixels, row by row, in one light.
+    """The surfaces at the centres of all pixels of a camera's picture, row by row, in one light.
 
     scene : the `mi.Scene`.
     sensor : one of its cameras.
@@ -37,7 +37,7 @@ class LitView:
         emitter: MitsubaObject,
         size: tuple[int, int],
     ) -> "LitView":
-        """Return the view of a sensor whose picture has the `size` (height, width)."""
+        """Return the surfaces that a sensor sees in a picture of the `size` (height, width)."""
         import mitsuba as mi
 
         height, width = size
@@ -49,8 +49,8 @@ class LitView:
         dr.eval(si)
         return cls(scene, sensor, emitter, si, (height, width))
 
-    def points(self, pixels: IntArray) -> tuple[MitsubaObject, MitsubaObject]:
-        """Return the places and normals of the surfaces in some pixels, by their indices (n,)."""
+    def gather_points(self, pixels: IntArray) -> tuple[MitsubaObject, MitsubaObject]:
+        """Return positions and normals of the surfaces in pixels with the given indices (n,)."""
         import mitsuba as mi
 
         index = mi.UInt32(pixels)
@@ -58,12 +58,12 @@ class LitView:
 
     @cached_property
     def meshes(self) -> list[Mesh]:
-        """All shapes as meshes, for shadow volumes."""
+        """All shapes of the scene as meshes, for shadow volumes."""
         return [Mesh.from_shape(shape) for shape in self.scene.shapes()]
 
     @cached_property
-    def to_light(self) -> tuple[MitsubaObject, JitColour]:
-        """The `mi.DirectionSample3f` to the light, and its unshadowed light at the surfaces."""
+    def light_sample(self) -> tuple[MitsubaObject, JitColour]:
+        """The `mi.DirectionSample3f` from each surface to the light, and the light unshadowed."""
         import mitsuba as mi
 
         sample: tuple[Any, Any] = self.emitter.sample_direction(self.si, mi.Point2f(0.5))
@@ -71,23 +71,23 @@ class LitView:
 
     @cached_property
     def facing(self) -> BoolArray:
-        """Whether (pixels,) a surface faces the light, where the light shines.
+        """Whether (pixels,) the light would reach the visible side of a surface without shadows.
 
-        Elsewhere all is dark. A spot does not shine everywhere.
+        Elsewhere all is dark: the surface faces away, or a spot does not reach it.
         """
         import mitsuba as mi
 
-        ds, light = self.to_light
+        ds, light = self.light_sample
         towards = dr.dot(self.si.n, ds.d) * dr.dot(self.si.n, self.si.to_world(self.si.wi))
         shines = dr.max(mi.unpolarized_spectrum(light)) > 0
         return np.array(self.si.is_valid() & (towards > 0) & shines)
 
     @cached_property
     def exact(self) -> BoolArray:
-        """Whether (pixels,) a shadow ray reaches the light."""
+        """Whether (pixels,) a shadow ray from the surface reaches the light: the exact shadow."""
         import mitsuba as mi
 
-        ds, _ = self.to_light
+        ds, _ = self.light_sample
         ray = spawn_ray(self.si.p, self.si.n, self.si.t, ds.d)
         ray.maxt = ds.dist * (1 - mi.math.ShadowEpsilon)
         return np.array(~self.scene.ray_test(ray, self.si.is_valid()))
@@ -97,13 +97,13 @@ class LitView:
         """The radiance (pixels, 3) of each surface by the light, without its shadow."""
         import mitsuba as mi
 
-        ds, light = self.to_light
+        ds, light = self.light_sample
         valid = self.si.is_valid()
         value = self.si.bsdf().eval(mi.BSDFContext(), self.si, self.si.to_local(ds.d), valid)
         radiance = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light)
         rgb = mi.Color3f(radiance) if mi.is_rgb else mi.Color3f(radiance[0])
         return np.array(dr.select(valid, rgb, 0)).T
 
-    def picture(self, lit: Any) -> FloatArray:
-        """Return the picture (height, width, 3) for the shares (pixels,) of the light."""
+    def compute_picture(self, lit: Any) -> FloatArray:
+        """Return the picture (height, width, 3) if shares `lit` (pixels,) of the light arrive."""
         return (self.unshadowed * np.asarray(lit)[:, None]).reshape(*self.size, 3)

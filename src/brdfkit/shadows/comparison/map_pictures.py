@@ -1,4 +1,4 @@
-"""Pictures of the maps of a projection: their texels on the scene, and the light's view."""
+"""Pictures that explain shadow maps: their texels on the scene, and their depths."""
 
 import zlib
 from dataclasses import dataclass
@@ -12,15 +12,20 @@ from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.maps.light_shadow import LightShadow, ShadowMap
 from brdfkit.shadows.maps.placement import Placement
 
-CHECKS = 32  # squares of the checker along a side of a map
-SIDE = 256  # pixels along a side of the picture of the light's view
-OUTSIDE = 255  # stands for a map's index at pixels that no map covers
-DARK_SQUARE = 0.45  # the brightness of every other square
+CHECKS = 32  # squares of the checkerboard along a side of a map
+SIDE = 256  # pixels along a side of the picture of depths
+OUTSIDE = 255  # the map index of pixels that no map covers
+DARK_SQUARE = 0.45  # the brightness of the dark squares of the checkerboard
 
 
 @dataclass(frozen=True)
 class CompressedArray:
-    """An array by its `shape`, its `dtype` (as NumPy's text) and its compressed bytes, `data`."""
+    """A NumPy array, compressed in memory.
+
+    shape : the shape of the array.
+    dtype : its type as NumPy's text, such as "<f4".
+    data : its compressed bytes.
+    """
 
     shape: tuple[int, ...]
     dtype: str
@@ -30,14 +35,15 @@ class CompressedArray:
     def from_array(cls, array: AnyArray) -> "CompressedArray":
         """Compress an array without loss.
 
-        The first bytes of all values come first, then the second ones, which compresses better.
+        The first bytes of all values come first, then the second ones and so on, as this compresses
+        better.
         """
         bytes_apart = np.ascontiguousarray(array).reshape(-1, 1).view(np.uint8).T
         return cls(array.shape, array.dtype.str, zlib.compress(bytes_apart.tobytes()))
 
     @property
     def array(self) -> AnyArray:
-        """The array."""
+        """The array, decompressed."""
         dtype = np.dtype(self.dtype)
         rows = np.frombuffer(zlib.decompress(self.data), np.uint8).reshape(dtype.itemsize, -1)
         return np.ascontiguousarray(rows.T).view(dtype).reshape(self.shape)
@@ -45,9 +51,9 @@ class CompressedArray:
 
 @dataclass(frozen=True)
 class MapPictures:
-    """Pictures of the maps of a projection in a partition.
+    """Pictures of the shadow maps of one projection and partition.
 
-    checker, parts, view : the compressed arrays of `shade`, `part` and `depths`.
+    checker, parts, view : the compressed arrays of the properties `shade`, `part` and `depths`.
     """
 
     checker: CompressedArray
@@ -56,7 +62,7 @@ class MapPictures:
 
     @classmethod
     def from_view(cls, view: LitView, placement: Placement, **settings: Any) -> "MapPictures":
-        """Return the pictures of a view's maps, by keyword arguments of `LightShadow`."""
+        """Return the pictures of a view's shadow maps, by keyword arguments of `LightShadow`."""
         shadow = LightShadow(view.scene, placement, **settings)
         shade, part = draw_checker(shadow, view)
         depths = arrange_squares([scale_depths(each) for each in shadow.maps])
@@ -64,17 +70,17 @@ class MapPictures:
 
     @property
     def shade(self) -> FloatArray:
-        """The brightness (height, width), 0 to 1, of the scene with a checker of texels."""
+        """The brightness (height, width), 0 to 1, of the scene under a checkerboard of texels."""
         return self.checker.array / np.float32(255)
 
     @property
     def part(self) -> IntArray:
-        """The index (height, width) of each pixel's map; `OUTSIDE` without one."""
+        """The index (height, width) of the map that covers each pixel; `OUTSIDE` without a map."""
         return self.parts.array
 
     @property
     def depths(self) -> FloatArray:
-        """The depths (SIDE, SIDE) in the light's view, 0 near to 1 far; NaN without a surface.
+        """The depths (SIDE, SIDE) in the maps, 0 near to 1 far; NaN without a surface.
 
         Several maps stand in rows, the first at the upper left.
         """
@@ -82,12 +88,17 @@ class MapPictures:
 
 
 def draw_checker(shadow: LightShadow, view: LitView) -> tuple[IntArray, IntArray]:
-    """Return the brightness of the scene, in 255ths, under a checker, and each pixel's map."""
+    """Return two pictures: the scene's brightness, 0 to 255, under a checkerboard, and map indices.
+
+    The checkerboard is projected like a shadow map, so that its squares show the size of texels.
+    """
     valid = np.array(view.si.is_valid())
     shade = valid * (0.3 + 0.7 * np.abs(np.array(view.si.wi.z)))
-    chosen, part = np.array(shadow.part_of(view.si.p)), np.full(len(valid), OUTSIDE)
+    chosen, part = np.array(shadow.find_part(view.si.p)), np.full(len(valid), OUTSIDE)
     for index, its_map in enumerate(shadow.maps):
-        x, y, _ = (np.array(component) for component in its_map.projection.to_map(*view.si.p))
+        x, y, _ = (
+            np.array(component) for component in its_map.projection.project_to_map(*view.si.p)
+        )
         inside = valid & (chosen == index) & (np.abs(x) <= 1) & (np.abs(y) <= 1)
         columns, rows = (np.floor((place[inside] + 1) / 2 * CHECKS) for place in (x, y))
         shade[inside] *= np.where((columns + rows) % 2, DARK_SQUARE, 1)
@@ -110,7 +121,7 @@ def scale_depths(its_map: ShadowMap) -> FloatArray:
 
 
 def arrange_squares(squares: list[FloatArray]) -> FloatArray:
-    """Return squares of any size in rows as one square (SIDE, SIDE)."""
+    """Return square pictures of any size, placed in rows in one square (SIDE, SIDE)."""
     columns = ceil(sqrt(len(squares)))
     side = SIDE // columns
     arranged = np.full((SIDE, SIDE), np.nan, np.float16)

@@ -19,21 +19,21 @@ from brdfkit.core.version import __version__
 from brdfkit.images.errors.flip import flip
 from brdfkit.shadows.comparison.map_pictures import CHECKS, OUTSIDE, MapPictures
 from brdfkit.shadows.comparison.pictures import Pictures
-from brdfkit.shadows.comparison.scores import Scores, to_texts
+from brdfkit.shadows.comparison.scores import Scores, format_scores
 
-FLIP = ">FLIP"
-MAX_WIDTH = 320  # pixels of a picture on the page
-QUALITY = 60  # of WebP pictures, from 0 to 100
+FLIP = ">FLIP"  # the heading of the column of FLIP errors, aligned to the right
+MAX_WIDTH = 320  # the most pixels across a picture on the page
+QUALITY = 60  # the quality of WebP pictures, from 0 to 100
 ERROR_SCALE = "RdBu_r"  # matplotlib's colours for light that is lost (blue) or gained (red)
-ERROR_STEPS = 8  # from none to all of the light; few colours make small files
-TINTS = "Set2"  # matplotlib's colours of maps, in turn
+ERROR_STEPS = 8  # steps of colour from no error to all of the light; few make small files
+TINTS = "Set2"  # matplotlib's palette whose colours distinguish the maps
 NO_SURFACE = (0.16, 0.2, 0.3)  # the colour where the light sees nothing
 
 
 def require_page(path: str | Path) -> None:
-    """Raise `BrdfkitError` unless a page can be written there."""
+    """Raise `BrdfkitError` unless `path` ends in .html or .htm and can be written."""
     if Path(path).suffix.lower() not in (".html", ".htm"):
-        raise BrdfkitError(f"{path}: a comparison is written as a page; name it .html.")
+        raise BrdfkitError(f"{path}: a comparison is written as an HTML page; end it in .html.")
     require_writable(path)
 
 
@@ -42,7 +42,8 @@ def write_page(
 ) -> None:
     """Write the page of a `ShadowComparison`; `progress` is called with (done, total).
 
-    After Ctrl-C it has the table alone, as drawing the pictures takes as long as scoring them.
+    After Ctrl-C the page has the table alone, as drawing the pictures takes as long as scoring
+    them.
     """
     require_page(path)
     order = list(comparison.means)
@@ -54,11 +55,11 @@ def write_page(
         report(index, len(pictures))
         flips[index] = compute_flips(place, order)
         scores = [comparison.scores[label][index] for label in order]
-        places.append(describe_place(place, order, scores, flips[index]))
+        places.append(describe_view(place, order, scores, flips[index]))
     columns, rows = comparison.columns, comparison.table()
     has_flip = bool(np.isfinite(flips).any())
     if has_flip:
-        columns, rows = (*columns, FLIP), add_flips(rows, flips)
+        columns, rows = (*columns, FLIP), add_flip_column(rows, flips)
     page.write_page(
         "shadows.html",
         path,
@@ -68,7 +69,7 @@ def write_page(
         rows=rows,
         flip=has_flip,
         relative_columns=comparison.columns,
-        relative=to_texts(comparison.relative),
+        relative=format_scores(comparison.relative),
         bar=draw_colour_bar(ERROR_SCALE),
         places=places,
         checks=CHECKS,
@@ -76,10 +77,14 @@ def write_page(
     )
 
 
-def describe_place(
+def describe_view(
     place: Pictures, order: Sequence[str], scores: Sequence[Scores], flips: FloatArray
 ) -> dict[str, Any]:
-    """Return the template's values for a view in a light, with the techniques in this `order`."""
+    """Return the page template's values for a view in a light: titles, pictures and captions.
+
+    order : the techniques in their order on the page.
+    scores, flips : the scores and the FLIP error of each of them.
+    """
     exact = place.radiance(place.exact)
     white = float(np.percentile(exact[exact > 0], 99)) if exact.any() else 1.0
     draw = partial(draw_radiance, white=white)
@@ -108,7 +113,7 @@ def describe_place(
 
 
 def describe_scores(scores: Scores, its_flip: float) -> str:
-    """Return the scores of a picture as a caption."""
+    """Return the caption of a technique's picture, with its most important scores."""
     if np.isnan(scores.wrong):
         return "nothing is in the light"
     text = f"PSNR {scores.psnr:.1f} dB, wrong {100 * scores.wrong:.2f} %"
@@ -116,7 +121,7 @@ def describe_scores(scores: Scores, its_flip: float) -> str:
 
 
 def compute_flips(place: Pictures, order: Sequence[str]) -> list[float]:
-    """Return the FLIP error of each technique's small picture.
+    """Return the FLIP error of each technique's picture, shrunk as on the page.
 
     It is NaN without the package flip-evaluator, and where nothing faces the light.
     """
@@ -134,41 +139,44 @@ def compute_flips(place: Pictures, order: Sequence[str]) -> list[float]:
         return [np.nan] * len(order)
 
 
-def add_flips(rows: Sequence[tuple[str, ...]], flips: FloatArray) -> list[tuple[str, ...]]:
-    """Return the rows of a table, each with the mean FLIP of all places where it is known."""
+def add_flip_column(rows: Sequence[tuple[str, ...]], flips: FloatArray) -> list[tuple[str, ...]]:
+    """Return the rows of the table, each with the mean FLIP error of the views where it is known.
+
+    flips : FLIP errors (views, rows).
+    """
     known = flips[np.isfinite(flips).all(axis=1)]
     return [(*row, f"{mean:.4f}") for row, mean in zip(rows, known.mean(axis=0), strict=True)]
 
 
 def shrink_for_page(picture: AnyArray) -> FloatArray:
-    """Return a picture (height, width, n), halved until it is narrow enough."""
+    """Return a picture (height, width, n), halved until it is at most `MAX_WIDTH` wide."""
     return shrink(np.asarray(picture, float), MAX_WIDTH)
 
 
 def draw_radiance(picture: FloatArray, white: float) -> Any:
-    """Draw a picture (height, width, 3) with the brightest value `white`; return a data URL."""
-    return to_url(shrink_for_page(picture / white))
+    """Draw a picture (height, width, 3) in which `white` is the brightest value, as a data URL."""
+    return encode_as_data_url(shrink_for_page(picture / white))
 
 
 def draw_errors(errors: FloatArray) -> Any:
-    """Draw errors (height, width), light gained or (negative) lost, and return a data URL."""
+    """Draw errors (height, width), light gained or (negative) lost, as a data URL."""
     shares = np.round(shrink_for_page(errors[..., None])[..., 0] * ERROR_STEPS) / ERROR_STEPS
     return encode_webp(apply_colour_map(ERROR_SCALE, (shares + 1) / 2)[..., :3], lossless=True)
 
 
 def draw_texels(maps: MapPictures) -> Any:
-    """Draw a scene with the checker of its maps, grey without a map, and return a data URL."""
+    """Draw a scene under its shadow maps' checkerboards, one colour per map, as a data URL."""
     tints = np.ones((OUTSIDE + 1, 3))
     tints[:OUTSIDE] = apply_colour_map(TINTS, np.arange(OUTSIDE) % 8 / 7.99)[:, :3] ** 2
-    return to_url(shrink_for_page(maps.shade[..., None] * tints[maps.part]))
+    return encode_as_data_url(shrink_for_page(maps.shade[..., None] * tints[maps.part]))
 
 
 def draw_depths(depths: FloatArray) -> Any:
-    """Draw depths (side, side), 0 near and bright to 1 far, and return a data URL."""
+    """Draw depths (side, side), 0 near and bright to 1 far, as a data URL."""
     bright = (1 - 0.9 * depths.astype(float))[..., None] ** 2
-    return to_url(np.where(np.isnan(bright), NO_SURFACE, bright))
+    return encode_as_data_url(np.where(np.isnan(bright), NO_SURFACE, bright))
 
 
-def to_url(linear: FloatArray) -> Any:
+def encode_as_data_url(linear: FloatArray) -> Any:
     """Compress a picture (height, width, 3) of linear sRGB, with loss, to a data URL."""
     return encode_webp(to_srgb(linear), quality=QUALITY)

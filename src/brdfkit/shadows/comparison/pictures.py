@@ -13,11 +13,11 @@ from brdfkit.shadows.comparison.map_pictures import CompressedArray, MapPictures
 class Pictures:
     """One view in one light: without shadows, with exact ones, and with each technique's.
 
-    title : the view and the light.
-    light : radiance (height, width, 3) of the surfaces by this light alone, unshadowed.
-    arrives, towards : the compressed arrays of `exact` and `facing`.
+    title : name of the view and the light.
+    light : radiance (height, width, 3) of the surfaces by this light alone, without shadows.
+    arrives, towards : the compressed arrays of the properties `exact` and `facing`.
     maps : projection and partition → pictures of their maps.
-    shares : technique → share of the light (height, width) that arrives, in 255ths.
+    shares : technique → share (height, width) of the light that arrives, in steps of 1/255.
     """
 
     title: str
@@ -29,11 +29,13 @@ class Pictures:
 
     @classmethod
     def from_view(cls, view: LitView, title: str) -> "Pictures":
-        """Return the pictures of a view, without any technique yet."""
+        """Return the pictures of a view, to which techniques are added later."""
         height, width = view.size
         return cls(
             title,
-            CompressedArray.from_array(to_half(view.unshadowed).reshape(height, width, 3)),
+            CompressedArray.from_array(
+                to_half_precision(view.unshadowed).reshape(height, width, 3)
+            ),
             CompressedArray.from_array(view.exact.reshape(view.size)),
             CompressedArray.from_array(view.facing.reshape(view.size)),
         )
@@ -45,43 +47,43 @@ class Pictures:
 
     @property
     def unshadowed(self) -> FloatArray:
-        """The radiance (height, width, 3) of the surfaces by this light alone."""
+        """The radiance (height, width, 3) of the surfaces by this light alone, without shadows."""
         return self.light.array.astype(np.float32)
 
     @property
     def exact(self) -> BoolArray:
-        """Whether (height, width) the light arrives."""
+        """Whether (height, width) the light arrives, by shadow rays."""
         return self.arrives.array
 
     @property
     def facing(self) -> BoolArray:
-        """Whether (height, width) there is a surface that faces the light, where it shines."""
+        """Whether (height, width) the light would reach a visible surface without shadows."""
         return self.towards.array
 
     def add(self, technique: str, lit: FloatArray) -> None:
-        """Add the shares (pixels,) of the light that a technique lets through."""
+        """Add the picture of a technique, by the shares (pixels,) of light that arrive with it."""
         shares = np.round(255 * np.clip(lit, 0, 1)).astype(np.uint8)
         self.shares[technique] = CompressedArray.from_array(shares.reshape(self.arrives.shape))
 
     def lit(self, technique: str) -> FloatArray:
-        """Return the share of the light (height, width) that arrives by a technique."""
+        """Return the share (height, width) of the light that arrives with a technique."""
         return self.shares[technique].array / np.float32(255)
 
     def radiance(self, lit: AnyArray) -> FloatArray:
-        """Return the picture (height, width, 3) for the shares (height, width) of the light."""
+        """Return the picture (height, width, 3) with a share (height, width) of the light."""
         return self.unshadowed * lit[..., None]
 
 
-def to_half(radiance: FloatArray) -> FloatArray:
+def to_half_precision(radiance: FloatArray) -> FloatArray:
     """Return radiance in half precision, limited to its largest number, 65504."""
     return np.minimum(radiance, np.finfo(np.float16).max).astype(np.float16)
 
 
-def title_of(view: int, sensor: MitsubaObject, light: int, emitter: MitsubaObject) -> str:
-    """Return a title with the numbers of view and light, and their names in the scene."""
-    return f"View {view + 1}{_name_of(sensor)}, light {light + 1}{_name_of(emitter)}"
+def make_title(view: int, sensor: MitsubaObject, light: int, emitter: MitsubaObject) -> str:
+    """Return a title with the numbers of a view and a light, and with their names in the scene."""
+    return f"View {view + 1}{_format_name(sensor)}, light {light + 1}{_format_name(emitter)}"
 
 
-def _name_of(thing: MitsubaObject) -> str:
+def _format_name(thing: MitsubaObject) -> str:
     """Return the name of a Mitsuba object in brackets; empty if Mitsuba made it up."""
     return "" if thing.id().startswith("_") or not thing.id() else f" ({thing.id()})"

@@ -7,16 +7,18 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray
 
-BINS = 64  # along each side of a map: fine, but with enough points in each bin
-WHITE = 255.0
+BINS = 64  # bins along each side of a map: small ones, but with enough points in each of them
+WHITE = 255.0  # the highest grey level
 
 
-def share_used(maps: Iterable[FloatArray], bins: int = BINS) -> float:
-    """Return Q1, the share in (0, 1] of the maps that points use; NaN if no point is on a map.
+def share_of_texels_used(maps: Iterable[FloatArray], bins: int = BINS) -> float:
+    """Return Q1, the share in (0, 1] of the shadow maps that visible points use.
 
-    maps : for each map, the places (n, 2) of points on it, in [0, 1]²; others do not count.
+    It is NaN if no point is on a map.
 
-    >>> share_used([np.array([[0.2, 0.2], [0.7, 0.2]])], bins=2)
+    maps : for each map, the coordinates (n, 2) of points on it; those outside [0, 1]² do not count.
+
+    >>> share_of_texels_used([np.array([[0.2, 0.2], [0.7, 0.2]])], bins=2)
     0.5
     """
     limits = [[0, 1]] * 2
@@ -30,10 +32,10 @@ def share_used(maps: Iterable[FloatArray], bins: int = BINS) -> float:
 def aliasing_error(e: Any) -> float:
     """Return Q2 [dB], the aliasing of a picture as one number; larger is better [Ergun 2008, 3.2].
 
-    The areas `e` of texels [pixels] of all visible points are written to the red channel, and the
-    picture's PSNR is taken against a black one: 10 log10(255² / mean e²). The thesis does not say
-    how e becomes a grey level. Here e is the level, at most 255, which gives figures as printed (27
-    to 37 dB). It is NaN without points.
+    A picture of the areas `e` of the texels under all visible points [pixels] is compared with a
+    black one by PSNR: 10 log10(255² / mean e²). The thesis does not say how e becomes a grey level.
+    Here e is the level, at most 255, which gives figures as printed (27 to 37 dB). The result is
+    NaN without points.
 
     >>> aliasing_error(np.full(9, 25.5))
     20.0
@@ -43,7 +45,7 @@ def aliasing_error(e: Any) -> float:
 
 
 def flicker(lit: Any, true: Any) -> float:
-    """Return the mean change of the error from picture to picture, 0 at best.
+    """Return the mean absolute change of the error from picture to picture, 0 at best.
 
     lit, true : shares of the light (pictures, points), by the technique and exact.
 
@@ -55,12 +57,12 @@ def flicker(lit: Any, true: Any) -> float:
 
 
 def acne(lit: AnyArray, exact: AnyArray, facing: AnyArray, margin: int) -> float:
-    """Return the share of light that lit pixels lack, away from shadows [Ergun 2008, 3.1.2].
+    """Return the mean share of light that lit pixels lack, away from shadows [Ergun 2008, 3.1.2].
 
-    lit : the share of the light (height, width) by the technique.
+    lit : share (height, width) of the light by the technique.
     exact : whether the light arrives.
     facing : whether the surface faces the light.
-    margin : pixels around shadows in which a soft border counts as no acne.
+    margin : number of pixels around shadows in which a soft border counts as no acne.
     """
     from scipy.ndimage import binary_dilation
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray
 
-# Name, heading, scale, decimals, and whether more is better
+# Attribute of `Scores`, heading, factor from its unit, decimals, and whether more is better
 COLUMNS = (
     ("psnr", "PSNR [dB]", 1, 1, True),
     ("wrong", "wrong [%]", 100, 2, False),
@@ -25,21 +25,20 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Scores:
-    """Errors against exact shadows, and processor times.
+    """Errors of a shadow technique against exact shadows, and its processor times.
 
     Attributes
     ----------
     psnr : float
         Q3, the PSNR of the picture lit by this light alone, against exact shadows [dB].
     wrong : float
-        The share of light that is wrong where surfaces face the light: the mean difference from
-        exact shadows.
+        The mean absolute error of the share of light that arrives, where surfaces face the light.
     acne : float
-        The share of light that lit surfaces lack, away from shadows.
+        The mean share of light that lit surfaces lack, away from shadows.
     texture_use : float
         Q1, the share of the maps' texels that the picture uses.
     aliasing : float
-        Q2, how fine the texels are beside the pixels [dB].
+        Q2, a measure of how small the texels are in the picture; larger is better [dB].
     camera_flicker, light_flicker : float
         The mean change of the error from picture to picture, while the camera moves and while the
         light does.
@@ -61,42 +60,48 @@ class Scores:
 NAMES = tuple(field.name for field in fields(Scores))
 
 
-def average(scores: Sequence[Scores]) -> Scores:
-    """Return the means of several scores; dB are averaged themselves, as in the thesis.
+def average_scores(scores: Sequence[Scores]) -> Scores:
+    """Return the mean scores over several views and lights.
 
-    A picture without an error has infinite dB, which count as 99. NaN is left out, as are dB
-    against a black picture.
+    dB are averaged themselves, as in [Ergun 2008]. A picture without an error has infinite dB,
+    which count as 99. NaN is left out, as are dB against a black picture, -∞.
     """
     return _average_columns(_to_table(scores))
 
 
-def difference_of_lights(scores: Sequence[Scores]) -> Scores:
-    """Return the mean differences between lights 1 and 2 of all views, which alternate."""
+def average_light_differences(scores: Sequence[Scores]) -> Scores:
+    """Return the mean absolute differences between each view's scores in light 1 and in light 2.
+
+    scores : scores of all views in which the two lights alternate.
+    """
     table = _to_table(scores)
     first, second = table[::2], table[1::2]
     return _average_columns(np.abs(first[: len(second)] - second))
 
 
-def to_texts(rows: Mapping[str, Scores]) -> list[tuple[str, ...]]:
+def format_scores(rows: Mapping[str, Scores]) -> list[tuple[str, ...]]:
     """Return the scores of techniques as rows of texts; "–" for unknown ones."""
 
-    def to_text(value: float, digits: int) -> str:
+    def format_value(value: float, digits: int) -> str:
         return "–" if math.isnan(value) else f"{value:.{digits}f}"
 
     return [
-        (label, *(to_text(getattr(scores, name) * k, digits) for name, _, k, digits, _ in COLUMNS))
+        (
+            label,
+            *(format_value(getattr(scores, name) * k, digits) for name, _, k, digits, _ in COLUMNS),
+        )
         for label, scores in rows.items()
     ]
 
 
 def _to_table(scores: Sequence[Scores]) -> FloatArray:
-    """Return the numbers (scores, names), 99 at most, NaN for -∞."""
+    """Return scores as an array (scores, names), limited to 99, with NaN in place of -∞."""
     table = np.array([[getattr(one, name) for name in NAMES] for one in scores])
     return np.where(np.isneginf(table), nan, np.minimum(table, 99.0))
 
 
 def _average_columns(table: FloatArray) -> Scores:
-    """Return scores with the means of the columns of a table (scores, names), leaving out NaN."""
+    """Return scores with the means of the columns of an array (scores, names), leaving out NaN."""
     known = ~np.isnan(table)
     count = known.sum(axis=0)
     sums = np.where(known, table, 0).sum(axis=0)

@@ -11,7 +11,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.shadows.comparison.exact_shadow import LitView
-from brdfkit.shadows.comparison.quality import acne, aliasing_error, share_used
+from brdfkit.shadows.comparison.quality import acne, aliasing_error, share_of_texels_used
 from brdfkit.shadows.comparison.scores import Scores
 from brdfkit.shadows.comparison.tracked_points import TrackedPoints
 from brdfkit.shadows.maps.light_shadow import LightShadow
@@ -19,28 +19,29 @@ from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.resolution import aliasing
 
-MARGIN = 4  # pixels around shadows in which a soft border counts as no acne
+MARGIN = 4  # width [pixels] around shadows in which missing light counts as a soft border, not acne
 
 
-def score(
+def score_technique(
     view: LitView,
     placement: Placement,
     tracked: tuple[TrackedPoints, TrackedPoints],
     technique: Callable[[LitView, Placement], Any],
 ) -> tuple[Scores, FloatArray]:
-    """Return the scores of a technique, and the shares of light (pixels,) that it lets through.
+    """Return the scores of a technique, and the shares (pixels,) of the light that arrive with it.
 
-    placement : of the view's camera and light.
+    placement : placement of the view's camera and light.
     tracked : points of the view while the camera moves, and while the light does.
-    technique : makes a shadow, which has `lit_share(p, n, active)`, as `LightShadow`.
+    technique : function that makes a shadow, an object with `visibility(p, n, active)` such as
+        `LightShadow`.
     """
 
     def look_up(shadow: Any) -> Any:
-        return shadow.lit_share(view.si.p, view.si.n, view.si.is_valid())
+        return shadow.visibility(view.si.p, view.si.n, view.si.is_valid())
 
     shadow = technique(view, placement)
-    shares, seconds = run_timed(lambda: look_up(shadow))
-    _, seconds_of_both = run_timed(lambda: look_up(technique(view, placement)))
+    shares, seconds = time_second_run(lambda: look_up(shadow))
+    _, seconds_of_both = time_second_run(lambda: look_up(technique(view, placement)))
     lit = np.array(shares)
     facing, exact = view.facing, view.exact
     lit_picture, exact_picture, facing_picture = (
@@ -49,7 +50,7 @@ def score(
     use, fineness = score_texels(shadow, view, placement)
     by_camera, by_light = (points.flicker(lit, technique) for points in tracked)
     scores = Scores(
-        psnr=psnr(view.picture(exact), view.picture(lit), facing_picture),
+        psnr=psnr(view.compute_picture(exact), view.compute_picture(lit), facing_picture),
         wrong=float(np.abs(lit - exact)[facing].mean()),
         acne=acne(lit_picture, exact_picture, facing_picture, MARGIN),
         texture_use=use,
@@ -62,7 +63,7 @@ def score(
     return scores, lit
 
 
-def run_timed(function: Callable[[], Any]) -> tuple[Any, float]:
+def time_second_run(function: Callable[[], Any]) -> tuple[Any, float]:
     """Return a function's evaluated result, and the processor time [s] of its second run."""
     for _ in range(2):  # the first run compiles kernels
         start = time.process_time()
@@ -82,18 +83,18 @@ def score_texels(shadow: Any, view: LitView, placement: Placement) -> tuple[floa
 
     if not isinstance(shadow, LightShadow):
         return nan, nan
-    camera = Projection.from_matrix(placement.camera.matrix, placement.light).opaque()
+    camera = Projection.from_matrix(placement.camera.matrix, placement.light).make_opaque()
     film = view.sensor.film()
     # A film may show a window of the camera's picture: count the pixels of the whole picture
     pixels = np.array(view.size[::-1]) * np.array(film.size()) / np.array(film.crop_size())
     p, n = view.si.p, view.si.n
-    part, facing = shadow.part_of(p), mi.Bool(view.facing)
+    part, facing = shadow.find_part(p), mi.Bool(view.facing)
     places, areas = [], []
     for index, its_map in enumerate(shadow.maps):
-        x, y, _ = its_map.projection.to_map(*p)
+        x, y, _ = its_map.projection.project_to_map(*p)
         texels = its_map.projection, its_map.resolution
         e = aliasing(texels, (camera, pixels.tolist()), p, n)
         chosen = np.array(facing & (part == index))
         places.append((np.array([x, y]).T[chosen] + 1) / 2)
         areas.append(np.array(e)[chosen])
-    return share_used(places), aliasing_error(np.concatenate(areas))
+    return share_of_texels_used(places), aliasing_error(np.concatenate(areas))

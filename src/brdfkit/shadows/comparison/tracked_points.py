@@ -18,20 +18,20 @@ from brdfkit.shadows.comparison.quality import flicker
 from brdfkit.shadows.maps.placement import Placement
 
 PIXEL_STRIDE = 7  # every seventh pixel is tracked
-STEPS = 4
-CAMERA_TURN = 0.003  # the camera's turn to the right in a step [rad]
-CAMERA_STEP = 0.01  # the length of the camera's step, over the distance of the nearest surface
-LIGHT_TURN = 0.01  # the light's turn in a step, seen from the farthest place of the scene [rad]
+STEPS = 4  # the number of pictures, the first of which is the view itself
+CAMERA_TURN = 0.003  # the camera's turn to the right between two pictures [rad]
+CAMERA_STEP = 0.01  # the camera's move between two pictures, over the nearest surface's distance
+LIGHT_TURN = 0.01  # the light's turn between two, seen from the scene's farthest place [rad]
 
 
 @dataclass(frozen=True)
 class TrackedPoints:
-    """Points that keep their places in the world.
+    """Surface points that stay in place while the camera or the light moves along a path.
 
     view : the first picture.
-    pixels : the indices of its pixels where the points are.
-    path : the placements of camera and light in each picture, from the first one on.
-    true : whether (pictures, points) the light arrives.
+    pixels : indices of the pixels of `view` in which the points are.
+    path : placements of camera and light in each picture, from the first one on.
+    true : whether the light arrives, exactly, (pictures, points).
     """
 
     view: LitView
@@ -41,38 +41,39 @@ class TrackedPoints:
 
     @classmethod
     def by_moving_camera(cls, view: LitView, placement: Placement) -> "TrackedPoints":
-        """Return points that all cameras of a path see; their light stands still."""
-        path, pixels = camera_path(placement), np.flatnonzero(view.facing)[::PIXEL_STRIDE]
-        pixels = pixels[is_visible_to_all(path, np.array(view.si.p).T[pixels])]
+        """Return points that a moving camera sees in all pictures; their light stands still."""
+        path, pixels = make_camera_path(placement), np.flatnonzero(view.facing)[::PIXEL_STRIDE]
+        pixels = pixels[is_visible_to_all_cameras(path, np.array(view.si.p).T[pixels])]
         return cls(view, pixels, path, np.tile(view.exact[pixels], (len(path), 1)))
 
     @classmethod
     def by_moving_light(cls, view: LitView, placement: Placement) -> "TrackedPoints":
-        """Return points that face all lights of a path; their camera stands still."""
-        path, pixels = light_path(placement), np.flatnonzero(view.facing)[::PIXEL_STRIDE]
+        """Return points that face a moving light in all pictures; their camera stands still."""
+        path, pixels = make_light_path(placement), np.flatnonzero(view.facing)[::PIXEL_STRIDE]
         points, normals = (np.array(vectors).T[pixels] for vectors in (view.si.p, view.si.n))
-        pixels = pixels[is_facing_all(path, points, normals)]
-        p, n = view.points(pixels)
+        pixels = pixels[is_facing_all_lights(path, points, normals)]
+        p, n = view.gather_points(pixels)
         true = [is_lit(view.scene, each.light, p, n) for each in path]
         return cls(view, pixels, path, np.array(true))
 
     def flicker(self, lit: FloatArray, technique: Callable[[LitView, Placement], Any]) -> float:
         """Return the mean change of a technique's error between pictures; NaN without points.
 
-        lit : the shares (pixels,) of the light in the first picture, by the technique.
-        technique : makes a shadow, which has `lit_share(p, n)`, as `LightShadow`.
+        lit : shares (pixels,) of the light in the first picture, by the technique.
+        technique : function that makes a shadow, an object with `visibility(p, n)` such as
+            `LightShadow`.
         """
         if not self.pixels.size:
             return nan
-        p, n = self.view.points(self.pixels)
-        later = [np.array(technique(self.view, each).lit_share(p, n)) for each in self.path[1:]]
+        p, n = self.view.gather_points(self.pixels)
+        later = [np.array(technique(self.view, each).visibility(p, n)) for each in self.path[1:]]
         return flicker([lit[self.pixels], *later], self.true)
 
 
-def camera_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
-    """Return the placements of a camera that moves to the right, and turns that way.
+def make_camera_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
+    """Return the placements of a camera that moves and turns to the right, in equal steps.
 
-    A step moves a picture of 512 pixels by two or three of them.
+    A step shifts a picture of 512 pixels by two or three of them.
     """
     camera = placement.camera
     nearest, _ = placement.depths
@@ -85,24 +86,24 @@ def camera_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
     return path
 
 
-def is_visible_to_all(placements: list[Placement], points: FloatArray) -> BoolArray:
-    """Return whether points (n, 3) are within the pictures of all cameras: (n,)."""
+def is_visible_to_all_cameras(placements: list[Placement], points: FloatArray) -> BoolArray:
+    """Return whether each of the points (n, 3) is within the pictures of all cameras: (n,)."""
     matrices = [placement.camera.matrix for placement in placements]
     within = [(np.abs(project_points(m, points)) <= 1).all(axis=1) for m in matrices]
     visible: BoolArray = np.all(within, axis=0)
     return visible
 
 
-def light_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
-    """Return the placements of a light that moves across its direction, in equal steps."""
+def make_light_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
+    """Return the placements of a light that moves at right angles to its rays, in equal steps."""
     light = placement.light
     way = light.point[:3] - light.point[3] * placement.visible.centroid
-    step = LIGHT_TURN * perpendicular(way) * (1 if light.is_directional else placement.reach)
+    step = LIGHT_TURN * unit_perpendicular(way) * (1 if light.is_directional else placement.reach)
     return [replace(placement, light=move_light(light, k * step)) for k in range(steps)]
 
 
-def perpendicular(way: FloatArray) -> FloatArray:
-    """Return the unit vector (3,) at right angles to `way` (3,) that is nearest to an axis."""
+def unit_perpendicular(way: FloatArray) -> FloatArray:
+    """Return a unit vector (3,) at right angles to the vector `way` (3,)."""
     way = way / max(float(np.linalg.norm(way)), 1e-9)
     across: FloatArray = np.eye(3)[np.argmin(np.abs(way))]
     across = across - (across @ way) * way
@@ -110,17 +111,20 @@ def perpendicular(way: FloatArray) -> FloatArray:
 
 
 def move_light(light: Light, step: FloatArray) -> Light:
-    """Return a light whose place, or the unit vector to it, is moved by a `step` (3,)."""
+    """Return a light whose position is moved by a `step` (3,).
+
+    Of a directional light, the unit vector towards it moves.
+    """
     place = light.point[:3] + step
     if light.is_directional:
         place = place / np.linalg.norm(place)
     return replace(light, point=np.append(place, light.point[3]))
 
 
-def is_facing_all(
+def is_facing_all_lights(
     placements: list[Placement], points: FloatArray, normals: FloatArray
 ) -> BoolArray:
-    """Return whether points (n, 3) with `normals` (n, 3) turn one side to all lights: (n,)."""
+    """Return whether surface points (n, 3) have all lights on one side: (n,)."""
     to_lights = (each.light.directions_to_light(points) for each in placements)
     cosines = [(normals * to_light).sum(axis=1) for to_light in to_lights]
     facing: BoolArray = (np.min(cosines, axis=0) > 0) | (np.max(cosines, axis=0) < 0)

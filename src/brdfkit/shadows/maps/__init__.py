@@ -1,1 +1,1 @@
-"""Shadow maps: pictures of depths that a light sees, in which points are looked up later."""
+"""Shadow maps: pictures of the depths that a light sees, in which receivers are looked up."""

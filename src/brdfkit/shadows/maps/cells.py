@@ -1,4 +1,4 @@
-"""Square cells of a shadow map, each with a map of its own whose texels are finer or coarser."""
+"""Square cells of a shadow map that each get a map of their own, with finer or coarser texels."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -11,16 +11,16 @@ from brdfkit.core.array_types import IntArray, JitFloat, JitInt, JitMask, JitVec
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.projection import Projection
 
-GUTTER = 4  # texels that a cell's map has beyond the cell's edge, for filters
+GUTTER = 4  # a cell's map extends this many texels beyond the cell, as filters read neighbours
 
 
 @dataclass(frozen=True)
 class Cell:
-    """The projection that lets a square of another projection's map fill a whole map.
+    """The projection of a shadow map that shows only a square of another projection's map.
 
-    whole : the other projection.
-    x, y : the middle of the square on its map.
-    half : half of the square's side.
+    whole : the projection of the larger map.
+    x, y : coordinates of the square's centre on the larger map, in [-1, 1].
+    half : half the side of the square; the larger map has the side 2.
     """
 
     whole: Projection
@@ -32,65 +32,73 @@ class Cell:
     def from_grid(
         cls, whole: Projection, column: int, row: int, cells: int, resolution: int
     ) -> "Cell":
-        """Return a cell of a grid of `cells` × `cells`, with a gutter at this `resolution`."""
+        """Return one of `cells` × `cells` equal squares of a map, enlarged by `GUTTER` texels.
+
+        column, row : place of the square in the grid, counted from the corner (-1, -1).
+        resolution : number of texels along a side of the square's own map.
+        """
         x, y = ((2 * place + 1) / cells - 1 for place in (column, row))
         return cls(whole, x, y, resolution / (resolution - 2 * GUTTER) / cells)
 
     @property
     def light(self) -> Light:
-        """The light of the whole map."""
+        """The light whose shadow map is divided."""
         return self.whole.light
 
-    def opaque(self) -> "Cell":
-        """Return the cell with opaque Dr.Jit numbers, so that one kernel serves all cells."""
+    def make_opaque(self) -> "Cell":
+        """Return a copy with opaque Dr.Jit numbers, so that all cells share one compiled kernel."""
         import mitsuba as mi
 
         numbers = {name: dr.opaque(mi.Float, getattr(self, name)) for name in ("x", "y", "half")}
-        return replace(self, whole=self.whole.opaque(), **numbers)
+        return replace(self, whole=self.whole.make_opaque(), **numbers)
 
-    def to_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
-        """Return where a point of the world is in the map's cube."""
-        u, v, depth = self.whole.to_map(x, y, z)
+    def project_to_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+        """Return the map coordinates and the depth of a point of the world, [-1, 1] on the map."""
+        u, v, depth = self.whole.project_to_map(x, y, z)
         return (u - self.x) / self.half, (v - self.y) / self.half, depth
 
-    def is_before(self, x: JitFloat, y: JitFloat, z: JitFloat) -> JitMask:
-        """Return whether the projection maps a point at all."""
-        return self.whole.is_before(x, y, z)
+    def is_projectable(self, x: JitFloat, y: JitFloat, z: JitFloat) -> JitMask:
+        """Return whether the projection can map a point of the world at all, that is w > 0."""
+        return self.whole.is_projectable(x, y, z)
 
-    def derivative_along(self, point: JitVector, way: JitVector) -> tuple[JitFloat, ...]:
-        """Return the derivative of `to_map` at a `point` along a vector `way`."""
-        u, v, depth = self.whole.derivative_along(point, way)
+    def directional_derivative(self, point: JitVector, way: JitVector) -> tuple[JitFloat, ...]:
+        """Return the derivative of map coordinates and depth as a point moves along a vector.
+
+        way : the vector.
+        """
+        u, v, depth = self.whole.directional_derivative(point, way)
         return u / self.half, v / self.half, depth
 
-    def to_light(self, p: JitVector) -> JitVector:
-        """Return the unit vectors from points `p` to the light."""
-        return self.whole.to_light(p)
+    def direction_to_light(self, p: JitVector) -> JitVector:
+        """Return the unit vectors from the points `p` to the light."""
+        return self.whole.direction_to_light(p)
 
-    def ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
-        """Return the ray of light at a place of the map: its origin and its unit direction."""
-        return self.whole.ray(x * self.half + self.x, y * self.half + self.y)
+    def compute_light_ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
+        """Return origin and unit direction of the light ray through map coordinates x and y."""
+        return self.whole.compute_light_ray(x * self.half + self.x, y * self.half + self.y)
 
-    def from_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
-        """Return the point of the world at a place in the map's cube."""
-        return self.whole.from_map(x * self.half + self.x, y * self.half + self.y, z)
+    def unproject_from_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+        """Return the point of the world with map coordinates x and y and the depth z."""
+        return self.whole.unproject_from_map(x * self.half + self.x, y * self.half + self.y, z)
 
 
 def make_cell_finder(whole: Projection, table: IntArray) -> Callable[[JitVector], JitInt]:
-    """Return the function from points to the entries of a `table` (n, n) of cells.
+    """Return a function that finds the index of the cell in which a point of the world lies.
 
-    The table covers the map of `whole`, by rows and columns.
+    whole : projection of the map that is divided into cells.
+    table : indices of cells (n, n), for each square of an n × n grid over that map, [row, column].
     """
     import mitsuba as mi
 
-    opaque, entries = whole.opaque(), mi.UInt32(np.ravel(table).astype(np.uint32))
+    opaque, entries = whole.make_opaque(), mi.UInt32(np.ravel(table).astype(np.uint32))
     dr.make_opaque(entries)
     count = dr.opaque(mi.Float, float(len(table)))
 
-    def to_index(place: JitFloat) -> JitInt:
+    def find_grid_index(place: JitFloat) -> JitInt:
         return mi.UInt32(dr.clip(dr.floor((place + 1) / 2 * count), 0, count - 1))
 
-    def part_of(p: JitVector) -> JitInt:
-        x, y, _ = opaque.to_map(*p)
-        return dr.gather(mi.UInt32, entries, to_index(y) * mi.UInt32(count) + to_index(x))
+    def find_cell(p: JitVector) -> JitInt:
+        column, row = (find_grid_index(place) for place in opaque.project_to_map(*p)[:2])
+        return dr.gather(mi.UInt32, entries, row * mi.UInt32(count) + column)
 
-    return part_of
+    return find_cell

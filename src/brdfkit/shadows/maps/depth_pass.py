@@ -1,4 +1,4 @@
-"""The first pass of a shadow map: the light's view, ray-traced, as a picture of depths."""
+"""The first pass of shadow mapping: trace rays from the light and store the depths they reach."""
 
 import drjit as dr
 import numpy as np
@@ -10,21 +10,23 @@ from brdfkit.shadows.maps.projection import AnyProjection
 def render_depths(
     scene: MitsubaObject, projection: AnyProjection, resolution: int
 ) -> MitsubaObject:
-    """Return the `mi.TensorXf` (resolution, resolution) of depths, rows from y = -1 upwards.
+    """Return the depths that a light sees as a `mi.TensorXf` (resolution, resolution).
 
-    A texel holds the depth of the first surface along its ray of light; a surface before the map's
-    cube has a depth below -1. Texels without a surface hold infinity. Derivatives by the scene's
-    geometry are kept.
+    The first row is at y = -1 of the map. A texel holds the depth of the first surface on its ray
+    of light, and infinity if there is none; the depth is below -1 if the surface lies before the
+    region that the projection encloses. Derivatives by the scene's geometry are kept.
     """
-    opaque = projection.opaque()
-    si = scene.ray_intersect(texel_rays(scene, opaque, resolution))
-    return to_square(dr.select(si.is_valid(), depth_of(opaque, si.p), dr.inf), resolution)
+    opaque = projection.make_opaque()
+    si = scene.ray_intersect(make_texel_rays(scene, opaque, resolution))
+    return reshape_to_map(dr.select(si.is_valid(), compute_depth(opaque, si.p), dr.inf), resolution)
 
 
-def texel_rays(scene: MitsubaObject, opaque: AnyProjection, resolution: int) -> MitsubaObject:
-    """Return the `mi.Ray3f` of light through the middle of each texel of an opaque projection.
+def make_texel_rays(scene: MitsubaObject, opaque: AnyProjection, resolution: int) -> MitsubaObject:
+    """Return the `mi.Ray3f` from the light through the centre of each texel of a shadow map.
 
-    Rays of a directional light start outside of the scene.
+    Rays of a directional light start outside the scene.
+
+    opaque : the map's projection, made opaque.
     """
     import mitsuba as mi
 
@@ -33,7 +35,7 @@ def texel_rays(scene: MitsubaObject, opaque: AnyProjection, resolution: int) -> 
     side = dr.opaque(mi.UInt32, resolution)
     x = (mi.Float(index % side) + 0.5) * texel - 1
     y = (mi.Float(index // side) + 0.5) * texel - 1
-    origin, direction = (mi.Vector3f(*vector) for vector in opaque.ray(x, y))
+    origin, direction = (mi.Vector3f(*vector) for vector in opaque.compute_light_ray(x, y))
     if opaque.light.is_directional:
         bounds = scene.bbox()
         radius = float(np.linalg.norm(np.ravel(bounds.extents()))) / 2
@@ -43,13 +45,13 @@ def texel_rays(scene: MitsubaObject, opaque: AnyProjection, resolution: int) -> 
     return mi.Ray3f(mi.Point3f(origin), direction)
 
 
-def depth_of(opaque: AnyProjection, p: JitVector) -> JitFloat:
-    """Return the depth of points; infinity beyond the horizon of a warped map."""
-    return dr.select(opaque.is_before(*p), opaque.to_map(*p)[2], dr.inf)
+def compute_depth(opaque: AnyProjection, p: JitVector) -> JitFloat:
+    """Return the depth of points in a shadow map; infinity where they cannot be projected."""
+    return dr.select(opaque.is_projectable(*p), opaque.project_to_map(*p)[2], dr.inf)
 
 
-def to_square(values: JitFloat, resolution: int) -> MitsubaObject:
-    """Return the values of texels as a `mi.TensorXf` (resolution, resolution)."""
+def reshape_to_map(values: JitFloat, resolution: int) -> MitsubaObject:
+    """Return one value per texel as a `mi.TensorXf` (resolution, resolution)."""
     import mitsuba as mi
 
     return mi.TensorXf(values, (resolution, resolution))

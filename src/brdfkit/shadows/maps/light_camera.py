@@ -1,8 +1,8 @@
 """A camera at a light, fitted to points: perspective, or orthographic for a directional light.
 
-For a light (q, w) in homogeneous coordinates about the middle of the points p, the rays are w p - q
-with any w: w > 0 for a light at a place, 0 for one far away, and w < 0 behind an eye
-[Ergun 2008, 2.2.2].
+In homogeneous coordinates about the middle of the points p, the light is (q, w): w > 0 for a light
+at a place, 0 for a light far away, and w < 0 if a projection has put it behind the eye. In all
+three cases its rays have the directions w p - q [Ergun 2008, 2.2.2].
 """
 
 import numpy as np
@@ -20,19 +20,19 @@ from brdfkit.core.projective.light import NEAREST, Light
 from brdfkit.shadows.maps.projection import Projection
 
 
-def enclose_body(light: Light, body: Body) -> Projection:
-    """Return the projection from a light whose cube encloses a body.
+def make_enclosing_projection(light: Light, body: Body) -> Projection:
+    """Return the projection of a shadow map that encloses a body as seen from a light.
 
     Raises `BrdfkitError` for a point light that the body surrounds.
     """
     view = view_matrix(light.point, body.corners, body.centroid)
-    return fit_to_corners(view, light, body.corners)
+    return fit_projection_to_corners(view, light, body.corners)
 
 
-def fit_to_corners(matrix: FloatArray, light: Light, corners: FloatArray) -> Projection:
-    """Return the projection by a matrix (4, 4) through the light, stretched to enclose `corners`.
+def fit_projection_to_corners(matrix: FloatArray, light: Light, corners: FloatArray) -> Projection:
+    """Return the projection by a matrix (4, 4), scaled so that its map just encloses `corners`.
 
-    Its cube just encloses the corners (n, 3).
+    corners : points (n, 3) of the world.
     """
     ends = project_points(matrix, corners)
     to_cube = make_unit_cube_matrix(ends.min(axis=0), ends.max(axis=0))
@@ -40,10 +40,14 @@ def fit_to_corners(matrix: FloatArray, light: Light, corners: FloatArray) -> Pro
 
 
 def view_matrix(light: FloatArray, corners: FloatArray, middle: FloatArray) -> FloatArray:
-    """Return the matrix (4, 4) of a camera at the point `light` (4,), looking at `corners` (n, 3).
+    """Return the matrix (4, 4) of a camera at a light, from the world to map coordinates and depth.
 
-    x and y are of one scale, tangents or lengths, at right angles to the ray to the `middle` (3,),
-    a point among the corners; depth is from -1 to 1 for the corners.
+    The camera looks at `corners`, whose depths become -1 to 1. x and y have the same scale; they
+    are tangents, or lengths for a light at infinity, at right angles to the ray to `middle`.
+
+    light : homogeneous point (4,) of the light.
+    corners : points (n, 3) that the camera must see.
+    middle : a point (3,) among the corners.
 
     Raises `BrdfkitError` if no plane separates the light from the corners.
     """
@@ -55,8 +59,8 @@ def view_matrix(light: FloatArray, corners: FloatArray, middle: FloatArray) -> F
     before = rays @ axis
     if not before.min() > NEAREST / 2 * before.max():
         raise BrdfkitError(
-            "the light is among what it shadows: one map cannot look all around; use "
-            "partition='cube' or shadow volumes, or move the light out of the scene's box."
+            "the light is inside the scene's box, and one shadow map cannot look all around; use "
+            "partition='cube' or shadow volumes, or move the light out of the box."
         )
     matrix = np.zeros((4, 4))
     matrix[:3, :3] = make_axes(-q / np.linalg.norm(q))
@@ -69,13 +73,13 @@ def view_matrix(light: FloatArray, corners: FloatArray, middle: FloatArray) -> F
 
 
 def narrowest_cone_axis(rays: FloatArray) -> FloatArray:
-    """Return the axis (3,) of the narrowest cone that holds `rays` (n, 3); 0 if there is none."""
+    """Return the axis (3,) of the narrowest cone around `rays` (n, 3); 0 if no cone holds them."""
     from scipy.optimize import nnls
 
     lengths = np.linalg.norm(rays, axis=1, keepdims=True)
     if lengths.min() < 1e-9 * lengths.max():
         return np.zeros(3)
-    # The axis points to the point of the directions' convex hull that is nearest to 0
+    # The axis leads from 0 to the nearest point of the convex hull of the rays' unit vectors
     units = rays / lengths
     weights, _ = nnls(np.vstack([units.T, np.ones(len(units))]), np.array([0, 0, 0, 1.0]))
     axis: FloatArray = weights @ units

@@ -1,4 +1,4 @@
-"""`LightShadow`: all shadow maps of one light, and the share of its light at surface points."""
+"""`LightShadow`: the shadow maps of one light, and its visibility from surface points."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,21 +13,21 @@ from brdfkit.shadows.maps.map_point import AUTOMATIC, Bias, find_map_point
 from brdfkit.shadows.maps.partition import Partition, Setup
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import AnyProjection, LightDepth, Projection
-from brdfkit.shadows.maps.techniques import find_renderer, make_techniques
+from brdfkit.shadows.maps.techniques import find_map_renderer, make_techniques
 
 DEPTHS = ("projected", "linear")
 
 
 class ShadowMap:
-    """One shadow map: the light's view of a scene, in which points are looked up.
+    """One shadow map: the depths that a light sees, and the visibility of the light that they give.
 
     scene : a `mi.Scene`.
-    projection : a projection through the light.
-    reach : the longest way of light through the scene [unit of length].
+    projection : the map's projection, through the light.
+    reach : length of the longest light ray through the scene [unit of length].
     lookup : the class `Lookup` of a file in `filters/`.
-    resolution : texels along a side.
-    bias : how receivers are moved towards the light.
-    render : the function that renders the map: `render_depths`, or the file's own `render_map`.
+    resolution : number of texels along a side.
+    bias : how receivers are moved towards the light before they are compared.
+    render : the function that renders the map: `render_depths`, or the filter's own `render_map`.
     """
 
     def __init__(
@@ -42,27 +42,28 @@ class ShadowMap:
     ) -> None:
         self.depths = render(scene, projection, resolution)
         self.lookup = lookup(self.depths)
-        self.projection = projection.opaque()
+        self.projection = projection.make_opaque()
         self.resolution, self.bias, self.reach = resolution, bias, reach
 
-    def lit_share(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:
+    def visibility(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:
         """Return the share of the light that arrives at points `p` with surface normals `n`."""
         settings = self.bias, self.reach, active
         point = find_map_point(self.projection, self.resolution, p, n, *settings)
-        return self.lookup.lit_share(point)
+        return self.lookup.visibility(point)
 
 
 class LightShadow:
-    """The shadow of a scene in one light, by a technique.
+    """The shadow of a scene in one light, by one or more shadow maps.
 
     scene : a `mi.Scene`.
     placement : the camera and the light in the scene.
     projection, filter, partition : names of files in the folders of those names.
-    resolution : texels along a side of each map; `tiled` shares out those of one map.
-    bias : how receivers are moved towards the light.
-    depth : what maps hold: "projected", the third coordinate of the projection's cube, in which
-        planes stay planes, or "linear", the distance that the light has come.
-    settings : of the three files, by the names in their `SETTINGS`.
+    resolution : number of texels along a side of each map; the partition `tiled` divides those of a
+        single map among its tiles.
+    bias : how receivers are moved towards the light before they are compared.
+    depth : "projected" stores the third coordinate of the projection, in which planes stay planes;
+        "linear" stores the distance from the light.
+    settings : settings of the three files, by the names in their `SETTINGS`.
     """
 
     def __init__(
@@ -79,10 +80,10 @@ class LightShadow:
     ) -> None:
         names = {"projection": projection, "filter": filter, "partition": partition}
         technique = make_techniques(names, settings)
-        project = _use_depth(depth, technique["projection"], placement)
+        project = _replace_depth(depth, technique["projection"], placement)
         divided: Partition = technique["partition"](Setup(scene, placement, project, resolution))
-        self.part_of = divided.part_of
-        lookup, render = technique["filter"], find_renderer(filter)
+        self.find_part = divided.find_part
+        lookup, render = technique["filter"], find_map_renderer(filter)
         self.maps = [
             ShadowMap(
                 scene, part.projection, placement.reach, lookup, part.resolution, bias, render
@@ -90,21 +91,24 @@ class LightShadow:
             for part in divided.parts
         ]
 
-    def lit_share(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:
+    def visibility(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:
         """Return the share of the light, in [0, 1], at points `p` with surface normals `n`."""
         import mitsuba as mi
 
-        part = self.part_of(p)
+        part = self.find_part(p)
         inside = mi.Bool(active) & (part < len(self.maps))
-        # The look-ups of all parts have the same code, so that a kernel contains it only once
-        lit = dr.switch(part, [each.lit_share for each in self.maps], p, n, inside)
+        # As all maps are looked up by the same code, the compiled kernel contains it only once
+        lit = dr.switch(part, [each.visibility for each in self.maps], p, n, inside)
         return dr.select(inside, lit, 1)
 
 
-def _use_depth(
+def _replace_depth(
     depth: str, project: Callable[[Placement], Projection], whole: Placement
 ) -> Callable[[Placement], Projection]:
-    """Return `project`, changed to hold this kind of depth, which `whole` scales if linear."""
+    """Return the function `project` from placements to projections, with the named kind of depth.
+
+    whole : placement of the whole scene, which sets the scale of linear depth.
+    """
     if depth not in DEPTHS:
         raise no_such_error("depth", depth, DEPTHS)
     if depth == "projected":

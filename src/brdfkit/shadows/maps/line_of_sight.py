@@ -1,12 +1,13 @@
-"""The line of sight on the map of a light, along which texels are shifted from far to near.
+"""The line of sight on a light's map, along which perspectives enlarge what is near the eye.
 
 Three projections have the same form: the light's own projection, then a perspective across the map,
 
     x' = x / w,  y' = (y - y_0) / w,  w = 1 + (y - y_0) / n
 
-where y runs along the line of sight, and y_0 is where the visible part begins. The apex, in which
-lines of constant x' meet, is n before y_0. The projections differ by n [Lloyd et al. 2008]: the
-smaller it is, the more of the map the near end gets; as n grows, the map becomes uniform.
+where y runs along the line of sight, and y_0 is where the visible part begins. The lines of
+constant x' meet in the apex, at the distance n before y_0. The projections differ by n [Lloyd et
+al. 2008]: the smaller it is, the more of the map is spent near the eye; for a large n the map
+becomes uniform.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from brdfkit.core.projective.homogeneous import (
 )
 from brdfkit.core.projective.light import Light
 from brdfkit.mitsuba_bridge.properties.declarations import declare_float
-from brdfkit.shadows.maps.light_camera import fit_to_corners, view_matrix
+from brdfkit.shadows.maps.light_camera import fit_projection_to_corners, view_matrix
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 
@@ -38,13 +39,13 @@ APEX = declare_float(
 
 @dataclass(frozen=True)
 class LineOfSight:
-    """The line from an eye through the middle of the visible body, on the map of a light.
+    """The line from the eye through the middle of the visible body, on the map of a light.
 
-    matrix : (4, 4), from the world to the light's view, in which the eye is at (0, 0), the line
-        is y, and x across.
+    matrix : (4, 4), from the world to the light's view, turned so that the eye is at (0, 0) and the
+        line is the y axis.
     light : the light.
-    corners : (n, 3), of the body that the map must hold.
-    eye, middle : (3,), two points of the line.
+    corners : points (n, 3) of the body that the map must enclose.
+    eye, middle : two points (3,) of the line: the camera, and the middle of the visible body.
     """
 
     matrix: AnyArray
@@ -54,37 +55,40 @@ class LineOfSight:
     middle: Any
 
     @property
-    def ends(self) -> tuple[float, float]:
-        """The y at which the body of the map begins along the line, y_0, and at which it ends."""
+    def y_range(self) -> tuple[float, float]:
+        """The y of the near end (y_0) and of the far end of the body that the map must enclose."""
         y = project_points(self.matrix, self.corners)[:, 1]
         return y.min(), y.max()
 
     @property
-    def sine(self) -> float:
-        """The sine of the angle γ between the line and the light in the middle."""
+    def sine_to_light(self) -> float:
+        """The sine of the angle γ between the line of sight and the light ray through `middle`."""
         line = self.middle - self.eye
         light = self.light.direction(*self.middle)
         return float(np.linalg.norm(np.cross(line, light)) / np.linalg.norm(line))
 
     @property
-    def scale(self) -> float:
-        """Lengths on the map per unit of length at right angles to the light."""
-        across = self.sine * np.linalg.norm(self.middle - self.eye)
+    def map_scale(self) -> float:
+        """The length on the map of a unit of length at right angles to the light."""
+        across = self.sine_to_light * np.linalg.norm(self.middle - self.eye)
         return float(project(self.matrix, *self.middle)[1] / across)
 
-    def warp(self, n: float) -> Projection:
-        """Return the projection whose apex lies `n` before y_0, in lengths on the map."""
-        warp, (near, _) = np.eye(4), self.ends
+    def make_warped_projection(self, n: float) -> Projection:
+        """Return the light's projection, warped by a perspective with its apex `n` before y_0.
+
+        n : distance of the apex, in lengths on the map.
+        """
+        warp, (near, _) = np.eye(4), self.y_range
         warp[1, 3] = -near
         warp[3, 1], warp[3, 3] = 1 / n, 1 - near / n
-        return fit_to_corners(warp @ self.matrix, self.light, self.corners)
+        return fit_projection_to_corners(warp @ self.matrix, self.light, self.corners)
 
 
 def find_line_of_sight(placement: Placement) -> LineOfSight | None:
-    """Return the line of sight of a placement.
+    """Return the line of sight of a placement's camera on its light's map.
 
-    It is None if the eye looks along the light, or is not before it, as then no side of the map
-    belongs to what is near the eye.
+    It is None if the eye looks along the light or is behind it, as then no side of the map belongs
+    to what is near the eye.
     """
     light, corners = placement.light, placement.body.corners
     eye, middle = placement.camera.position, placement.visible.centroid

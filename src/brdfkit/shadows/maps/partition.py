@@ -1,4 +1,4 @@
-"""A scene divided among several shadow maps: its parts, and to which of them a point belongs."""
+"""The division of a scene among several shadow maps, and the map to which each point belongs."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -15,12 +15,12 @@ from brdfkit.shadows.maps.projection import AnyProjection, Projection
 
 @dataclass(frozen=True)
 class Setup:
-    """The scene, its placement and the maps' settings, from which a partition is made.
+    """The scene and the settings of its shadow maps, from which a partition is made.
 
     scene : a `mi.Scene`.
     placement : the camera and the light in it.
-    project : the function from a placement to the projection of a map.
-    resolution : texels along a side of a map.
+    project : function from a placement to the projection of its map.
+    resolution : number of texels along a side of a map.
     """
 
     scene: MitsubaObject
@@ -31,7 +31,11 @@ class Setup:
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a scene with its own map: the `projection`, and the texels along a side."""
+    """A part of a scene with its own shadow map.
+
+    projection : the projection of the map.
+    resolution : number of texels along a side.
+    """
 
     projection: AnyProjection
     resolution: int
@@ -39,24 +43,25 @@ class Part:
 
 @dataclass(frozen=True)
 class Partition:
-    """The `parts` of a scene, and a function from points to the indices of their parts.
+    """The division of a scene into parts with a shadow map each.
 
-    `part_of(p)` is a `mi.UInt32` for a `mi.Point3f`; a point without a part has an index beyond
-    the list.
+    parts : the parts.
+    find_part : function from points, a `mi.Point3f`, to the indices of their parts, a `mi.UInt32`.
+        A point without a part has an index beyond the list.
     """
 
     parts: list[Part]
-    part_of: Callable[[Any], Any]
+    find_part: Callable[[Any], Any]
 
 
-def make_parts(
-    setup: Setup, placements: Iterable[Placement], placement_of: Callable[[Any], Any]
+def make_partition_from_placements(
+    setup: Setup, placements: Iterable[Placement], find_placement: Callable[[Any], Any]
 ) -> Partition:
-    """Make the partition with a part for each of the placements that is not empty.
+    """Make the partition with one part for each placement that has anything in it.
 
-    placement_of : function from points to the indices of their placements.
+    find_placement : function from points to the indices of their placements.
 
-    Raises `Empty` if all placements are.
+    Raises `Empty` if all placements are empty.
     """
     placements = list(placements)
     parts: list[Part] = []
@@ -72,17 +77,19 @@ def make_parts(
         parts.append(Part(projection, setup.resolution))
     if not parts:
         raise empty
-    return Partition(parts, _renumber(placement_of, indices))
+    return Partition(parts, _renumber_parts(find_placement, indices))
 
 
-def _renumber(placement_of: Callable[[Any], Any], indices: list[int]) -> Callable[[Any], Any]:
-    """Return the function that looks the results of `placement_of` up in a list of indices."""
+def _renumber_parts(
+    find_placement: Callable[[Any], Any], indices: list[int]
+) -> Callable[[Any], Any]:
+    """Return `find_placement`, changed to return `indices[i]` where it returned i."""
     import mitsuba as mi
 
     table = mi.UInt32(np.array(indices, np.uint32))
     dr.make_opaque(table)
 
-    def part_of(p: JitVector) -> JitInt:
-        return dr.gather(mi.UInt32, table, placement_of(p))
+    def find_part(p: JitVector) -> JitInt:
+        return dr.gather(mi.UInt32, table, find_placement(p))
 
-    return part_of
+    return find_part

@@ -14,13 +14,13 @@ from brdfkit.core.projective.light import Light
 
 @dataclass(frozen=True)
 class Placement:
-    """A camera, a light, and the box of a scene.
+    """The geometry from which a shadow map's projection is made: camera, light and scene's box.
 
-    camera : its planes are drawn in to the scene.
+    camera : the camera, with near and far planes moved in to the scene.
     light : a point, spot or directional light.
-    low, high : the corners (3,) of the scene's box.
-    nearest : about the distance of the nearest visible surface, to which projections are tuned; it
-        bounds nothing.
+    low, high : two opposite corners (3,) of the scene's box.
+    nearest : approximate distance of the nearest visible surface, to which projections are tuned;
+        there may be nearer surfaces.
     """
 
     camera: Camera
@@ -37,14 +37,14 @@ class Placement:
         bounds = scene.bbox()
         low, high = (np.array(end, float).ravel() for end in (bounds.min, bounds.max))
         if not np.isfinite([low, high]).all():
-            raise BrdfkitError("the scene has no shapes that could cast or take a shadow.")
+            raise BrdfkitError("the scene has no shapes: add some that cast and take shadows.")
         camera = Camera.from_sensor(sensor).fit_planes(make_box(low, high).corners)
         nearest = find_nearest_depth(scene, sensor, camera)
         return cls(camera, Light.from_emitter(emitter), low, high, nearest)
 
     @cached_property
     def scene(self) -> Body:
-        """S, the box of the scene, within the pyramid of a spot light."""
+        """S, the part of the scene's box that the light reaches; a spot's pyramid cuts the box."""
         whole = make_box(self.low, self.high)
         light = self.light
         return whole & light.make_bounding_pyramid(self.reach) if light.is_bounded else whole
@@ -56,7 +56,7 @@ class Placement:
 
     @cached_property
     def reach(self) -> float:
-        """A distance [unit of length] that no ray of light through the scene exceeds."""
+        """An upper bound on the length of light rays through the scene [unit of length]."""
         corners = make_box(self.low, self.high).corners
         if self.light.is_directional:
             return self.size
@@ -75,14 +75,20 @@ class Placement:
 
     @cached_property
     def body(self) -> Body:
-        """B = ((V ∩ S) + light) ∩ S: all that the camera may see or that may shadow it."""
+        """B = ((V ∩ S) + light) ∩ S: all that the camera may see or that may cast shadows on it.
+
+        V is the camera's frustum and S the lit part of the scene's box.
+        """
         return self.visible.extend_to_light(self.light.point, self.size) & self.scene
 
 
 def find_nearest_depth(
     scene: MitsubaObject, sensor: MitsubaObject, camera: Camera, side: int = 64
 ) -> float:
-    """Return the distance along the view of the nearest surface that `side`² camera rays hit."""
+    """Return the least distance along the view of the surfaces that `side`² camera rays hit.
+
+    It is 0 if all rays miss.
+    """
     import drjit as dr
     import mitsuba as mi
 

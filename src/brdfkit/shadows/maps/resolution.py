@@ -1,4 +1,4 @@
-"""The size of a map's texels in the picture: √(1/|det J|), with the Jacobian J from pixels to map.
+"""The size of shadow-map texels in the picture: √(1/|det J|), J the Jacobian from pixels to texels.
 
 Texels that are larger than pixels are visible [Ergun 2008, 3.1.1].
 """
@@ -15,23 +15,23 @@ from brdfkit.shadows.maps.visible_surfaces import SIDE, VisibleSurfaces
 def aliasing(
     texels: tuple[AnyProjection, int], pixels: tuple[AnyProjection, Any], p: JitVector, n: JitVector
 ) -> JitFloat:
-    """Return 1 / |det J|, a texel's area in pixels, at a surface point `p` with normal `n`.
+    """Return 1 / |det J|, a texel's area in pixels, at surface points `p` with normals `n`.
 
-    texels : of the shadow map, its projection and resolution.
-    pixels : of the picture, a projection by its camera's matrix, and its width and height.
+    Components are floats, NumPy arrays or, with projections made opaque, Dr.Jit arrays.
 
-    Components are floats, NumPy arrays or, of opaque projections, Dr.Jit arrays.
+    texels : projection and resolution of the shadow map.
+    pixels : projection by the camera's matrix, and (width, height) of the picture.
     """
     projection, resolution = texels
     camera, (width, height) = pixels
-    pixel_density = width * height * magnification(camera, p, n)
-    return pixel_density / (resolution**2 * magnification(projection, p, n))
+    pixel_density = width * height * area_magnification(camera, p, n)
+    return pixel_density / (resolution**2 * area_magnification(projection, p, n))
 
 
-def magnification(projection: AnyProjection, p: JitVector, n: JitVector) -> JitFloat:
-    """Return the area on the map's square per area on a surface at `p` with the normal `n`."""
+def area_magnification(projection: AnyProjection, p: JitVector, n: JitVector) -> JitFloat:
+    """Return the area on a map per area of the surface at points `p` with normals `n`."""
     (u_x, v_x, _), (u_y, v_y, _), (u_z, v_z, _) = (
-        projection.derivative_along(p, way)
+        projection.directional_derivative(p, way)
         for way in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
     )
     return abs(
@@ -41,16 +41,19 @@ def magnification(projection: AnyProjection, p: JitVector, n: JitVector) -> JitF
     )
 
 
-def places_on_map(projection: AnyProjection, surfaces: VisibleSurfaces) -> FloatArray:
-    """Return the places (n, 2) of visible points on a projection's map, in [-1, 1]²."""
-    return np.column_stack(projection.to_map(*surfaces.points.T)[:2])
+def locate_on_map(projection: AnyProjection, surfaces: VisibleSurfaces) -> FloatArray:
+    """Return the map coordinates (n, 2), in [-1, 1], of visible points under a projection."""
+    return np.column_stack(projection.project_to_map(*surfaces.points.T)[:2])
 
 
-def footprints(places: FloatArray, surfaces: VisibleSurfaces) -> FloatArray:
-    """Return how wide (n,) a step of 1 on the map is in the picture, at `places` (n, 2) of the map.
+def compute_texel_footprints(places: FloatArray, surfaces: VisibleSurfaces) -> FloatArray:
+    """Return the width (n,) in the picture of a unit step on the map, at visible surface points.
 
-    The unit of width is the distance between neighbouring rays, whose differences give the widths.
-    At borders of surfaces widths are too small; a width is 0 where a neighbour hits nothing.
+    The unit in the picture is the distance between neighbouring rays, and the width is estimated
+    from the differences between them. At borders of surfaces it is too small; it is 0 where a
+    neighbour hits nothing.
+
+    places : coordinates (n, 2) of the points on the map.
     """
     grid = np.full((SIDE, SIDE, 2), np.nan)
     grid[surfaces.hit] = places

@@ -1,12 +1,12 @@
-"""Planes across the view that divide what a camera sees into slices.
+"""Planes across the view that divide what a camera sees into slices, each with a shadow map.
 
 For depths from n to f, plane i of m is at
 
     C_log = n (f/n)^(i/m),   C_uni = n + i (f - n)/m,   C_mean = (C_log + C_uni)/2
 
-Logarithmic ones make texels equally large in the picture at all depths, but spend most parts near
-the eye. Uniform ones spend most far away; the mean is between [Zhang et al. 2006], [Ergun 2008,
-2.2.3.4].
+Logarithmic planes make texels equally large in the picture at all depths, but spend most slices
+near the eye. Uniform planes spend most of them far away; the mean is between the two [Zhang et al.
+2006], [Ergun 2008, 2.2.3.4].
 """
 
 from collections.abc import Callable
@@ -29,6 +29,8 @@ SETTINGS = {
 def compute_split_planes(near: float, far: float, parts: int, spacing: str) -> FloatArray:
     """Return the depths (parts + 1,) of the planes, from `near` to `far`.
 
+    spacing : a word of `SPACINGS`.
+
     >>> compute_split_planes(1, 100, 2, "logarithmic")
     array([  1.,  10., 100.])
     """
@@ -39,7 +41,7 @@ def compute_split_planes(near: float, far: float, parts: int, spacing: str) -> F
 
 
 def make_slice_finder(camera: Camera, planes: FloatArray) -> Callable[[JitVector], JitInt]:
-    """Return the function from points to the indices of the slices between `planes`.
+    """Return a function that finds the index of the slice between `planes` in which a point lies.
 
     A point before the first or behind the last plane is in the first or last slice.
     """
@@ -49,8 +51,8 @@ def make_slice_finder(camera: Camera, planes: FloatArray) -> Callable[[JitVector
     inner = [dr.opaque(mi.Float, float(plane)) for plane in planes[1:-1]]
     dr.make_opaque(view)
 
-    def slice_of(p: JitVector) -> JitInt:
+    def find_slice(p: JitVector) -> JitInt:
         depth = -transform(view, *p)[2]
         return sum((dr.select(depth > plane, mi.UInt32(1), 0) for plane in inner), mi.UInt32(0))
 
-    return slice_of
+    return find_slice

@@ -1,7 +1,7 @@
-"""The techniques of shadow maps by name, with the settings that their files declare.
+"""The projections, filters and partitions of shadow maps by name, with the settings they declare.
 
 A file of `projections/`, `filters/` or `partitions/` may have `SETTINGS`, name → `Setting` of
-`brdfkit.mitsuba_bridge.properties.declarations`. Its function or class takes them as keyword
+`brdfkit.mitsuba_bridge.properties.declarations`. The file's function or class takes them as keyword
 arguments; they are also keyword arguments of `LightShadow`, and parameters of the integrator
 `shadow_map`. Files in which a name means the same share the `Setting`.
 """
@@ -17,7 +17,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import Setting, read_setting
 from brdfkit.shadows.maps import filters, partitions, projections
 from brdfkit.shadows.maps.depth_pass import render_depths
 
-# Kind → the folder of its files, and the function or class that a file has
+# Kind of technique → the folder of its files, and the function or class that each file defines
 MAKERS = {
     "projection": (projections, "make_projection"),
     "filter": (filters, "Lookup"),
@@ -33,20 +33,23 @@ FILES = {
 
 
 def find_settings(kind: str, name: str) -> dict[str, Setting]:
-    """Return name → `Setting` of a file of a kind; raise `BrdfkitError` if there is none."""
+    """Return name → `Setting` of the technique `name` of a kind, such as "filter".
+
+    Raises `BrdfkitError` if there is no technique of that name.
+    """
     if name not in FILES[kind]:
         raise no_such_error(kind, name, FILES[kind])
     return getattr(FILES[kind][name], "SETTINGS", {})
 
 
-def find_renderer(filter: str) -> Callable[..., Any]:
-    """Return the function that renders a filter's maps: its `render_map`, or `render_depths`."""
+def find_map_renderer(filter: str) -> Callable[..., Any]:
+    """Return the function that renders a filter's maps, `render_depths` unless the file has one."""
     renderer: Callable[..., Any] = getattr(FILES["filter"][filter], "render_map", render_depths)
     return renderer
 
 
 def list_settings() -> dict[str, Setting]:
-    """Return name → `Setting` of all files; its meaning begins with the names of its files."""
+    """Return name → `Setting` of all techniques; each meaning begins with the techniques' names."""
     owners: dict[str, tuple[Setting, list[str]]] = {}
     for kind, files in FILES.items():
         for file in files:
@@ -59,9 +62,10 @@ def list_settings() -> dict[str, Setting]:
 
 
 def make_techniques(names: Mapping[str, str], values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return kind → the function or class of its file in `names` (kind → name), with its settings.
+    """Return kind → the function or class of the named technique, with its settings bound.
 
-    values : name → value of the settings that are not to be at their defaults.
+    names : kind → name of a technique, such as "filter" → "variance".
+    values : setting → value, for settings other than their defaults.
 
     Raises `BrdfkitError` for unknown names, and for values that a setting does not allow.
     """

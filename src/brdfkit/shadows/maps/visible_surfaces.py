@@ -1,4 +1,4 @@
-"""The surfaces that a camera sees, by rays through a coarse picture, to tune partitions."""
+"""The surfaces that a camera sees, found by a coarse grid of rays, to tune partitions to them."""
 
 from dataclasses import dataclass
 
@@ -12,16 +12,16 @@ from brdfkit.core.projective.homogeneous import project_points
 from brdfkit.core.projective.light import Light
 from brdfkit.mitsuba_bridge.surface_points import spawn_ray
 
-SIDE = 128  # rays across a picture and down it
+SIDE = 128  # rays along a side of the picture
 
 
 @dataclass(frozen=True)
 class VisibleSurfaces:
-    """Surface points that the rays of a coarse picture hit.
+    """Surface points that a coarse grid of camera rays hits.
 
-    points, normals : (n, 3).
-    distances : (n,), along the rays.
-    hit : (SIDE, SIDE), which of the rays hit a surface.
+    points, normals : points and normals (n, 3).
+    distances : distances (n,) along the rays.
+    hit : whether each ray of the grid (SIDE, SIDE) hits a surface.
     """
 
     points: AnyArray
@@ -44,7 +44,7 @@ def find_visible_surfaces(scene: MitsubaObject, camera: Camera) -> VisibleSurfac
     si = scene.ray_intersect(ray)
     hit = np.array(si.is_valid())
     if not hit.any():
-        raise Empty("the camera does not see any surface: turn it, or move it.")
+        raise Empty("the camera does not see any surface: turn or move it.")
     points, normals = (np.array(vectors).T[hit] for vectors in (si.p, si.n))
     return VisibleSurfaces(points, normals, np.array(si.t)[hit], hit.reshape(SIDE, SIDE))
 

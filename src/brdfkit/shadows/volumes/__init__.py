@@ -1,1 +1,1 @@
-"""Shadow volumes: silhouettes, extruded away from the light, that enclose all that is dark."""
+"""Shadow volumes: silhouettes are extruded away from the light and enclose all that is dark."""

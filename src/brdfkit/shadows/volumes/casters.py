@@ -1,17 +1,18 @@
-"""Which triangles of a mesh cast its shadow; they are the front caps of the volumes.
+"""Selects the triangles of a mesh that cast its shadow; they are the front caps of the volume.
 
 Each function gives every triangle a whole number: 1 where it casts as it is oriented, -1 where it
-casts turned over, so that it faces the light, and 0 where it casts nothing.
+casts after it is turned over, so that it faces the light, and 0 where it casts nothing.
 
-all           Every triangle but those in whose plane the light is. Right for any mesh, open or
-              closed, however its triangles are oriented, and for a light within: a point is dark by
-              as many triangles as lie between it and the light [Bergeron 1986]. An edge between a
-              triangle that faced the light and one that did not bounds both, and its wall counts
-              twice.
-light_facing  Triangles that face the light [Ergun 2008, 2.1.6]: half as many, for closed meshes.
-facing_away   Triangles that do not face it. Behind closed meshes the shadow is the same; the
-              insides of the shapes are lit. Its caps never touch a lit surface, so that none is
-              darkened by its own cap.
+all           Every triangle casts but those in whose plane the light is. Right for any mesh, open
+              or closed, however its triangles are oriented, and for a light within: as many
+              volumes contain a point as triangles lie between it and the light [Bergeron 1986]. An
+              edge between a triangle that faced the light and one that did not bounds both, and
+              its wall counts twice.
+light_facing  Triangles that face the light cast [Ergun 2008, 2.1.6]: half as many, for closed
+              meshes.
+facing_away   Triangles that do not face the light cast. Behind closed meshes the shadow is the
+              same; the insides of the shapes are lit. As the caps never touch a lit surface, they
+              do not darken one by mistake.
 """
 
 import numpy as np
@@ -22,24 +23,37 @@ from brdfkit.core.projective.light import Light
 from brdfkit.shadows.volumes.mesh import Mesh
 
 
-def cast_all(mesh: Mesh, light: Light) -> IntArray:
-    """Return for each triangle (m,) how its shadow volume counts if every triangle casts one."""
+def select_all_triangles(mesh: Mesh, light: Light) -> IntArray:
+    """Return the casting number (m,) of each triangle if all of them cast a shadow.
+
+    It is 1, or -1 for triangles that must be turned over to face the light, or 0 if edge-on.
+    """
     return np.sign(compute_facing(mesh, light)).astype(int)
 
 
-def cast_light_facing(mesh: Mesh, light: Light) -> IntArray:
-    """Return for each triangle (m,) how its shadow volume counts if only lit triangles cast one."""
+def select_light_facing_triangles(mesh: Mesh, light: Light) -> IntArray:
+    """Return the casting number (m,) of each triangle, 1 if it faces the light, else 0.
+
+    Raises `BrdfkitError` unless the mesh is closed and the light outside of it.
+    """
     require_solid(mesh, light)
     return is_facing_light(mesh, light).astype(int)
 
 
-def cast_facing_away(mesh: Mesh, light: Light) -> IntArray:
-    """Return (m,) how each triangle casts if those that face away from the light do."""
+def select_triangles_facing_away(mesh: Mesh, light: Light) -> IntArray:
+    """Return the casting number (m,) of each triangle, 0 if it faces the light, else -1.
+
+    Raises `BrdfkitError` unless the mesh is closed and the light outside of it.
+    """
     require_solid(mesh, light)
     return is_facing_light(mesh, light).astype(int) - 1
 
 
-CASTERS = {"all": cast_all, "light_facing": cast_light_facing, "facing_away": cast_facing_away}
+CASTERS = {
+    "all": select_all_triangles,
+    "light_facing": select_light_facing_triangles,
+    "facing_away": select_triangles_facing_away,
+}
 
 
 def is_facing_light(mesh: Mesh, light: Light) -> BoolArray:
@@ -49,7 +63,10 @@ def is_facing_light(mesh: Mesh, light: Light) -> BoolArray:
 
 
 def compute_facing(mesh: Mesh, light: Light) -> FloatArray:
-    """Return N · L (m,) of each triangle, of any scale; 0 where the light is in its plane."""
+    """Return the cosine N · L (m,) between triangle normals and light, scaled by positive numbers.
+
+    It is 0 where the light is in the triangle's plane.
+    """
     corner = mesh.points[mesh.triangles[:, 0]]
     to_light = light.point[:3] - light.point[3] * corner
     facing: FloatArray = np.einsum("ij,ij->i", mesh.normals, to_light)
@@ -66,9 +83,9 @@ def require_solid(mesh: Mesh, light: Light) -> None:
 
 
 def winding_number(mesh: Mesh, place: FloatArray) -> float:
-    """Return how often a mesh winds about a place (3,): its triangles' solid angles over 4π.
+    """Return how often a mesh winds around a point (3,): its triangles' solid angles over 4π.
 
-    [Van Oosterom & Strackee 1983]
+    It is ±1 inside of a closed mesh and 0 outside [Van Oosterom & Strackee 1983].
     """
     a, b, c = (mesh.points[mesh.triangles] - place).transpose(1, 0, 2)
     x, y, z = (np.linalg.norm(v, axis=1) for v in (a, b, c))

@@ -1,4 +1,4 @@
-"""`LightVolumes`: all shadow volumes of one light, and whether it arrives at visible points."""
+"""`LightVolumes`: all shadow volumes of one light, and its visibility from visible points."""
 
 import math
 from collections.abc import Iterable
@@ -21,20 +21,22 @@ from brdfkit.shadows.volumes.volume import Faces, Volume, make_shadow_volume
 METHODS = ("depth_fail", "depth_pass")
 FAR_PLANES = ("infinite", "finite")
 TILE_SIDE = 4  # the approximate side of a tile [pixels]
-LEAST_COSINE = 1e-3  # between a camera ray and the normal, so that points do not move too far
-CAP_DEPTH = 1.0  # 1/z of the near plane in the picture of the light
+# The least cosine between a camera ray and a normal, so that no point moves too far along the ray
+LEAST_COSINE = 1e-3
+CAP_DEPTH = 1.0  # 1/z of the near plane in the projection by `project_near_cap`
 
 
 class LightVolumes:
-    """The shadow of meshes in one light, counted in a camera's picture.
+    """The shadow of meshes in one light, by counting faces of shadow volumes along camera rays.
 
-    meshes : the meshes that cast it.
+    meshes : the meshes that cast the shadow.
     light : the light.
     camera : the camera that sees the points, by its eye and the middle of its picture.
     method : `depth_pass` counts walls before a point, `depth_fail` walls and caps behind it.
-    far_plane : `finite` clips faces beyond the camera's far plane, which then do not count.
-    pixels : along the longer side of the picture; they determine the size of tiles.
-    near_cap : whether `depth_pass` begins with the volumes that contain a place of the near plane.
+    far_plane : with `finite`, the faces beyond the camera's far plane are clipped and do not count.
+    pixels : number of pixels along the longer side of the picture; it determines the tiles' size.
+    near_cap : whether `depth_pass` also counts the volumes that contain a place of the near plane,
+        so that the camera may be in a shadow.
     volume : named arguments of `make_shadow_volume`.
     """
 
@@ -66,16 +68,18 @@ class LightVolumes:
         self.eye = mi.Point3f(camera.position)
         dr.make_opaque(self.to_picture, self.light, self.near, self.far, self.eye)
 
-    def lit_share(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:
+    def visibility(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:
         """Return 1 where the light arrives at points `p` of surfaces with normals `n`, else 0."""
         import mitsuba as mi
 
-        return dr.select(self.count(self.move_off_surface(p, n), active) == 0, mi.Float(1), 0)
+        return dr.select(
+            self.count_volumes_around(self.move_off_surface(p, n), active) == 0, mi.Float(1), 0
+        )
 
     def move_off_surface(self, p: JitVector, n: JitVector) -> JitVector:
-        """Move points `p` along camera rays off their surfaces, to the side of the light.
+        """Return points `p`, moved along camera rays off their surfaces to the side of the light.
 
-        They end as far from the surface as shadow rays begin, so that no cap lies at them.
+        They end as far from the surface as shadow rays begin, so that no cap lies on them.
         """
         import mitsuba as mi
 
@@ -86,28 +90,29 @@ class LightVolumes:
         slope = dr.mulsign(dr.maximum(dr.abs(slope), LEAST_COSINE), slope)
         return p + ray * dr.mulsign(step, dr.dot(n, to_light)) / slope
 
-    def count(self, p: JitVector, active: JitMask = True) -> JitInt:
-        """Return the number (`mi.Int32`) of volumes around points `p`, as the method counts it."""
+    def count_volumes_around(self, p: JitVector, active: JitMask = True) -> JitInt:
+        """Return the number (`mi.Int32`) of volumes that contain points `p`, by `self.method`."""
         import mitsuba as mi
 
         x, y, depth, _ = transform(self.to_picture, *dr.detach(p))
         ray, inverse_depth = (x / depth, y / depth), 1 / depth
         if self.method == "depth_pass":
-            within = self.cap.count(*ray, mi.Float(CAP_DEPTH), mi.Float(dr.inf), active)
-            return within + self.stencil.count(*ray, inverse_depth, self.near, active)
+            within = self.cap.count_faces(*ray, mi.Float(CAP_DEPTH), mi.Float(dr.inf), active)
+            return within + self.stencil.count_faces(*ray, inverse_depth, self.near, active)
         farthest = self.far if self.far_plane == "finite" else mi.Float(-dr.inf)
-        return -self.stencil.count(*ray, farthest, inverse_depth, active)
+        return -self.stencil.count_faces(*ray, farthest, inverse_depth, active)
 
 
 def project_near_cap(volumes: Iterable[Volume], light: Light, camera: Camera) -> ProjectedFaces:
-    """Project the triangles that cast onto a camera's near plane, by places of its picture.
+    """Return the casting triangles as the light projects them through a camera's near plane.
 
-    The light sees them through the near plane.
+    Places of the camera's picture stand for places of the near plane. So a ray of the picture meets
+    as many of the triangles as there are volumes that contain its place on the plane.
     """
     to_picture, n = picture_matrix(camera), camera.near
     *across, l_z, l_w = to_picture @ light.point
     height = l_z - n * l_w
-    # A light in the near plane casts no shadow onto the plane
+    # If the light lies in the near plane, no triangle casts a shadow onto the plane
     fronts = [volume.front for volume in volumes if height]
     beta = np.array([0, 0, 1, -n]) / (height or 1)
     alpha = np.array([0, 0, 0, 1]) - l_w * beta

@@ -1,4 +1,4 @@
-"""A shape as the triangles that bound its shadow, with the edges that they share."""
+"""The triangles of a shape that bound its shadow volume, and the edges that they share."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,10 +12,14 @@ from brdfkit.shadows.volumes.tessellation import tessellate
 
 @dataclass(frozen=True)
 class Mesh:
-    """Triangles by the indices (m, 3) of their corners among `points` (n, 3).
+    """The triangles of a shape, with welded vertices.
 
-    No two points are at one place, so that a seam of texture coordinates does not separate
-    triangles.
+    No two points are at one place, so that triangles on both sides of a seam of texture coordinates
+    share their edges.
+
+    name : the shape's name, for error messages.
+    points : vertices (n, 3).
+    triangles : indices (m, 3) of the triangles' corners among the points.
     """
 
     name: str
@@ -24,7 +28,7 @@ class Mesh:
 
     @classmethod
     def weld(cls, name: str, points: AnyArray, triangles: AnyArray) -> "Mesh":
-        """Make a mesh of any `points`; those at one place become one."""
+        """Return a mesh in which all points at one place are one point."""
         points, index = np.unique(points, axis=0, return_inverse=True)
         return cls(name, points, index.ravel()[triangles])
 
@@ -50,12 +54,13 @@ class Mesh:
 
     @cached_property
     def shared_edges(self) -> tuple[IntArray, IntArray, IntArray]:
-        """The edges (k, 2), and for each the triangle that has it forwards, and backwards.
+        """The edges (k, 2), and the indices (k,) of the triangles that run along them and back.
 
-        Edges whose first index is the smaller are matched with the others, which must be the same
-        ones. Raises `BrdfkitError` if they are not: the mesh is open, or oriented both ways.
+        Each edge is given with the smaller index first. Raises `BrdfkitError` unless every edge
+        belongs to exactly one triangle in each direction, that is, for meshes that are open or
+        whose triangles are oriented differently.
         """
-        first, last, triangle = directed_edges(self.triangles)
+        first, last, triangle = list_directed_edges(self.triangles)
         key = np.minimum(first, last) * len(self.points) + np.maximum(first, last)
         sides = np.flatnonzero(first < last), np.flatnonzero(first >= last)
         forwards, backwards = (side[np.argsort(key[side])] for side in sides)
@@ -72,8 +77,8 @@ class Mesh:
         return edges, triangle[forwards], triangle[backwards]
 
 
-def directed_edges(triangles: IntArray) -> tuple[IntArray, IntArray, IntArray]:
-    """Return first and last corners and the triangle (3m,) of each edge of triangles (m, 3)."""
+def list_directed_edges(triangles: IntArray) -> tuple[IntArray, IntArray, IntArray]:
+    """Return first corner, last corner and triangle (3m,) of each edge of triangles (m, 3)."""
     first = triangles.ravel()
     last = triangles[:, [1, 2, 0]].ravel()
     return first, last, np.repeat(np.arange(len(triangles)), 3)

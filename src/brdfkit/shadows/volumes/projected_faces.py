@@ -1,14 +1,14 @@
 """Faces in a camera's picture, as linear functions over the picture, without any clipping.
 
-A place (x, y) of the picture is the ray d = (x, y, 1). With corners v_i = (X / s_x, Y / s_y, -Z)
-and w_i in the camera's space, where s_x and s_y are the slopes of its field of view, the ray meets
-a face within its edges
+A place (x, y) of the picture is the ray d = (x, y, 1). In the camera's space, a corner i of a face
+has the homogeneous coordinates (X, Y, Z, w_i); with the slopes s_x and s_y of the field of view,
+let v_i = (X / s_x, Y / s_y, -Z). The ray meets the face within its edges, and at the depth z:
 
     E_i(d) = (v_i × v_{i+1}) · d ≥ 0      (all with one sign, which says the side that is visible)
     1/z    = (w_2 v_0 × v_1 + w_0 v_1 × v_2 + w_1 v_2 × v_0) · d / (v_0 · v_1 × v_2)
 
-so that corners behind the eye and at infinity (w = 0) need no special treatment
-[Olano & Greer 1997].
+so that corners behind the eye and at infinity (w = 0) need no special treatment [Olano & Greer
+1997].
 """
 
 from dataclasses import dataclass
@@ -21,25 +21,26 @@ from brdfkit.core.projective.camera import Camera
 from brdfkit.shadows.volumes.volume import Faces
 
 
-def to_pinhole(sensor: MitsubaObject) -> Camera:
-    """Return the camera of a Mitsuba sensor; raise `BrdfkitError` for one with a lens."""
+def make_pinhole_camera(sensor: MitsubaObject) -> Camera:
+    """Return the camera of a Mitsuba sensor; raise `BrdfkitError` for a sensor with a lens."""
     import mitsuba as mi
 
     if "aperture_radius" in mi.traverse(sensor):
         raise BrdfkitError(
-            "shadow volumes are counted along rays from one eye, and a thinlens camera has a whole "
-            "lens; use a perspective camera."
+            "shadow volumes need all camera rays to start at one point, but a thinlens camera's "
+            "start on its lens; use a perspective camera."
         )
     return Camera.from_sensor(sensor)
 
 
 @dataclass(frozen=True)
 class ProjectedFaces:
-    """k faces in a picture.
+    """Faces of shadow volumes as linear functions of the place (x, y) in a camera's picture.
 
-    edges : (k, 4, 3), the coefficients of x, y and 1 in each E_i, scaled to a largest one of 1.
-    ties : (k, 4), the least E_i within; of two faces at an edge, one includes the edge itself.
-    inverse_depth : (k, 3), the coefficients of 1/z.
+    edges : (k, 4, 3), the coefficients of x, y and 1 in the edge functions E_i, which are positive
+        within a face; scaled so that the largest coefficient is 1.
+    ties : (k, 4), the least E_i within a face; it settles which of two faces has their common edge.
+    inverse_depth : (k, 3), the coefficients of x, y and 1 in 1/z, z the depth of the face.
     times : (k,), how often a ray counts that meets the face; negative where it leaves the volume.
     """
 
@@ -53,16 +54,18 @@ class ProjectedFaces:
 
 
 def picture_matrix(camera: Camera) -> FloatArray:
-    """Return the matrix (4, 4) from the world to a camera's (X / s_x, Y / s_y, -Z)."""
+    """Return the matrix (4, 4) from the world to a camera's picture space (X / s_x, Y / s_y, -Z).
+
+    s_x and s_y are the slopes of the field of view, so that X / s_x over -Z is -1 to 1.
+    """
     matrix: FloatArray = np.diag([1 / camera.slope_x, 1 / camera.slope_y, -1, 1]) @ camera.view
     return matrix
 
 
 def project_faces(faces: Faces, matrix: FloatArray) -> ProjectedFaces:
-    """Project faces into a picture, leaving out faces that are edge-on.
+    """Return the faces of shadow volumes in a picture, without those that are seen edge-on.
 
-    matrix : (4, 4), from the world to homogeneous points (v, w), such as a camera's
-        `picture_matrix`.
+    matrix : (4, 4), from the world to the picture's space, such as a camera's `picture_matrix`.
     """
     corners = faces.corners @ matrix.T
     v, w = corners[..., :3], corners[..., 3]
@@ -80,10 +83,10 @@ def project_faces(faces: Faces, matrix: FloatArray) -> ProjectedFaces:
 
 
 def break_ties(edges: FloatArray) -> FloatArray:
-    """Return the least E_i (k, 4) of points within: 0, or the least positive number.
+    """Return the least edge functions E_i (k, 4) within faces: 0, or the least positive number.
 
-    It is 0 where the first coefficient other than 0 is positive. The same edge has the opposite
-    sign in the neighbouring face. So exactly one of both includes the edge, and no ray slips
+    It is 0 where the first coefficient other than 0 is positive. As the same edge has the opposite
+    sign in the neighbouring face, exactly one of the two faces includes the edge, and no ray slips
     through.
     """
     a, b, c = np.moveaxis(edges, -1, 0)

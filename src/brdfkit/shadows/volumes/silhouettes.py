@@ -1,13 +1,13 @@
 """The silhouettes of a mesh in a light: the edges that bound its casting triangles.
 
-Both functions return the same edges (k, 2) and how often each bounds the casting triangles (k,), by
-the whole numbers that `casters.py` gives to triangles. An edge has the direction in which the
-triangles run along it.
+Both functions return the same edges (k, 2), and (k,) how often each of them bounds the casting
+triangles, by the whole numbers that `casters.py` gives to triangles. An edge has the direction in
+which the triangles run along it.
 
-edge_toggling  An edge comes in with the first casting triangle and goes out with a second one that
+edge_toggling  The edges of all casting triangles are added up; an edge cancels if a second triangle
                runs back along it. For every mesh.
-shared_edges   An edge that two triangles share belongs to the silhouette if they differ. The edges
-               are listed once for all lights; for closed meshes.
+shared_edges   An edge belongs to the silhouette if its two triangles differ in their number. The
+               edges are listed once for all lights. For closed meshes.
 
 [Ergun 2008, 2.1.5]
 """
@@ -15,13 +15,16 @@ shared_edges   An edge that two triangles share belongs to the silhouette if the
 import numpy as np
 
 from brdfkit.core.array_types import IntArray
-from brdfkit.shadows.volumes.mesh import Mesh, directed_edges
+from brdfkit.shadows.volumes.mesh import Mesh, list_directed_edges
 
 
 def toggle_edges(mesh: Mesh, casts: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the silhouette of the triangles that `casts` (m,) marks, by adding up their edges."""
+    """Return the silhouette of a mesh's casting triangles by adding up their directed edges.
+
+    casts : the casting number (m,) of each triangle, see `casters.py`.
+    """
     casting = casts != 0
-    first, last, triangle = directed_edges(mesh.triangles[casting])
+    first, last, triangle = list_directed_edges(mesh.triangles[casting])
     low, high = np.minimum(first, last), np.maximum(first, last)
     signs = np.where(first < last, 1, -1) * casts[casting][triangle]
     key, place = np.unique(low * len(mesh.points) + high, return_inverse=True)
@@ -30,7 +33,9 @@ def toggle_edges(mesh: Mesh, casts: IntArray) -> tuple[IntArray, IntArray]:
 
 
 def compare_neighbours(mesh: Mesh, casts: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the silhouette of the triangles that `casts` (m,) marks, from neighbours' differences.
+    """Return the silhouette of a mesh's casting triangles by comparing neighbouring triangles.
+
+    casts : the casting number (m,) of each triangle, see `casters.py`.
 
     Raises `BrdfkitError` for an open mesh.
     """
@@ -42,6 +47,9 @@ SILHOUETTES = {"edge_toggling": toggle_edges, "shared_edges": compare_neighbours
 
 
 def orient_edges(edges: IntArray, times: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the edges with `times` (k,) other than 0, turned over where it is negative."""
+    """Return the edges that count other than 0 times, turned over where the count is negative.
+
+    times : how often each edge counts, (k,).
+    """
     edges, times = edges[times != 0], times[times != 0]
     return np.where((times < 0)[:, None], edges[:, ::-1], edges), np.abs(times)

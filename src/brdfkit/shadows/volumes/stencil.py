@@ -1,7 +1,7 @@
-"""The stencil buffer: how many faces of volumes a camera ray meets before, or behind, a point.
+"""The stencil buffer: counts the faces of volumes that a camera ray meets before or behind a point.
 
-The picture is halved again and again into tiles, each with a list of the faces that may be visible
-in it, so that a ray tests few faces.
+The picture is halved again and again into tiles. Each tile has a list of the faces that may be
+visible in it, so that a ray tests few faces.
 """
 
 import drjit as dr
@@ -11,14 +11,14 @@ from brdfkit.core.array_types import FloatArray, JitFloat, JitInt, JitMask, JitV
 from brdfkit.shadows.volumes.projected_faces import ProjectedFaces
 
 RECORD = 5  # vectors of four numbers per face: four edges with their ties, depth with `times`
-SLACK = 1e-5  # by which tiles are widened, more than edges are rounded
+SLACK = 1e-5  # tiles are widened by this, so that rounded edges do not miss them
 MAX_PAIRS = 2**24  # with more pairs of a face and a tile, tiles are not halved further
 
 
 class Stencil:
-    """Counts of faces over a camera's picture; entering a volume adds, leaving it subtracts.
+    """Counts of faces along camera rays; entering a volume adds to a count, leaving it subtracts.
 
-    faces : the faces in the picture.
+    faces : the faces in the camera's picture.
     halvings : how often the picture is halved into tiles.
     """
 
@@ -33,16 +33,16 @@ class Stencil:
         dr.make_opaque(self.records, self.indices, self.begins, self.tiles)
 
     @property
-    def tests(self) -> int:
-        """The number of pairs of a face and a tile."""
+    def pair_count(self) -> int:
+        """The number of pairs of a face and a tile in which it may be visible."""
         return len(self.indices)
 
     @property
     def memory(self) -> int:
-        """The memory of the volumes [bytes]."""
+        """The memory of the faces and of the tiles' lists [bytes]."""
         return 4 * sum(map(len, (self.records, self.indices, self.begins)))
 
-    def count(
+    def count_faces(
         self,
         x: JitFloat,
         y: JitFloat,
@@ -50,13 +50,15 @@ class Stencil:
         most: JitFloat,
         active: JitMask = True,
     ) -> JitInt:
-        """Return the sum (`mi.Int32`) over the faces that the rays at (x, y) of the picture meet.
+        """Return the sum (`mi.Int32`) of `times` over the faces that camera rays meet.
 
-        Faces count whose 1/z is above `least` and at most `most`.
+        Only faces whose 1/z, z the depth, is above `least` and at most `most` count.
+
+        x, y : the places of the rays in the picture, in [-1, 1].
         """
         import mitsuba as mi
 
-        if not self.tests:
+        if not self.pair_count:
             return dr.zeros(mi.Int32, dr.width(x))
         tile = self.find_tile(x, y)
         start = dr.gather(mi.UInt32, self.begins, tile, active)
@@ -85,12 +87,13 @@ class Stencil:
 
 
 def list_faces_by_tile(edges: FloatArray, halvings: int) -> tuple[JitInt, JitInt, int]:
-    """Return the indices of faces sorted by tile, the start of each tile, and the tiles per side.
+    """Return the faces' indices sorted by tile, where each tile's list begins, and tiles per side.
 
-    The first two are `mi.UInt32`; the picture [-1, 1]² has its tiles row by row.
+    The first two are `mi.UInt32`. The tiles of the picture [-1, 1]² are counted row by row.
 
     edges : (k, 4, 3), of `ProjectedFaces`.
-    halvings : how often the picture is halved, both ways, unless the pairs become too many.
+    halvings : how often the picture is halved in both directions, unless the pairs of a face and a
+        tile become too many.
     """
     import mitsuba as mi
 
@@ -118,9 +121,10 @@ def list_faces_by_tile(edges: FloatArray, halvings: int) -> tuple[JitInt, JitInt
 def may_touch_tile(
     factors: list[JitVector], face: JitInt, column: JitInt, row: JitInt, half: JitFloat
 ) -> JitMask:
-    """Return whether faces may touch tiles: no edge has all of the tile on its outer side.
+    """Return whether each face may touch its tile: no edge has all of the tile on its outer side.
 
-    factors : the coefficients of each edge for all faces.
+    factors : coefficients of x, y and 1 in the four edge functions, for all faces.
+    face, column, row : the index of each face, and the place of its tile.
     half : half the width of a tile.
     """
     import mitsuba as mi

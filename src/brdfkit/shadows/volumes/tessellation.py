@@ -1,4 +1,4 @@
-"""Triangles of Mitsuba's round shapes, whose corners lie on the shapes.
+"""Triangles of Mitsuba's round shapes, for shadow volumes; their corners lie on the shapes.
 
 The shadow of a tessellated ball is smaller by 1 - cos(π/128), 0.03 % of its radius. A convex shape
 is not shadowed by its own triangles, as they lie within it.
@@ -31,8 +31,8 @@ def tessellate(shape: MitsubaObject) -> tuple[FloatArray, IntArray]:
         points, triangles = revolve(np.arange(2.0), np.zeros(2), poles=(0,))
     else:
         raise BrdfkitError(
-            f"{shape.id()}: shadow volumes are made of triangles, and this shape "
-            f"({kind}) has none; replace it by a mesh."
+            f"{shape.id()}: shadow volumes need triangles, and this shape ({kind}) has none; "
+            "replace it by a mesh."
         )
     to_world = np.array(mi.traverse(shape)["to_world"].matrix, float).reshape(4, 4)
     return points @ to_world[:3, :3].T + to_world[:3, 3], triangles
@@ -41,8 +41,9 @@ def tessellate(shape: MitsubaObject) -> tuple[FloatArray, IntArray]:
 def revolve(
     radius: FloatArray, height: FloatArray, poles: Sequence[int] = ()
 ) -> tuple[FloatArray, IntArray]:
-    """Return points (n, 3) and triangles of a profile, `radius` (k,) by `height` (k,), about z.
+    """Return points (n, 3) and triangles (m, 3) of a surface of revolution about the z axis.
 
+    radius, height : radius and height (k,) of the points of its profile.
     poles : the indices of the profile's points that lie on the axis.
     """
     phi = np.arange(AROUND) * 2 * np.pi / AROUND

@@ -1,7 +1,7 @@
 """The shadow volume of a mesh in a light: walls from its silhouette, and caps that close it.
 
-A face has four corners, homogeneous points in order; a triangle names its last corner twice. Seen
-from outside, the corners of all faces run the same way round.
+A face has four homogeneous corners in order; a triangle repeats its last corner. Seen from outside,
+the corners of all faces run the same way round.
 """
 
 from collections.abc import Iterable
@@ -21,7 +21,11 @@ BACK_CAPS = ("triangles", "fan")
 
 @dataclass(frozen=True)
 class Faces:
-    """Faces by their `corners` (k, 4, 4), and how often each of them counts, `times` (k,)."""
+    """Faces of a shadow volume.
+
+    corners : homogeneous corners (k, 4, 4).
+    times : how often each face counts, (k,), as walls of several triangles may coincide.
+    """
 
     corners: AnyArray
     times: AnyArray
@@ -31,7 +35,7 @@ class Faces:
 
     @classmethod
     def join(cls, parts: Iterable["Faces"]) -> "Faces":
-        """Return all faces of several parts."""
+        """Return the faces of several collections as one."""
         parts = list(parts)
         return cls(
             np.concatenate([np.empty((0, 4, 4)), *(part.corners for part in parts)]),
@@ -60,32 +64,33 @@ def make_shadow_volume(
 
     casters : which triangles cast, a name in `CASTERS`.
     silhouettes : the way to find their silhouette, a name in `SILHOUETTES`.
-    length : of the walls [unit of length]; 0: without an end.
-    back_cap : "triangles", the casting ones extruded, or "fan", over the extruded silhouette.
+    length : length of the walls [unit of length]; 0 makes them infinite.
+    back_cap : how the far end is closed: by "triangles", the casting triangles moved there, or by a
+        "fan" of triangles over the extruded silhouette.
 
     Raises `BrdfkitError` for a mesh that the casters or silhouettes do not allow.
     """
     casts = CASTERS[casters](mesh, light)
     edges, times = SILHOUETTES[silhouettes](mesh, casts)
-    near, far = to_homogeneous(mesh.points), extrude(mesh.points, light, length)
+    near, far = to_homogeneous(mesh.points), extrude_points(mesh.points, light, length)
     first, last = edges.T
     walls = np.stack([near[last], near[first], far[first], far[last]], axis=1)
     cap = mesh.triangles[casts != 0]
-    front = Faces(to_faces(near[cap]), casts[casts != 0])
+    front = Faces(make_triangular_faces(near[cap]), casts[casts != 0])
     if light.is_directional and not length:
         back = Faces.join([])  # the cap is a single point at infinity
     elif back_cap == "fan":
-        require_on_one_side(mesh, light, cap)
-        back = Faces(make_fan(far[first], far[last]), times)
+        require_triangles_on_one_side(mesh, light, cap)
+        back = Faces(make_fan_faces(far[first], far[last]), times)
     else:
-        back = Faces(to_faces(far[cap[:, ::-1]]), casts[casts != 0])
+        back = Faces(make_triangular_faces(far[cap[:, ::-1]]), casts[casts != 0])
     return Volume(Faces(walls, times), front, back)
 
 
-def extrude(points: FloatArray, light: Light, length: float) -> FloatArray:
+def extrude_points(points: FloatArray, light: Light, length: float) -> FloatArray:
     """Return points (n, 3), moved away from a light, as homogeneous points (n, 4).
 
-    length : how far each is moved [unit of length]; 0: to infinity.
+    length : how far each point is moved [unit of length]; 0 moves it to infinity.
     """
     away = points * light.point[3] - light.point[:3]
     if not length:
@@ -95,26 +100,31 @@ def extrude(points: FloatArray, light: Light, length: float) -> FloatArray:
 
 
 def to_homogeneous(points: FloatArray) -> FloatArray:
-    """Return finite points (n, 3) as homogeneous ones (n, 4)."""
+    """Return finite points (n, 3) as homogeneous points (n, 4)."""
     return np.column_stack([points, np.ones(len(points))])
 
 
-def to_faces(corners: FloatArray) -> FloatArray:
-    """Return triangles (k, 3, 4) as faces (k, 4, 4)."""
+def make_triangular_faces(corners: FloatArray) -> FloatArray:
+    """Return triangles (k, 3, 4) as faces (k, 4, 4), each with its last corner repeated."""
     return corners[:, [0, 1, 2, 2]]
 
 
-def make_fan(first: FloatArray, last: FloatArray) -> FloatArray:
-    """Return faces from the middle of a silhouette to its edges, from `first` (k, 4) to `last`."""
+def make_fan_faces(first: FloatArray, last: FloatArray) -> FloatArray:
+    """Return triangular faces (k, 4, 4) from the middle of a silhouette to each of its edges.
+
+    first, last : homogeneous ends (k, 4) of the edges.
+    """
     middle = np.vstack([first, last]).mean(axis=0) if len(first) else np.zeros(4)
-    return to_faces(np.stack([np.broadcast_to(middle, first.shape), last, first], axis=1))
+    return make_triangular_faces(
+        np.stack([np.broadcast_to(middle, first.shape), last, first], axis=1)
+    )
 
 
-def require_on_one_side(mesh: Mesh, light: Light, cap: IntArray) -> None:
+def require_triangles_on_one_side(mesh: Mesh, light: Light, cap: IntArray) -> None:
     """Raise `BrdfkitError` if the triangles `cap` (k, 3) surround a point or spot light."""
     away = mesh.points[np.unique(cap)] - light.point[:3]
     if not light.is_directional and np.any(away @ away.mean(axis=0) <= 0):
         raise BrdfkitError(
-            f"{mesh.name}: the shape is all around the light, where no fan closes its shadow "
+            f"{mesh.name}: the shape surrounds the light, so that no fan closes its shadow "
             "volume; use back_cap = triangles."
         )

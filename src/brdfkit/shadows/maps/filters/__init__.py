@@ -1,7 +1,8 @@
-"""Filters, the ways to look up a shadow map; each file here is a filter.
+"""Filters: the ways to read the visibility of a light from a shadow map; one file each.
 
-Each file has a class `Lookup(depths, ...)` of the depths (resolution, resolution) that the light
-sees, with a method `lit_share(point)`: the share of the light, in [0, 1], at a `MapPoint`.
-`techniques.py` describes its `SETTINGS`. A file whose map holds something else has a function
-`render_map(scene, projection, resolution)` in place of `render_depths`.
+Each file has a class `Lookup(depths, ...)`. `depths` (resolution, resolution) are those that the
+light sees. Its method `visibility(point)` returns the share of the light, in [0, 1], that reaches a
+`MapPoint`. Its further arguments are declared in `SETTINGS`, see `techniques.py`. A filter whose
+map holds something else than depths has its own function `render_map(scene, projection,
+resolution)` in place of `render_depths`.
 """

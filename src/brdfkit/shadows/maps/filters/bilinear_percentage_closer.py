@@ -2,10 +2,10 @@
 
     lit = Σ_ij w_i w_j [z ≤ f_ij],   w = (1 - s, 1 ... 1, s) / (n - 1)
 
-z is the depth of the point, f_ij the depth in a texel, and s, from 0 to 1, where the window begins
-in its first texel. With 3 texels, w = ((1 - s)/2, 1/2, s/2): the mean of the four bilinear
-interpolations of [Ergun 2008, 2.2.1.3], which graphics hardware makes of the comparisons of 2 × 2
-texels. The borders of shadows are n - 1 texels wide, and smooth.
+z is the depth of the point, f_ij the depth in a texel of the n × n window, and s, from 0 to 1,
+where the window begins within its first texel. With n = 3 texels, w = ((1 - s)/2, 1/2, s/2): the
+mean of the four bilinear interpolations of [Ergun 2008, 2.2.1.3], which graphics hardware makes of
+the comparisons of 2 × 2 texels. The borders of shadows are n - 1 texels wide, and smooth.
 
 [Reeves et al. 1987], [Ergun 2008, 2.2.1.3]
 """
@@ -18,17 +18,23 @@ SETTINGS = {"width": WIDTH}
 
 
 class Lookup:
-    """The mean of comparisons over a square, `width` - 1 texels along a side; `depth` for 1."""
+    """The mean of depth comparisons over a square whose sides are `width` - 1 texels long.
+
+    A `width` of 1 compares a single texel, as the filter `depth` does.
+    """
 
     def __init__(self, depths: MitsubaObject, width: int) -> None:
         self.windows, self.width = Windows(depths, width), width
 
-    def lit_share(self, point: MapPoint) -> JitFloat:
+    def visibility(self, point: MapPoint) -> JitFloat:
         """Return the share of the light that arrives at a point."""
-        return self.windows.lit_share(point, self.weights)
+        return self.windows.visibility(point, self.window_weights)
 
-    def weights(self, begin: JitFloat) -> list[JitFloat]:
-        """Return the weights of the columns or rows of a window that begins at `begin`, 0 to 1."""
+    def window_weights(self, begin: JitFloat) -> list[JitFloat]:
+        """Return the weights of a window's columns or rows, which add up to 1.
+
+        begin : where the window begins within its first texel, 0 to 1.
+        """
         if self.width == 1:
             return [1.0]
         inner = [1.0] * (self.width - 2)

@@ -2,8 +2,8 @@
 
     lit = [z ≤ f(u, v)]
 
-z is the depth of the point, f that in the map. The border of a shadow runs along the edges of
-texels, in steps.
+z is the depth of the point and f the depth in the texel (u, v) that it falls on. The border of a
+shadow runs in steps, along the edges of texels.
 
 [Williams 1978], [Ergun 2008, 2.2.1.2]
 """
@@ -14,11 +14,11 @@ from brdfkit.shadows.maps.texels import Texels
 
 
 class Lookup:
-    """The look-up of the single texel under a point."""
+    """The comparison of a point's depth with that of the single texel on which it falls."""
 
     def __init__(self, depths: MitsubaObject) -> None:
         self.texels = Texels(depths)
 
-    def lit_share(self, point: MapPoint) -> JitFloat:
+    def visibility(self, point: MapPoint) -> JitFloat:
         """Return the share of the light that arrives at a point: 0 or 1."""
-        return self.texels.lit_share(point, point.u, point.v)
+        return self.texels.visibility(point, point.u, point.v)

@@ -2,11 +2,12 @@
 
     z⁺ = exp(c⁺ z),  z⁻ = -exp(-c⁻ z);   lit = min(p_max(z⁺), p_max(z⁻))
 
-p_max is the bound by two moments, c⁺ and c⁻ are the exponents. The exponential makes gaps between
-far occluders negligible beside one to the nearest, so that hardly any light bleeds into a second
-shadow far behind it. It leaks where the receiver is close behind the second occluder; there the
-bound of z⁻ is the lower one. A c⁻ of 0 leaves that bound out, which halves the memory. The range of
-single precision, 3e38, limits exponents.
+z is the depth and c⁺ and c⁻ are the exponents. p_max is the upper bound on the light that the mean
+and the variance of a warped depth give. The exponential makes gaps between far occluders negligible
+beside the gap to the nearest one, so that hardly any light bleeds into a second shadow far behind
+it. Light does leak where the receiver is close behind the second occluder; there the bound of z⁻ is
+the lower one. A c⁻ of 0 leaves out that bound, which halves the memory. Larger exponents would
+exceed 3e38, the range of single precision.
 
 [Lauritzen & McCool 2008]
 """
@@ -27,11 +28,12 @@ SETTINGS = {
     "negative_exponent": declare_float(5.0, (0.0, 40.0), "c⁻; 0 leaves this bound out"),
 }
 render_map = moving_depths.render_map
-LEAST_DEVIATION = 1e-3  # of depths, over half the map's range, so that rounding does no harm
+# The least standard deviation of depths in [-1, 1]: below it, rounding errors exceed the variance
+LEAST_DEVIATION = 1e-3
 
 
 class Lookup:
-    """The look-up of blurred moments: two for each of the two warped depths."""
+    """The bound on the light from the blurred mean and mean square of each warped depth."""
 
     def __init__(
         self,
@@ -41,23 +43,23 @@ class Lookup:
         exponent: float,
         negative_exponent: float,
     ) -> None:
-        # Each warp is a function, and the ratio of its slope to its value
+        # Each warp is paired with the ratio of its slope to its value
         self.warps = [(lambda z: dr.exp(exponent * z), exponent)]
         if negative_exponent:
             self.warps.append((lambda z: -dr.exp(-negative_exponent * z), negative_exponent))
-        self.moments = MomentMap(self.powers, depths, blur, bleeding)
+        self.moments = MomentMap(self.compute_warped_powers, depths, blur, bleeding)
 
-    def powers(self, depths: MitsubaObject) -> list[MitsubaObject]:
-        """Return the warped depths and their squares, in pairs."""
+    def compute_warped_powers(self, depths: MitsubaObject) -> list[MitsubaObject]:
+        """Return the warped depths and their squares, as a list with one pair per warp."""
         return [x for warp, _ in self.warps for x in (warp(depths), dr.square(warp(depths)))]
 
-    def lit_share(self, point: MapPoint) -> JitFloat:
+    def visibility(self, point: MapPoint) -> JitFloat:
         """Return the greatest share of the light that may arrive at a point."""
-        means, bound = self.moments.means_at(point), 1
+        means, bound = self.moments.interpolate_moments(point), 1
         depth = dr.clip(point.depth, -1, 1)
         for i, (warp, steepness) in enumerate(self.warps):
             t = warp(depth)
             least = dr.square(LEAST_DEVIATION * steepness * t)
             mean, square = means[2 * i], means[2 * i + 1]
             bound = dr.minimum(bound, bound_by_two_moments(mean, square, t, least))
-        return self.moments.lit_share(point, bound)
+        return self.moments.reduce_light_bleeding(point, bound)

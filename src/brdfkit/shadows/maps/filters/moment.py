@@ -2,12 +2,15 @@
 
     lit = max { P(X ≥ z) : E(X) = b₁ ... E(X⁴) = b₄ }
 
-is the solution of a Hamburger moment problem. With two occluding planes above a third it is the
-exact share, where a variance shadow map leaks. Moments that are nearly those of fewer depths are
-sensitive to rounding: they are drawn towards a middle by `rounding`, which lets some light through.
-The bound is sharp enough to show that half of the window on a slanted surface is nearer to the
-light than the point. So where the bias follows planes, the point has the least depth of its plane
-within half a texel.
+X is the depth of an occluder near the point, z the depth of the point, and b₁ to b₄ are the moments
+of X. The maximum solves a Hamburger moment problem. With two occluding planes above a third it is
+the exact share, where a variance shadow map leaks. If the moments nearly belong to fewer depths,
+rounding errors matter: the moments are then mixed with fixed ones by the share `rounding`, which
+lets some light through.
+
+The bound is so sharp that on a slanted surface it notices that half of the window is nearer to the
+light than the point. So where the bias follows planes, the point gets the least depth that its
+plane has within half a texel.
 
 [Peters & Klein 2015]
 """
@@ -30,7 +33,7 @@ render_map = moving_depths.render_map
 
 
 class Lookup:
-    """The look-up of four blurred moments of depth."""
+    """The bound on the light from four blurred moments of depth."""
 
     def __init__(
         self, depths: moving_depths.MovingDepths, blur: int, bleeding: float, rounding: float
@@ -38,9 +41,9 @@ class Lookup:
         self.moments = MomentMap(lambda z: [z, z * z, z**3, z**4], depths, blur, bleeding)
         self.rounding = rounding
 
-    def lit_share(self, point: MapPoint) -> JitFloat:
+    def visibility(self, point: MapPoint) -> JitFloat:
         """Return the greatest share of the light that may arrive at a point."""
         depth = point.depth - (dr.abs(point.slope_u) + dr.abs(point.slope_v)) / 2
         depth = dr.clip(depth, -1, 1)
-        bound = bound_by_four_moments(self.moments.means_at(point), depth, self.rounding)
-        return self.moments.lit_share(point, bound)
+        bound = bound_by_four_moments(self.moments.interpolate_moments(point), depth, self.rounding)
+        return self.moments.reduce_light_bleeding(point, bound)

@@ -2,14 +2,14 @@
 
     w = w_light (d_r - d_b) / d_b
 
-w is the width of the penumbra and w_light that of the light, d_r the receiver's distance from the
-light. d_b is the mean distance of the occluders that a search finds, as if all of them were a plane
-parallel to the light. The search takes the cone from the receiver to the light, up to the map's
-near side. Both look at taps on a spiral in a disk that is round in the world, whatever the
-projection does to it. `light_size` gives the scene's point light a size; for a light far away it is
-the tangent of its diameter, 0.0093 for the sun.
+w is the width of the penumbra, w_light that of the light, d_r the receiver's distance from the
+light, and d_b the mean distance of the occluders, which are taken for a plane parallel to the
+light. A search over the cone from the receiver to the light, as far as the map's near side, finds
+the occluders. The search and the filter both read taps on a spiral within a disk that is round in
+the world, whatever the projection does to it. `light_size` gives the scene's point light a size;
+for a light far away it is the tangent of its diameter, 0.0093 for the sun.
 
-Occluders behind others are not seen, and the mean over several depths is none of them: overlapping
+The map lacks occluders behind others, and the mean of several depths is none of them: overlapping
 penumbrae are wrong, and contacts a little too light.
 
 [Fernando 2005]
@@ -32,38 +32,45 @@ SETTINGS = {
 
 
 class Lookup:
-    """A search for occluders, then the mean of comparisons over a disk."""
+    """A search for occluders, followed by the mean of depth comparisons over a disk."""
 
     def __init__(self, depths: MitsubaObject, light_size: float, taps: int) -> None:
         self.texels, self.light_size, self.taps = Texels(depths), light_size, make_spiral(taps)
 
-    def lit_share(self, point: MapPoint) -> JitFloat:
+    def visibility(self, point: MapPoint) -> JitFloat:
         """Return the share of the light that arrives at a point."""
         width = self.penumbra_width(point, self.mean_occluder_depth(point))
-        lit = sum(self.texels.lit_share(point, u, v) for u, v in self.places(point, width))
+        lit = sum(
+            self.texels.visibility(point, u, v) for u, v in self.iterate_tap_places(point, width)
+        )
         return lit / len(self.taps)
 
     def mean_occluder_depth(self, point: MapPoint) -> JitFloat:
-        """Return the mean depth of occluders in the map's cube; the point's own without any."""
+        """Return the mean depth of the occluders in the map; the point's own depth without any."""
         import mitsuba as mi
 
         total, count = mi.Float(0), mi.Float(0)
-        for u, v in self.places(point, self.penumbra_width(point, mi.Float(-1))):
-            occluder, depth = self.texels.depths_at(point, u, v)
+        for u, v in self.iterate_tap_places(point, self.penumbra_width(point, mi.Float(-1))):
+            occluder, depth = self.texels.read_depths(point, u, v)
             total += dr.select(occluder < depth, dr.maximum(occluder, -1), 0)
             count += dr.select(occluder < depth, mi.Float(1), 0)
         return dr.select(count > 0, total / count, point.depth)
 
     def penumbra_width(self, point: MapPoint, depth: JitFloat) -> JitFloat:
-        """Return w [unit of length] for occluders at a `depth` in the map's cube."""
+        """Return the width w of the penumbra [unit of length] by an occluder at a map's `depth`."""
         occluder, light = point.move_to_depth(depth), point.projection.light
         gap = dr.norm(occluder - point.p)
         if not light.is_directional:
             gap = gap / dr.norm(occluder - type(occluder)(light.point.xyz))
         return self.light_size * gap
 
-    def places(self, point: MapPoint, width: JitFloat) -> Iterator[tuple[JitFloat, JitFloat]]:
-        """Yield the taps on the map, in a disk of this diameter about the point and the light."""
+    def iterate_tap_places(
+        self, point: MapPoint, width: JitFloat
+    ) -> Iterator[tuple[JitFloat, JitFloat]]:
+        """Yield the taps (u, v) [texels] of a disk around a point, at right angles to the light.
+
+        width : diameter of the disk [unit of length].
+        """
         (u_s, v_s), (u_t, v_t) = point.cross_section_axes()
         for s, t in self.taps:
             x, y = s * width / 2, t * width / 2
@@ -71,7 +78,7 @@ class Lookup:
 
 
 def make_spiral(n: int) -> list[tuple[float, float]]:
-    """Return n points of the unit disk, evenly by area, each turned by the golden angle."""
+    """Return n points of the unit disk, spread evenly over its area on a golden-angle spiral."""
     golden = math.pi * (3 - math.sqrt(5))
     return [
         (

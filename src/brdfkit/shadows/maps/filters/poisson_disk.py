@@ -2,9 +2,10 @@
 
     lit = 1/12 Σ_k [z ≤ f(u + r x_k, v + r y_k)]
 
-z is the depth of the point, f that in the map. The disk may have any radius r at the same cost. It
-may shrink to nothing towards the upper end of the map (`taper`), where a shadow then becomes sharp.
-The same 12 taps serve every point: wide borders show 12 copies of the edge.
+z is the depth of the point, f(u, v) the depth in the texel at (u, v), and (x_k, y_k) are the taps
+in the unit disk. A disk of any radius r costs the same. The setting `taper` lets the radius shrink
+towards the upper end of the map, where shadows then become sharper. The same 12 taps serve every
+point, so that wide borders show 12 copies of the edge.
 
 [Mitchell 2004], [Ergun 2008, 2.2.1.3]
 """
@@ -19,7 +20,7 @@ from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.texels import Texels
 
 TAPS = 12
-LEAST_DISTANCE = 0.5  # between two taps, in radii of the disk
+LEAST_DISTANCE = 0.5  # the least distance between two taps, in radii of the disk
 
 SETTINGS = {
     "radius": declare_float(2.0, (0.0, 256.0), "of the disk [texels]"),
@@ -28,21 +29,25 @@ SETTINGS = {
 
 
 class Lookup:
-    """The mean of comparisons at the 12 taps."""
+    """The mean of depth comparisons at the 12 taps around a point.
+
+    radius : radius of the disk at the lower end of the map [texels].
+    taper : share by which the radius shrinks up to the upper end of the map.
+    """
 
     def __init__(self, depths: MitsubaObject, radius: float, taper: float) -> None:
         self.texels, self.radius, self.taper = Texels(depths), radius, taper
 
-    def lit_share(self, point: MapPoint) -> JitFloat:
+    def visibility(self, point: MapPoint) -> JitFloat:
         """Return the share of the light that arrives at a point."""
         r = self.radius * (1 - self.taper / self.texels.resolution * point.v)
         places = [(point.u + r * x, point.v + r * y) for x, y in draw_taps()]
-        return sum(self.texels.lit_share(point, u, v) / TAPS for u, v in places)
+        return sum(self.texels.visibility(point, u, v) / TAPS for u, v in places)
 
 
 @functools.cache
 def draw_taps() -> FloatArray:
-    """Draw random points (12, 2) of the unit disk, leaving out those too close to another."""
+    """Draw 12 random points (12, 2) of the unit disk, no two closer than `LEAST_DISTANCE`."""
     generator = np.random.default_rng(1)
     taps: list[FloatArray] = []
     while len(taps) < TAPS:

@@ -4,8 +4,8 @@
 
 z is the depth of the point. The mean μ = E(f) and the variance σ² = E(f²) - μ² of the map's depths
 f come from two moments that are blurred and interpolated as a picture is, once for all points. For
-one plane above another the bound is the exact share, that of the percentage-closer filter. Where
-two occluders are behind each other the variance is large, and light bleeds into the shadow of the
+one plane above another, the bound equals the share that a percentage-closer filter finds. Where two
+occluders are behind each other the variance is large, and light bleeds into the shadow of the
 farther one. Shares below ε (`bleeding`) therefore count as 0, which narrows true borders, too. The
 borders are soft and have derivatives.
 
@@ -28,7 +28,7 @@ render_map = moving_depths.render_map
 
 
 class Lookup:
-    """The look-up of two blurred moments of depth."""
+    """The bound on the light from the blurred mean and mean square of depth."""
 
     def __init__(
         self,
@@ -40,8 +40,8 @@ class Lookup:
         self.moments = MomentMap(lambda z: [z, z * z], depths, blur, bleeding)
         self.least_variance = least_deviation**2
 
-    def lit_share(self, point: MapPoint) -> JitFloat:
+    def visibility(self, point: MapPoint) -> JitFloat:
         """Return the greatest share of the light that may arrive at a point."""
-        mean, square = self.moments.means_at(point)
+        mean, square = self.moments.interpolate_moments(point)
         bound = bound_by_two_moments(mean, square, point.depth, self.least_variance)
-        return self.moments.lit_share(point, bound)
+        return self.moments.reduce_light_bleeding(point, bound)

@@ -1,1 +1,1 @@
-"""Moments of the depths about a place of a map, and the share of light that they bound."""
+"""Moments of the depths near a place of a shadow map, and the bounds they set on its visibility."""

@@ -1,4 +1,4 @@
-"""The most light that two, or four, moments of the occluders' depth X allow at the depth t.
+"""Upper bounds on the light at a depth t, from two or four moments of the occluders' depth X.
 
 Two moments, by Chebyshev's one-sided inequality [Donnelly & Lauritzen 2006], [Ergun 2008, 2.2.1.4]:
 
@@ -19,16 +19,20 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat
 
-# Moments of depths in [-1, 1] that are far from impossible ones [Münstermann et al. 2018]
+# Valid moments of depths in [-1, 1], far from the limits of validity [Münstermann et al. 2018]
 MIDDLE_MOMENTS = 0.0, 0.375, 0.0, 0.375
-LEAST_ROOT = 1e-7  # 1 over a root that counts as infinite, where t is one of only two depths
+# A root beyond 1 / LEAST_ROOT counts as infinite; X then has only two depths, one of them t
+LEAST_ROOT = 1e-7
 
 
 def bound_by_two_moments(
     mean: JitFloat, mean_square: JitFloat, t: JitFloat, least_variance: JitFloat = 0.0
 ) -> JitFloat:
-    """Return the largest lit share P(X ≥ t); it is exact if X has two values and one of them is t.
+    """Return the greatest probability P(X ≥ t), the lit share at depth t, that two moments allow.
 
+    It is exact if the occluders' depth X has two values, one of them t.
+
+    mean, mean_square : the moments E(X) and E(X²).
     least_variance : the least σ², against rounding, and for the slant of a surface in a texel.
     """
     variance = dr.maximum(mean_square - mean * mean, least_variance)
@@ -37,12 +41,13 @@ def bound_by_two_moments(
 
 
 def bound_by_four_moments(b: Sequence[JitFloat], t: JitFloat, rounding: float = 0.0) -> JitFloat:
-    """Return the largest lit share P(X ≥ t) of a depth X with the four moments `b`.
+    """Return the greatest probability P(X ≥ t), the lit share at depth t, that four moments allow.
 
-    It is exact if X has two values, or three with t among them.
+    It is exact if the occluders' depth X has two values, or three with t among them.
 
-    rounding : by how much, 0 to 1, the moments are drawn to `MIDDLE_MOMENTS`, as rounded ones may
-        belong to no distribution.
+    b : the moments E(X), E(X²), E(X³) and E(X⁴).
+    rounding : share, 0 to 1, by which the moments are mixed with `MIDDLE_MOMENTS`, as rounded
+        moments may belong to no distribution.
     """
     b1, b2, b3, b4 = (
         (1 - rounding) * own + rounding * middle

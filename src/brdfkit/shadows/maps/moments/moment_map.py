@@ -1,4 +1,4 @@
-"""Maps of moments: means of powers of depth, which may be blurred and interpolated as pictures are.
+"""Shadow maps of moments: mean powers of depth, which may be blurred and interpolated as pictures.
 
 Depths are clamped to [-1, 1]: 1 where the light sees nothing, -1 for surfaces before the map.
 """
@@ -18,12 +18,12 @@ BLEEDING = declare_float(0.2, (0.0, 0.99), "share of the light below which a poi
 
 
 class MomentMap:
-    """A shadow map that holds moments of depth, averaged over a square about any place.
+    """A shadow map that stores moments of depth, averaged over a square of texels.
 
-    moments : function from the tensor of depths to the list of tensors of moments.
-    depths : the depths of the map.
-    blur : texels on each side of a texel over which its moments are averaged; places between
-        texels are interpolated.
+    moments : function from the tensor of depths to the list of tensors whose means are the moments.
+    depths : the depths that the light sees.
+    blur : number of texels on each side of a texel over which its moments are averaged; between
+        texels they are interpolated.
     bleeding : shares of light up to this one count as leaks, and become 0.
     """
 
@@ -36,7 +36,9 @@ class MomentMap:
     ) -> None:
         import mitsuba as mi
 
-        values = dr.stack([depths.attach_edges(m) for m in moments(depths.values)], axis=2)
+        values = dr.stack(
+            [depths.attach_edge_derivatives(m) for m in moments(depths.values)], axis=2
+        )
         if blur:
             side = 2 * blur + 1
             values = dr.convolve(values, [1 / side] * side, axis=(0, 1), boundary="nearest")
@@ -44,15 +46,15 @@ class MomentMap:
         texture: Any = mi.Texture2f  # Mitsuba annotates it as a mere object
         self.texture = texture(values, False, False, wrap_mode=dr.WrapMode.Clamp)
 
-    def means_at(self, point: MapPoint) -> list[JitFloat]:
-        """Return the means of all moments about a point."""
+    def interpolate_moments(self, point: MapPoint) -> list[JitFloat]:
+        """Return the moments of the depths around a receiver."""
         import mitsuba as mi
 
         scale: JitFloat = dr.opaque(mi.Float, 1 / self.resolution)
         return self.texture.eval(mi.Point2f(point.u, point.v) * scale, point.active)
 
-    def lit_share(self, point: MapPoint, bound: JitFloat) -> JitFloat:
-        """Return a bound on the share of the light at a point, less bleeding; 1 beyond the map.
+    def reduce_light_bleeding(self, point: MapPoint, bound: JitFloat) -> JitFloat:
+        """Return an upper bound on a receiver's light, less the light that leaks; 1 beyond the map.
 
         A leak of up to ε = `bleeding` is removed by (bound - ε)₊ / (1 - ε).
         """

@@ -1,5 +1,5 @@
-"""Partitions, the ways to divide a scene among several maps; each file here is a partition.
+"""Partitions: the ways to divide a scene among several shadow maps; one file each.
 
 Each file has a function `make_partition(setup, ...)`, which returns the `Partition` of a `Setup`.
-More arguments are its `SETTINGS`.
+Its further arguments are declared in `SETTINGS`.
 """

@@ -1,16 +1,18 @@
-"""A tree of squares of the light's map, finest where the camera sees borders of shadows (ASM).
+"""A tree of squares on the light's map, finest where the camera sees borders of shadows (ASM).
 
-The map is a square. The square with the most wrong pixels to expect is divided into four, each with
-a map as large as its own was, until the `budget` of maps is spent. The number to expect is
+The map is a square. Again and again, the square with the most wrong pixels to expect is divided
+into four, each with a map as large as the square's own was, until the `budget` of maps is spent.
+The number of wrong pixels to expect in a square is
 
-    Σ footprint × side,   over the points in a square that lie at a border
+    Σ footprint × side,   over the points in the square that lie at the border of a shadow
 
-with the footprint √(1/|det J|) of a texel in the picture, see `resolution.py`. A border is where
-the shadow ray of one of 128² camera rays is unlike that of a neighbour. [Fernando et al. 2001] find
-borders on the map, and also refine by the gain per texel.
+where the footprint is the width √(1/|det J|) of a texel in the picture, see `resolution.py`. The
+points are those that 128² camera rays meet; a point lies at a border if its shadow ray is unlike
+that of a neighbour. [Fernando et al. 2001] find borders on the map instead, and also consider the
+gain per texel.
 
-Best where few borders are visible. It costs a pass for each square, and shadow rays before; too
-slow for games, as [Ergun 2008, 2.2.3.1] says.
+The partition is best where few borders are visible. It costs a pass for each square, and shadow
+rays before; too slow for games, as [Ergun 2008, 2.2.3.1] says.
 """
 
 import heapq
@@ -22,7 +24,7 @@ from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
 from brdfkit.mitsuba_bridge.properties.declarations import declare_int
 from brdfkit.shadows.maps.cells import Cell, make_cell_finder
 from brdfkit.shadows.maps.partition import Part, Partition, Setup
-from brdfkit.shadows.maps.resolution import footprints, places_on_map
+from brdfkit.shadows.maps.resolution import compute_texel_footprints, locate_on_map
 from brdfkit.shadows.maps.visible_surfaces import VisibleSurfaces, find_visible_surfaces, is_lit
 
 SETTINGS = {"budget": declare_int(16, (1, 256), "maps at most, of the full resolution each")}
@@ -35,9 +37,11 @@ def make_partition(setup: Setup, budget: int) -> Partition:
     scene, light, resolution = setup.scene, setup.placement.light, setup.resolution
     whole = setup.project(setup.placement)
     surfaces = find_visible_surfaces(scene, setup.placement.camera)
-    places = places_on_map(whole, surfaces)
-    border = is_at_border(surfaces, is_lit(scene, light, surfaces))
-    leaves = grow_tree(places[border], footprints(places, surfaces)[border], budget)
+    places = locate_on_map(whole, surfaces)
+    border = is_at_shadow_border(surfaces, is_lit(scene, light, surfaces))
+    leaves = grow_quadtree(
+        places[border], compute_texel_footprints(places, surfaces)[border], budget
+    )
     parts = [
         Part(Cell.from_grid(whole, column, row, 2**level, resolution), resolution)
         for level, row, column in leaves
@@ -45,8 +49,11 @@ def make_partition(setup: Setup, budget: int) -> Partition:
     return Partition(parts, make_cell_finder(whole, make_leaf_table(leaves)))
 
 
-def is_at_border(surfaces: VisibleSurfaces, lit: BoolArray) -> BoolArray:
-    """Return which visible points (n,) are lit unlike the next one in their row or column."""
+def is_at_shadow_border(surfaces: VisibleSurfaces, lit: BoolArray) -> BoolArray:
+    """Return (n,) whether each visible point is lit unlike the point in the next row or column.
+
+    lit : whether the light reaches each of the n points.
+    """
     grid = np.full(surfaces.hit.shape, np.nan)
     grid[surfaces.hit] = lit
     below, beside = (np.abs(np.diff(grid, axis=axis, append=np.nan)) == 1 for axis in (0, 1))
@@ -54,30 +61,36 @@ def is_at_border(surfaces: VisibleSurfaces, lit: BoolArray) -> BoolArray:
     return border
 
 
-def grow_tree(places: FloatArray, weights: FloatArray, budget: int) -> list[Leaf]:
-    """Return the leaves of a tree of squares over [-1, 1]², whose heaviest leaf is divided first.
+def grow_quadtree(places: FloatArray, weights: FloatArray, budget: int) -> list[Leaf]:
+    """Return the leaves of a quadtree over [-1, 1]² that divides its heaviest leaf again and again.
 
-    A leaf is as heavy as the sum of the `weights` (n,) of its `places` (n, 2), times its side.
+    A leaf weighs the sum of the `weights` of the points in it, times its side.
+
+    places, weights : coordinates (n, 2) and weights (n,) of the points.
+    budget : the greatest number of leaves.
     """
     index = np.clip((places + 1) / 2 * 2**MAX_LEVEL, 0, 2**MAX_LEVEL - 1).astype(int)
     columns, rows = index.T
 
-    def heap_entry(level: int, row: int, column: int) -> tuple[float, Leaf]:
+    def make_heap_entry(level: int, row: int, column: int) -> tuple[float, Leaf]:
         shift = MAX_LEVEL - level
         within = (rows >> shift == row) & (columns >> shift == column)
         weight = weights[within].sum() / 2**level if level < MAX_LEVEL else 0
         return -weight, (level, row, column)
 
-    heap: list[Any] = [heap_entry(0, 0, 0)]
+    heap: list[Any] = [make_heap_entry(0, 0, 0)]
     while len(heap) + 3 <= budget and heap[0][0] < 0:
         _, (level, row, column) = heapq.heappop(heap)
         for i, j in np.ndindex(2, 2):
-            heapq.heappush(heap, heap_entry(level + 1, 2 * row + i, 2 * column + j))
+            heapq.heappush(heap, make_heap_entry(level + 1, 2 * row + i, 2 * column + j))
     return sorted(leaf for _, leaf in heap)
 
 
 def make_leaf_table(leaves: list[Leaf]) -> IntArray:
-    """Return the indices of the leaves that cover each square (n, n) of the finest level."""
+    """Return a table (n, n), [row, column], with the index of the leaf that covers each square.
+
+    The table's squares are as small as the smallest leaf.
+    """
     finest = max(level for level, _, _ in leaves)
     table = np.empty((2**finest, 2**finest), int)
     for i, (level, row, column) in enumerate(leaves):

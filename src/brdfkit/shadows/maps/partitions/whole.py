@@ -1,4 +1,4 @@
-"""One map for the whole scene."""
+"""The partition with a single map for the whole scene."""
 
 from brdfkit.shadows.maps.partition import Part, Partition, Setup
 

@@ -4,11 +4,11 @@
 camera's frustum V and the scene's box S.
 """
 
-from brdfkit.shadows.maps.light_camera import enclose_body
+from brdfkit.shadows.maps.light_camera import make_enclosing_projection
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 
 
 def make_projection(placement: Placement) -> Projection:
     """Make the projection that encloses the placement's body."""
-    return enclose_body(placement.light, placement.body)
+    return make_enclosing_projection(placement.light, placement.body)

@@ -5,9 +5,10 @@
 n is the distance of the perspective's apex, γ the angle between view and light [Ergun 2008,
 2.2.2.3]; z_n and z_f are the depths between which the camera sees something. With this n the worst
 error near the eye equals the worst far from it [Wimmer et al. 2004]. The directions of light and
-depth stay. As γ → 0 the map becomes the focused one, which it also is where the eye is not before
-the light. A point or spot light's own perspective comes first. Good for wide views at right angles
-to the light; all other texels change when the eye turns.
+depth do not change. As γ → 0 the map becomes the focused one, which is also used where the eye is
+behind the light. If the light is a point or spot, its own perspective comes first. The projection
+is good for wide views at right angles to the light; at other angles, texels change when the eye
+turns.
 """
 
 import numpy as np
@@ -21,10 +22,10 @@ SETTINGS = {"apex": APEX}
 
 
 def make_projection(placement: Placement, apex: float) -> Projection:
-    """Make the projection, or the focused one without a line of sight."""
+    """Make the projection; the focused one if there is no line of sight on the map."""
     sight = find_line_of_sight(placement)
     if sight is None:
         return focused.make_projection(placement)
     z_n, z_f = placement.depths
-    n = (z_n + np.sqrt(z_n * z_f)) / sight.sine
-    return sight.warp(apex * n * sight.scale)
+    n = (z_n + np.sqrt(z_n * z_f)) / sight.sine_to_light
+    return sight.make_warped_projection(apex * n * sight.map_scale)

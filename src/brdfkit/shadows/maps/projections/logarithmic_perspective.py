@@ -4,11 +4,11 @@
 
 y, from n to y_f, is the distance from the apex of the perspective. At right angles to the light the
 apex is the eye, and a texel has the same size in the picture, across and along, wherever it is. At
-the angle γ, n is z_n / sin γ here, times `apex`, with the nearest visible depth z_n. No matrix does
-that, so no hardware that draws triangles, but rays do [Lloyd et al. 2008]. It is the focused map
-where the eye looks along the light or is not before it.
+the angle γ between view and light, n is z_n / sin γ here, times `apex`, with the nearest visible
+depth z_n. No matrix can do this, and so no hardware that draws triangles, but rays can [Lloyd et
+al. 2008]. The projection is the focused one where the eye looks along the light or is behind it.
 
-Best for far views over a ground. Planes are bent on its map, by little within a texel.
+It is best for far views over a ground. Planes are bent on its map, though little within a texel.
 """
 
 from dataclasses import dataclass, replace
@@ -27,13 +27,13 @@ SETTINGS = {"apex": APEX}
 
 
 def make_projection(placement: Placement, apex: float) -> Projection:
-    """Make the projection, or the focused one without a line of sight."""
+    """Make the projection; the focused one if there is no line of sight on the map."""
     sight = find_line_of_sight(placement)
     if sight is None:
         return focused.make_projection(placement)
-    near, far = sight.ends
-    n = apex * placement.depths[0] / sight.sine * sight.scale
-    warped = sight.warp(n)
+    near, far = sight.y_range
+    n = apex * placement.depths[0] / sight.sine_to_light * sight.map_scale
+    warped = sight.make_warped_projection(n)
     # A ratio of 1 has no logarithmic map, but the map of this ratio is nearly linear
     ratio = max(1 + (far - near) / n, 1 + 1e-4)
     return Logarithmic(warped.matrix, warped.inverse, warped.light, ratio=ratio)
@@ -41,54 +41,60 @@ def make_projection(placement: Placement, apex: float) -> Projection:
 
 @dataclass(frozen=True)
 class Logarithmic(Projection):
-    """A perspective by a matrix, and a logarithm along the second axis of its cube.
+    """A perspective by a matrix, followed by a logarithm along the second axis of the map.
 
-    ratio : y_f / n > 1, the ratio of the distances of the cube's two ends from the apex.
+    ratio : y_f / n > 1, the ratio of the distances of the map's two ends from the apex.
     """
 
     ratio: Any = np.e
 
-    def opaque(self) -> "Logarithmic":
-        """Return the projection with opaque Dr.Jit numbers, so that one kernel serves all."""
+    def make_opaque(self) -> "Logarithmic":
+        """Return a copy with opaque Dr.Jit numbers, so that all maps share one compiled kernel."""
         import mitsuba as mi
 
-        opaque: Any = super().opaque()
+        opaque: Any = super().make_opaque()
         logarithmic: Logarithmic = replace(opaque, ratio=dr.opaque(mi.Float, self.ratio))
         return logarithmic
 
-    def to_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
-        """Return where a point of the world is in the map's cube."""
-        u, v, depth = super().to_map(x, y, z)
+    def project_to_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+        """Return the map coordinates and the depth of a point of the world, [-1, 1] on the map."""
+        u, v, depth = super().project_to_map(x, y, z)
         log = array_module(v).log
         return u, -2 * log(self.nearness(v)) / log(self.ratio) - 1, depth
 
-    def derivative_along(self, point: JitVector, way: JitVector) -> tuple[JitFloat, ...]:
-        """Return the derivative of `to_map` at a `point` along a vector `way`."""
-        v = super().to_map(*point)[1]
-        u_way, v_way, depth_way = super().derivative_along(point, way)
+    def directional_derivative(self, point: JitVector, way: JitVector) -> tuple[JitFloat, ...]:
+        """Return the derivative of map coordinates and depth as a point moves along a vector.
+
+        way : the vector.
+        """
+        v = super().project_to_map(*point)[1]
+        u_way, v_way, depth_way = super().directional_derivative(point, way)
         slope = (1 - 1 / self.ratio) / (self.nearness(v) * array_module(v).log(self.ratio))
         return u_way, v_way * slope, depth_way
 
-    def ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
-        """Return the ray of light at a place of the map: its origin and its unit direction."""
-        return super().ray(x, self.undo_logarithm(y))
+    def compute_light_ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
+        """Return origin and unit direction of the light ray through map coordinates x and y."""
+        return super().compute_light_ray(x, self.undo_logarithm(y))
 
-    def from_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
-        """Return the point of the world at a place in the map's cube."""
-        if self.depth:  # then the base class calls `ray`, which undoes the logarithm
-            return super().from_map(x, y, z)
-        return super().from_map(x, self.undo_logarithm(y), z)
+    def unproject_from_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+        """Return the point of the world with map coordinates x and y and the depth z."""
+        if self.depth:  # then the base class calls `compute_light_ray`, which undoes the logarithm
+            return super().unproject_from_map(x, y, z)
+        return super().unproject_from_map(x, self.undo_logarithm(y), z)
 
     def nearness(self, v: JitFloat) -> JitFloat:
-        """Return n / y, which is linear in the v of the perspective."""
+        """Return n / y, the ratio of the distances of the near end and of a point from the apex.
+
+        v : second map coordinate of the point before the logarithm, in which the ratio is linear.
+        """
         return 1 - (v + 1) / 2 * (1 - 1 / self.ratio)
 
     def undo_logarithm(self, v: JitFloat) -> JitFloat:
-        """Return the v of the perspective for the v of the map."""
+        """Return the second map coordinate before the logarithm, for the one after it, v."""
         exp, log = array_module(v).exp, array_module(v).log
         return 2 * (1 - exp(-(v + 1) / 2 * log(self.ratio))) / (1 - 1 / self.ratio) - 1
 
 
 def array_module(value: JitFloat) -> Any:
-    """Return the module with functions for a value: Dr.Jit's or NumPy's."""
+    """Return the module whose `exp` and `log` fit a value: Dr.Jit or NumPy."""
     return dr if dr.is_jit_v(value) else np

@@ -1,21 +1,20 @@
 """A map made in the space behind the camera's own perspective (PSM).
 
 The camera is moved back until all that is visible or casts shadows is before it. Its matrix takes
-the light to another place, and a second camera there sees the content of the picture's cube, its
-frustum fitted on each side. A light behind the eye comes to lie beyond the cube, at w < 0, where
-its rays run backwards; depth is negated with its w [Stamminger & Drettakis 2002], [Ergun 2008,
-2.2.2.2].
+the light to another place, from which a second camera sees the content of the picture's cube,
+fitted on each side. A light behind the eye comes to lie beyond the cube, at w < 0, where its rays
+run backwards; depth is negated with its w [Stamminger & Drettakis 2002], [Ergun 2008, 2.2.2.2].
 
-Texels are distributed as the picture's pixels are. Good where nothing is near the eye, else nearly
-all of the map shows that; and every step of the camera moves all texels.
+Texels are distributed as the picture's pixels are. The projection is good where nothing is near the
+eye; else nearly all of the map is spent there. Every step of the camera moves all texels.
 """
 
 from brdfkit.core.projective.homogeneous import project_points
-from brdfkit.shadows.maps.light_camera import fit_to_corners, view_matrix
+from brdfkit.shadows.maps.light_camera import fit_projection_to_corners, view_matrix
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 
-NEAREST = 1 / 200  # the near plane over the far one, as depths grow like 1 / z
+NEAREST = 1 / 200  # least ratio of the near to the far plane, as 1/z is too steep near the eye
 
 
 def make_projection(placement: Placement) -> Projection:
@@ -26,4 +25,4 @@ def make_projection(placement: Placement) -> Projection:
     camera = near_camera.move_behind(corners).matrix
     cube, (middle,) = project_points(camera, corners), project_points(camera, [middle])
     light_view = view_matrix(camera @ placement.light.point, cube, middle)
-    return fit_to_corners(light_view @ camera, placement.light, corners)
+    return fit_projection_to_corners(light_view @ camera, placement.light, corners)

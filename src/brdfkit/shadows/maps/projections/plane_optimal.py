@@ -2,13 +2,14 @@
 
 A light l takes a point p to the plane π at (π·l) p - (π·p) l, and the camera takes that to the map,
 so that a texel is a pixel. It is the projection by five pairs of points: the light, at infinity on
-the map, and four of the plane, one of them lifted towards the light [Chong & Gortler 2004],
-[Ergun 2008, 2.2.2.5]. Depth is the height over the plane, divided by w.
+the map, and four of the plane, one of them lifted towards the light [Chong & Gortler 2004], [Ergun
+2008, 2.2.2.5]. Depth is the height over the plane, divided by w.
 
-The camera is moved back until all shadows fall before it, and the map stretched to what it must
-hold. The plane is `plane`, or else that face of the scene's box which catches most light, often the
-ground. Best on its plane, bad on surfaces at right angles to it, such as walls. It is the focused
-map where no face of the scene's box can be the plane, or the eye is in the plane.
+The camera is moved back until all shadows fall before it, and the map is stretched to enclose the
+body. The plane is the setting `plane`, or else that face of the scene's box which catches most
+light, often the ground. The projection is best on its plane and bad on surfaces at right angles to
+it, such as walls. It is the focused one where no face of the scene's box can be the plane, or the
+eye is in the plane.
 """
 
 from typing import Any
@@ -19,14 +20,14 @@ from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.homogeneous import project_points
 from brdfkit.mitsuba_bridge.properties.declarations import Setting
-from brdfkit.shadows.maps.light_camera import fit_to_corners
+from brdfkit.shadows.maps.light_camera import fit_projection_to_corners
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import focused
 
 
 def to_plane(value: Any) -> FloatArray | None:
-    """Return four numbers, or a text of them, as an array (4,); None for None or an empty text."""
+    """Return four numbers, or a text of them, as the plane (4,); None for None or an empty text."""
     if value is None:
         return None
     numbers = value.split() if isinstance(value, str) else value
@@ -44,7 +45,7 @@ SETTINGS = {"plane": Setting("", None, PLANE, to_plane)}
 
 
 def make_projection(placement: Placement, plane: FloatArray | None) -> Projection:
-    """Make the projection for a `plane` (4,), or for a face of the scene's box without one."""
+    """Make the projection for a `plane` (4,), or for a face of the scene's box if it is None."""
     if plane is None:
         faces = [face for face in rank_faces_by_light(placement) if takes_shadows(face, placement)]
         return project_onto(placement, faces[0]) if faces else focused.make_projection(placement)
@@ -52,14 +53,17 @@ def make_projection(placement: Placement, plane: FloatArray | None) -> Projectio
     plane = plane * side / max(float(np.linalg.norm(plane[:3])), 1e-30)
     if not takes_shadows(plane, placement):
         raise BrdfkitError(
-            "plane_optimal: the plane must cut what the camera sees, and the light be beyond all "
-            "that casts shadows on it; choose another plane, or leave it out."
+            "plane_optimal: the plane must cut the camera's view, and the light must be farther "
+            "from it than all that casts shadows; choose another plane, or leave it out."
         )
     return project_onto(placement, plane)
 
 
 def project_onto(placement: Placement, plane: AnyArray) -> Projection:
-    """Return the projection that is best on a `plane` (4,) that takes the shadows."""
+    """Return the projection that is best for shadows on a `plane` (4,) that takes them.
+
+    The focused one replaces it if the eye is in the plane.
+    """
     light, corners = placement.light, placement.body.corners
     flat = (plane @ light.point) * np.eye(4) - np.outer(light.point, plane)
     camera = placement.camera.replace_planes(*placement.depths)
@@ -68,11 +72,11 @@ def project_onto(placement: Placement, plane: AnyArray) -> Projection:
         return focused.make_projection(placement)
     matrix = camera.matrix @ flat
     matrix[2] = -plane
-    return fit_to_corners(matrix, light, corners)
+    return fit_projection_to_corners(matrix, light, corners)
 
 
 def takes_shadows(plane: AnyArray, placement: Placement) -> bool:
-    """Return whether a plane cuts what the camera sees, and every shadow falls on it."""
+    """Return whether a plane cuts the camera's view and is behind all that casts shadows."""
     heights = height_over(plane, placement.visible.corners)
     tolerance = 1e-6 * placement.size
     below_light = plane @ placement.light.point
@@ -83,7 +87,10 @@ def takes_shadows(plane: AnyArray, placement: Placement) -> bool:
 
 
 def rank_faces_by_light(placement: Placement) -> list[FloatArray]:
-    """Return the planes (4,) of the scene's box, normals inwards, the one with most light first."""
+    """Return the planes (4,) of the six faces of the scene's box, the one with most light first.
+
+    Their normals point inwards.
+    """
     sizes = placement.high - placement.low
     middle = (placement.low + placement.high) / 2
     areas = np.roll(sizes, 1) * np.roll(sizes, 2)

@@ -5,13 +5,13 @@ the visible body, λ apart. The two others touch the body, and meet η before th
 
     η = λ δ (1 + ξ) / (λ - 2 δ - λ ξ),  ξ = -0.6
 
-so that the first δ behind the near side, the focus, has 80 % of the map [Martin & Tan 2004,
-sections 5 and 6]. The matrix N_T of the trapezoid [Ergun 2008, 2.2.2.4] is the perspective
-`LineOfSight.warp`. It is the focused map where the near end is above the far one, as if one looks
-along the light.
+so that the first δ behind the near side, the focus, gets 80 % of the map [Martin & Tan 2004,
+sections 5 and 6]. The matrix N_T of the trapezoid [Ergun 2008, 2.2.2.4] is the perspective that
+`LineOfSight.make_warped_projection` makes. The projection is the focused one where the near end is
+above the far one, as when the eye looks along the light.
 
-Good where the focus is known. Depth is divided by the width of the trapezoid, and coarse at its far
-end; where the map becomes the focused one shadows change at once.
+It is good where the focus is known. Depth is divided by the width of the trapezoid, and coarse at
+its far end. Where the projection changes to the focused one, shadows change at once.
 """
 
 from brdfkit.mitsuba_bridge.properties.declarations import declare_float
@@ -20,7 +20,7 @@ from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import focused
 
-XI = -0.6  # where the focus ends on the map, from 1 at its near side to -1 at its far side
+XI = -0.6  # the focus ends here on the map, which runs from 1 at its near side to -1 at its far one
 SETTINGS = {
     "focus": declare_float(
         0.3, (0.01, 0.79), "of trapezoidal: the share of what is seen that has 80 % of a map"
@@ -29,9 +29,9 @@ SETTINGS = {
 
 
 def make_projection(placement: Placement, focus: float) -> Projection:
-    """Make the projection, or the focused one without a line of sight."""
+    """Make the projection; the focused one if there is no line of sight on the map."""
     sight = find_line_of_sight(placement)
-    if sight is None or sight.ends[0] < 0:
+    if sight is None or sight.y_range[0] < 0:
         return focused.make_projection(placement)
-    near, far = sight.ends
-    return sight.warp((far - near) * focus * (1 + XI) / (1 - 2 * focus - XI))
+    near, far = sight.y_range
+    return sight.make_warped_projection((far - near) * focus * (1 + XI) / (1 - 2 * focus - XI))

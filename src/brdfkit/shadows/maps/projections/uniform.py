@@ -3,11 +3,11 @@
 Points far from the light but near the eye get few texels.
 """
 
-from brdfkit.shadows.maps.light_camera import enclose_body
+from brdfkit.shadows.maps.light_camera import make_enclosing_projection
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 
 
 def make_projection(placement: Placement) -> Projection:
     """Make the projection that encloses the whole scene."""
-    return enclose_body(placement.light, placement.scene)
+    return make_enclosing_projection(placement.light, placement.scene)

@@ -1,4 +1,4 @@
-"""Scenes on which shadow techniques are compared, made anew from seeds; each file is a scene.
+"""Scenes on which shadow techniques are compared, made from fixed random seeds; one file each.
 
 A file NAME.py has the function `NAME(view="V1", light=1, size=(512, 512))`, which returns the
 scene's dictionary for `mitsuba.load_dict`. There are four views, V1 to V4, and two suns that are
@@ -18,10 +18,10 @@ SCENES: dict[str, Callable[..., dict[str, Any]]] = {
 }
 
 
-def scene_in_all_views(name: str, size: tuple[int, int] = (512, 512)) -> dict[str, Any]:
-    """Return the scene of a `name` with all its cameras, V1 to V4, and both suns, sun_1 and sun_2.
+def make_scene_in_all_views(name: str, size: tuple[int, int] = (512, 512)) -> dict[str, Any]:
+    """Return the named scene's dictionary with all cameras, V1 to V4, and suns, sun_1 and sun_2.
 
-    >>> sorted(scene_in_all_views("street"))[:4]
+    >>> sorted(make_scene_in_all_views("street"))[:4]
     ['V1', 'V2', 'V3', 'V4']
     """
     build = SCENES[name]
@@ -32,4 +32,4 @@ def scene_in_all_views(name: str, size: tuple[int, int] = (512, 512)) -> dict[st
     return scene | cameras | suns
 
 
-__all__ = ["LIGHTS", "SCENES", "VIEWS", "scene_in_all_views"]
+__all__ = ["LIGHTS", "SCENES", "VIEWS", "make_scene_in_all_views"]

@@ -1,7 +1,7 @@
 """The common parts of the scenes: their views, two suns, the camera, and shapes to build with.
 
 The views are named as in [Ergun 2008, 4.2], by their angle to the light. Light comes down nearly
-along y, from where the azimuth of a view is counted.
+along y. The azimuth of a view is counted from the y axis.
 """
 
 from collections.abc import Callable, Iterable
@@ -34,11 +34,13 @@ def make_stage(
     down: float,
     fov: float,
 ) -> dict[str, Any]:
-    """Return the camera and the sun of a scene, as a dictionary.
+    """Return the dictionary of a scene with its camera and its sun, but without shapes.
 
-    eye : function from the azimuth [radians] to the camera's place (3,).
-    down : the angle by which it looks down [degrees].
-    fov : its field of view [degrees].
+    view, light : keys of `VIEWS` and `LIGHTS`.
+    size : width and height of the picture [pixels].
+    place_eye : function from the azimuth of the view [radians] to the camera's place (3,).
+    down : angle by which the camera looks down [degrees].
+    fov : field of view of the camera [degrees].
     """
     import mitsuba as mi
 
@@ -70,41 +72,45 @@ def unit_vector(azimuth: float, elevation: float) -> FloatArray:
     return np.array([level * np.sin(azimuth), level * np.cos(azimuth), np.sin(elevation)])
 
 
-def matte(colour: Colour) -> dict[str, Any]:
-    """Return a diffuse material that is visible from both sides."""
+def make_matte(colour: Colour) -> dict[str, Any]:
+    """Return the dictionary of a diffuse material that is visible from both sides."""
     reflectance = {"type": "rgb", "value": list(colour)}
     return {"type": "twosided", "material": {"type": "diffuse", "reflectance": reflectance}}
 
 
-def box(centre: Place, size: Place, colour: Colour, turn: float = 0) -> Shape:
-    """Return a cuboid that stands on its `centre` and is turned by `turn` [degrees]."""
+def make_box(centre: Place, size: Place, colour: Colour, turn: float = 0) -> Shape:
+    """Return the dictionary of an upright cuboid.
+
+    centre : the centre of its bottom.
+    turn : angle by which it is turned about the vertical [degrees].
+    """
     import mitsuba as mi
 
     (x, y, z), half = centre, [float(side) / 2 for side in size]
     place = mi.ScalarTransform4f().translate([x, y, z + half[2]]).rotate([0, 0, 1], turn)
-    return {"type": "cube", "to_world": place.scale(half), "bsdf": matte(colour)}
+    return {"type": "cube", "to_world": place.scale(half), "bsdf": make_matte(colour)}
 
 
-def pole(foot: Place, height: float, radius: float, colour: Colour) -> Shape:
-    """Return an upright cylinder."""
+def make_pole(foot: Place, height: float, radius: float, colour: Colour) -> Shape:
+    """Return the dictionary of an upright cylinder that stands on `foot`."""
     x, y, z = foot
     ends = {"p0": [x, y, z], "p1": [x, y, z + height]}
-    return {"type": "cylinder", **ends, "radius": radius, "bsdf": matte(colour)}
+    return {"type": "cylinder", **ends, "radius": radius, "bsdf": make_matte(colour)}
 
 
-def ball(centre: Place, radius: float, colour: Colour) -> Shape:
-    """Return a sphere."""
-    return {"type": "sphere", "center": list(centre), "radius": radius, "bsdf": matte(colour)}
+def make_ball(centre: Place, radius: float, colour: Colour) -> Shape:
+    """Return the dictionary of a sphere."""
+    return {"type": "sphere", "center": list(centre), "radius": radius, "bsdf": make_matte(colour)}
 
 
-def ground(half: float, colour: Colour) -> Shape:
-    """Return a square in the plane z = 0, from -half to half."""
+def make_ground(half: float, colour: Colour) -> Shape:
+    """Return the dictionary of a square in the plane z = 0, from -half to half."""
     import mitsuba as mi
 
     to_world = mi.ScalarTransform4f().scale([half, half, 1])
-    return {"type": "rectangle", "to_world": to_world, "bsdf": matte(colour)}
+    return {"type": "rectangle", "to_world": to_world, "bsdf": make_matte(colour)}
 
 
-def number_shapes(name: str, shapes: Iterable[Shape]) -> dict[str, Shape]:
-    """Return shapes by numbered names, for the dictionary of a scene."""
+def name_shapes_by_number(name: str, shapes: Iterable[Shape]) -> dict[str, Shape]:
+    """Return the shapes as entries NAME_0, NAME_1 ... for the dictionary of a scene."""
     return {f"{name}_{i}": shape for i, shape in enumerate(shapes)}

@@ -1,11 +1,17 @@
-"""Trees of many small leaves over a meadow, whose shadows consist of borders."""
+"""Trees of many small leaves over a meadow, whose shadows consist almost only of borders."""
 
 from typing import Any
 
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, MitsubaObject
-from brdfkit.shadows.maps.scenes._stage import ground, make_stage, matte, number_shapes, pole
+from brdfkit.shadows.maps.scenes._stage import (
+    make_ground,
+    make_matte,
+    make_pole,
+    make_stage,
+    name_shapes_by_number,
+)
 
 LEAVES = 3000  # on a tree
 TREES = [(0, 0), (3.6, 1.2), (-3.2, 2.4), (1.2, -3.8), (-2.8, -2.6), (4.4, -3.2), (-0.6, 4.6)]
@@ -23,23 +29,23 @@ def foliage(view: str = "V1", light: int = 1, size: tuple[int, int] = (512, 512)
     for x, y in TREES:
         tall = random.uniform(1.4, 2.2)
         leaves.append(make_crown(random, [x, y, tall + 0.9], [1.35, 1.35, 1.1]))
-        stems.append(pole([float(x), float(y), 0], tall + 0.8, 0.11, (0.3, 0.2, 0.13)))
+        stems.append(make_pole([float(x), float(y), 0], tall + 0.8, 0.11, (0.3, 0.2, 0.13)))
     blades = make_grass(random)
 
-    def eye(azimuth: float) -> tuple[float, float, float]:
+    def place_eye(azimuth: float) -> tuple[float, float, float]:
         return -10.5 * np.sin(azimuth), -10.5 * np.cos(azimuth), 4.4
 
     return (
-        make_stage(view, light, size, eye, down=17, fov=46)
-        | {"meadow": ground(10, (0.4, 0.42, 0.22))}
+        make_stage(view, light, size, place_eye, down=17, fov=46)
+        | {"meadow": make_ground(10, (0.4, 0.42, 0.22))}
         | {"leaves": make_mesh(np.concatenate(leaves), (0.24, 0.4, 0.1))}
         | {"grass": make_mesh(blades, (0.36, 0.44, 0.14))}
-        | number_shapes("stem", stems)
+        | name_shapes_by_number("stem", stems)
     )
 
 
 def make_crown(random: np.random.Generator, centre: list[float], radii: list[float]) -> FloatArray:
-    """Return the leaves of a crown, near the surface of an ellipsoid, as triangles (2 n, 3, 3)."""
+    """Return random leaves near the surface of an ellipsoid, a crown, as triangles (2 n, 3, 3)."""
     outwards = random.normal(size=(LEAVES, 3))
     outwards /= np.linalg.norm(outwards, axis=1, keepdims=True)
     middles = np.array(centre) + radii * outwards * random.uniform(0.55, 1, (LEAVES, 1)) ** 0.5
@@ -51,7 +57,7 @@ def make_crown(random: np.random.Generator, centre: list[float], radii: list[flo
 
 
 def make_grass(random: np.random.Generator, blades: int = 6000) -> FloatArray:
-    """Return the blades of a meadow as triangles (n, 3, 3)."""
+    """Return the random blades of a meadow as triangles (n, 3, 3)."""
     feet = np.column_stack([random.uniform(-8, 8, (blades, 2)), np.zeros(blades)])
     aside = np.column_stack([0.03 * random.normal(size=(blades, 2)), np.zeros(blades)])
     tips = feet + np.column_stack(
@@ -65,7 +71,7 @@ def make_mesh(corners: FloatArray, colour: tuple[float, float, float]) -> Mitsub
     import mitsuba as mi
 
     properties = mi.Properties()
-    properties["bsdf"] = mi.load_dict(matte(colour), parallel=False)
+    properties["bsdf"] = mi.load_dict(make_matte(colour), parallel=False)
     mesh = mi.Mesh("triangles", 3 * len(corners), len(corners), properties)
     buffers = mi.traverse(mesh)
     buffers["vertex_positions"] = np.ravel(corners).astype(np.float32)

@@ -6,13 +6,13 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray, MitsubaObject
 from brdfkit.shadows.maps.scenes._stage import (
-    ball,
-    box,
-    ground,
+    make_ball,
+    make_box,
+    make_ground,
+    make_matte,
+    make_pole,
     make_stage,
-    matte,
-    number_shapes,
-    pole,
+    name_shapes_by_number,
 )
 
 COLOURS = np.array(
@@ -35,13 +35,13 @@ def objects_on_a_ground(
         for i, place in enumerate(np.array(places, float))
     ]
 
-    def eye(azimuth: float) -> tuple[float, float, float]:
+    def place_eye(azimuth: float) -> tuple[float, float, float]:
         return -9 * np.sin(azimuth), -9 * np.cos(azimuth), 5.2
 
     return (
-        make_stage(view, light, size, eye, down=28, fov=48)
-        | {"floor": ground(9, (0.62, 0.6, 0.56))}
-        | number_shapes("brick", [thing for things in bricks for thing in things])
+        make_stage(view, light, size, place_eye, down=28, fov=48)
+        | {"floor": make_ground(9, (0.62, 0.6, 0.56))}
+        | name_shapes_by_number("brick", [thing for things in bricks for thing in things])
     )
 
 
@@ -52,20 +52,29 @@ def make_bricks(
     x, y = place.tolist()
     kind, large, turn = random.integers(4), random.uniform(0.3, 0.6), random.uniform(0, 90)
     if kind == 0:
-        return [ball([x, y, large], large, colour)]
+        return [make_ball([x, y, large], large, colour)]
     if kind == 1:
-        return [box([x, y, 0], [2 * large, large, large], colour, turn)]
+        return [make_box([x, y, 0], [2 * large, large, large], colour, turn)]
     if kind == 2:
         top = 4 * large
-        cap = {"type": "disk", "bsdf": matte(colour), "to_world": _lid([x, y, top], large / 2)}
-        return [pole([x, y, 0], top, large / 2, colour), cap]
+        cap = {
+            "type": "disk",
+            "bsdf": make_matte(colour),
+            "to_world": _place_lid([x, y, top], large / 2),
+        }
+        return [make_pole([x, y, 0], top, large / 2, colour), cap]
     feet = [x - large, x + large]
-    beam = box([x, y, 3 * large], [2.6 * large, 0.4 * large, 0.4 * large], colour)
-    return [box([f, y, 0], [0.4 * large, 0.4 * large, 3 * large], colour) for f in feet] + [beam]
+    beam = make_box([x, y, 3 * large], [2.6 * large, 0.4 * large, 0.4 * large], colour)
+    return [make_box([f, y, 0], [0.4 * large, 0.4 * large, 3 * large], colour) for f in feet] + [
+        beam
+    ]
 
 
-def _lid(centre: list[float], radius: float) -> MitsubaObject:
-    """Return the transform of a disk on top of a column."""
+def _place_lid(centre: list[float], radius: float) -> MitsubaObject:
+    """Return the transform of a disk that closes the top of a column.
+
+    centre, radius : centre and radius of the column's top.
+    """
     import mitsuba as mi
 
     return mi.ScalarTransform4f().translate(centre).scale([radius, radius, 1])

@@ -8,11 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.shadows.maps.scenes._stage import ball, box, ground, make_stage, number_shapes, pole
+from brdfkit.shadows.maps.scenes._stage import (
+    make_ball,
+    make_box,
+    make_ground,
+    make_pole,
+    make_stage,
+    name_shapes_by_number,
+)
 
-LENGTH = 200.0  # of a street, each way [m]
-WIDTH = 16.0  # between houses [m]
-HOUSE = 14.0  # along the street [m]
+LENGTH = 200.0  # of a street, from the crossing to its end [m]
+WIDTH = 16.0  # of a street, from house to house [m]
+HOUSE = 14.0  # width and depth of a house's plot [m]
 WALLS = [(0.74, 0.66, 0.54), (0.7, 0.46, 0.34), (0.78, 0.74, 0.68), (0.6, 0.5, 0.42)]
 DARK, GREEN = (0.12, 0.12, 0.13), (0.2, 0.34, 0.13)
 
@@ -28,51 +35,56 @@ def street(view: str = "V1", light: int = 1, size: tuple[int, int] = (512, 512))
     things = [thing for side in sides for thing in build_side(random, *side)]
     return (
         make_stage(view, light, size, lambda azimuth: (0.5, -0.5, 1.7), down=0.5, fov=60)
-        | {"ground": ground(LENGTH + 20, (0.32, 0.32, 0.33))}
-        | number_shapes("thing", things)
+        | {"ground": make_ground(LENGTH + 20, (0.32, 0.32, 0.33))}
+        | name_shapes_by_number("thing", things)
     )
 
 
 def build_side(
     random: np.random.Generator, along: int, way: int, side: int
 ) -> list[dict[str, Any]]:
-    """Return the houses, trees, lamps and cars on one side of one arm of the streets.
+    """Return the houses, trees, lamps and cars along one side of a street that leaves the crossing.
 
-    along : the axis of the street, 0 or 1.
-    way, side : the direction of the arm and the side of it, -1 or 1.
+    along : axis of the street, 0 or 1.
+    way : direction from the crossing along the axis, -1 or 1.
+    side : side of the street, -1 or 1.
     """
 
-    def at(distance: float, aside: float, height: float = 0.0) -> list[float]:
+    def locate(distance: float, aside: float, height: float = 0.0) -> list[float]:
         across = side * aside
         x, y = (way * distance, across) if along == 0 else (across, way * distance)
         return [x, y, height]
 
-    def sized(length: float, width: float, height: float) -> list[float]:
+    def orient(length: float, width: float, height: float) -> list[float]:
         return [length, width, height] if along == 0 else [width, length, height]
 
     kerb = (LENGTH - WIDTH / 2, WIDTH / 2 - 6)
-    things = [box(at((LENGTH + WIDTH / 2) / 2, 7), sized(*kerb, 0.15), (0.55, 0.54, 0.52))]
+    things = [
+        make_box(locate((LENGTH + WIDTH / 2) / 2, 7), orient(*kerb, 0.15), (0.55, 0.54, 0.52))
+    ]
     for i, distance in enumerate(np.arange(WIDTH / 2 + HOUSE / 2, LENGTH, HOUSE)):
         tall, wall = random.uniform(6, 15), WALLS[random.integers(len(WALLS))]
         middle = WIDTH / 2 + HOUSE / 2
         things += [
-            box(at(distance, middle), sized(HOUSE - 0.6, HOUSE, tall), wall),
-            box(at(distance, middle, tall), sized(HOUSE, HOUSE + 0.8, 0.4), (0.35, 0.2, 0.16)),
-            pole(at(distance + 4, 5.5), 5.5, 0.07, DARK),
-            box(at(distance + 4, 4.9, 5.5), sized(0.2, 1.4, 0.12), DARK),
+            make_box(locate(distance, middle), orient(HOUSE - 0.6, HOUSE, tall), wall),
+            make_box(
+                locate(distance, middle, tall), orient(HOUSE, HOUSE + 0.8, 0.4), (0.35, 0.2, 0.16)
+            ),
+            make_pole(locate(distance + 4, 5.5), 5.5, 0.07, DARK),
+            make_box(locate(distance + 4, 4.9, 5.5), orient(0.2, 1.4, 0.12), DARK),
         ]
         if side > 0:
-            things.append(box(at(distance, 0), sized(3, 0.18, 0.02), (0.8, 0.8, 0.78)))
+            things.append(make_box(locate(distance, 0), orient(3, 0.18, 0.02), (0.8, 0.8, 0.78)))
         if random.random() < 0.75:
             tree = random.uniform(1.3, 1.9)
             things += [
-                pole(at(distance - 3, 5.5), 3, 0.15, (0.25, 0.18, 0.12)),
-                ball(at(distance - 3, 5.5, 3 + 0.7 * tree), tree, GREEN),
+                make_pole(locate(distance - 3, 5.5), 3, 0.15, (0.25, 0.18, 0.12)),
+                make_ball(locate(distance - 3, 5.5, 3 + 0.7 * tree), tree, GREEN),
             ]
         if i % 2 == 0:
             paint = random.uniform(0.1, 0.7, 3)
             things += [
-                box(at(distance, 3.2, 0.25), sized(4.2, 1.7, 0.6), paint),
-                box(at(distance, 3.2, 0.85), sized(2.2, 1.5, 0.55), DARK),
+                make_box(locate(distance, 3.2, 0.25), orient(4.2, 1.7, 0.6), paint),
+                make_box(locate(distance, 3.2, 0.85), orient(2.2, 1.5, 0.55), DARK),
             ]
     return things
