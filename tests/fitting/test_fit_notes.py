@@ -287,7 +287,11 @@ NOTES = {  # the files that make notes, and in which of their functions or names
         "_describe_incidence",
         "_describe_zeros",
     ),
-    "regression/certainty.py": ("_describe_open", "_describe_trade", "_describe_trades"),
+    "regression/certainty_notes.py": (
+        "describe_undetermined",
+        "_describe_trade",
+        "describe_trades",
+    ),
     "regression/measurement_noise.py": ("regress_with_noise",),
     "regression/robust/search.py": ("note",),
     "regression/solvers/constraints.py": ("notes",),

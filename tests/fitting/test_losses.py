@@ -72,7 +72,7 @@ def test_a_loss_of_ones_own_is_as_good():
         (lambda m, r, ci, co: dr.detach(m) - r, "or has no derivative by it"),
         (
             bk.losses.Loss("log", "taken", lambda m, r, ci, co: m - r),
-            "a name that brdfkit.losses.named lacks",
+            "a text as name that is not in brdfkit.losses.named",
         ),
         (
             bk.losses.Loss("few", "", lambda m, r, ci, co: m - r, weights=lambda c: c[:2]),

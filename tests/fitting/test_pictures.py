@@ -210,7 +210,7 @@ def test_a_fit_says_what_it_saw(tmp_path):
     bk.save(found, tmp_path / "fit.json")
     assert bk.load(tmp_path / "fit.json") == found
     assert "picture" not in bk.compare(data, found).errors["lambert"]
-    with pytest.raises(BrdfkitError, match="lambert was fitted by pictures"):
+    with pytest.raises(BrdfkitError, match="lambert was fitted by the loss picture"):
         bk.uncertainty.bootstrap(found, data)
 
 
@@ -220,7 +220,7 @@ def test_a_fit_says_what_it_saw(tmp_path):
     [
         ("lambert", {"robust": "huber"}, "robust looks at samples one by one.*leave robust out"),
         ("lambert", {"weights": np.ones(500)}, "weights looks at samples one by one"),
-        ("koenderink", {}, "koenderink: may be negative, and is clamped"),
+        ("koenderink", {}, "koenderink: its values may be negative and are then clamped"),
     ],
 )
 def test_what_pictures_cannot_do_is_refused(model, how, words):

@@ -186,5 +186,5 @@ def test_the_bootstrap_of_a_fit_that_keeps_its_light_keeps_it(measured_data):
         low, high = np.reshape(interval, (-1, 2)).T
         assert (low <= found.values[name]).all(), name
         assert (found.values[name] <= high).all(), name
-    with pytest.raises(bk.BrdfkitError, match="searched again for the light of its data"):
+    with pytest.raises(bk.BrdfkitError, match="searched again to have the albedo of its data"):
         bk.uncertainty.profile(found, data, parameter="alpha_u")

@@ -13,10 +13,10 @@ It needs neither files nor Mitsuba. `regression.py` runs the steps of a fit one 
 - `solvers/`: this and other search algorithms as objects for users, and constraints.
 - `robust/`: repeated fits that reduce the weight of outliers.
 
-`certainty.py` estimates standard errors of the parameters, and `certainty_notes.py` describes
-parameters that the data do not determine. `measurement_noise.py` weights samples by their standard
-errors, `refitting.py` repeats a fit from its solution, and `profiling.py` follows the least loss
-while one parameter changes.
+`certainty.py` estimates standard errors of the parameters from `certainty_scores.py`, and
+`certainty_notes.py` describes parameters that the data do not determine. `measurement_noise.py`
+weights samples by their standard errors, `refitting.py` repeats a fit from its solution, and
+`profiling.py` follows the least loss while one parameter changes.
 """
 
 from brdfkit.regression.losses.loss import Loss as Loss

@@ -83,7 +83,7 @@ class TargetAlbedo:
 
     @classmethod
     def from_measured(cls, albedo: Any, anisotropic: bool) -> TargetAlbedo:
-        """Return the albedos to aim at, from the `MeasuredAlbedo` of a material."""
+        """Return the object for the `MeasuredAlbedo` of a material, which may be anisotropic."""
         azimuths = ANISOTROPIC_AZIMUTHS if anisotropic else ISOTROPIC_AZIMUTHS
         pixels = make_albedo_pixels(albedo.theta_i, azimuths)
         target = np.minimum(
@@ -115,10 +115,10 @@ class TargetAlbedo:
             tuple(row.tolist()) if known else None
             for row, known in zip(self.values, self.known, strict=True)
         ]
-        peak = self._find_peak(brdf, angles, np.max(every, axis=2))
+        peak = self._find_largest_albedo(brdf, angles, np.max(every, axis=2))
         return Albedo(self.theta_i, tuple(map(tuple, fit.tolist())), tuple(measured), peak)
 
-    def _find_peak(
+    def _find_largest_albedo(
         self,
         brdf: Callable[[FloatArray, FloatArray], FloatArray],
         angles: tuple[float, ...],
@@ -135,7 +135,7 @@ class TargetAlbedo:
         row = int(np.argmax(peaks.max(axis=0)))
         return angles[row], float(peaks[:, row].max())
 
-    def evaluate(self, brdf: Callable[[FloatArray, FloatArray], FloatArray]) -> FloatArray:
+    def compute_albedos(self, brdf: Callable[[FloatArray, FloatArray], FloatArray]) -> FloatArray:
         """Return the albedos (n, channels) of a model; `brdf(wi, wo)`: its values (n, channels)."""
         return self.pixels.look(brdf)
 
@@ -211,7 +211,7 @@ class Albedo:
                 f"it reflects {text} of the light at {angle:g}°, more than arrives; a "
                 "constraint prevents it: AlbedoAtMost(1), or --albedo-at-most 1"
             )
-        means = zip(self.theta_i, *self.means(), strict=True)
+        means = zip(self.theta_i, *self.average_channels(), strict=True)
         angle, fit, measured = max(means, key=lambda row: factor_between(row[1], min(row[2], 1.0)))
         if factor_between(fit, min(measured, 1.0)) > WRONG_FACTOR:
             sentences.append(
@@ -220,7 +220,7 @@ class Albedo:
             )
         return sentences
 
-    def means(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    def average_channels(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return the albedos of the fit and of its data at each angle, averaged over the channels.
 
         An albedo of the data is NaN where the samples do not determine it.

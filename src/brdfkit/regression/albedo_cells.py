@@ -25,7 +25,7 @@ def average_albedos(albedo: Albedo | None) -> tuple[tuple[float, ...], tuple[flo
     """
     if albedo is None:
         return UNKNOWN, UNKNOWN
-    fit, measured = (means[:ANGLES_SHOWN] for means in albedo.means())
+    fit, measured = (means[:ANGLES_SHOWN] for means in albedo.average_channels())
     return fit, measured
 
 

@@ -1,10 +1,10 @@
-"""Fits with the standard errors of a measurement, in which noisy samples count less.
+"""Fits a model to a measurement with known standard errors, so that noisy samples count less.
 
-A model differs from a measured value for two reasons: noise, with the standard error σ that the
-measurement states, and the model's own error τ, which is assumed equal for all samples. Both are in
-units of the loss's differences. The best weight of a sample is then 1 / (τ² + σ²)
-[DerSimonian & Laird 1986]: all samples count alike where the noise is smaller than the model's
-error, and by 1 / σ² where it is larger.
+A model differs from a measured value for two reasons: noise, whose standard error σ the measurement
+states, and the model's own error τ, which is assumed to be equal for all samples. Both are in units
+of the loss's differences. The best weight of a sample is then 1 / (τ² + σ²) [DerSimonian & Laird
+1986]. Where the noise is smaller than the model's error, all samples have nearly equal weights;
+where it is larger, weights are nearly 1 / σ².
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.array_types import FloatArray, JitFloat
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.jit import double_precision
 from brdfkit.core.jit.double_precision import differentiate
 from brdfkit.model import Model
@@ -22,18 +22,19 @@ from brdfkit.model.samples import Samples
 from brdfkit.regression.losses.loss import Loss
 from brdfkit.regression.regression import Solution, regress
 
-# The smallest τ², as a share of the mean σ², because a σ of 0 cannot be trusted
+# τ² is at least this share of the mean σ², so that samples whose stated σ is 0 do not rule the fit
 SMALLEST_MODEL_ERROR = 0.01
-# The start of the note on such a fit, by which it can be recognised
+# The note on a fit with such weights starts so, by which `Fit` recognises it
 BY_ERRORS = "samples count by their standard errors"
-# Weights within this share of each other are equal
+# If all weights differ by less than this share, the fit with equal weights is good enough
 EQUAL_WEIGHTS = 0.05
 
 
 def regress_with_noise(model: type[Model], samples: Samples, loss: Any, **how: Any) -> Solution:
-    """Return the `Solution` of `regress`, with `Samples` weighted by their standard errors.
+    """Return the `Solution` of `regress` with samples weighted by their standard errors.
 
-    `how`: the other arguments of `regress`.
+    A first fit, with equal weights, shows how large the model's own error is. `how`: the other
+    arguments of `regress`.
     """
     solution = regress(model, samples, loss, **how)
     shares = compute_noise_weights(samples, loss, solution.eval(model, samples), solution.loss)
@@ -48,9 +49,10 @@ def regress_with_noise(model: type[Model], samples: Samples, loss: Any, **how: A
 def compute_noise_weights(
     samples: Samples, loss: Loss, values: FloatArray, error: float
 ) -> FloatArray:
-    """Return the weights τ² / (τ² + σ²) of the samples (n,).
+    """Return the weights τ² / (τ² + σ²) of the samples (n,), smaller for noisier samples.
 
-    `values` (n, channels): the model's, from a first fit; `error`: E, the loss of this fit.
+    σ is the standard error of a sample, and τ the model's own error, both in units of the loss.
+    `values` (n, channels): BRDF of the model after a first fit; `error`: loss E of this fit.
     """
     errors: Any = samples.errors
     variances = [
@@ -59,7 +61,7 @@ def compute_noise_weights(
     ]
     variance = sum(variances, np.zeros(len(values)))
     mean = loss.importance(samples) @ variance
-    # In the units of E², which is a mean over the channels
+    # E² is a mean over the channels, so the variance of a sample has to be one, too
     variance /= values.shape[1] if loss.channel_mean else 1
     tau2 = max(error**2 - mean, SMALLEST_MODEL_ERROR * mean)
     return tau2 / (tau2 + variance) if tau2 else np.ones(len(values))
@@ -68,14 +70,19 @@ def compute_noise_weights(
 def _compute_variances(
     samples: Samples, loss: Loss, model: FloatArray, measured: FloatArray, sigma: FloatArray
 ) -> FloatArray:
-    """Return the variances (n,) of a channel's differences, at the values `model` (n,)."""
+    """Return the variances (n,) that noise causes in the loss's differences, in one channel.
+
+    `model`, `measured` (n,): values of the BRDF; `sigma` (n,): standard errors of the measured
+    ones.
+    """
     cos_i, cos_o = (double_precision.to_array(w[:, 2]) for w in (samples.wi, samples.wo))
     measured = double_precision.to_array(measured)
 
-    def difference(value: JitFloat) -> JitFloat:
-        return loss.difference(value, measured, cos_i, cos_o)
-
-    _, slope = differentiate(difference, double_precision.to_array(model))
-    # A σ of 0 means that no spread was seen, as without rays; the smallest other σ replaces it
+    _, slope = differentiate(
+        lambda value: loss.difference(value, measured, cos_i, cos_o),
+        double_precision.to_array(model),
+    )
+    # A σ of 0 only means that the few repeated measurements agreed; the smallest other σ replaces
+    # it
     known = sigma[sigma > 0]
     return (np.array(slope) * np.maximum(sigma, known.min() if len(known) else 0)) ** 2

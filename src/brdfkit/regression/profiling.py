@@ -1,4 +1,8 @@
-"""Profiles the loss of a fit over one parameter, with all others fitted again at each value."""
+"""Computes the profile of a fit's loss over one parameter, for confidence limits.
+
+The profile is the least loss at each value of the parameter, with all other parameters fitted again
+at this value.
+"""
 
 from collections.abc import Iterable
 
@@ -6,20 +10,21 @@ import numpy as np
 
 from brdfkit.regression.refitting import Refit
 
-# A profile reaches this number of standard errors, or twice as far, up to so many times, if it does
-# not come to the level
+# A profile first extends to this number of standard errors. If the loss does not reach the level of
+# the confidence limit there, the range is doubled, up to this many times
 REACH, WIDENINGS = 3.0, 6
-# Within this number of standard errors the least E² is nearly a parabola
+# Within this number of standard errors of the fit, the least squared loss is nearly a parabola
 PARABOLA_STEP = 0.3
 
 
 def follow_profile(
     refit: Refit, parameter: str, middle: float, bound: float, level: float, points: int
 ) -> tuple[float, list[tuple[float, float]]]:
-    """Follow the least loss from the value `middle` of a parameter towards a `bound`.
+    """Follow the least loss from the fitted value of a parameter to one of its confidence limits.
 
-    Return the value at which the loss crosses the `level`, or the last value, and the pairs (value,
-    loss) on the way. `refit`: the `Refit` of the fit; `points`: how many values are tried at once.
+    Return the limit, the value at which the loss reaches the `level`, or the last value tried, and
+    the pairs (value, loss) on the way. `refit`: the `Refit` of the fit; `middle`: the fitted value;
+    `bound`: the bound of the parameter towards which to go; `points`: number of values per range.
     """
     error, width = refit.fit.standard_errors[parameter], abs(bound - middle)
     if width == 0:
@@ -33,7 +38,7 @@ def follow_profile(
             break
         reach = min(2 * reach, width)
     values, losses = np.array([(middle, refit.fit.loss), *path]).T
-    # The root of E² - E²_min is nearly linear in the parameter
+    # E² is nearly a parabola, so the root of E² - E²_min is interpolated, which is nearly linear
     height = np.sqrt(np.maximum(losses**2 - losses[0] ** 2, 0))
     wanted = np.sqrt(level**2 - losses[0] ** 2)
     above = np.flatnonzero(height > wanted)
@@ -45,9 +50,11 @@ def follow_profile(
 
 
 def profile_curvature(refit: Refit, parameter: str, low: float, high: float) -> float | None:
-    """Return the rise of the least E² over the square of a parameter's step, near the fit.
+    """Return the curvature of the profile at the fitted value of a parameter.
 
-    None stands for a parameter without a standard error. `low`, `high`: its bounds.
+    The curvature is the rise of the least squared loss over the square of a small step; it shows
+    whether the standard error of the fit is right. It is None for a parameter without a standard
+    error. `low`, `high`: bounds of the parameter.
     """
     middle, error = refit.fit.values[parameter], refit.fit.standard_errors[parameter]
     if not error > 0:
@@ -63,7 +70,10 @@ def profile_curvature(refit: Refit, parameter: str, low: float, high: float) -> 
 
 
 def _refit_path(refit: Refit, parameter: str, values: Iterable[float]) -> list[tuple[float, float]]:
-    """Return pairs (value, least loss) at `values` of a parameter, each fit from the last one."""
+    """Return the pairs (value, least loss) at `values` of a parameter.
+
+    The search at a value starts from the solution at the value before it.
+    """
     shapes, weights, path = refit.fit.values, refit.weights, []
     for value in values:
         problem = refit.make_problem(**{parameter: float(value)})

@@ -1,4 +1,7 @@
-"""Repeats a fit from its end, on other samples or with a parameter fixed."""
+"""Repeats a finished fit from its solution, on other samples or with one parameter fixed.
+
+Bootstraps and profiles use it to find out how certain the parameters are.
+"""
 
 import math
 from collections.abc import Mapping
@@ -23,9 +26,10 @@ from brdfkit.regression.search.multistart import EXACT, LARGEST_STEPS
 
 @dataclass(frozen=True, eq=False)
 class Refit:
-    """A `Fit` and the `Samples` that were fitted, ready to be fitted again.
+    """A finished `Fit` with the `Samples` that it was fitted to, ready for repeated searches.
 
-    `target_albedo`: the `TargetAlbedo` of the data, for a fit that was corrected by it.
+    Raises `BrdfkitError` for a fit that cannot be repeated, because its settings or its samples are
+    not known. `target_albedo`: the `TargetAlbedo` of the data, for a fit that was corrected by it.
     """
 
     fit: Any
@@ -35,18 +39,18 @@ class Refit:
     def __post_init__(self) -> None:
         if self.fit.loss_name == "rendered":
             raise BrdfkitError(
-                f"{self.fit.name} was found by refine, from pictures of a scene and not from "
-                "samples; fit it to a measured material first."
+                f"{self.fit.name} was found by refine, from pictures of a scene, not from samples; "
+                "fit the model to a measured material first."
             )
         if self.fit.loss_name not in losses.named:
             raise BrdfkitError(
-                f"{self.fit.name} was fitted by a loss of your own, {self.fit.loss_name}, which a "
-                "fit does not keep; fit by one of brdfkit.losses.named first."
+                f"{self.fit.name} was fitted by a loss of your own, {self.fit.loss_name}, whose "
+                "formula the fit does not contain; fit by one of brdfkit.losses.named first."
             )
         if isinstance(to_loss(self.fit.loss_name), Picture):
             raise BrdfkitError(
-                f"{self.fit.name} was fitted by pictures, whose pixels show the same samples; fit "
-                "by another loss first."
+                f"{self.fit.name} was fitted by the loss picture, whose pixels are not independent "
+                "samples; fit by another loss first."
             )
         if self.samples.errors is not None:
             raise BrdfkitError(
@@ -63,33 +67,33 @@ class Refit:
         loss = math.sqrt(problem.compute_sums(u, self.weights, curvature=False).error[0])
         if not math.isclose(loss, self.fit.loss, rel_tol=1e-6, abs_tol=1e-9):
             raise BrdfkitError(
-                f"{self.fit.name}: its loss is {loss:.6g} here, {self.fit.loss:.6g} in the fit; "
-                "give the material that was fitted, and fit it without weights of your own."
+                f"{self.fit.name}: the loss on this material is {loss:.6g}, but "
+                f"{self.fit.loss:.6g} in the fit; give the material that was fitted, and fit it "
+                "without weights of your own."
             )
 
     @property
     def weights(self) -> FloatArray:
-        """The weights (1, channels, lobes) of the fit."""
+        """The weights of the fitted model's lobes, (1, channels, lobes)."""
         channels = self.samples.values.shape[1]
         matrix = to_weight_matrix(self.fit.model)
         return np.broadcast_to(matrix, (len(matrix), channels)).T[None].copy()
 
     @property
     def has_corrected_albedo(self) -> bool:
-        """Whether the fit was searched again for the light of its data."""
+        """Whether a second search corrected the albedo of the fit."""
         return any(note.startswith(NOTE) for note in self.fit.notes)
 
     def require_least_loss(self) -> None:
-        """Raise `BrdfkitError` if the fit does not minimise its loss alone."""
+        """Raise `BrdfkitError` if the fit minimises its loss and a term for the albedo together."""
         if self.has_corrected_albedo:
             raise BrdfkitError(
-                f"{self.fit.name} was searched again for the light of its data, and is not the "
-                "least of its loss alone, as is needed here; "
-                "brdfkit.uncertainty.bootstrap tells how certain it is."
+                f"{self.fit.name} was searched again to have the albedo of its data, so that its "
+                "loss is not the least one; use brdfkit.uncertainty.bootstrap in place of profiles."
             )
 
     def make_problem(self, **values: float) -> Problem:
-        """Return the `Problem` of the fit, with some shape parameters fixed at `values`."""
+        """Return the `Problem` that the fit solved, with the given shape parameters fixed."""
         model, settings = type(self.fit.model), self.fit.settings
         bounds = {n: v for n, v in settings.get("bounds", {}).items() if n not in values}
         fixed = settings.get("fixed", {}) | values
@@ -104,10 +108,11 @@ class Refit:
         weights: FloatArray,
         rng: Any = None,
     ) -> tuple[dict[str, float], FloatArray, float]:
-        """Search a `problem` from shape parameters `values`, by name, and `weights`.
+        """Search for the solution of a `problem`, by the same steps as the fit, from one start.
 
-        Return (values, weights, E²) at the end. `rng`: a generator, for robust fits and for fits
-        with corrected light.
+        Return the solution (values, weights, E²). `values`: shape parameters of the start by name;
+        `weights` (1, channels, lobes): weights of its lobes; `rng`: a generator for the random
+        choices of robust fits and of fits with a corrected albedo.
         """
         u = problem.space.to_coordinates(values)[None]
         given = problem.expand, u, weights, problem.least
@@ -125,6 +130,6 @@ class Refit:
         return problem.space.to_values(u[0]), weights, error
 
     def to_values(self, shapes: dict[str, Any], weights: FloatArray) -> dict[str, Any]:
-        """Return all values of the model by name, from `shapes` by name and `weights`."""
+        """Return all parameters of the model by name, from `shapes` by name and lobe `weights`."""
         model, wavelengths = type(self.fit.model), self.fit.wavelengths
         return make_model(model, shapes, weights[0], wavelengths).values

@@ -1,4 +1,7 @@
-"""Regresses a model on samples: searches from many starts, then reduces the weight of outliers."""
+"""Regresses a model on samples: searches its parameters, and estimates how certain they are.
+
+After a search from many starts, further steps reduce the weight of outliers or correct the albedo.
+"""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -20,7 +23,6 @@ from brdfkit.regression.certainty import (
     ON_BOUND,
     Certainty,
     compute_certainty,
-    explain_undetermined,
 )
 from brdfkit.regression.problem.folding import fold_problem
 from brdfkit.regression.problem.parameter_space import Space
@@ -39,17 +41,18 @@ from brdfkit.regression.search.multistart import (
 from brdfkit.regression.solvers import SLSQP, LevenbergMarquardt, Objective
 from brdfkit.regression.solvers.constraints import Constraints
 
-# Starts of a search that corrects the light, beside the end of the search before it
+# Number of start points of the search that corrects an albedo, next to the solution before it
 CORRECTION_STARTS = 8
 
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """The result of a regression.
+    """The result of a regression: the parameters of the model, and how they were found.
 
-    `shapes`: the shape parameters by name; `weights`: (channels, lobes); `loss`: E; `evaluations`:
-    how often E was computed; `message`: why the search stopped; `at_bounds`: parameters that ended
-    on a bound; `notes`: sentences on the search; `certainty`: how certain the parameters are.
+    `shapes`: shape parameters by name; `weights`: weights of the lobes (channels, lobes); `loss`:
+    the loss E at the solution; `evaluations`: number of evaluations of E; `message`: the reason why
+    the search stopped; `at_bounds`: names of parameters that ended on a bound; `notes`: sentences
+    on the search; `certainty`: covariance of the parameters.
     """
 
     shapes: dict[str, float]
@@ -62,7 +65,7 @@ class Solution:
     certainty: Certainty
 
     def eval(self, model: type[Model], samples: Samples) -> FloatArray:
-        """Return the values (n, channels) of the solution at `Samples`; `model`: its class."""
+        """Return the fitted BRDF (n, channels) at the directions of samples; `model`: its class."""
         return mix_lobes(model(**self.shapes), self.weights.T, samples.wi, samples.wo)
 
 
@@ -85,19 +88,22 @@ def regress(
     first: Mapping[str, Any] | None = None,
     report: Progress | None = None,
 ) -> Solution:
-    """Fit a model class to valid `Samples` under a `Loss`, and return the `Solution`.
+    """Fit a `model` class to valid `samples` under a `loss`, and return the `Solution`.
 
-    Under the loss `Picture` the model is fitted to `pixels`, too. `robust`: a name in
-    `robust.reweighting.WEIGHTS`; `solver`: a `Solver`, by default as `choose_solver` says;
-    `constraints`: of `solvers`, or a user's functions of the model; `starts`: the number of start
-    points, which are the model's defaults and points spread over the bounds, by default as
-    `default_start_count` says; `bounds`: (low, high) by shape parameter; `fixed`: a value by shape
-    parameter; `anisotropic`: whether the second parameter of an anisotropic model, such as
-    ``alpha_v``, is searched, too; `target_albedo`: the `TargetAlbedo` of the data, to which a fit
-    without `robust` and `constraints` is corrected; `seed`: for the start points, and for parts of
-    many samples; `first`: the shape parameters of the first start point, by default the model's;
-    `report`: called with (done, total). On Ctrl-C `Interrupted` is raised with the best `Solution`
-    so far.
+    `robust`: name of a weight function in `robust.reweighting.WEIGHTS` that reduces outliers.
+    `solver`: a `Solver`, by default the result of `choose_solver`.
+    `constraints`: constraints of `solvers`, or a user's functions of the model.
+    `starts`: number of start points, by default the result of `default_start_count`.
+    `bounds`: (low, high) by shape parameter.
+    `fixed`: a value by shape parameter that is not searched.
+    `anisotropic`: whether to search the second roughness of an anisotropic model, as ``alpha_v``.
+    `pixels`: pixels to which the model is fitted, too, under the loss `Picture`.
+    `target_albedo`: the albedo of the data, to correct a fit without `robust` and `constraints`.
+    `seed`: seed of the start points and of the choice among many samples.
+    `first`: shape parameters of the first start point by name, by default the model's defaults.
+    `report`: a function that is called with the steps done and the number of all steps.
+
+    On Ctrl-C `Interrupted` is raised with the best `Solution` so far.
     """
     bounds, report = bounds or {}, report or (lambda done, total: None)
     space = Space.for_samples(samples, model, bounds, fixed or {}, anisotropic)
@@ -112,11 +118,11 @@ def regress(
     default = space.to_coordinates(first or model().values)
     points = make_start_points(default, starts or default_start_count(len(space.names)), seed)
     evaluations = 0
-    if len(whole.groups) > 1:  # compare the starts on few channels
+    if len(whole.groups) > 1:  # a spectral fit: means of a few bands suffice to choose the starts
         bands = make_part_problems(whole.with_samples(average_to_bands(samples)), rng)
         try:
             ends, _, evaluations = search_from_starts(bands, points, report)
-        except Interrupted:  # nothing is known of a fit to all channels yet
+        except Interrupted:  # there is no solution for all channels yet that could be returned
             raise KeyboardInterrupt from None
         points = ends.u
     limits = Constraints(constraints, whole) if constraints else None
@@ -126,7 +132,7 @@ def regress(
     try:
         end = objective.require_end(solver.minimise(objective))
     except KeyboardInterrupt as stop:
-        # With constraints, the points so far need not meet them
+        # The points evaluated so far may violate the constraints, so none of them is a result
         best = None if limits else objective.best_so_far(getattr(stop, "best", None))
         if best is None:
             raise
@@ -134,8 +140,8 @@ def regress(
     (u, weights), passes = objective.split(end.point[None]), None
     error, message, notes = end.error, end.message, limits.notes(end.point) if limits else ()
     if message != "converged" and error <= ROUNDING * whole.black_squares.sum():
-        message = "converged"  # the model meets the data exactly, and E² is rounding
-    # Reduce the weight of outliers, from the optimum where all samples count alike
+        message = "converged"  # the model meets the data exactly: E² is a rounding error
+    # The robust search starts from the optimum of the plain loss, which weights no outlier less
     if robust and not stopped:
         try:
             u, weights, message, notes, passes = search_robust(
@@ -158,7 +164,7 @@ def regress(
     if pixels is not None:
         certainty = certainty.without_standard_errors(samples.values.size)
     message = (
-        "interrupted: the best so far" if stopped else explain_undetermined(certainty) or message
+        "interrupted: the best so far" if stopped else _explain_undetermined(certainty) or message
     )
     solution = Solution(
         space.to_values(u[0]),
@@ -175,15 +181,31 @@ def regress(
     return solution
 
 
+def _explain_undetermined(certainty: Certainty) -> str | None:
+    """Return the message of a fit whose data do not determine all parameters, otherwise None."""
+    numbers, parameters = certainty.numbers, certainty.parameters
+    if numbers < parameters:
+        return f"underdetermined: the values are some of many that meet the {numbers} numbers"
+    if numbers == parameters:
+        return f"as many numbers as parameters, {numbers}: nothing tells how certain the values are"
+    if certainty.undetermined:
+        return "ended, and not all values are determined"
+    return None
+
+
 def choose_solver(constraints: Iterable[Any]) -> Any:
-    """Return the solver of a fit that names none."""
+    """Return the default solver: `SLSQP` with constraints, `LevenbergMarquardt` without."""
     return SLSQP() if constraints else LevenbergMarquardt()
 
 
 def _find_parameters_at_bounds(
     space: Space, u: FloatArray, model: type[Model], weights: FloatArray
 ) -> tuple[str, ...]:
-    """Return the parameters on a bound: weights of 0 in all channels, then shape parameters."""
+    """Return the names of parameters that ended on a bound.
+
+    First come weights that are 0 in all channels, then shape parameters; `u` (shapes,) and
+    `weights` (channels, lobes): the solution.
+    """
     shapes = [n for n, v in zip(space.names, u, strict=True) if min(v, 1 - v) < ON_BOUND]
     black = [n for n, w in zip(model.weights(), weights.T, strict=True) if (w == 0).all()]
     return (*(n for n in black if model.parameters[n].bounds[0] == 0), *shapes)

@@ -1,4 +1,4 @@
-"""`Fit`, the result of a fit: the model with its values, and how they were found."""
+"""Defines `Fit`, the result of a fit: a model with its fitted values, and how they were found."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ from brdfkit.regression.certainty import Certainty, make_intervals
 from brdfkit.regression.measurement_noise import BY_ERRORS
 
 NAN = float("nan")
-# A fit prints its effective samples below this share of its samples, which is less than a table has
-# under the default loss; it prints the directions without any sample from this share on
+# The printed fit mentions the number of effective samples if it is below this share of the samples;
+# a full table has more under the default loss. It mentions directions without samples from the
+# second share on
 FEW_EFFECTIVE, MANY_UNREPRESENTED = 0.49, 0.01
 
 
@@ -46,11 +47,11 @@ class Fit(Shown):
     samples : int
         Number of samples that were fitted.
     evaluations : int
-        How often the loss was evaluated.
+        Number of evaluations of the loss.
     seconds : float
-        Wall-clock time.
+        Wall-clock time of the fit.
     message : str
-        Why the search stopped.
+        The reason why the search stopped.
     at_bounds : tuple of str
         Parameters that ended on a bound.
     notes : tuple of str
@@ -58,10 +59,10 @@ class Fit(Shown):
     settings : dict
         The other arguments of `fit`.
     certainty : Certainty, optional
-        How certain the parameters are: the ``names`` of parameters that the data determine (weights
-        as ``"diffuse_reflectance[0]"``), their ``covariance``, the degrees of ``freedom`` of each
-        variance, and sentences on what is ``undetermined`` and what ``trades`` off; None in fits
-        saved by earlier versions.
+        The certainty of the parameters: the ``names`` of those that the data determine (weights as
+        ``"diffuse_reflectance[0]"``), their ``covariance``, the degrees of ``freedom`` of each
+        variance, and sentences on parameters that are ``undetermined`` or ``trades`` between
+        parameters that the data hardly distinguish; None in fits saved by earlier versions.
     albedo : Albedo, optional
         The albedos of the fit at 5°, 45°, 75° and 85°, and of its data where they determine them:
         ``theta_i`` [degrees], and ``fit`` and ``measured`` at each angle, by channel.
@@ -107,7 +108,7 @@ class Fit(Shown):
 
     @property
     def name(self) -> str:
-        """The name of the fit in pictures and tables."""
+        """The name of the fit in pictures and tables, which is the name of its model."""
         return self.model.name
 
     @property
@@ -122,17 +123,17 @@ class Fit(Shown):
 
     @property
     def rgb(self) -> Model:
-        """The model in linear sRGB: `Model.rgb`."""
+        """The fitted model in linear sRGB, which a spectral fit is converted to."""
         return self.model.rgb
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """The notes on what is wrong with the albedos of the fit."""
+        """Sentences on albedos of the fit that are above 1 or far from those of the data."""
         return tuple(self.albedo.warnings()) if self.albedo else ()
 
     @property
     def standard_errors(self) -> dict[str, float | tuple[float, ...]]:
-        """The standard errors of `values`; NaN for parameters fixed, on a bound or undetermined."""
+        """The standard errors of `values`; NaN if fixed, on a bound or undetermined."""
         return self._arrange_like_values(
             self.certainty.compute_standard_errors() if self.certainty else {}
         )
@@ -147,22 +148,22 @@ class Fit(Shown):
 
     @property
     def covariance(self) -> NDArray[np.float64]:
-        """The covariance (n, n) of ``certainty.names``."""
+        """The covariance (n, n) of the n parameters in ``certainty.names``."""
         return self.certainty.make_covariance_matrix() if self.certainty else np.zeros((0, 0))
 
     @property
     def correlation(self) -> NDArray[np.float64]:
-        """The correlation (n, n) of ``certainty.names``."""
+        """The correlation (n, n) between the n parameters in ``certainty.names``."""
         return self.certainty.compute_correlation() if self.certainty else np.zeros((0, 0))
 
     @property
     def degrees_of_freedom(self) -> int | None:
-        """The number of measured numbers less the number of searched parameters."""
+        """The number of measured values less the number of searched parameters."""
         return self.certainty.numbers - self.certainty.parameters if self.certainty else None
 
     @property
     def aic(self) -> float:
-        """Akaike's information criterion, N ln(E²) + 2 k, with N numbers and k parameters.
+        """Akaike's information criterion, N ln(E²) + 2 k, with N measured values and k parameters.
 
         Less is better among models fitted to the same data under the same loss. The criterion
         assumes independent samples with Gaussian noise that is equal in the loss's differences, no
@@ -177,14 +178,20 @@ class Fit(Shown):
 
     @property
     def bic(self) -> float:
-        """The Bayesian information criterion, N ln(E²) + k ln N; see `aic`."""
+        """The Bayesian information criterion, N ln(E²) + k ln N, to compare models like `aic`.
+
+        N is the number of measured values and k the number of parameters. Less is better.
+        """
         return self._sample_certainty.compute_bic(self.loss) if self._sample_certainty else NAN
 
     def _arrange_like_values(self, numbers: Mapping[str, float]) -> dict[str, Any]:
-        """Return `numbers` by the names of `Certainty` in the form of `values`; NaN if missing."""
+        """Return `numbers` of single channels grouped by parameter, in the form of `values`.
+
+        `numbers`: numbers by the names of `Certainty`, as "weight[0]"; a missing one becomes NaN.
+        """
         grouped: dict[str, Any] = {}
         for name, value in self.values.items():
-            # A parameter that follows another is as certain, unless it has a value of its own
+            # A parameter that takes its value from another one has the same standard error
             other = self.model.parameters[name].follows
             if isinstance(value, tuple):
                 grouped[name] = tuple(numbers.get(f"{name}[{c}]", NAN) for c in range(len(value)))
@@ -196,14 +203,14 @@ class Fit(Shown):
 
     @property
     def _sample_certainty(self) -> Certainty | None:
-        """The certainty of a fit to samples, None for a fit to pictures, which has no criteria."""
+        """The certainty of a fit to samples; None for pictures, which have no `aic` and `bic`."""
         return None if self.loss_name in ("picture", "rendered") else self.certainty
 
     @property
     def loss_label(self) -> str:
-        """The name of the loss, and whether samples are weighted by standard errors in it.
+        """The name of the loss for tables, marked if standard errors weighted the samples.
 
-        `compare` gives another number for the same loss, because it does not weight samples so.
+        Such a loss is not comparable with the number of `compare`, which does not weight them.
         """
         weighed = any(note.startswith(BY_ERRORS) for note in self.notes)
         return f"{self.loss_name} loss{', weighed by standard errors' if weighed else ''}"
@@ -213,10 +220,10 @@ class Fit(Shown):
         return self.model.eval(wi, wo)
 
     def residuals(self, data: Any) -> Any:
-        """Return measured less fitted values, at the samples that were fitted.
+        """Return measured less fitted values, at the samples that were fitted, as a material.
 
-        They are above 0 where the fit is too dark. Plots and pictures show values below 0 as 0;
-        `Measured.mix_channels` with ``-np.eye(3)`` shows where the fit is too bright.
+        Residuals are above 0 where the fit is too dark. Plots and pictures show values below 0 as
+        0; `Measured.mix_channels` with ``-np.eye(3)`` shows where the fit is too bright.
 
         Parameters
         ----------
@@ -251,7 +258,7 @@ class Fit(Shown):
         return self.model.scene_dict()
 
     def document(self) -> Document:
-        """Return the page of the fit: its values, albedos and notes, and how they were found."""
+        """Return the page that a fit prints: values, albedos, notes and effort of the search."""
         old = ("no standard errors: saved by an earlier version",) * (self.certainty is None)
         return Document(
             f"{self.name} fitted to {self.data}: {self.loss_label} {self.loss:.6g}",
@@ -267,7 +274,7 @@ class Fit(Shown):
         )
 
     def _describe_effort(self) -> str:
-        """Return the number of samples, evaluations and seconds, in words."""
+        """Return a line of text with the numbers of samples, evaluations and seconds."""
         sample, often = "s" * (self.samples != 1), "s" * (self.evaluations != 1)
         parts = [f"{self.samples:,} sample{sample}"]
         if 0 < self.effective_samples < FEW_EFFECTIVE * self.samples:

@@ -1,7 +1,7 @@
-"""Losses: the error E that a fit minimises.
+"""Losses E: the errors of a model compared with measured data, which a fit minimises.
 
-`named` holds those that have a name. `Loss` makes one of a formula, `Picture` compares rendered
-pictures. Users reach them as `brdfkit.losses`.
+`named` contains brdfkit's losses by name, `Loss` is a loss defined by a formula, and `Picture` is a
+loss that compares rendered pictures. Users import them from `brdfkit.losses`.
 """
 
 import lazy_loader

@@ -1,14 +1,14 @@
-"""`Loss`: the error E that a fit minimises.
+"""Defines `Loss`, an error E of a model on measured samples, which a fit minimises.
 
     E² = ∫ mean_c d(M_c, R_c, cosθ_i, cosθ_o)² dμ / ∫ dμ ≈ Σ_n w_n mean_c d_nc² / Σ_n w_n
 
-R is the measured BRDF and M the model's, in channel c; θ_i and θ_o are the angles of incidence and
-of view. d is the difference of the two values times cosines, or of a function of them, which
-decides how much dark values count beside bright ones. μ is a measure of pairs of directions, which
-decides how much a highlight counts beside everything else. w_n is the share of μ that sample n
-represents (`model/samples/measures.py`), so that E depends on the material and not on the sampling
-of its file. Samples with an angle beyond 80° are left out, because measurements are least reliable
-there [Ngan et al. 2005].
+M is the BRDF of the model and R the measured BRDF, in channel c; θ_i and θ_o are the angles of
+incidence and of view. d is the difference of M and R, often after both were multiplied by cosines
+or compressed by a function; it decides how much dark values count compared with bright ones. μ is a
+measure of pairs of directions, which decides how much a highlight counts compared with the rest.
+w_n is the share of μ that sample n represents (`model/samples/measures.py`), so that E depends on
+the material, not on the sampling of its file. Samples with an angle beyond 80° are left out,
+because measurements are least reliable there [Ngan et al. 2005].
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ Weights: TypeAlias = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True)
 class Loss:
-    """A loss E, which a fit minimises: the root of a weighted mean of squared differences.
+    """A loss E that a fit minimises: the root of a weighted mean of squared differences.
 
     Parameters
     ----------
@@ -51,8 +51,8 @@ class Loss:
         is uniform over the directions ω_i and ω_o, in which they are small; ``"balanced"`` is the
         geometric mean of the two. With ``"samples"`` all samples count alike.
     weights : callable, optional
-        A function that takes cosines cos_i (n,) in NumPy to factors (n,) of the samples; by default
-        1.
+        A function from the cosines cos_i (n,) of the angles of incidence, a NumPy array, to factors
+        (n,) of the samples' weights; by default 1.
     channel_mean : bool, default True
         Whether E² is the mean over the channels, otherwise their sum.
 
@@ -77,7 +77,11 @@ class Loss:
 
     @cached_property
     def linear(self) -> bool:
-        """Whether the difference is κ (model - measured), with κ a function of the cosines."""
+        """Whether the difference is linear in the BRDF: κ (model - measured).
+
+        κ may depend on the cosines. The best weights of a model's lobes under a linear loss follow
+        from one linear system, without a search.
+        """
         known = np.array([-3.0, -1e-4, 0.0, 1e-5, 0.02, 0.5, 4.0, 3e3])
         model, measured = (pairs.ravel() for pairs in np.meshgrid(known, known))
         difference, kappa = (
@@ -90,14 +94,17 @@ class Loss:
         return bool((np.abs(difference - kappa * (model - measured)) <= tolerance).all())
 
     def importance(self, samples: Any) -> FloatArray:
-        """Return the weights w (n,) of `Samples`, normalised so that E² is a sum over them."""
+        """Return the weights w (n,) of samples in E² = Σ w d², a sum over samples and channels."""
         weights = self._evaluate_weights(samples.wi[:, 2]) * samples.weight
         weights = weights * compute_measure(samples.extents, self.measure)
         total = weights.sum() * (samples.values.shape[1] if self.channel_mean else 1)
         return weights / total if total else weights
 
     def _evaluate_weights(self, cos_i: FloatArray) -> FloatArray:
-        """Return the `weights` at cosines (n,); raise `BrdfkitError` if the function fails."""
+        """Return the user's factors (n,) of the samples' weights, at cosines (n,) of incidence.
+
+        Raises `BrdfkitError` if the user's function fails or returns unsuitable numbers.
+        """
         try:
             weights = np.broadcast_to(np.asarray(self.weights(cos_i), np.float64), cos_i.shape)
             good = bool(np.isfinite(weights.sum()) and weights.min(initial=0) >= 0)
@@ -115,7 +122,10 @@ class Loss:
 
 @in_turn
 def sum_squared_differences(loss: Loss, values: Any, samples: Any) -> FloatArray:
-    """Return squared differences (n,) of `values` (n, channels) from `Samples`, channels summed."""
+    """Return the squared differences (n,) of a loss between a model and samples, channels summed.
+
+    `values` (n, channels): BRDF of the model at the directions of the n `samples`.
+    """
     array = double_precision.to_array
     cosines = [array(w[:, 2]) for w in (samples.wi, samples.wo)]
     differences = [
@@ -126,7 +136,7 @@ def sum_squared_differences(loss: Loss, values: Any, samples: Any) -> FloatArray
 
 
 def make_loss(difference: Callable[..., Any]) -> Loss:
-    """Return the `Loss` of a difference that a user wrote as a function; see `Loss`.
+    """Return a `Loss` whose difference is a user's function, named and described by the function.
 
     Raises `BrdfkitError` for a function that fails on Dr.Jit arrays.
     """
@@ -138,9 +148,10 @@ def make_loss(difference: Callable[..., Any]) -> Loss:
 
 
 def require_working_loss(loss: Loss) -> None:
-    """Raise `BrdfkitError` for a loss that cannot be minimised.
+    """Raise `BrdfkitError` for a loss that no fit can minimise.
 
-    It may fail on Dr.Jit arrays, return too few numbers, or not change with the model.
+    This is the case if its difference fails on Dr.Jit arrays, returns a wrong number of values, or
+    does not depend on the model.
     """
     model = np.array([0.1, 0.5, 1.0, 3.0])
     try:
@@ -161,14 +172,17 @@ def require_working_loss(loss: Loss) -> None:
     if not np.array(slope).any():
         raise BrdfkitError(
             f"The loss {loss.name} does not change with the model's value, or has no derivative by "
-            "it, as after dr.detach."
+            "it; use the value in the formula, without dr.detach."
         )
 
 
 def _evaluate_at_oblique_angles(
     loss: Loss, model: FloatArray, measured: FloatArray | float
 ) -> FloatArray:
-    """Return the differences (n,) of a loss in NumPy, where cosθ_i is 0.75 and cosθ_o 0.5."""
+    """Return the differences (n,) of a loss at trial values, to check its formula.
+
+    `model`, `measured`: values of the BRDF, where cosθ_i is 0.75 and cosθ_o is 0.5.
+    """
     values = (model, measured + 0 * model, 0.75 + 0 * model, 0.5 + 0 * model)
     difference = loss.difference(*map(double_precision.to_array, values))
     if isinstance(difference, np.ndarray):

@@ -1,11 +1,12 @@
-"""The losses that have a name, such as "cbrt" and "log".
+"""Defines the losses that a fit can minimise by name, such as "cbrt" and "log".
 
-A loss whose formula has only the cosine of θ_i is computed with a mean of both cosines instead. The
-integral over all pairs of directions is the same, because a BRDF is reciprocal, and a file may list
-either direction first.
+The formula of some losses has only the cosine of the angle of incidence θ_i. They are computed with
+a mean of the cosines of θ_i and of the angle of view θ_o, because a file may list either direction
+first. The integral over all pairs of directions is the same, because a BRDF is reciprocal.
 
-A measured value may be negative, from noise or from a colour out of gamut. Losses that are linear
-in the model use it as it is; the other losses use 0, because their functions need values ≥ 0.
+A measured value may be negative, because of noise or of a colour out of gamut. Losses that are
+linear in the model use it unchanged; the other losses use 0, because their functions need values
+≥ 0.
 """
 
 from typing import Any
@@ -20,12 +21,12 @@ from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.regression.losses.loss import Loss, make_loss, require_working_loss
 from brdfkit.regression.losses.picture import Picture
 
-# The loss of a fit that names none
+# Name of the loss that a fit minimises by default
 DEFAULT = "cbrt"
-# Added inside the logarithm, which is nearly linear for smaller values, and to the measured value
-# that divides a relative difference: about the noise of a measured table [sr⁻¹]
+# This is added inside the logarithm, and to the measured value that divides a relative difference,
+# so that values below the noise of a measured table [sr⁻¹] count little
 OFFSET = 1e-3
-# Added inside the cube root, which has no derivative at 0
+# This is added inside the cube root, whose derivative at 0 is infinite
 CBRT_OFFSET = 1e-6
 
 
@@ -61,14 +62,19 @@ def _sine(cosine: FloatArray) -> FloatArray:
 
 
 class Losses(Shown, dict[str, Loss | Picture]):
-    """The losses by name, which `fit` minimises; they print as a table of their meanings.
+    """A dictionary of the losses that `fit` minimises, by name; it prints as a table.
 
-    A loss E is a root mean square of differences. These are differences of f cos θ_i [sr⁻¹] for
-    "cosine", of its cube root [sr^(-1/3)] for "cbrt", of f [sr⁻¹] for "plain", and of
-    f cos θ_i cos θ_o [sr⁻¹] for "lafortune". "log" has the logarithm of f cos θ_i cos θ_o, and
-    "relative" f as a share of the measured one; both have no unit, and 0.1 is about 10 %. "picture"
-    has differences of pixels, where 1 is white. "kurt" is the sum of f cos θ_i [sr⁻¹] over the
-    samples, as in the thesis.
+    A loss E is the root mean square (RMS) difference between a model and the data. Most losses
+    compare the BRDF f, or its product with cosines of the angles of incidence θ_i and of view θ_o:
+
+    - "cosine": f cos θ_i [sr⁻¹].
+    - "cbrt": the cube root of f cos θ_i [sr^(-1/3)].
+    - "plain": f [sr⁻¹].
+    - "lafortune": f cos θ_i cos θ_o [sr⁻¹].
+    - "log": the logarithm of f cos θ_i cos θ_o, without unit; 0.1 is about 10 %.
+    - "relative": f as a share of the measured f, without unit; 0.1 is about 10 %.
+    - "kurt": f cos θ_i [sr⁻¹], summed over the samples as in [Kurt 2007].
+    - "picture": the pixels of pictures of a ball, where 1 is white.
 
     >>> named["plain"].meaning
     'RMS difference of f: what is bright counts'
@@ -76,14 +82,14 @@ class Losses(Shown, dict[str, Loss | Picture]):
 
     @property
     def by_sample(self) -> dict[str, Loss]:
-        """All losses except "picture": they compare a model with the data sample by sample."""
+        """The losses that compare a model with the data sample by sample: all but "picture"."""
         return {name: loss for name, loss in self.items() if isinstance(loss, Loss)}
 
     def __missing__(self, name: str) -> Loss | Picture:
         raise no_such_error("loss", name, self)
 
     def document(self) -> Document:
-        """Return a table of the losses and their meanings."""
+        """Return the page that the losses print: a table of their names and meanings."""
         rows = tuple((Cell(name, kind=STRONG), loss.meaning) for name, loss in self.items())
         return Document("Losses: what a fit makes small", (Table(rows),))
 
@@ -141,9 +147,10 @@ named = Losses(
 
 
 def to_loss(value: Any) -> Loss | Picture:
-    """Return the loss of a name in `named`, of a difference as a function, or a loss itself.
+    """Return the loss that a user gives as a name in `named`, as a function, or as an object.
 
-    Raises `BrdfkitError` for an unknown name, and for a function that fails on Dr.Jit arrays.
+    A function computes the difference between a model and the data, as in `Loss`. Raises
+    `BrdfkitError` for an unknown name, and for a function that fails on Dr.Jit arrays.
     """
     if isinstance(value, str) and value in named:
         return named[value]
@@ -156,8 +163,8 @@ def to_loss(value: Any) -> Loss | Picture:
         return loss
     if not isinstance(loss.name, str) or loss.name in named:
         raise BrdfkitError(
-            f"A loss of your own is named {loss.name!r}; give it a name that brdfkit.losses.named "
-            "lacks."
+            f"A loss of your own is named {loss.name!r}; give it a text as name that is not in "
+            "brdfkit.losses.named."
         )
     require_working_loss(loss)
     return loss

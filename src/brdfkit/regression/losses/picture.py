@@ -1,10 +1,11 @@
-"""`Picture`: a loss that compares pictures, for fits that look like the material.
+"""Defines `Picture`, a loss that compares pictures, for fits that look like the material.
 
     E² = mean of (t(I_p) - t(J_p))² over pixels p and channels + share · E_log²
 
-I is a picture of the model and J of the measured material: a ball under direct light, one picture
-for each light, exposed so that its brightest hundredth is white. t is the curve of sRGB [IEC 1999].
-E_log is the log loss, which fits the directions that no picture shows.
+I_p is a pixel of a picture of the model, and J_p the same pixel for the measured material. Each
+picture shows a ball under direct light from one environment, exposed so that its brightest
+hundredth is white. t is the tone curve of sRGB [IEC 1999]. E_log is the log loss, which fits the
+directions that no picture shows.
 """
 
 from dataclasses import dataclass
@@ -21,19 +22,19 @@ from brdfkit.regression.losses.loss import Loss
 
 @dataclass(frozen=True)
 class Picture:
-    """A loss E for fits that look like the measured material.
+    """A loss E that compares pictures, for fits that look like the measured material.
 
-    It compares pictures of a ball under direct light, as a screen shows them. The grey lights are
+    The pictures show a ball under direct light, as on a screen. Their grey environments are
     ``"court"``, open to the sky, ``"hall"``, with small lamps, ``"sky"``, with a low sun, and
     ``"studio"``, with softboxes.
 
     Parameters
     ----------
     lights : tuple of str, default ("court", "hall", "sky", "studio")
-        The lights, one picture for each.
+        The environments; the loss compares one picture for each.
     share : float, default 0.003
-        Factor of the squared log loss, at least 0, beside the mean square of pixels. With a larger
-        one the fit stays closer to the measurement where the pictures show little.
+        Factor of the squared log loss, at least 0, which is added to the mean square of pixels. A
+        larger factor keeps the fit closer to the measurement in directions that no picture shows.
 
     Raises
     ------
@@ -72,16 +73,16 @@ class Picture:
 
     @property
     def meaning(self) -> str:
-        """The meaning of the loss in a sentence."""
-        return f"RMS difference of what is seen: {self.describe()}"
+        """The meaning of the loss in a sentence, for tables."""
+        return f"RMS difference of pixels: {self.describe()}"
 
     def describe(self) -> str:
-        """Return the pictures that are compared, in words."""
+        """Return the pictures that the loss compares, in words."""
         return f"pictures of a ball under {join_words(self.lights)}"
 
     @cached_property
     def pixel_loss(self) -> Loss:
-        """The part of the loss that compares pixels."""
+        """The loss of a single pixel, without the log loss of the samples."""
         return Loss(
             self.name,
             self.meaning,
@@ -90,6 +91,6 @@ class Picture:
 
 
 def _encode_srgb(x: JitFloat) -> JitFloat:
-    """Return linear values encoded by the curve of sRGB, continued above 1."""
+    """Return linear values (any shape) on the tone curve of sRGB, which goes on above 1."""
     bright = 1.055 * dr.power(dr.maximum(x, 0.0031308), 1 / 2.4) - 0.055
     return dr.select(x < 0.0031308, 12.92 * x, bright)

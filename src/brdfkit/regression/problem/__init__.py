@@ -1,1 +1,1 @@
-"""The error of a model on samples or on pixels, with its derivatives."""
+"""Computes the squared loss E² of a model on samples or on pixels, and its derivatives."""

@@ -1,4 +1,8 @@
-"""Splits samples into blocks of Dr.Jit arrays, so that results of a kernel stay small in memory."""
+"""Splits samples into blocks of Dr.Jit arrays, so that a kernel's results need little memory.
+
+A search evaluates a model at several points, sets of its parameters, at once. So the arrays of a
+block contain its samples once for each point.
+"""
 
 from __future__ import annotations
 
@@ -17,19 +21,22 @@ from brdfkit.model.samples import Samples
 from brdfkit.regression.losses.loss import Loss
 from brdfkit.regression.problem.columns import Columns
 
-# Channels that one kernel evaluates; if there are more, it runs for one group after the other
+# One kernel evaluates at most this number of channels; more channels are evaluated in groups
 GROUP = 8
-# The number of samples in a block, times the points of its evaluation, times groups of channels
+# Largest product of the number of samples in a block, of points and of groups of channels
 BLOCK_SIZE = 2**17
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """Samples as Dr.Jit arrays, repeated for each of `count` points of the search.
+    """Some samples as Dr.Jit arrays, repeated once for each of several points of a search.
 
-    `loss`: their `Loss`; `rows`: which samples; `wi`, `wo`: directions; `measured`: an array for
-    each channel; `importance`: the weights of the samples; `point`: the index of the point. All
-    arrays are `count` times as long as `rows`, one point after the other.
+    A point is a set of parameters of the model. All arrays have the length points × samples, the
+    samples of the first point first.
+
+    `loss`: loss of the samples; `rows`: range of the samples' indices; `count`: number of points;
+    `wi`, `wo`: incident and outgoing directions; `measured`: values of each channel; `importance`:
+    weights of the samples in the loss; `point`: index of the point that an entry belongs to.
     """
 
     loss: Any
@@ -45,23 +52,32 @@ class Block:
     def from_samples(
         cls, samples: Samples, importance: FloatArray, loss: Loss, rows: slice, count: int
     ) -> Block:
-        """Return the block with the `rows` of `Samples`; `importance` (n,): weights of samples."""
+        """Return the block with the range `rows` of `samples`, for `count` points.
 
-        def array(values: FloatArray) -> JitFloat:
+        `importance` (n,): weights of all samples in the loss.
+        """
+
+        def repeat_rows(values: FloatArray) -> JitFloat:
+            """Return the block's part of an array (n,), repeated for each point."""
             part = values[rows]
             return double_precision.to_array(part if count == 1 else np.tile(part, count))
 
         wi, wo = (
-            double_precision.Vector(*map(array, np.asarray(w).T)) for w in (samples.wi, samples.wo)
+            double_precision.Vector(*map(repeat_rows, np.asarray(w).T))
+            for w in (samples.wi, samples.wo)
         )
         size = rows.stop - rows.start
         point = np.repeat(np.arange(count, dtype=np.uint32), size)
         index = dr.uint32_array_t(double_precision.choose_float_type())
-        measured = [array(channel) for channel in samples.values.T]
-        return cls(loss, rows, count, wi, wo, measured, array(importance), index(pad(point)))
+        measured = [repeat_rows(channel) for channel in samples.values.T]
+        return cls(loss, rows, count, wi, wo, measured, repeat_rows(importance), index(pad(point)))
 
     def repeat_for_samples(self, table: FloatArray) -> list[JitFloat]:
-        """Return the columns of `table` (count, columns) as arrays with one value per sample."""
+        """Return numbers of each point as Dr.Jit arrays, repeated for all samples of the block.
+
+        `table`: a row of numbers for each point (points, columns); the list has one array for each
+        column.
+        """
         float64, columns = double_precision.choose_float_type(), table.shape[1]
         if not double_precision.has_derivatives():  # these arrays do not support dr.gather
             size = self.rows.stop - self.rows.start
@@ -70,13 +86,16 @@ class Block:
         return [dr.gather(float64, flat, first + k) for k in range(columns)]
 
     def evaluate_columns(self, columns: Columns, table: FloatArray) -> list[JitFloat]:
-        """Evaluate all `Columns` at the parameters in `table` (count, shapes); return arrays."""
+        """Evaluate the model's `columns` at the samples, one Dr.Jit array for each column.
+
+        `table`: values of the shape parameters at each point (points, shapes).
+        """
         return columns.evaluate(
             self.repeat_for_samples(table) if table.size else [], self.wi, self.wo
         )
 
     def directions(self) -> tuple[Vector, Vector]:
-        """Return (wi, wo) of the samples, without the repetition."""
+        """Return the incident and outgoing directions of the samples, without repetition."""
         wi, wo = (
             Vector(*(double_precision.to_array(self.split_by_point(x)[0]) for x in (w.x, w.y, w.z)))
             for w in (self.wi, self.wo)
@@ -84,19 +103,23 @@ class Block:
         return wi, wo
 
     def split_by_point(self, array: JitFloat) -> FloatArray:
-        """Return a Dr.Jit array as a NumPy array (count, samples)."""
+        """Return a Dr.Jit array of the block as a NumPy array (points, samples)."""
         return np.asarray(array).reshape(self.count, -1)
 
 
 class Blocks:
-    """The blocks of `Samples`. A single block is cached, several are made anew for each use."""
+    """An iterable factory of the blocks of some samples, for any number of points.
+
+    If all samples fit into one block, it is cached; otherwise blocks are made again for each use,
+    to save memory.
+    """
 
     def __init__(self, samples: Samples, importance: FloatArray, loss: Loss) -> None:
         self.samples, self.importance, self.loss = samples, importance, loss
         self._cache: dict[int, Block] = {}
 
     def __call__(self, count: int) -> Iterator[Block]:
-        """Yield the blocks for `count` points."""
+        """Yield the blocks of the samples, with arrays repeated for `count` points."""
         groups = -(-self.samples.values.shape[1] // GROUP)
         given = self.samples, self.importance, self.loss
         n, step = len(self.importance), max(BLOCK_SIZE // (count * groups), 1)

@@ -1,26 +1,32 @@
-"""Minimises quadratic functions within boxes, several at a time: the inner step of every fit."""
+"""Minimises quadratic functions of variables with lower and upper bounds.
+
+Every step of a fit solves such problems, several at a time, for a step within the bounds of the
+parameters.
+"""
 
 import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 
-# After this number of rounds only one entry changes at a time, so that no active set repeats
+# After this number of rounds only one variable changes at a time between free and on a bound; then
+# the rounds are sure to end
 PARALLEL_ROUNDS = 10
 
 
 def minimise_in_box(
     hessian: FloatArray, gradient: FloatArray, low: float | FloatArray, high: float | FloatArray
 ) -> FloatArray:
-    """Return the z (b, n) that minimise ½ zᵀ H z + gᵀ z with `low` ≤ z ≤ `high`.
+    """Return the minima z (b, n) of b functions ½ zᵀ H z + gᵀ z with `low` ≤ z ≤ `high`.
 
-    `hessian` H (b, n, n): positive semidefinite; `gradient` g, `low`, `high`: arrays that broadcast
-    to (b, n). The active sets change by the signs of the solution and of its multipliers, in all
-    entries at once [Hintermüller et al. 2002], later at the smallest index only [Murty 1974].
+    `hessian`: the positive semidefinite matrices H (b, n, n); `gradient`: the vectors g (b, n);
+    `low`, `high`: bounds that broadcast to (b, n). Variables move onto a bound and off it by the
+    signs of the solution and of its multipliers: all at once in the first rounds [Hintermüller et
+    al. 2002], later only the one with the smallest index [Murty 1974].
 
     >>> minimise_in_box(np.eye(2)[None], np.array([[-1.0, 1.0]]), 0.0, np.inf)
     array([[1., 0.]])
     """
-    # Scale to a unit diagonal, so that a weak column is not lost beside a strong one
+    # Variables are scaled to a unit diagonal of H, so that one with small entries is not lost
     n = gradient.shape[1]
     scale = 1 / np.sqrt(np.maximum(hessian.diagonal(axis1=1, axis2=2), 1e-300))
     form = hessian * (scale[:, :, None] * scale[:, None, :])
@@ -51,7 +57,11 @@ def minimise_in_box(
 def _solve_free_entries(
     form: FloatArray, force: FloatArray, fixed: BoolArray, values: FloatArray
 ) -> FloatArray:
-    """Return z with z = `values` where `fixed`, and F z + f = 0 elsewhere."""
+    """Return the minima (b, n) with some variables fixed, without bounds on the others.
+
+    `form` (b, n, n), `force` (b, n): Hessians and gradients; `fixed` (b, n): whether a variable
+    keeps its entry of `values` (b, n).
+    """
     free = ~fixed
     reduced = form * (free[:, :, None] & free[:, None, :])
     n = form.shape[1]

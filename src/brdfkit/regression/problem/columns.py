@@ -1,8 +1,10 @@
 """Evaluates the lobes of a model at pairs of directions, and their derivatives by its shapes.
 
-With weights a, a model is M = Σ_l (a_l P_l + a_l² Q_l), where few lobes l have a Q. The "columns"
-of a fit are its values and its slopes: values are all P, then all Q; slopes are the derivatives of
-values by searched shape parameters, unless they are always 0.
+A model is a weighted sum of lobes, M = Σ_l (a_l P_l + a_l² Q_l), with a weight a_l for each lobe l.
+Only few lobes have a term Q_l with the squared weight. All functions P_l and Q_l at some
+pairs of directions are the "values" of the model. Their derivatives by searched shape parameters,
+such as a roughness, are its "slopes", without those that are always 0. Values and slopes together
+are the "columns", one number for each pair of directions.
 """
 
 from __future__ import annotations
@@ -24,10 +26,14 @@ from brdfkit.model.lobes import Lobe
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns of a model class: `names` are searched shape parameters, `fixed` the others.
+    """The list of columns of a model class, and the functions that evaluate them.
 
-    `lobes`, `powers`: for each value the index of its lobe, and the power of its weight, 1 or 2;
-    `slopes`: (index of the value, index of the name) for each slope.
+    The columns are the values of the model's lobes and their slopes, the derivatives by shape
+    parameters, as the file describes.
+
+    `model`: the class; `names`: searched shape parameters; `fixed`: values of the other shape
+    parameters; `lobes`: index of the lobe of each value; `powers`: power of the lobe's weight that
+    multiplies each value, 1 or 2; `slopes`: pairs (index of a value, index of a shape parameter).
     """
 
     model: type[Model]
@@ -41,7 +47,10 @@ class Columns:
     def for_model(
         cls, model: type[Model], names: Sequence[str], fixed: dict[str, float]
     ) -> Columns:
-        """Return the columns of a `model` class; `fixed`: values by the parameters' names."""
+        """Return the columns of a `model` class.
+
+        `names`: shape parameters that are searched; `fixed`: values of the others, by name.
+        """
         key: Any = model
         traced = _trace_columns(key, tuple(names), tuple(sorted(fixed)))
         return cls(model, tuple(names), fixed, *traced)
@@ -50,7 +59,7 @@ class Columns:
         return len(self.lobes) + len(self.slopes)
 
     def make_model(self, shapes: Sequence[JitFloat]) -> Model:
-        """Return the model with `shapes`, one array or number for each name."""
+        """Return the model with the searched shape parameters `shapes`, an array or number each."""
         fixed = {name: double_precision.to_scalar(value) for name, value in self.fixed.items()}
         return self.model.bind(dict(zip(self.names, shapes, strict=True)) | fixed)
 
@@ -61,10 +70,10 @@ class Columns:
         wo: Vector,
         factor: Callable[[Lobe], JitFloat] | None = None,
     ) -> list[JitFloat]:
-        """Evaluate all columns at `shapes`, one array (n,) for each name; return arrays (n,).
+        """Return all columns, values and then slopes, as Dr.Jit arrays (n,).
 
-        `wi`, `wo`: n directions, each a `double_precision.Vector`; `factor(lobe)`: replaces the
-        value of a lobe.
+        `shapes`: an array (n,) for each searched shape parameter; `wi`, `wo`: n incident and
+        outgoing directions; `factor`: a function from a lobe to an array that replaces its value.
         """
         if not self.slopes:
             return self.evaluate_values(shapes, wi, wo, factor)
@@ -89,16 +98,19 @@ class Columns:
         wo: Vector,
         factor: Callable[[Lobe], JitFloat] | None = None,
     ) -> list[JitFloat]:
-        """Evaluate only the values, and return arrays (n,); see `evaluate`."""
+        """Return the values, without slopes, as Dr.Jit arrays (n,), like `evaluate`."""
         lobes = [lobe for _, lobe in self.make_model(shapes).terms()]
-        zeros = 0 * wi.z  # makes an array of a constant lobe
+        zeros = 0 * wi.z  # adding it turns the number of a constant lobe into an array (n,)
         plain = [(factor(lobe) if factor else lobe.eval(wi, wo)) + zeros for lobe in lobes]
         return plain + [lobe.quadratic(wi, wo) + zeros for lobe in lobes if lobe.quadratic]
 
     def _difference_slopes(
         self, shapes: Sequence[JitFloat], wi: Vector, wo: Vector
     ) -> list[JitFloat]:
-        """Return the slopes by central differences, for a backend without derivatives."""
+        """Return the slopes as Dr.Jit arrays (n,), by central differences of the values.
+
+        Backends of Dr.Jit without automatic differentiation need it.
+        """
         slopes: dict[tuple[int, int], JitFloat] = {}
         for j, name in enumerate(self.names):
             low, high = self.model.parameters[name].bounds
@@ -116,7 +128,11 @@ class Columns:
 def _trace_columns(
     model: Any, names: tuple[str, ...], fixed: tuple[str, ...]
 ) -> tuple[IntArray, IntArray, tuple[tuple[int, int], ...]]:
-    """Return (lobes, powers, slopes) of `Columns`, from the model at one pair of directions."""
+    """Return the fields (lobes, powers, slopes) of `Columns` for a model class.
+
+    They are found by an evaluation of the model at one pair of directions. `names`, `fixed`:
+    searched and fixed shape parameters.
+    """
     constants = {name: double_precision.to_scalar(model().values[name]) for name in fixed}
     up = double_precision.to_vector(np.array([[0.0, 0.0, 1.0]]))
     slopes, lobes, powers = [], [], []

@@ -1,4 +1,8 @@
-"""Expands E² about points of the search to second order, by Gauss and Newton."""
+"""Approximates the squared loss E² near points of the search by quadratic functions.
+
+The quadratic function has the gradient of E² and its Gauss-Newton Hessian, which leaves out second
+derivatives of the model. A search takes its next step to the minimum of this function.
+"""
 
 from __future__ import annotations
 
@@ -16,12 +20,15 @@ from brdfkit.regression.problem.sums import Sums
 
 @dataclass(eq=False)
 class Expansion:
-    """E² about points: E² + 2 gᵀ s + sᵀ H s for a step s.
+    """Quadratic approximations E² + 2 gᵀ s + sᵀ H s of the squared loss for steps s from points.
 
-    A step changes the coordinates of the shape parameters, then the weights by channel. `u`
-    (points, shapes), `weights` (points, channels, lobes): the points; `error` E² (points,);
-    `gradient` g (points, n); `hessian` H (points, n, n), None if no Gram matrix was summed; `gram`,
-    `moment`: as in `Sums`; `columns`, `space`: of the problem.
+    A point is a set of parameters: coordinates of the shape parameters, then the weights of the
+    lobes by channel. A step changes these n numbers.
+
+    `columns`, `space`: columns and search space of the problem; `u`: coordinates (points, shapes);
+    `weights`: weights (points, channels, lobes); `error`: E² (points,); `gradient`: g (points, n),
+    half the gradient of E²; `hessian`: H (points, n, n), or None if it was not computed; `gram`,
+    `moment`: sums as in `Sums`.
     """
 
     columns: Any
@@ -38,10 +45,13 @@ class Expansion:
     def from_sums(
         cls, columns: Columns, space: Space, sums: Sums, u: FloatArray, weights: FloatArray
     ) -> Expansion:
-        """Return the expansion made from `Sums` at the points."""
+        """Return the expansion about points from the sums over all samples at these points.
+
+        `u` (points, shapes), `weights` (points, channels, lobes): the points.
+        """
         points, channels, lobes = weights.shape
         shapes = len(columns.names)
-        change = make_derivative_matrix(columns, weights, space.differentiate(u))
+        change = make_derivative_matrix(columns, weights, space.differentiate_parameters(u))
         by_channel = (change @ sums.moment[..., None])[..., 0]
         gradient = np.zeros((points, shapes + channels * lobes))
         gradient[:, :shapes] = by_channel[:, :, :shapes].sum(axis=1)
@@ -51,7 +61,10 @@ class Expansion:
         return made if sums.gram is None else replace(made, hessian=made._make_hessian(change))
 
     def _make_hessian(self, change: FloatArray) -> FloatArray:
-        """Return the Hessian (points, n, n); `change`: as `make_derivative_matrix` returns."""
+        """Return half the Gauss-Newton Hessians (points, n, n) of E² by the n parameters.
+
+        `change`: matrices of the model's derivatives, from `make_derivative_matrix`.
+        """
         points, channels, lobes = self.weights.shape
         shapes = self.u.shape[1]
         products = change @ self.gram @ change.transpose(0, 1, 3, 2)
@@ -65,15 +78,16 @@ class Expansion:
         return hessian
 
     def predict_weights(self, u: FloatArray, least: FloatArray) -> FloatArray:
-        """Return the best weights (points, channels, lobes) at other coordinates `u`.
+        """Return the best weights (points, channels, lobes) for other coordinates of the shapes.
 
-        The prediction assumes lobes that are linear in their parameters, and a loss that is
-        quadratic in the model; weights are at least `least` (lobes,). So a step follows the curve
-        along which the strength of a lobe and its Fresnel reflectance trade off.
+        With them, a step follows the curve along which the weight of a lobe and its Fresnel
+        reflectance trade off. The prediction takes the lobes as linear in their parameters, and the
+        loss as quadratic in the model. `u` (points, shapes): the other coordinates; `least`
+        (lobes,): lower limits of the weights.
         """
         columns, count = self.columns, len(self.columns.lobes)
         by = self.space.to_parameters(u) - self.space.to_parameters(self.u)
-        # The lobes at `u`, as combinations of the columns at these points
+        # Each row expresses a lobe at `u` as a linear combination of the columns at the old points
         lobes = np.zeros((len(u), count, len(columns)))
         lobes[:, range(count), range(count)] = 1
         for k, (value, j) in enumerate(columns.slopes, count):
@@ -89,11 +103,11 @@ class Expansion:
         ).reshape(self.weights.shape)
 
     def select(self, rows: Any) -> Expansion:
-        """Return the expansion about some of the points."""
+        """Return the expansion about some of the points, selected by indices or a mask."""
         return replace(self, **{name: getattr(self, name)[rows] for name in ARRAYS})
 
     def replace_points(self, rows: IntArray, other: Expansion) -> None:
-        """Replace the points `rows` by the points of the expansion `other`."""
+        """Replace the points with the indices `rows` by all points of the expansion `other`."""
         for name in ARRAYS:
             getattr(self, name)[rows] = getattr(other, name)
 
@@ -102,10 +116,12 @@ ARRAYS = [f.name for f in fields(Expansion) if f.name not in ("columns", "space"
 
 
 def make_derivative_matrix(columns: Columns, weights: FloatArray, slopes: FloatArray) -> FloatArray:
-    """Return the model's derivatives as combinations of its columns.
+    """Return the matrices (points, channels, shapes + lobes, columns) of the model's derivatives.
 
-    The array (points, channels, shapes + lobes, columns) has the derivatives by coordinates, then
-    by weights. `slopes` (points, shapes): the derivatives of the parameters by coordinates.
+    A matrix times the columns of the model gives its derivatives by the coordinates of the shape
+    parameters, then by the weights of the lobes in a channel. `weights` (points, channels, lobes):
+    weights of the lobes; `slopes` (points, shapes): derivative of each shape parameter by its
+    coordinate.
     """
     points, channels, lobes = weights.shape
     shapes, values = len(columns.names), len(columns.lobes)

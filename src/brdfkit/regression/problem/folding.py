@@ -1,12 +1,13 @@
-"""Folds a linear loss: sums over samples with equal half vectors are made once for a whole fit.
+"""Speeds up fits to tables under a linear loss, by sums over samples with equal half vectors.
 
-Folding needs lobes that are a factor S, which has the shape parameters and depends only on the half
-vector and theta_d, times a factor A without parameters. Then the sums of a linear loss,
+Some lobes are a product of two factors: S contains the shape parameters and depends only on the
+half vector and θ_d, the angle between it and the incident direction; A contains no parameters. A
+loss is linear if its difference is κ (model - measured). Then its sums over samples,
 
     Σ w κ² S S A A,   Σ w κ² S A R,   Σ w κ² R²,
 
-with measured values R, weights w and the slope κ of the loss, are sums over the half vectors of a
-table, 90 in MERL's: of S S or S times inner sums that never change.
+with measured values R and weights w, can be folded: the products of κ, A and R are summed once, for
+each half vector (a "node", 90 in MERL's tables). Each step of a fit sums over the nodes only.
 """
 
 from __future__ import annotations
@@ -24,23 +25,24 @@ from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.sums import Sums, move_sums_to_weights, solve_weights
 
-# Folding pays if a node, a half vector with its sums, stands for at least this number of samples
+# Problems are folded only if a node stands for at least this number of samples on average; with
+# fewer, folding saves no time
 SAMPLES_PER_NODE = 20
-# Nodes of this number of samples are multiplied one by one
+# From this number of samples per node on, one matrix product for each node is the fastest
 LONG_NODE = 1000
 
 
 def fold_problem(problem: Problem) -> FoldedProblem | None:
-    """Return the `FoldedProblem` problem of a `Problem`, or None if it cannot be folded."""
+    """Return the `FoldedProblem` of a problem, or None if folding is impossible or too slow."""
     cells = problem.samples.cells
-    few = len(problem.groups) == 1  # a node holds the products of all channels
+    few = len(problem.groups) == 1  # the sums of a node are for all channels at once
     if not (problem.linear and few) or cells is None or not double_precision.has_derivatives():
         return None
     pairs = _depends_on_cos_d(problem)
     if pairs is None:
         return None
     numbers = cells[1 if pairs else 0]
-    if not problem.columns.slopes:  # without slopes S is constant, and one node is enough
+    if not problem.columns.slopes:  # no shape parameters: S is constant, one node is enough
         numbers = np.zeros_like(numbers)
     starts = np.flatnonzero(np.diff(numbers, prepend=-1))
     return (
@@ -49,9 +51,10 @@ def fold_problem(problem: Problem) -> FoldedProblem | None:
 
 
 def _depends_on_cos_d(problem: Problem) -> bool | None:
-    """Return whether a factor S depends on cosθ_d, beside the half vector.
+    """Return whether the factors S of the lobes depend on cosθ_d, not only on the half vector.
 
-    None stands for a factor A, or a lobe without factors, that depends on a parameter.
+    Return None if the problem cannot be folded, because a factor A, or a lobe that is no product,
+    depends on a shape parameter. S, A and θ_d are explained at the head of the file.
     """
     space, up = problem.space, double_precision.to_vector(np.array([[0.0, 0.0, 1.0]]))
     shapes = [
@@ -72,7 +75,11 @@ def _depends_on_cos_d(problem: Problem) -> bool | None:
 
 
 class FoldedProblem:
-    """A `Problem` of a linear loss as sums over nodes; `starts`: the first samples of the nodes."""
+    """The squared loss of a `Problem` as sums over nodes, groups of samples with one half vector.
+
+    It has the methods of `Problem` that a search needs. `starts` (nodes,): index of the first
+    sample of each node.
+    """
 
     clamped = False
 
@@ -99,7 +106,10 @@ class FoldedProblem:
         self.squares = float(np.trace(by_node[lobes:, lobes:].sum(axis=2)))
 
     def _evaluate_constants(self, block: Block) -> FloatArray:
-        """Return the factors κ A of the lobes, and -κ R by channel, times √w, as (..., n)."""
+        """Return the parts of the sums that do not change in a fit, (lobes + channels, n).
+
+        The rows are √w κ A for each lobe and -√w κ R for each channel, at the n samples of a block.
+        """
         columns, problem = self.columns, self.problem
         middle = self.space.to_parameters(np.full((1, len(self.space.names)), 0.5))[0]
         lobes = columns.make_model([double_precision.to_scalar(x) for x in middle]).lobes()
@@ -114,11 +124,11 @@ class FoldedProblem:
         return np.stack([np.asarray(array) for array in constants + differences])
 
     def estimate_weights(self, u: FloatArray) -> FloatArray:
-        """Return the best weights at coordinates `u`; see `Problem.estimate_weights`."""
+        """Return the weights (points, channels, lobes) with the least loss at coordinates `u`."""
         return solve_weights(self.columns, self._sum_nodes(u), self.least)
 
     def expand(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
-        """Return the `Expansion` of E² with the best weights; see `Problem.expand`."""
+        """Return the `Expansion` about coordinates `u` and the weights that are best for them."""
         sums = self._sum_nodes(u)
         weights = solve_weights(self.columns, sums, self.least)
         sums = move_sums_to_weights(self.columns, sums, weights)
@@ -127,12 +137,12 @@ class FoldedProblem:
     def expand_at_weights(
         self, u: FloatArray, weights: FloatArray, curvature: bool = True
     ) -> Expansion:
-        """Return the `Expansion` at these `weights`, with the Hessian, which costs nothing."""
+        """Return the `Expansion` about coordinates `u` and these `weights`, with its Hessian."""
         sums = move_sums_to_weights(self.columns, self._sum_nodes(u), weights)
         return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 
     def _sum_nodes(self, u: FloatArray) -> Sums:
-        """Return the `Sums` over all samples at coordinates `u` and weights of 0."""
+        """Return the `Sums` over all samples at coordinates `u` (points, shapes), weights 0."""
         points, nodes = len(u), len(self.wi.x)
         table = self.space.to_parameters(u)
         shapes = [double_precision.to_array(np.repeat(x, nodes)) for x in table.T]
@@ -153,12 +163,18 @@ class FoldedProblem:
 
 
 def _eval_factor(lobe: Lobe, wi: Vector, wo: Vector) -> JitFloat:
-    """Return the factor S of a lobe; 1 for a lobe without factors, which has no parameters."""
+    """Return the factor S of a lobe, which contains its shape parameters, at directions (n,).
+
+    A lobe that is no product has no shape parameters here; its factor is 1.
+    """
     return lobe.factors[0](half_vector(wi, wo), cos_theta_d(wi, wo)) if lobe.factors else 1.0
 
 
 def _sum_products(rows: FloatArray, edges: IntArray) -> FloatArray:
-    """Return products of `rows` (k, n) with each other, summed between `edges` (edges, k, k)."""
+    """Return the products of all pairs of `rows` (k, n), summed over the samples of each node.
+
+    `edges` (nodes,): index of the first sample of each node. The result is (nodes, k, k).
+    """
     count, n = rows.shape
     if n > LONG_NODE * len(edges):
         parts = np.split(rows, edges[1:], axis=1)

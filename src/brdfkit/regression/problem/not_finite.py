@@ -1,7 +1,7 @@
-"""Raises errors if a model's formula, or its derivative, is not finite at a sample.
+"""Raises errors if the formula of a model or a loss, or a derivative, is not finite at a sample.
 
-The errors name the sample. A sum over all samples would hide it, and a search would fail with an
-unclear error.
+The error names the directions of the sample, so that a user can correct the formula. Without it, a
+sum over all samples would hide the sample, and the search would fail with an unclear error.
 """
 
 from collections.abc import Iterable, Mapping
@@ -26,13 +26,14 @@ REMEDY = "keep the formula finite there, as by dr.maximum, or leave the directio
 def require_finite_columns(
     columns: Columns, values: list[FloatArray], block: Block, space: Space, u: FloatArray
 ) -> list[FloatArray]:
-    """Return the arrays `values` (points, n) of `Columns` at the samples of a `Block`, all finite.
+    """Return the columns of a model at the samples of a block, all finite.
 
-    Raises `BrdfkitError` if one is not. Slopes that are finite in Dr.Jit's reverse mode become 0:
-    for the derivative of 0^p by p, forward mode returns NaN. `u` (points, shapes): coordinates in
-    the `space`.
+    `values`: for each of the `columns` an array (points, samples); `u` (points, shapes):
+    coordinates of the points in the search `space`. Raises `BrdfkitError` if a value is not finite.
+    A slope that is not finite becomes 0 if it is finite in Dr.Jit's reverse mode: forward mode
+    returns NaN for the derivative of 0^p by p.
     """
-    if all(np.isfinite(value.sum()) for value in values):  # quick: one sum per column
+    if all(np.isfinite(value.sum()) for value in values):  # quicker than a check of each
         return values
     count = len(columns.lobes)
     for lobe, value in zip(columns.lobes, values, strict=False):
@@ -60,9 +61,10 @@ def require_finite_loss(
     difference: JitFloat,
     slope: JitFloat,
 ) -> None:
-    """Raise `BrdfkitError` if the `difference` of a `Loss`, or its `slope`, is not finite.
+    """Raise `BrdfkitError` if the difference of a loss, or its derivative, is not finite.
 
-    All arrays are Dr.Jit arrays over the samples of a `Block`.
+    `model`, `measured`: values of the BRDF at the samples of the `block`; `difference`: the loss's
+    difference between both; `slope`: its derivative by the model's value; all are Dr.Jit arrays.
     """
     differences, slopes = np.array(difference), np.array(slope)
     rows = np.flatnonzero(~(np.isfinite(differences) & np.isfinite(slopes)))
@@ -79,15 +81,15 @@ def require_finite_loss(
 
 
 def require_finite_lobes(model: Any, columns: FloatArray, wi: Vector, wo: Vector) -> None:
-    """Raise `BrdfkitError` if a lobe's values, `columns` (lobes, n), are not finite."""
-    if np.isfinite(columns.sum(axis=1)).all():  # quick: one sum per lobe
+    """Raise `BrdfkitError` if a value of the lobes, `columns` (lobes, n), is not finite."""
+    if np.isfinite(columns.sum(axis=1)).all():  # quicker than a check of each
         return
     lobe, row = np.argwhere(~np.isfinite(columns))[0]
     _raise_for_lobe(model, lobe, columns[lobe, row], describe_pair(wi, wo, row))
 
 
 def _raise_for_lobe(model: Any, lobe: int, value: float, pair: str) -> NoReturn:
-    """Raise `BrdfkitError` for the `value` of a lobe at a `pair` of directions in words."""
+    """Raise `BrdfkitError` for a lobe's `value` that is not finite at directions, `pair`."""
     raise BrdfkitError(
         f"{model.type_name()}: the lobe of {model.weights()[lobe]} is {value:g} at {pair}; "
         f"{REMEDY}."
@@ -97,13 +99,13 @@ def _raise_for_lobe(model: Any, lobe: int, value: float, pair: str) -> NoReturn:
 def require_finite_slopes(
     model: Any, values: Mapping[str, float], names: Iterable[str], wi: Vector, wo: Vector
 ) -> None:
-    """Raise `BrdfkitError` if a lobe's derivative by one of the parameters `names` is not finite.
+    """Raise `BrdfkitError` if the derivative of a lobe by a shape parameter is not finite.
 
-    `values`: of all shape parameters, by name; `wi`, `wo`: `double_precision.Vector`. Derivatives
-    are taken in reverse mode, because Dr.Jit's forward mode returns NaN for the derivative of 0^p
-    by p, which is 0.
+    `values`: values of all shape parameters by name; `names`: the parameters to differentiate by;
+    `wi`, `wo`: pairs of directions. Derivatives are taken in reverse mode, because Dr.Jit's forward
+    mode returns NaN for the derivative of 0^p by p, which is 0.
     """
-    # One value for each pair, so that its derivative belongs to the pair, and is no sum
+    # Each pair of directions has its own copy of a parameter, so that it has its own derivative
     count = len(wi.x)
     bound = {n: double_precision.to_array(np.full(count, v)) for n, v in values.items()}
     for name in names:
@@ -127,9 +129,9 @@ def require_finite_slopes(
 
 
 def describe_pair(wi: Vector, wo: Vector, row: int) -> str:
-    """Return the pair of directions with the index `row` in words.
+    """Return one of the pairs of directions `wi`, `wo` as text, for an error message.
 
-    `wi`, `wo`: `double_precision.Vector`.
+    `row`: index of the pair.
     """
     pair = [np.array([np.array(c)[row] for c in (w.x, w.y, w.z)]) for w in (wi, wo)]
     (theta_i, phi_i), (theta_o, phi_o) = map(to_angles, pair)

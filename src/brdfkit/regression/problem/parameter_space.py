@@ -1,7 +1,8 @@
-"""The search space of a fit: the shape parameters, with coordinates between their bounds.
+"""Defines the search space of a fit: its shape parameters, with coordinates between their bounds.
 
 A coordinate is 0 at the lower bound of its parameter and 1 at the upper one. It is logarithmic for
-a parameter that is declared so.
+a parameter that is declared so. A point of a search is a vector of the coordinates of all searched
+shape parameters, then the weights of the lobes in each channel.
 """
 
 from __future__ import annotations
@@ -20,33 +21,45 @@ from brdfkit.model.samples import Samples
 
 
 def join_point(u: FloatArray, weights: FloatArray) -> FloatArray:
-    """Join `u` (points, shapes) and `weights` (points, channels, lobes) to vectors (points, n)."""
+    """Join the parameters of points of a search to vectors (points, n).
+
+    `u` (points, shapes): coordinates of shape parameters; `weights` (points, channels, lobes):
+    weights of the lobes.
+    """
     return np.concatenate([u, weights.reshape(len(u), math.prod(weights.shape[1:]))], axis=1)
 
 
 def split_point(z: FloatArray, shapes: int, channels: int) -> tuple[FloatArray, FloatArray]:
-    """Split vectors `z` (points, n) into coordinates and weights, as `join_point` takes them."""
+    """Split vectors `z` (points, n) into coordinates and weights, the inverse of `join_point`."""
     lobes = (z.shape[1] - shapes) // channels
     return z[:, :shapes], z[:, shapes:].reshape(len(z), channels, lobes)
 
 
 def make_limits(shapes: int, channels: int, least: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the bounds low and high (n,) of vectors; `least` (lobes,): the smallest weights."""
+    """Return the lower and upper bounds (n,) of the vectors that `join_point` makes.
+
+    `shapes`, `channels`: numbers of shape parameters and channels; `least` (lobes,): lower bounds
+    of the weights, which have no upper ones.
+    """
     count = channels * len(least)
     low = np.concatenate([np.zeros(shapes), np.tile(least, channels)])
     return low, np.concatenate([np.ones(shapes), np.full(count, np.inf)])
 
 
 def find_channel_entries(c: int, shapes: int, lobes: int) -> IntArray:
-    """Return the indices of the entries that channel `c` depends on: all shapes, its weights."""
+    """Return the indices of those entries of a point's vector that channel `c` depends on.
+
+    These are all `shapes` coordinates of shape parameters, and the channel's own weights.
+    """
     return np.r_[0:shapes, shapes + c * lobes : shapes + (c + 1) * lobes]
 
 
 @dataclass(frozen=True)
 class Space:
-    """The searched shape parameters `names`, with bounds, and the values of the `fixed` ones.
+    """The search space of a fit: its n searched shape parameters with bounds, and fixed ones.
 
-    `low`, `high` (n,): the bounds; `log` (n,): whether a coordinate is logarithmic.
+    `names`: names of the searched parameters (n,); `low`, `high`: their bounds (n,); `log`: whether
+    the coordinate of each is logarithmic (n,); `fixed`: values of the other parameters by name.
     """
 
     names: tuple[str, ...]
@@ -63,10 +76,11 @@ class Space:
         fixed: Mapping[str, float],
         anisotropic: bool,
     ) -> Space:
-        """Return the space of the shape parameters of a `model` class that are not `fixed`.
+        """Return the search space of the shape parameters of a `model` class that are not fixed.
 
-        `bounds`: narrower bounds by name. Raises `BrdfkitError` for a parameter that is not
-        searched, and for bounds beyond the model's.
+        `bounds`: narrower bounds (low, high) by name; `fixed`: values by name; `anisotropic`:
+        whether the second roughness of an anisotropic model is searched. Raises `BrdfkitError` for
+        a name that is no searched parameter, and for bounds beyond the model's.
         """
         shapes = model.shapes(anisotropic)
         _check_arguments(model, shapes, bounds, fixed)
@@ -85,9 +99,10 @@ class Space:
         fixed: Mapping[str, float],
         anisotropic: bool,
     ) -> Space:
-        """Return the space of a fit to `Samples`, whose directions determine some parameters.
+        """Return the search space of a fit to `samples`, without parameters that they determine.
 
-        Parameters with `bounds`, or that are `fixed`, are not determined so; see `of`.
+        The geometry of samples may determine parameters of the model, which become fixed unless
+        they have `bounds`. The other arguments are those of `for_model`.
         """
         determined = {
             n: v for n, v in model.determine_parameters(samples).items() if n not in bounds
@@ -95,30 +110,30 @@ class Space:
         return cls.for_model(model, bounds, {**determined, **fixed}, anisotropic)
 
     def to_parameters(self, u: FloatArray) -> FloatArray:
-        """Return the parameters (points, shapes) at coordinates `u`, of the same shape."""
+        """Return the shape parameters (points, shapes) at coordinates `u` (points, shapes)."""
         linear = self.low + u * (self.high - self.low)
         return np.where(self.log, self._interpolate_logarithmically(u), linear)
 
     def to_values(self, u: FloatArray) -> dict[str, float]:
-        """Return the parameters by name, with the fixed ones, at the coordinates `u` (shapes,)."""
+        """Return all shape parameters by name, fixed ones too, at coordinates `u` (shapes,)."""
         return dict(zip(self.names, map(float, self.to_parameters(u)), strict=True)) | self.fixed
 
     def to_coordinates(self, values: Mapping[str, Any]) -> FloatArray:
-        """Return the coordinates (shapes,) of parameters by name, clamped to [0, 1]."""
+        """Return the coordinates (shapes,) of parameters given by name, clamped to [0, 1]."""
         x = np.array([values[name] for name in self.names])
         linear = (x - self.low) / (self.high - self.low)
         with np.errstate(divide="ignore", invalid="ignore"):
             log = np.log(x / self.low) / np.log(self.high / self.low)
         return np.clip(np.where(self.log, log, linear), 0, 1)
 
-    def differentiate(self, u: FloatArray) -> FloatArray:
-        """Return the derivative of each parameter by its coordinate, at coordinates `u`."""
+    def differentiate_parameters(self, u: FloatArray) -> FloatArray:
+        """Return the derivatives of the parameters by their coordinates, at coordinates `u`."""
         with np.errstate(divide="ignore", invalid="ignore"):
             log = self._interpolate_logarithmically(u) * np.log(self.high / self.low)
         return np.where(self.log, log, self.high - self.low)
 
     def _interpolate_logarithmically(self, u: FloatArray) -> FloatArray:
-        """Return the parameters at coordinates `u` as if all were logarithmic."""
+        """Return the parameters at coordinates `u`, with all coordinates taken as logarithmic."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return self.low * (self.high / self.low) ** u
 
@@ -129,7 +144,7 @@ def _check_arguments(
     bounds: Mapping[str, tuple[float, float]],
     fixed: Mapping[str, float],
 ) -> None:
-    """Raise `BrdfkitError` for bounds or fixed values that do not suit the model."""
+    """Raise `BrdfkitError` for bounds or fixed values of shape parameters that are invalid."""
     for name in (*bounds, *fixed):
         if name not in shapes:
             model.parameter(name)

@@ -1,7 +1,7 @@
-"""The function that a fit minimises if pixels count beside samples: E² of a model on both.
+"""Computes the function that a fit minimises if pixels count as well as samples.
 
-A pixel is a weighted sum of the BRDF at several pairs of directions: a pixel of a picture, or an
-albedo. Pixels are evaluated in blocks of Dr.Jit arrays, like samples in `blocks.py`.
+A "pixel" is a weighted sum of the BRDF at several pairs of directions: a pixel of a picture, or a
+directional albedo. Pixels are evaluated in blocks of Dr.Jit arrays, as samples are in `blocks.py`.
 """
 
 from __future__ import annotations
@@ -32,24 +32,26 @@ from brdfkit.regression.problem.subset import draw_subset
 
 UP = (0.0, 0.0, 1.0)
 LOG = named.by_sample["log"]
-# Samples that are drawn for a `Picture`; to compare starts, fewer samples and this share of pixels
+# A fit to pictures uses about the first number of samples. Its first stage, which compares start
+# points, uses about the second number of samples and this share of the pixels
 SAMPLES, FEW_SAMPLES, PIXEL_SHARE = 20_000, 2_000, 1 / 12
 
 
 @dataclass(frozen=True, eq=False)
 class PixelBlock(Block):
-    """Pixels as Dr.Jit arrays, repeated for each point.
+    """Some pixels as Dr.Jit arrays, repeated for each point of a search as in `Block`.
 
-    `pairs`: a `Block` of the pairs of directions of these pixels; its importance is the share of a
-    pair in its pixel.
+    `pairs`: block of the pairs of directions of these pixels; the importance of a pair is its
+    weight in the sum of its pixel.
     """
 
     pairs: Block
 
     def evaluate_columns(self, columns: Columns, table: FloatArray) -> list[JitFloat]:
-        """Evaluate the columns of pixels, sums over their pairs; see `Block.evaluate_columns`.
+        """Evaluate the model's `columns` for the pixels, as weighted sums over their pairs.
 
-        A slope that is not finite at a pair counts as 0, as in `require_finite_columns`.
+        `table`: values of the shape parameters at each point (points, shapes). A slope that is not
+        finite at a pair counts as 0, as in `require_finite_columns`.
         """
         lobes, each = len(columns.lobes), len(self.pairs.wi.x) // len(self.wi.x)
         arrays = self.pairs.evaluate_columns(columns, table)
@@ -58,19 +60,25 @@ class PixelBlock(Block):
 
 
 class PixelBlocks:
-    """The blocks of `Pixels`, with the weights `importance` (n,), under a `loss` of pixels."""
+    """An iterable factory of the blocks of some pixels, for any number of points of a search.
+
+    `importance`: weights of the n pixels in E² (n,); `loss`: the loss that compares pixels.
+    """
 
     def __init__(self, pixels: Pixels, importance: FloatArray, loss: Loss) -> None:
         self.pixels, self.importance, self.loss = pixels, importance, loss
         self._cache: dict[int, PixelBlock] = {}
         n, none = len(pixels.values), np.zeros((len(pixels.wi), 0))
-        # A pixel has no direction of its own
+        # A pixel has no direction of its own, but `Block` needs one for each of its entries
         up, valid = np.tile(UP, (n, 1)), np.ones(n, bool)
         self.whole = Samples(up, up, pixels.values, valid, importance)
         self.pairs = Samples(pixels.wi, pixels.wo, none, none, pixels.shares)
 
     def __call__(self, count: int) -> Iterator[Block]:
-        """Yield the blocks for `count` points. A single block is cached, several are made anew."""
+        """Yield the blocks of the pixels, with arrays repeated for `count` points.
+
+        If all pixels fit into one block, it is cached; otherwise blocks are made again each time.
+        """
         n, pairs = len(self.importance), self.pixels.pairs
         step = max(BLOCK_SIZE // (count * pairs), 1)
         if n <= step and count in self._cache:
@@ -90,17 +98,18 @@ class PixelBlocks:
 
 
 def _sum_groups(array: JitFloat, each: int) -> JitFloat:
-    """Return the sums of every `each` numbers of a Dr.Jit array."""
+    """Return the sums over groups of `each` consecutive numbers of a Dr.Jit array."""
     if double_precision.has_derivatives():
         return dr.block_sum(array, each)
     return double_precision.to_array(np.asarray(array).reshape(-1, each).sum(axis=1))
 
 
 class PixelProblem(Problem):
-    """E² of a model class on valid `Samples` under a `Loss`, plus E² on `Pixels` under another.
+    """The sum of two squared losses of a model: one of samples, and one of pixels.
 
-    `share`: the factor of E² of the samples; `pixel_weights` (n,): the weights of the `pixels`,
-    whose loss is `pixel_loss`.
+    `samples`, `loss`, `share`: valid samples, their loss, and the factor of its square; `pixels`,
+    `pixel_weights`, `pixel_loss`: pixels, their weights (n,) and their loss; `space`: search space
+    of the model's shape parameters.
     """
 
     def __init__(
@@ -123,7 +132,7 @@ class PixelProblem(Problem):
         self.blocks = self._iterate_blocks
 
     def _iterate_blocks(self, count: int) -> Iterator[Block]:
-        """Yield the blocks of samples, then the blocks of pixels."""
+        """Yield the blocks of samples, then the blocks of pixels, for `count` points."""
         yield from self._sample_blocks(count)
         yield from self._pixel_blocks(count)
 
@@ -137,7 +146,11 @@ class PixelProblem(Problem):
     def _require_finite_pairs(
         self, block: PixelBlock, u: FloatArray, columns: list[JitFloat]
     ) -> None:
-        """Raise `BrdfkitError` for a lobe that is not finite at one of the pairs of pixels."""
+        """Raise `BrdfkitError` if a lobe is not finite at one of the pairs of directions.
+
+        The sum of a pixel would hide which pair it was. `u`: coordinates of the points; `columns`:
+        columns of the pixels.
+        """
         values = columns[: len(self.columns.lobes)]
         if not all(np.isfinite(np.array(value)).all() for value in values):
             arrays = [
@@ -148,7 +161,7 @@ class PixelProblem(Problem):
 
 
 class PictureProblem(PixelProblem):
-    """E² of a model class under a `Picture`, on the `Pixels` of pictures and on valid `Samples`."""
+    """The squared loss `Picture` of a model: of the pixels of pictures, and of samples."""
 
     def __init__(
         self, model: type[Model], samples: Samples, picture: Picture, space: Space, pixels: Pixels
@@ -160,8 +173,8 @@ class PictureProblem(PixelProblem):
         self.picture = picture
         if self.clamped:
             raise BrdfkitError(
-                f"{model.type_name()}: may be negative, and is clamped at 0 there, so that pixels "
-                "are no sums of its lobes; choose another loss, or another model."
+                f"{model.type_name()}: its values may be negative and are then clamped at 0, so "
+                "that pixels are no sums of its lobes; choose another loss, or another model."
             )
 
     @classmethod
@@ -174,12 +187,12 @@ class PictureProblem(PixelProblem):
         pixels: Pixels,
         rng: np.random.Generator,
     ) -> PictureProblem:
-        """Return the problem on a part of the samples, which the generator `rng` draws."""
+        """Return the problem with a part of many samples, which the generator `rng` draws."""
         samples = _draw_samples(model, samples, space, SAMPLES, rng)
         return cls(model, samples, picture, space, pixels)
 
     def make_smaller(self, rng: np.random.Generator) -> PictureProblem:
-        """Return the same problem on few samples and pixels, to compare starts."""
+        """Return the problem with few samples and pixels, to compare start points quickly."""
         samples = _draw_samples(self.model, self.samples, self.space, FEW_SAMPLES, rng)
         pixels = self.pixels.take_first(math.ceil(len(self.pixels.values) * PIXEL_SHARE))
         return PictureProblem(self.model, samples, self.picture, self.space, pixels)
@@ -188,7 +201,10 @@ class PictureProblem(PixelProblem):
 def _draw_samples(
     model: type[Model], samples: Samples, space: Space, size: int, rng: np.random.Generator
 ) -> Samples:
-    """Draw about `size` of `Samples`; return all if there are at most twice as many."""
+    """Return about `size` of the samples, or all if there are at most twice as many.
+
+    `model`, `space`: the samples are drawn by their influence on a fit of this model.
+    """
     if len(samples.wi) <= 2 * size:
         return samples
     part, _ = draw_subset(samples, Problem(model, samples, LOG, space).black_squares, size, rng)

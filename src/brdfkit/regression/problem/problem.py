@@ -1,7 +1,8 @@
-"""The function that a fit minimises: E² of a model on samples, by its shapes and weights.
+"""Computes the function that a fit minimises: the squared loss E² of a model on samples.
 
-A point consists of the coordinates u of the searched shape parameters and of the weights of all
-channels. One kernel evaluates many points together, each with all samples.
+A point of the search consists of the coordinates u of the searched shape parameters, and of the
+weights of the model's lobes in all channels. One kernel evaluates many points together, each of
+them on all samples.
 """
 
 from __future__ import annotations
@@ -29,12 +30,13 @@ from brdfkit.regression.problem.sums import Sums, move_sums_to_weights, solve_we
 
 
 class Problem:
-    """E² of a model class on `Samples`, which are all valid, under a `Loss`.
+    """The squared loss E² of a model on samples, as a function of the model's parameters.
 
-    A model with negative weights is clamped at 0 where it is negative. If E² is `extended`, it
-    continues there with the slope of the loss at 0. `space`: the search space of the shape
-    parameters. The methods take coordinates `u` (points, shapes) and `weights` (points, channels,
-    lobes).
+    `model`: the class; `samples`: valid samples; `loss`: the loss E; `space`: search space of the
+    shape parameters. A model with negative weights is clamped at 0 where it is negative. There,
+    the loss of a sample is constant, or if `extended`, continues with the slope that it has at 0.
+
+    The methods take coordinates `u` (points, shapes) and `weights` (points, channels, lobes).
     """
 
     def __init__(
@@ -54,20 +56,26 @@ class Problem:
 
         importance = loss.importance(samples)
         if not importance.any():
-            why = "all are seen at normal incidence" if samples.wi[:, 2].min() == 1 else "all are 0"
+            normal = samples.wi[:, 2].min() == 1
+            why = (
+                "at normal incidence, as here, its weights are 0" if normal else "all weights are 0"
+            )
             raise BrdfkitError(
-                f"The {loss.name} loss weighs no sample: of its weights {why}; choose another loss."
+                f"The {loss.name} loss weighs no sample: {why}; choose another loss."
             )
         self.importance = importance
         self.blocks: Callable[[int], Iterator[Block]] = Blocks(samples, importance, loss)
 
     def with_samples(self, samples: Samples) -> Problem:
-        """Return the same problem on other `Samples`."""
+        """Return the problem of the same model and loss on other samples."""
         return Problem(self.model, samples, self.loss, self.space)
 
     @cached_property
     def black_squares(self) -> FloatArray:
-        """The contributions (n,) of the samples to E² of a black model."""
+        """The contributions (n,) of the samples to the squared loss of a black model.
+
+        They show how much influence each sample may have on a fit.
+        """
         squares = []
         for block in self.blocks(1):
             total = 0
@@ -82,10 +90,10 @@ class Problem:
         return contributions
 
     def estimate_weights(self, u: FloatArray, evenly: bool = False) -> FloatArray:
-        """Return the weights with the least E² at coordinates `u`, exact for a linear loss.
+        """Return weights (points, channels, lobes) to start from, given coordinates `u`.
 
-        Another loss is linearised at the measured values, or if `evenly`, replaced by the plain
-        difference of the values. Then the weights are a start for the search.
+        For a linear loss these are the weights with the least E². Another loss is linearised at the
+        measured values, or if `evenly`, replaced by the plain difference of the values.
         """
         sums = Sums.zeros(len(u), self.channels, len(self.columns))
         for block in self.blocks(len(u)):
@@ -107,10 +115,10 @@ class Problem:
         return solve_weights(self.columns, sums, self.least)
 
     def expand(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
-        """Return the `Expansion` of E² about points, by Gauss and Newton.
+        """Return the quadratic approximation of E² about points.
 
-        Without `curvature` its Hessian is None. If E² is quadratic in the weights, the best weights
-        replace `weights`.
+        It has no Hessian without `curvature`, which saves time. If E² is quadratic in the weights,
+        the expansion is about the best weights in place of the given `weights`.
         """
         solve = self.linear and curvature and self.factors is None
         if solve:
@@ -122,7 +130,7 @@ class Problem:
         return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 
     def compute_sums(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Sums:
-        """Return the `Sums` at points."""
+        """Return the sums over all samples at points, from which E² and derivatives follow."""
         sums = Sums.zeros(len(u), self.channels, len(self.columns), curvature)
         for _, evaluated in self._evaluate_blocks(u, weights):
             sums.add_samples(*evaluated)
@@ -131,10 +139,11 @@ class Problem:
         return sums
 
     def compute_jacobians(self, u: FloatArray, weights: FloatArray) -> list[list[FloatArray]]:
-        """Return the residuals (n,) at one point, and their derivatives (shapes + lobes, n).
+        """Return the residuals at one point and their derivatives, each as a list by channel.
 
-        Both are lists by channel. The derivatives are by the parameters, not by their coordinates;
-        a residual without a slope is 0.
+        Residuals (n,) are the differences of the loss times √w of their sample; those whose
+        difference has a slope of 0 become 0. Derivatives (shapes + lobes, n) are by the shape
+        parameters themselves, not by their coordinates, and by the weights.
         """
         _, residuals, jacobians = zip(*self.iterate_jacobians(u, weights), strict=True)
         return [
@@ -145,7 +154,7 @@ class Problem:
     def iterate_jacobians(
         self, u: FloatArray, weights: FloatArray
     ) -> Iterator[tuple[slice, list[FloatArray], list[FloatArray]]]:
-        """Yield the rows, residuals and derivatives of each block; see `compute_jacobians`."""
+        """Yield the sample indices, residuals and derivatives of each block of samples."""
         change = make_derivative_matrix(self.columns, weights, np.ones_like(u))[0]
         for block, (columns, _, moments, grams) in self._evaluate_blocks(u, weights):
             roots = [np.sqrt(gram[0]) for gram in grams]
@@ -160,7 +169,7 @@ class Problem:
     def _evaluate_blocks(
         self, u: FloatArray, weights: FloatArray
     ) -> Iterator[tuple[Block, tuple[Any, ...]]]:
-        """Yield each block with its arguments of `Sums.add_samples`."""
+        """Yield each block of samples with the arguments that `Sums.add_samples` needs for it."""
         for block in self.blocks(len(u)):
             columns = self._evaluate_columns(block, u)
             squares, moments, grams = [], [], []
@@ -183,12 +192,15 @@ class Problem:
     def expand_at_weights(
         self, u: FloatArray, weights: FloatArray, curvature: bool = True
     ) -> Expansion:
-        """Return the `Expansion` about points without changing their `weights`."""
+        """Return the quadratic approximation of E² about points, keeping their `weights`."""
         sums = self.compute_sums(u, weights, curvature)
         return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 
     def compute_residuals(self, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
-        """Return the residuals (n,) at one point, by channel; E² is the sum of their squares."""
+        """Return the residuals (n,) of the samples at one point, as a list by channel.
+
+        E² is the sum of their squares.
+        """
         parts: list[list[JitFloat]] = []
         for block in self.blocks(1):
             columns, root = self._evaluate_columns(block, u), dr.sqrt(block.importance)
@@ -202,18 +214,18 @@ class Problem:
         return [np.concatenate([np.asarray(p) for p in part]) for part in zip(*parts, strict=True)]
 
     def _evaluate_group(self, *arrays: Any) -> None:
-        """Evaluate the arrays of a group of channels, so that the next group has its own kernel."""
+        """Evaluate the arrays of a group of channels, so that kernels stay small."""
         if len(self.groups) > 1:
             dr.eval(*arrays)
 
     def _evaluate_columns(self, block: Block, u: FloatArray) -> list[JitFloat]:
-        """Return the columns of a block at coordinates `u`, a list of Dr.Jit arrays."""
+        """Return the model's columns at the samples of a block, a list of Dr.Jit arrays."""
         return block.evaluate_columns(self.columns, self.space.to_parameters(u))
 
     def _evaluate_model(
         self, block: Block, columns: list[JitFloat], weights: FloatArray
     ) -> list[JitFloat]:
-        """Return the model at the samples of a block, a Dr.Jit array for each channel."""
+        """Return the model's BRDF at the samples of a block, a Dr.Jit array for each channel."""
         factors = weights[:, :, self.columns.lobes] ** self.columns.powers
         points, channels, values = factors.shape
         spread = block.repeat_for_samples(factors.reshape(points, -1))
@@ -226,15 +238,21 @@ class Problem:
     def _evaluate_difference(
         self, block: Block, value: JitFloat, c: int
     ) -> tuple[JitFloat, JitFloat]:
-        """Return the loss's difference in channel `c`, and its slope by the model's `value`."""
+        """Return the loss's difference in channel `c`, and its derivative by the model's `value`.
+
+        Both are Dr.Jit arrays over the samples of the block.
+        """
 
         def difference(value: JitFloat) -> JitFloat:
+            """Return the difference of the loss between a model's value and the measured one."""
             return block.loss.difference(value, block.measured[c], block.wi.z, block.wo.z)
 
         def clamped(value: JitFloat) -> JitFloat:
+            """Return the difference of a value that is clamped at 0 where it is negative."""
             return difference(dr.select(value < 0, 0, value))
 
         def extended(value: JitFloat) -> JitFloat:
+            """Return the difference that continues along its slope at 0 for negative values."""
             return clamped(value) + slope * dr.minimum(value, 0)
 
         value = double_precision.choose_float_type()(value) + 0 * block.wi.z
@@ -246,9 +264,10 @@ class Problem:
         return differentiate(extended, value)
 
     def _raise_if_not_finite(self, u: FloatArray, weights: FloatArray | None = None) -> None:
-        """Raise `BrdfkitError` that names a sample at which the loss is not finite.
+        """Raise a `BrdfkitError` that names a sample at which the loss is not finite, if any.
 
-        The model has these `weights`, or by default meets the measured values.
+        `weights`: weights of the model's lobes; without them, the loss is evaluated at the measured
+        values.
         """
         for block in self.blocks(len(u)):
             model = block.measured
@@ -267,7 +286,11 @@ class Problem:
         moments: list[JitFloat],
         weights: list[JitFloat],
     ) -> tuple[Any, ...]:
-        """Evaluate a block in one kernel, and return the arguments of `Sums.add_samples`."""
+        """Evaluate the arrays of a block in one kernel, and return them for `Sums.add_samples`.
+
+        `columns`: columns of the model; `squares`: lists of w d²; `moments`: w d d'; `weights`:
+        w d'², where w is the weight of a sample, d the difference of the loss, d' its derivative.
+        """
         total = sum(squares)
         dr.eval(columns, total, moments, weights)
         values = [block.split_by_point(column) for column in columns]

@@ -1,4 +1,7 @@
-"""Draws parts of many samples, and averages many channels to bands, to compare starts quickly."""
+"""Reduces the data of a fit, so that many start points can be compared quickly.
+
+Many samples are reduced to a part of them, and the channels of a spectrum to a few bands.
+"""
 
 from dataclasses import replace
 
@@ -8,11 +11,12 @@ from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.geometry.directions import cos_theta_h
 from brdfkit.model.samples import Samples
 
+# A spectrum is averaged to this number of channels
 BANDS = 4
 
 
 def average_to_bands(samples: Samples) -> Samples:
-    """Return `Samples` with few channels, the means of neighbouring channels."""
+    """Return samples with a few channels, each the mean of neighbouring channels."""
     bands = np.array_split(samples.values, BANDS, axis=1)
     return replace(samples, values=np.stack([band.mean(axis=1) for band in bands], axis=1))
 
@@ -20,11 +24,12 @@ def average_to_bands(samples: Samples) -> Samples:
 def draw_subset(
     samples: Samples, influence: FloatArray, size: int, rng: np.random.Generator
 ) -> tuple[Samples, IntArray]:
-    """Draw about `size` of some `Samples`; return them, with larger weights, and their indices.
+    """Draw about `size` of the `samples`, and return them with their indices.
 
-    Half of them are drawn uniformly, half in proportion to `influence` (n,). They are drawn at even
-    steps in the order of theta_h, from a random start by the generator `rng`. So a highlight keeps
-    its influence even if few samples show it.
+    Half of them are drawn uniformly, half in proportion to their `influence` (n,) on the fit, so
+    that a highlight keeps its influence even if few samples show it. They are drawn at even steps
+    in the order of θ_h, the angle of the half vector, from a random start by the generator `rng`.
+    The weights of the drawn samples grow to stand for all.
     """
     n = len(influence)
     share = 0.5 / n + 0.5 * influence / (influence.sum() or 1.0)
@@ -39,8 +44,11 @@ def draw_subset(
 
 
 def _sort_by_theta_h(samples: Samples) -> IntArray | None:
-    """Return the indices that sort samples by theta_h; None if they are sorted, like a table's."""
-    if samples.cells is not None:  # one sample for each half vector is enough
+    """Return the indices that sort samples by θ_h, the angle of the half vector to the normal.
+
+    Return None if they are already sorted, like the samples of a table.
+    """
+    if samples.cells is not None:  # one sample for each half vector of a table is enough
         first = np.flatnonzero(np.diff(samples.cells[0], prepend=-1))
         if _is_decreasing(cos_theta_h(samples.wi[first], samples.wo[first])):
             return None
@@ -49,5 +57,5 @@ def _sort_by_theta_h(samples: Samples) -> IntArray | None:
 
 
 def _is_decreasing(cosine: FloatArray) -> bool:
-    """Return whether the numbers (n,) never rise, except by rounding."""
+    """Return whether the numbers (n,) never increase, except by rounding errors."""
     return np.diff(cosine).max(initial=0) <= 1e-12

@@ -1,4 +1,8 @@
-"""Sums over samples for E² and its derivatives, and the best weights that follow from them."""
+"""Adds up samples for the squared loss E² and its derivatives, and finds the best weights.
+
+"Columns" are the values of the model's lobes at the samples, and their derivatives by shape
+parameters.
+"""
 
 from __future__ import annotations
 
@@ -11,17 +15,19 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.columns import Columns
 
-# Columns are multiplied in parts of this many numbers, which stay in the processor's cache
+# Columns are multiplied in parts of this many numbers, so that they stay in the processor's cache
 PART_SIZE = 2**16
 
 
 @dataclass(eq=False)
 class Sums:
-    """Sums over samples at several points.
+    """Sums over samples from which E² and its derivatives follow, at several points of a search.
 
-    `error` Σ w d² (points,); `moment` Σ w d d' T (points, channels, columns); `gram`
-    Σ w d'² T Tᵀ (points, channels, columns, columns), or None. T are the columns, d is the
-    difference of the loss, d' its derivative by the model's value, and w the weight of a sample.
+    T are the columns of the model at a sample, d is the difference of the loss, d' its derivative
+    by the model's value, and w the weight of the sample.
+
+    `error`: Σ w d² (points,), which is E²; `moment`: Σ w d d' T (points, channels, columns);
+    `gram`: Σ w d'² T Tᵀ (points, channels, columns, columns), or None.
     """
 
     error: np.ndarray
@@ -30,15 +36,15 @@ class Sums:
 
     @classmethod
     def zeros(cls, points: int, channels: int, columns: int, curvature: bool = True) -> Sums:
-        """Return sums over no samples."""
+        """Return sums over no samples, to add samples to; `curvature`: whether to have `gram`."""
         gram = np.zeros((points, channels, columns, columns)) if curvature else None
         return cls(np.zeros(points), np.zeros((points, channels, columns)), gram)
 
     def is_finite(self) -> bool:
-        """Return whether the errors and moments are finite."""
+        """Return whether the sums for E² and its gradient are finite."""
         return bool(np.isfinite(self.error).all() and np.isfinite(self.moment).all())
 
-    @np.errstate(invalid="ignore")  # `is_finite` reports it
+    @np.errstate(invalid="ignore")  # callers use `is_finite`, and raise a clearer error
     def add_samples(
         self,
         columns: list[FloatArray],
@@ -46,10 +52,10 @@ class Sums:
         moments: list[FloatArray],
         weights: list[FloatArray],
     ) -> None:
-        """Add samples.
+        """Add n samples to the sums, with the symbols that the class explains.
 
-        `columns`: a list of T (points, n); `squares` Σ_c w d² (points, n); `moments` w d d' and
-        `weights` w d'²: lists by channel of arrays (points, n).
+        `columns`: each column of T as an array (points, n); `squares`: w d², summed over channels,
+        (points, n); `moments`, `weights`: w d d' and w d'², an array (points, n) for each channel.
         """
         points, n = squares.shape
         self.error += squares.sum(axis=1)
@@ -64,10 +70,10 @@ class Sums:
 
 
 def solve_weights(columns: Columns, sums: Sums, low: FloatArray) -> FloatArray:
-    """Return the weights (points, channels, lobes) that minimise E² to second order.
+    """Return the lobes' weights (points, channels, lobes) that minimise E² to second order.
 
-    `sums`: the `Sums` at weights of 0; values that are factors of squared weights are ignored;
-    `low` (lobes,): the smallest weights.
+    `columns`: columns of the model; columns that are multiplied by a squared weight are ignored;
+    `sums`: sums where all weights are 0; `low` (lobes,): lower bounds of the weights.
     """
     points, channels = sums.moment.shape[:2]
     lobes = int(columns.lobes.max()) + 1
@@ -77,7 +83,10 @@ def solve_weights(columns: Columns, sums: Sums, low: FloatArray) -> FloatArray:
 
 
 def move_sums_to_weights(columns: Columns, sums: Sums, weights: FloatArray) -> Sums:
-    """Return the `Sums` at `weights`, from `sums` at weights of 0, for a linear difference."""
+    """Return the sums at other `weights` of the lobes without a pass over the samples.
+
+    `sums`: sums where all weights are 0, under a loss that is linear in the model.
+    """
     factors = weights[:, :, columns.lobes] ** columns.powers
     values = len(columns.lobes)
     by_values = sums.gram[:, :, :, :values] @ factors[..., None]

@@ -1,1 +1,1 @@
-"""Fits that give outliers less weight."""
+"""Robust fits, which reduce the weight of outliers and search again, until both agree."""

@@ -1,4 +1,7 @@
-"""A `Problem` whose samples have weights that depend on their residuals, for robust fits."""
+"""Computes the weights, gradients and Hessians of a robust fit.
+
+In a robust fit the samples of a `Problem` have weights that depend on their residuals.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,35 +22,41 @@ from brdfkit.regression.robust.reweighting import (
     require_more_samples,
 )
 
-# One of this number of samples, with residuals next to the median, determines its derivative
+# The derivative of a median residual is estimated from the samples with residuals next to the
+# median: one of this number of samples
 MEDIAN_SHARE = 200
-# Step of the central difference in r for the derivative of a weight
+# Step of the central difference for the derivative of a weight by the scaled residual r
 DIFFERENCE_STEP = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """Coordinates `u` (1, shapes), `weights` (1, channels, lobes), residuals (n,) by channel."""
+    """A point of the search: the parameters of the model, and the residuals of the samples.
+
+    `u` (1, shapes): coordinates of the shape parameters; `weights` (1, channels, lobes): weights of
+    the lobes; `residuals`: residuals (n,) of the n samples in each channel.
+    """
 
     u: np.ndarray
     weights: np.ndarray
     residuals: list[np.ndarray]
 
     def to_vector(self) -> FloatArray:
-        """Return the point as a vector (k,)."""
+        """Return the k parameters of the point as a vector: coordinates, then weights."""
         return join_point(self.u, self.weights)[0]
 
 
 class RobustProblem:
-    """A `Problem` with the weight function `name` of `WEIGHTS`.
+    """A `Problem` whose samples are weighted by a weight function of their residuals.
 
-    `u` (1, shapes), `weights` (1, channels, lobes): the optimum where all samples count alike;
-    `part`, `rows`: a problem on some of the samples and their indices, for the Hessians; by default
-    the problem itself. The methods take `scales`: for each channel the scale of its residuals,
-    times the constant of the weight function.
+    `u` (1, shapes), `weights` (1, channels, lobes): the optimum with equal weights; `name`: the
+    weight function in `WEIGHTS`; `part`, `rows`: a problem on some of the samples, and their
+    indices, from which Hessians are estimated; by default the problem itself.
 
-    A residual is a difference times the root of its sample's importance, but only the difference
-    makes a sample an outlier. So `levers` include this root, beside √(1 - h).
+    A point has k parameters. The methods take `scales`: for each channel the scale of its
+    residuals' noise, times the constant of the weight function. A residual is a difference of the
+    loss times √w of its sample, but only the difference makes a sample an outlier. So residuals are
+    divided by `levers`, which contain √w as well as √(1 - leverage).
     """
 
     def __init__(
@@ -63,10 +72,11 @@ class RobustProblem:
         self.function, self.tune, self.rho = WEIGHTS[name]
         self.rank = u.shape[1] + weights.shape[2]
         require_more_samples(len(problem.samples.wi), self.rank)
-        # Leverages, smallest scales and the metric of fitted values do not change between passes
+        # Leverages, smallest scales and the metric that measures changes of the fitted values are
+        # computed once, and stay the same in all passes
         self.metric = self.part.expand_at_weights(u, weights).hessian[0]
         root = np.sqrt(problem.importance / problem.importance.mean())
-        root[root == 0] = 1.0  # its residual is 0
+        root[root == 0] = 1.0  # a sample with w = 0 has residuals of 0, which any divisor keeps
         self.levers = [root * np.sqrt(1 - h) for h in self._find_leverages(u, weights)]
         black = problem.compute_residuals(u, 0 * weights)
         self.least = [compute_smallest_scale(target / root) for target in black]
@@ -74,13 +84,16 @@ class RobustProblem:
         self.low, self.high = make_limits(u.shape[1], problem.channels, problem.least)
 
     def _find_leverages(self, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
-        """Return the leverages (n,) of the linear parameters by channel, exact or from the part."""
+        """Return the leverages (n,) of the samples in each channel, for the lobes' weights.
+
+        They are exact, or with a part of the samples, estimated from the part.
+        """
         if self.part is self.problem:
             blocks = [own for _, own in _iterate_columns(self.problem, u, weights)]
             return [
                 compute_leverages(np.concatenate(own, axis=1)) for own in zip(*blocks, strict=True)
             ]
-        # The part's weights make up for the other samples, so its products stand for all
+        # The weights of the part's samples stand for all samples, so its Gram matrices do, too
         blocks = [own for _, own in _iterate_columns(self.part, u, weights)]
         inverses = []
         for own in zip(*blocks, strict=True):
@@ -93,22 +106,22 @@ class RobustProblem:
         return all_leverages
 
     def use_all_samples(self) -> None:
-        """Compute the Hessians from all samples from now on."""
+        """Compute Hessians from all samples from now on, instead of a part of them."""
         self.part, self.rows = self.problem, slice(None)
 
     def make_point(self, u: FloatArray, weights: FloatArray) -> Point:
-        """Return the `Point` of coordinates and weights."""
+        """Return the `Point` with coordinates `u` and lobe `weights`, and its residuals."""
         return Point(u, weights, self.problem.compute_residuals(u, weights))
 
     def take_step(self, point: Point, step: FloatArray) -> Point:
-        """Return the `Point` after a step (k,), within the bounds."""
+        """Return the `Point` after a `step` (k,) of the parameters, moved into their bounds."""
         shapes = point.u.shape[1]
         moved = point.weights + step[shapes:].reshape(point.weights.shape)
         u = np.clip(point.u + step[:shapes], 0, 1)
         return self.make_point(u, np.maximum(moved, self.problem.least))
 
     def estimate_scales(self, point: Point) -> list[float]:
-        """Return the scales of the residuals at a point, by channel."""
+        """Return the scale of the residuals' noise in each channel, at a point."""
         adjusted = [r / lever for r, lever in zip(point.residuals, self.levers, strict=True)]
         return [
             self.tune * estimate_residual_scale(r, self.rank, least)
@@ -116,19 +129,29 @@ class RobustProblem:
         ]
 
     def divide_residuals(self, point: Point, scales: list[float]) -> list[FloatArray]:
-        """Return the arguments r (n,) of the weights, residuals over levers and scales."""
+        """Return the scaled residuals r (n,) in each channel, arguments of the weight function.
+
+        They are the residuals over their `levers` and `scales`.
+        """
         both = zip(point.residuals, self.levers, scales, strict=True)
         return [residual / (lever * scale) for residual, lever, scale in both]
 
     def compute_merit(self, point: Point, scales: list[float]) -> float:
-        """Return the sum that a pass reduces, Σ lever² ρ(r) in units of squared residuals."""
+        """Return the merit, the function of the parameters that a pass reduces at constant scales.
+
+        It is the sum of lever² ρ(r) over samples and channels, in units of squared residuals, where
+        ρ is the integral of ω r and ω the weight function.
+        """
         each = zip(self.divide_residuals(point, scales), self.levers, scales, strict=True)
         return sum(scale**2 * (lever**2 * self.rho(r)).sum() for r, lever, scale in each)
 
     def compute_weights_and_slopes(
         self, u: FloatArray, weights: FloatArray
     ) -> tuple[list[FloatArray], list[FloatArray]]:
-        """Return the weights ω of the samples, and the derivatives of ω r by r, by channel."""
+        """Return the samples' weights ω at given parameters, and the derivatives of ω r by r.
+
+        Both are lists of arrays (n,) by channel; r are the scaled residuals.
+        """
         point = self.make_point(u, weights)
         ratios = self.divide_residuals(point, self.estimate_scales(point))
         return [self.function(r) for r in ratios], [self._differentiate_weight(r) for r in ratios]
@@ -136,7 +159,10 @@ class RobustProblem:
     def expand_weighted(
         self, point: Point, factors: list[FloatArray]
     ) -> tuple[FloatArray, FloatArray]:
-        """Return gradient (k,) and Hessian (k, k) of E² with the samples weighted by `factors`."""
+        """Return the gradient (k,) and Hessian (k, k) of the squared loss with weighted samples.
+
+        `factors`: weights (n,) of the samples in each channel, which are constant.
+        """
         own = self.part is self.problem
         here = self._expand(self.problem, point, factors, own)
         if not own:
@@ -145,14 +171,22 @@ class RobustProblem:
         return here.gradient[0], hessian[0]
 
     def compute_newton_matrix(self, point: Point, ratios: list[FloatArray]) -> FloatArray:
-        """Return Newton's matrix (k, k), with the change of the weights at constant scales."""
+        """Return Newton's matrix (k, k), the exact Hessian of the merit for constant scales.
+
+        Unlike the Hessian of `expand_weighted`, it includes the change of the samples' weights.
+        `ratios`: scaled residuals (n,) in each channel.
+        """
         slopes = [self._differentiate_weight(r[self.rows]) for r in ratios]
         return self._expand(self.part, point, slopes).hessian[0]
 
     def differentiate_scales(
         self, point: Point, ratios: list[FloatArray], scales: list[float]
     ) -> tuple[FloatArray, FloatArray]:
-        """Return ∂g/∂ln s (k, channels) of the gradient g, and ∂ln s/∂z (channels, k)."""
+        """Return ∂g/∂ln s (k, channels) and ∂ln s/∂z (channels, k) for Newton's step.
+
+        g is the gradient of the weighted squared loss, s the scale of the residuals in a channel,
+        and z the vector of k parameters. `ratios`: scaled residuals (n,) in each channel.
+        """
         of_gradient, of_scale = [], []
         for c, (r, scale) in enumerate(zip(ratios, scales, strict=True)):
             r = r[self.rows]
@@ -163,20 +197,25 @@ class RobustProblem:
         return np.array(of_gradient).T, np.array(of_scale)
 
     def find_best_step(self, hessian: FloatArray, gradient: FloatArray, point: Point) -> FloatArray:
-        """Return the step (k,) within the bounds that minimises the quadratic model."""
+        """Return the step (k,) that minimises a quadratic function within the bounds."""
         z = point.to_vector()
         return minimise_in_box(hessian[None], gradient[None], self.low - z, self.high - z)[0]
 
     def _gradient(self, point: Point, channel: int, factors: FloatArray) -> FloatArray:
-        """Return the gradient (k,) of the part's E² in one channel, weighted by `factors` (n,)."""
+        """Return the gradient (k,) of the squared loss of one channel, from the part.
+
+        `factors` (n,): weights of the part's samples.
+        """
         every = [0 * factors for _ in self.levers]
         every[channel] = factors
         return self._expand(self.part, point, every, curvature=False).gradient[0]
 
     def _weigh_samples_at_median(self, channel: int, r: FloatArray, scale: float) -> FloatArray:
-        """Return weights of the part's samples, with which the gradient of E² is that of ln s.
+        """Return weights (n,) of the part's samples for the gradient of the scale of the noise.
 
-        Only samples whose ratios `r` are next to the median, which determines s, have weight.
+        With them, the gradient of the weighted squared loss is the gradient of ln s, where s is the
+        scale of the residuals in a `channel`. Only samples with scaled residuals `r` next to the
+        median have weight, because the median determines s.
         """
         weights = np.zeros(len(r))
         if scale <= self.tune * self.least[channel] * (1 + 1e-9):
@@ -191,16 +230,16 @@ class RobustProblem:
     def _expand(
         self, problem: Problem, point: Point, factors: list[FloatArray], curvature: bool = True
     ) -> Expansion:
-        """Return the `Expansion` of E² with the samples weighted by `factors`."""
+        """Return the `Expansion` of the squared loss with samples weighted by `factors`."""
         problem.factors = factors
         try:
             sums = problem.compute_sums(point.u, point.weights, curvature)
-        finally:  # also after Ctrl-C
+        finally:  # Ctrl-C must not leave these weights in the problem
             problem.factors = None
         return Expansion.from_sums(problem.columns, problem.space, sums, point.u, point.weights)
 
     def _differentiate_weight(self, r: FloatArray) -> FloatArray:
-        """Return the derivative of ω r by r."""
+        """Return the derivatives (n,) of ω r by the scaled residuals r, with the weight ω."""
         steps = -DIFFERENCE_STEP, DIFFERENCE_STEP
         ends = [self.function(r + step) * (r + step) for step in steps]
         return (ends[1] - ends[0]) / (2 * DIFFERENCE_STEP)
@@ -209,6 +248,9 @@ class RobustProblem:
 def _iterate_columns(
     problem: Problem, u: FloatArray, weights: FloatArray
 ) -> Iterator[tuple[slice, list[FloatArray]]]:
-    """Yield the rows of each block, and by channel the residuals' derivatives by weights."""
+    """Yield the indices of each block's samples, and derivatives of residuals by lobe weights.
+
+    The derivatives are arrays (lobes, samples) by channel.
+    """
     for rows, _, jacobians in problem.iterate_jacobians(u, weights):
         yield rows, [jacobian[u.shape[1] :] for jacobian in jacobians]

@@ -1,16 +1,16 @@
-"""Weight functions of robust fits, which reduce the influence of outliers.
+"""Defines the weight functions of robust fits, which reduce the influence of outliers.
 
-A robust fit repeats least squares, and each pass weights a sample by its residual after the last
-one, by a function ω of
+A robust fit repeats least squares. Each pass weights a sample by a function ω of its scaled
+residual r after the pass before:
 
-    r = residual / (tune · s · √(1 - h)),   s = MAD / 0.6745,
+    r = residual / (tune · s · √(1 - h)),   s = MAD / 0.6745.
 
-where h is the sample's leverage, MAD the median of the absolute residuals, s the scale of the noise
-and `tune` a constant of the function. [Holland & Welsch 1977]; [Kurt 2007, eqs. 5.14, 5.15]. The
-constants and the order of the steps are those of MATLAB's robustfit.
+Here h is the leverage of the sample, MAD the median of the absolute residuals, s the scale of the
+noise, and `tune` a constant of the function. [Holland & Welsch 1977]; [Kurt 2007, eqs. 5.14, 5.15].
+The constants and the order of the steps are those of MATLAB's robustfit.
 
-The bisquare ignores noise, but also any peak that the model cannot follow: compare the loss with
-the loss of a fit that is not robust.
+The bisquare function ignores noise, but also any peak that the model cannot follow. To notice this,
+compare the loss with the loss of a fit that is not robust.
 """
 
 from collections.abc import Callable
@@ -21,7 +21,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 
-ZERO_BELL = 30.0  # exp(-r²) is 0 beyond
+ZERO_BELL = 30.0  # exp(-r²) is 0 in floating point for larger r
 
 
 def _andrews_weight(r: FloatArray) -> FloatArray:
@@ -39,16 +39,18 @@ def _welsch_weight(r: FloatArray) -> FloatArray:
 def _piecewise(
     limit: float, inside: Callable[[FloatArray], Any], outside: Callable[[FloatArray], Any]
 ) -> Callable[[FloatArray], FloatArray]:
-    """Return a function of |r| that equals `inside` up to `limit` and `outside` beyond."""
+    """Return a function of |r| that is `inside(r)` up to `limit`, and `outside(r)` beyond."""
 
-    def function(r: FloatArray) -> FloatArray:
+    def evaluate_piecewise(r: FloatArray) -> FloatArray:
+        """Return the values (n,) of the function at scaled residuals (n,)."""
         r = np.abs(r)
         return np.where(r < limit, inside(np.minimum(r, limit)), outside(r))
 
-    return function
+    return evaluate_piecewise
 
 
-# Name → (weight ω of r, tune: a larger one is gentler, ρ: the integral of ω r)
+# By name: (the weight function ω of the scaled residual r, its constant `tune`, the integral ρ of
+# ω r). With a larger `tune` fewer samples lose weight
 WEIGHTS = {
     "andrews": (_andrews_weight, 1.339, _piecewise(np.pi, lambda r: 1 - np.cos(r), lambda r: 2.0)),
     "bisquare": (
@@ -78,10 +80,11 @@ WEIGHTS = {
 
 
 def estimate_residual_scale(residuals: FloatArray, rank: int, least: float) -> float:
-    """Return the scale s of `residuals` (n,), already divided by √(1 - h).
+    """Return the scale s of the noise, the median of absolute `residuals` (n,) over 0.6745.
 
-    `rank`: the number of parameters; the smallest rank - 1 residuals are nearly zero by
-    construction and are left out. `least`: the smallest scale; smaller residuals are rounding.
+    The residuals are already divided by √(1 - leverage). `rank`: the number of parameters; the
+    smallest rank - 1 residuals are nearly zero by construction and are left out. `least`: lower
+    limit of the scale, because smaller residuals are rounding errors.
     """
     left = len(residuals) - max(rank - 1, 0)
     # Indices, among all sorted residuals, of the one or two in the middle of the larger ones
@@ -103,14 +106,18 @@ def require_more_samples(samples: int, rank: int) -> None:
 
 
 def compute_smallest_scale(values: FloatArray) -> float:
-    """Return the smallest scale of residuals, 1e-6 of the standard deviation of `values` (n,)."""
+    """Return a lower limit of the scale of residuals, below which they are rounding errors.
+
+    It is a millionth of the standard deviation of `values` (n,), the values that were fitted.
+    """
     return 1e-6 * float(np.std(values, ddof=1)) or 1.0
 
 
 def compute_leverages(columns: FloatArray) -> FloatArray:
-    """Return the leverages h (n,) of `columns` (parameters, n), kept below 1.
+    """Return the leverages h (n,) of samples, between 0 and 0.9999.
 
-    They are the diagonal of the projection onto the columns.
+    They say how much a sample determines its own fitted value. `columns` (parameters, n):
+    derivatives of the fitted values; h is the diagonal of the projection onto them.
     """
     u, values, _ = np.linalg.svd(columns.T, full_matrices=False)
     u = u[:, values > values.max(initial=0) * len(u) * np.finfo(float).eps]

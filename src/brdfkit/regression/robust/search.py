@@ -1,12 +1,14 @@
-"""Searches for the fixed point of reweighting, the solution of a robust fit.
+"""Searches for the solution of a robust fit, the fixed point of reweighting.
 
-At the fixed point, parameters are fitted with weights of the samples that the residuals of these
-parameters reproduce. A pass computes the weights from the residuals, then takes one step towards
-the best parameters for these weights. With few samples, the first passes are those of MATLAB's
-robustfit, which solves for the parameters with constant weights. They become slow if much of a
-highlight is an outlier. Then Newton's steps replace them, which include the change of the weights:
-far from the end they reduce a merit at constant scales of the noise; near the end they solve for
-the point where an ordinary pass changes nothing, including the change of the scales.
+At the fixed point, the parameters are the best ones for weights of the samples that follow from the
+residuals of these same parameters. A pass computes the weights from the residuals, then takes one
+step towards the best parameters for these weights.
+
+With few samples, the first passes are those of MATLAB's robustfit, which keeps the weights constant
+during a step. Such "ordinary" passes become slow if much of a highlight is an outlier. Then Newton
+steps replace them, which include the change of the weights. Far from the end they reduce a merit,
+with constant scales of the noise. Near the end they solve for the point where an ordinary pass
+would change nothing, including the change of the scales.
 """
 
 from collections.abc import Sequence
@@ -22,31 +24,35 @@ from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import draw_subset
 from brdfkit.regression.robust.problem import Point, RobustProblem
 
-# Newton's steps are longer than ordinary ones by at most 1 / this factor, in each direction
+# A Newton step is at most 1 / this factor times as long as the ordinary step, in each direction
 SMALLEST_CURVATURE = 0.02
+# Largest number of passes
 PASSES = 150
-# With more samples, the search starts on half as many
+# With more samples than this, the search starts on a part with half this number of them
 MANY_SAMPLES = 80_000
-# The passes have settled if the next one would change the fitted values by this share of their
-# spread (rms)
+# The passes have converged if the next one would change the fitted values by less than this share
+# of their standard deviation
 SETTLED = 3e-7
-# Few samples settle to this share
+# With few samples the passes go on to this smaller share
 EXACT = 1e-11
-# A part, whose end is only a start, settles to this share
+# On a part of the samples, whose solution is only a start, this larger share is enough
 LOOSE = 1e-5
-# If a pass changes the fitted values by a smaller share, the end is near
+# Newton steps solve for the end if the last pass changed the fitted values by less than this share
 NEAR_END = 1e-3
-# If a step to the end leaves a larger share of the change, the Hessian of a part is too rough
+# If a step to the end leaves more than this share of the change, the Hessian that was estimated
+# from a part of the samples is too inaccurate, and all samples are used
 SLOW = 0.5
-# The first passes with few samples are ordinary ones, so that the end is MATLAB's
+# With few samples, this number of passes are ordinary ones, so that the solution is MATLAB's if
+# there are several
 ORDINARY_PASSES = 60
 
 
 def make_convex(newton: FloatArray, hessian: FloatArray) -> tuple[FloatArray, FloatArray | None]:
-    """Return Newton's matrix (n, n) made positive definite, and a projection (n, n) or None.
+    """Return Newton's matrix (n, n) made positive definite, so that its step reduces the merit.
 
-    `hessian` (n, n): of an ordinary pass. The eigenvalues of `newton`, relative to it, become
-    positive and not small. The projection is onto the directions in which they were negative.
+    Return also the projection (n, n) onto the directions in which the matrix was not, or None.
+    `newton` (n, n): the matrix; `hessian` (n, n): the positive definite Hessian of an ordinary
+    pass, relative to which eigenvalues of `newton` become positive and not small.
     """
     scale = 1 / np.sqrt(np.maximum(np.diag(hessian), 1e-300))
     scaled = hessian * np.outer(scale, scale) + 1e-10 * np.eye(len(hessian))
@@ -63,10 +69,11 @@ def make_convex(newton: FloatArray, hessian: FloatArray) -> tuple[FloatArray, Fl
 
 @dataclass(eq=False)
 class RobustEnd:
-    """The end of the passes: its `point`, and how far the passes settled.
+    """The solution of a robust fit, and how well its passes converged.
 
-    `outliers`: the share of samples with a weight below 1/2; `passes`: their number; `change`: of
-    the fitted values in a next pass, as a share of their spread.
+    `point`: the solution; `outliers`: share of the samples with a weight below 1/2; `passes`:
+    number of passes; `change`: root mean square by which another pass would change the fitted
+    values, as a share of their standard deviation.
     """
 
     point: Point
@@ -76,12 +83,18 @@ class RobustEnd:
 
     @property
     def converged(self) -> bool:
-        """Whether the passes settled to `SETTLED`, beyond which few samples may cycle, too."""
+        """Whether another pass would change the fitted values by at most the share `SETTLED`.
+
+        Passes on few samples may go in cycles that change the values by less.
+        """
         return self.change <= SETTLED
 
 
 class RobustSearch:
-    """The passes of a `RobustProblem`; `best`: the `RobustEnd` with the least change so far."""
+    """A search for the solution of a robust fit by passes, each a step with updated weights.
+
+    `problem`: the `RobustProblem`; `best`: the `RobustEnd` with the least change so far, or None.
+    """
 
     def __init__(self, problem: RobustProblem) -> None:
         self.problem = problem
@@ -95,11 +108,11 @@ class RobustSearch:
         tolerance: float = SETTLED,
         ordinary_passes: int = ORDINARY_PASSES,
     ) -> RobustEnd:
-        """Run passes from `u` and `weights`, and return the `RobustEnd`.
+        """Run passes from the parameters `u` and `weights`, and return the `RobustEnd`.
 
-        They end if the next pass would change the fitted values by less than the `tolerance`, or
-        after `PASSES`. The first `ordinary_passes` are ordinary ones. On Ctrl-C `Interrupted` is
-        raised with the best end so far.
+        The passes end if the next one would change the fitted values by less than the `tolerance`,
+        or after `PASSES`. The first `ordinary_passes` keep the samples' weights constant during a
+        step. On Ctrl-C `Interrupted` is raised with the best end so far.
         """
         try:
             point = self.problem.make_point(u, weights)
@@ -116,14 +129,14 @@ class RobustSearch:
         tolerance: float,
         ordinary_passes: int,
     ) -> RobustEnd:
-        """Run the passes of `search` from a `Point`."""
+        """Run the passes of `search` from a start `point`, with the same other arguments."""
         problem, near, solved = self.problem, NEAR_END, False
         for number in range(1, PASSES + 1):
             report(number, PASSES)
             scales = problem.estimate_scales(point)
             ratios = problem.divide_residuals(point, scales)
             factors = [problem.function(r) for r in ratios]
-            # The step of an ordinary pass, and its change of the fitted values
+            # The step of an ordinary pass, and how much it would change the fitted values
             gradient, hessian = problem.expand_weighted(point, factors)
             ordinary = problem.find_best_step(hessian, gradient, point)
             change = np.sqrt(max(ordinary @ problem.metric @ ordinary, 0)) / problem.spread
@@ -137,7 +150,7 @@ class RobustSearch:
                 break
             solved = False
             if astray:
-                # Go back, and reduce the merit until the end is nearer
+                # The step led away: go back, and reduce the merit until the end is nearer
                 point, near = self.best.point, self.best.change / 3
             elif number <= ordinary_passes:
                 point = self._reduce_merit(point, scales, (ordinary,))
@@ -162,11 +175,11 @@ class RobustSearch:
         steps: Sequence[FloatArray],
         further: FloatArray | None = None,
     ) -> Point:
-        """Return the point after the first of the `steps` that reduces the merit.
+        """Return the point after the first of the `steps` that does not increase the merit.
 
-        Shorter steps are tried, too; the `scales` are constant. `further`: None, or the part of a
-        step along which the merit is concave; it is added again, twice as long each time, while the
-        merit falls.
+        Shorter steps in the same directions are tried, too. `scales`: constant scales of the noise;
+        `further`: None, or the part of a step along which the merit is concave; it is added again,
+        twice as long each time, while the merit falls.
         """
         before = self.problem.compute_merit(point, scales)
         for tried in (step / share for step in steps for share in (1, 2, 8)):
@@ -192,10 +205,11 @@ class RobustSearch:
         gradient: FloatArray,
         step: FloatArray,
     ) -> FloatArray:
-        """Return Newton's step v to the point where an ordinary pass changes nothing.
+        """Return Newton's step v to the point where an ordinary pass would change nothing.
 
-        It includes the change of the scales: g + H v + A (B v) = 0, with the columns ∂g/∂ln s of A
-        and the rows ∂ln s/∂z of B. Parameters that `step` moves to a bound stay there.
+        The step solves g + H v + A (B v) = 0 with the gradient g and Newton's matrix H. A B v is
+        the effect of the change of the noise's scales s, with ∂g/∂ln s as A and ∂ln s/∂z as B.
+        Parameters that `step` moves to a bound stay there. `ratios`: scaled residuals by channel.
         """
         A, B = self.problem.differentiate_scales(point, ratios, scales)
         z = point.to_vector() + step
@@ -216,12 +230,12 @@ def search_robust(
     rng: np.random.Generator,
     report: Progress,
 ) -> tuple[FloatArray, FloatArray, str, tuple[str, ...], tuple[list[FloatArray], list[FloatArray]]]:
-    """Search a robust fit from the optimum where all samples count alike.
+    """Search for the solution of a robust fit, from the optimum `u`, `weights` with equal weights.
 
-    Return (u, weights) at the end, a message, notes, and there the result of
-    `RobustProblem.compute_weights_and_slopes`. `name`: a weight function of `WEIGHTS`. With many
-    samples the search starts on a part of them, drawn by the generator `rng`. On Ctrl-C
-    `Interrupted` is raised with the best `RobustEnd`.
+    Return (u, weights, message, notes) of the solution and the weights and slopes of the samples
+    there, as `RobustProblem.compute_weights_and_slopes` returns them. `name`: a weight function of
+    `WEIGHTS`; `rng`: a generator that draws a part of many samples, on which the search starts. On
+    Ctrl-C `Interrupted` is raised with the best `RobustEnd`.
     """
     samples = problem.samples
     if len(samples.wi) > MANY_SAMPLES:

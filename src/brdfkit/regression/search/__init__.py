@@ -1,1 +1,1 @@
-"""Searches the parameters with the least error, from many starts."""
+"""Searches for the parameters of a model with the least loss, from many start points."""

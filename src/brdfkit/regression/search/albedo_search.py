@@ -61,7 +61,7 @@ def correct_albedo(
     def compute_albedos(u: FloatArray, weights: FloatArray) -> FloatArray:
         """Return the albedos (angles, channels) of the model with these parameters."""
         model = whole.model(**whole.space.to_values(u[0]))
-        return target.evaluate(lambda wi, wo: mix_lobes(model, weights[0].T, wi, wo))
+        return target.compute_albedos(lambda wi, wo: mix_lobes(model, weights[0].T, wi, wo))
 
     free = compute_albedos(u, weights)
     if target.accepts(free):

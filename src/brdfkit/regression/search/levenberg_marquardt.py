@@ -1,7 +1,7 @@
-"""Searches for parameters by damped Gauss-Newton steps within bounds.
+"""Searches for the parameters with the least squared loss E² by damped Gauss-Newton steps.
 
-[Levenberg 1944]; [Marquardt 1963]. Several searches run side by side: one kernel evaluates the
-points of all of them.
+[Levenberg 1944]; [Marquardt 1963]. Several searches run side by side, because one kernel evaluates
+the current points of all of them faster than one after the other.
 """
 
 from collections.abc import Callable
@@ -15,19 +15,21 @@ from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.parameter_space import join_point, make_limits
 
-# A search continues while this many times its next gain could bring it below the best search
+# A search is given up if this many times the gain of its next step would not bring it below the
+# best search that has converged
 PATIENCE = 10
-# Two ends are one if E² differs by a smaller share; a smaller share of a start's E² is rounding
+# Ends whose E² differs by less than the first share count as one; E² below the second share of the
+# largest E² at the start counts as 0
 SAME_END, ROUNDING = 1e-4, 1e-24
 SMALLEST_DAMPING, LARGEST_DAMPING = 1e-15, 1e9
 
 
 @dataclass(eq=False)
 class Search:
-    """The result of several searches.
+    """The result of several searches that ran side by side.
 
-    `ends`: an `Expansion` about their last points; `converged` (points,): which of them converged;
-    `evaluations`: how often E² was computed at a point.
+    `ends`: expansion of E² about the last point of each search; `converged`: whether each search
+    converged (points,); `evaluations`: number of evaluations of E², all searches together.
     """
 
     ends: Expansion
@@ -35,9 +37,10 @@ class Search:
     evaluations: int
 
     def find_best(self, count: int) -> IntArray:
-        """Return the indices of the `count` points with the least E², one for each value of E².
+        """Return the indices of the `count` best ends, those with the least E².
 
-        Points with equal E² are one end: a sum of equal models has it in each order of its lobes.
+        Of ends with equal E² only one is returned: in a model with two equal lobes, they differ
+        only in the order of the lobes.
         """
         order = np.argsort(self.ends.error, kind="stable")
         error = self.ends.error[order]
@@ -54,13 +57,16 @@ def levenberg_marquardt(
     tolerance: float = 1e-6,
     damping: float = 1e-3,
 ) -> Search:
-    """Search from `u` (points, shapes) and `weights` (points, channels, lobes).
+    """Search for the least squared loss E² from several start points, and return the `Search`.
 
-    Return the `Search`. `expand(u, weights)` returns an `Expansion`; `least` (lobes,): the smallest
-    weights; `iterations`: the largest number of steps; `tolerance`: a search converges if its next
-    step would lower E² by less than this share of it; `damping`: of the first step. A search also
-    ends if its E² is rounding beside the worst start's, or if it would not come below a converged
-    search. On Ctrl-C `Interrupted` is raised with the `Expansion` about the current points.
+    `expand(u, weights)`: a function that returns the `Expansion` of E² about points; `u` (points,
+    shapes), `weights` (points, channels, lobes): the start points; `least` (lobes,): lower bounds
+    of the weights; `iterations`: largest number of steps; `tolerance`: a search converges if its
+    next step would lower E² by less than this share; `damping`: damping of the first step.
+
+    A search also converges if its E² is only a rounding error compared with the worst start's. It
+    ends without converging if it would not come below a search that has converged. On Ctrl-C
+    `Interrupted` is raised with the `Expansion` about the current points.
     """
     now = expand(u.copy(), weights.copy())  # the ends are stored in these arrays
     points, shapes = now.u.shape
@@ -73,7 +79,7 @@ def levenberg_marquardt(
     searching = ~converged
     try:
         for _ in range(iterations):
-            # The best step within the bounds, by the damped quadratic model
+            # The step goes to the minimum of the damped quadratic function within the bounds
             (rows,) = np.nonzero(searching)
             if not len(rows):
                 break
@@ -87,7 +93,7 @@ def levenberg_marquardt(
             at = join_point(here.u, here.weights)
             step = minimise_in_box(damped, g, low - at, high - at)
             gain = -((2 * g + (H @ step[:, :, None])[:, :, 0]) * step).sum(axis=1)
-            # A search ends if the step would gain nothing; otherwise the step is tried
+            # Searches end whose step would gain nothing; the steps of the others are tried
             over = gain <= tolerance * here.error
             converged[rows[over]] = True
             leader = now.error[converged].min(initial=np.inf)
@@ -130,10 +136,11 @@ def levenberg_marquardt(
 def _update_correction(
     correction: FloatArray, step: FloatArray, change: FloatArray, hessian: FloatArray
 ) -> FloatArray:
-    """Update the estimate (b, n, n) of the terms that Gauss-Newton Hessians leave out.
+    """Return better estimates (b, n, n) of the terms that Gauss-Newton Hessians leave out.
 
-    The update is symmetric and of rank one [Dennis et al. 1981]. `step` (b, n): of a search;
-    `change` (b, n): of the gradient over the step.
+    `correction`: the estimates so far; `step` (b, n): last steps of b searches; `change` (b, n):
+    changes of the gradient over these steps; `hessian`: Gauss-Newton Hessians after them. The
+    update is symmetric and of rank one [Dennis et al. 1981].
     """
     missing = change - ((hessian + correction) @ step[:, :, None])[:, :, 0]
     along = missing * step
@@ -143,12 +150,13 @@ def _update_correction(
 
 
 def _add_correction(hessian: FloatArray, correction: FloatArray) -> FloatArray:
-    """Return Hessians plus their corrections, or without them if not positive definite then."""
+    """Return the Hessians (b, n, n), each plus its correction if it stays positive definite."""
     if not correction.any():
         return hessian
     scale = 1 / np.sqrt(np.maximum(hessian.diagonal(axis1=1, axis2=2), 1e-300))
     both = hessian + correction
-    with np.errstate(over="ignore", invalid="ignore"):  # if a parameter has no effect
+    # A parameter that has no effect has a diagonal of 0, and its entries overflow
+    with np.errstate(over="ignore", invalid="ignore"):
         scaled = both * scale[:, :, None] * scale[:, None, :]
     finite = np.asarray(np.isfinite(scaled).all(axis=(1, 2)))
     least = np.linalg.eigvalsh(np.where(finite[:, None, None], scaled, 0))[:, 0]

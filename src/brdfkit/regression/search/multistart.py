@@ -1,4 +1,8 @@
-"""Searches from many starts at once, on ever larger parts of the samples."""
+"""Searches for the least squared loss E² from many start points, on growing parts of the samples.
+
+All starts are searched on a small part of the samples, which is fast. Only the best ends go on to
+larger parts, and at last to all samples.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -14,30 +18,34 @@ from brdfkit.regression.problem.subset import draw_subset
 from brdfkit.regression.search.levenberg_marquardt import Search, levenberg_marquardt
 from brdfkit.regression.search.zero_weights import revive_zero_weights
 
-# Sizes of parts of many samples. All starts are searched on the smallest part, those with the best
-# ends on the next one, and the best on all samples; a part is at most half of the next
+# Sizes of the parts of many samples, the largest first; a part has at most half as many samples as
+# the next larger one
 PARTS = 40_000, 3_000
-# (number of starts that continue, after this number of steps). The second rule applies to more
-# shape parameters than FEW_SHAPES, as sums of models have: few starts lead to their best end
+# Pairs (number of starts that continue, number of steps before they are chosen). Models with more
+# shape parameters than FEW_SHAPES, such as sums of models, need more steps and starts, because only
+# few starts lead to the best end
 FEW_SHAPES_ROUNDS, MANY_SHAPES_ROUNDS = ((24, 4), (8, 6)), ((32, 20), (8, 30))
 FEW_SHAPES = 3
-# From a part, ends within this share of the least E² are followed to all samples, at most so many
+# Ends on a part whose E² is within this share of the least one go on to more samples, at most this
+# number of them
 CLOSE, FINALISTS = 0.02, 3
+# Largest number of steps of a search on all samples, with its own Hessian and with a part's
 LARGEST_STEPS, FEW_STEPS = 200, 10
-# A search converges if the next step would lower E² by less than this share of it: the first on few
-# samples, times the second on many, and the third on a part of them
+# A search converges if the next step would lower E² by less than a share of it: EXACT on few
+# samples, MANY_SAMPLES_FACTOR times as much on many, and LOOSE on a part of the samples
 EXACT, MANY_SAMPLES_FACTOR, LOOSE = 1e-11, 100, 1e-6
 
 
 def default_start_count(shapes: int) -> int:
-    """Return the default number of start points for this number of shape parameters."""
+    """Return the default number of start points for a model with this many shape parameters."""
     return max(1, min(16 * shapes, 96))
 
 
 def make_start_points(default: FloatArray, count: int, seed: int) -> FloatArray:
-    """Return start points (count, shapes) as coordinates: `default`, then points over the bounds.
+    """Return start points of a search, as coordinates (count, shapes) between the bounds.
 
-    Halton's sequence spreads these points. Without shape parameters there is one start point.
+    The first one is `default` (shapes,); a Halton sequence with a `seed` spreads the others over
+    the bounds. A model without shape parameters has one start point.
     """
     count = count if len(default) else 1
     return np.vstack([default, *_spread_points(len(default), count - 1, seed)])
@@ -45,16 +53,19 @@ def make_start_points(default: FloatArray, count: int, seed: int) -> FloatArray:
 
 @lru_cache
 def _spread_points(dimensions: int, count: int, seed: int) -> FloatArray | tuple[()]:
-    """Return points (count, dimensions) of Halton's sequence, scrambled by `seed`."""
+    """Return points (count, dimensions) in the unit cube, by a Halton sequence with a `seed`."""
     from scipy.stats import qmc
 
     return qmc.Halton(dimensions, rng=seed).random(count) if count and dimensions else ()
 
 
 def make_part_problems(whole: Problem, rng: np.random.Generator) -> list[Problem]:
-    """Return the problems of a search: parts of many samples, the smallest first, then `whole`."""
+    """Return problems on parts of many samples, the smallest part first, and last the `whole`.
+
+    With few samples there is only the whole problem. `rng`: a generator that draws the parts.
+    """
     problems = [whole]
-    # A clamped model has many ends, and a small part has other ends than the whole
+    # A clamped model has many local minima, which are different ones on a small part
     for size in PARTS[:1] if whole.clamped else PARTS:
         samples = problems[0].samples
         if 2 * size < len(samples.wi):
@@ -70,16 +81,18 @@ def search_from_starts(
     iterations: int = LARGEST_STEPS,
     tolerance: float = EXACT,
 ) -> tuple[Expansion, BoolArray, int]:
-    """Search `problems`, on ever larger parts of the samples, from `u` (starts, shapes).
+    """Search for the least E² from many starts, on the first problem and then on the next ones.
 
-    Return the `Expansion` about the ends, the best first, which of them converged, and the number
-    of evaluations. `iterations`, `tolerance`: see `levenberg_marquardt`.
+    Return the expansion of E² about the ends on the last problem, the best first, whether each of
+    them converged, and the number of evaluations. `problems`: problems on growing parts of the
+    samples; `u` (starts, shapes): coordinates of the starts; `report`: a function that is called
+    with the problems done and their number; `iterations`, `tolerance`: see `levenberg_marquardt`.
     """
     first, last, starts = problems[0], problems[-1], u
     weights, evaluations = first.estimate_weights(u), 0
     if first.clamped:
         u, weights = _add_unclamped_starts(first, u, weights)
-    # A few steps from all starts, a few more from the best of these, and so on
+    # All starts take a few steps, the best of them a few more, and so on
     for count, steps in MANY_SHAPES_ROUNDS if u.shape[1] > FEW_SHAPES else FEW_SHAPES_ROUNDS:
         search = levenberg_marquardt(first.expand, u, weights, first.least, steps)
         evaluations += search.evaluations
@@ -94,7 +107,8 @@ def search_from_starts(
             error = search.ends.error
             ends = search.ends.select(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
             u, weights = ends.u, ends.weights
-        # A clamped model moves slowly from kink to kink, which is cheaper on a part
+        # A clamped model moves slowly from kink to kink of E²; the search converges on a part
+        # first, where steps are cheaper
         tight = MANY_SAMPLES_FACTOR * tolerance
         loose = tight if problem.clamped else max(LOOSE, tight)
         limit = loose if problem is not last else tight if number else tolerance
@@ -107,9 +121,10 @@ def search_from_starts(
 
 
 def _add_unclamped_starts(problem: Problem, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
-    """Return more starts (u, weights), by which more or less of the model is clamped at 0.
+    """Return the starts `u`, `weights` and further ones where less of the model is clamped at 0.
 
-    A search may stall where much of the model is clamped.
+    A search may stall where much of the model is negative and clamped. The further starts come from
+    a search with a loss that continues below 0, and from other weights.
     """
     extended = Problem(problem.model, problem.samples, problem.loss, problem.space, extended=True)
     ends = levenberg_marquardt(extended.expand, u, weights, problem.least, LARGEST_STEPS).ends
@@ -127,13 +142,14 @@ def _search_problem(
     iterations: int,
     tolerance: float,
 ) -> tuple[Search, int]:
-    """Search a problem from `u` and `weights`; return the `Search` and the number of evaluations.
+    """Search for the least E² of a problem; return the `Search` and the number of evaluations.
 
-    `part`: None, or a problem on a part of the samples, whose ends are the starts.
+    `u`, `weights`: start points, as in `levenberg_marquardt`; `part`: None, or the problem on a
+    part of the samples whose ends are the start points.
     """
     evaluations, damping = 0, 1e-4
     if part is not None:
-        # All samples have nearly the Hessian of a part, if the part represents them
+        # The Hessian of a part is nearly the Hessian of all samples, and takes less time
         expand, damping = _borrow_curvature(problem, part), 1e-7
         search = levenberg_marquardt(
             expand, u, weights, problem.least, FEW_STEPS, tolerance, damping
@@ -150,11 +166,15 @@ def _search_problem(
 def _borrow_curvature(
     whole: Problem, part: Problem
 ) -> Callable[[FloatArray, FloatArray], Expansion]:
-    """Return the function `whole.expand` with the Hessian of `part`, a part of its samples."""
+    """Return a function like `whole.expand` that takes the Hessian from a part of the samples.
 
-    def expand(u: FloatArray, weights: FloatArray) -> Expansion:
+    It saves time, because a Hessian takes longer than E² and its gradient.
+    """
+
+    def expand_with_part_hessian(u: FloatArray, weights: FloatArray) -> Expansion:
+        """Return the `Expansion` of the whole problem with the Hessian of its part."""
         expansion = whole.expand(u, weights, curvature=False)
         near = part.expand_at_weights(u, weights)
         return replace(expansion, hessian=near.hessian, gram=near.gram)
 
-    return expand
+    return expand_with_part_hessian

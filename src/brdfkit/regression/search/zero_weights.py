@@ -1,7 +1,8 @@
-"""Revives lobes whose weight became 0 in a search.
+"""Gives lobes a new start whose weight became 0 in a search.
 
-E² no longer depends on the shape parameters of such a lobe, so the search stalls there. With other
-shapes the lobe might lower E²; the derivative of E² by its weights says whether it would.
+The squared loss E² does not depend on the shape parameters of a lobe without weight, so a search
+never changes them again. With other shape parameters the lobe might lower E²; the derivative of E²
+by the weight of the lobe shows whether it would.
 """
 
 import itertools
@@ -13,16 +14,16 @@ from brdfkit.regression.problem.columns import Columns
 from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.problem import Problem
 
-# The largest number of points for each lobe, and the smallest share of E² that it should gain
+# Largest number of new start points for each lobe, and the smallest share of E² that they must gain
 LARGEST_COUNT, SMALLEST_GAIN = 4, 1e-7
 
 
 def revive_zero_weights(problem: Problem, end: Expansion, starts: FloatArray) -> list[FloatArray]:
-    """Return points (u, weights) at which a lobe has weight that has none at `end`.
+    """Return start points [u, weights] where lobes have weight that lost it in a search.
 
-    `end`: an `Expansion` about one point; `starts` (count, shapes): coordinates to try for the
-    shapes of the lobe, beside the ends of their bounds. The points are those at which E² would fall
-    most; there are none if it would not fall.
+    These are the points where E² falls most; there are none if no lobe would lower it. `end`:
+    expansion of E² about the end of the search; `starts` (count, shapes): coordinates to try for
+    the shape parameters of a lobe, in addition to the corners of their bounds.
     """
     points = [(end.u[:0], end.weights[:0])]
     for lobe in np.flatnonzero((end.weights[0] == 0).all(axis=0) & (problem.least == 0)):
@@ -46,7 +47,7 @@ def revive_zero_weights(problem: Problem, end: Expansion, starts: FloatArray) ->
 
 
 def _find_own_shapes(columns: Columns, lobe: int) -> list[int]:
-    """Return the indices of the searched shape parameters that no other lobe has."""
+    """Return the indices of those searched shape parameters that only this lobe depends on."""
     users: dict[int, set[int]] = {}
     for value, shape in columns.slopes:
         users.setdefault(shape, set()).add(columns.lobes[value])

@@ -1,9 +1,9 @@
-"""Solvers: the algorithms that minimise the loss of a fit, each in one file, and constraints.
+"""Solvers, the algorithms that minimise the loss E of a fit, and constraints on its parameters.
 
-A solver is an object with one method, `minimise(objective)`. It takes an `Objective`
-(`objective.py`) and returns the `End` with the least E² that it finds. A solver with an attribute
-`constrained` = True also meets the constraints of the objective (`constraints.py`,
-`albedo_at_most.py`). `settings.py` finds brdfkit's solvers by their names.
+A solver is an object with one method, `minimise(objective)`. The method takes an `Objective`
+(`objective.py`), which computes E² at points, and returns the `End` with the least E² that it
+finds. A solver with an attribute `constrained` = True also meets the constraints of the objective
+(`constraints.py`, `albedo_at_most.py`). `settings.py` finds brdfkit's solvers by their names.
 
 A random search, for example, is a solver::
 

@@ -1,4 +1,4 @@
-"""`AlbedoAtMost`: a constraint on the share of light that a model reflects."""
+"""Defines `AlbedoAtMost`, a constraint of fits on the share of light that the model reflects."""
 
 from __future__ import annotations
 
@@ -21,7 +21,8 @@ from brdfkit.regression.problem.not_finite import require_finite_lobes
 from brdfkit.regression.problem.parameter_space import find_channel_entries
 from brdfkit.regression.problem.problem import Problem
 
-# Half the rings of a quadrature, and the points on each; they make albedos exact to 1e-7
+# A quadrature has twice this number of rings, each with this number of points; its albedos are
+# exact to 1e-7
 POINTS = 128
 
 Angles: TypeAlias = tuple[float, ...]
@@ -29,7 +30,7 @@ Angles: TypeAlias = tuple[float, ...]
 
 @dataclass(frozen=True)
 class AlbedoAtMost:
-    """A constraint: the model reflects at most a share of the light from some directions.
+    """A constraint of a fit: the model reflects at most a share of the light that arrives.
 
     Parameters
     ----------
@@ -37,8 +38,9 @@ class AlbedoAtMost:
         The largest directional albedo of each channel, above 0. With 1, no more light leaves than
         arrives.
     theta : tuple of float, default (0, 30, 60, 75, 85, 89)
-        Angles of incidence to the normal [degrees, from 0 to below 90]. The constraint does not
-        hold beyond the last one, where the formulas of `ward` and `ward_duer` grow without bound.
+        Angles of incidence to the normal [degrees, from 0 to below 90] at which the constraint is
+        met. Beyond the largest one it may be violated, because the formulas of `ward` and
+        `ward_duer` grow without bound there.
     phi : tuple of float, default (0,)
         Azimuths of incidence [degrees], each with every `theta`; isotropic models need one.
 
@@ -57,19 +59,22 @@ class AlbedoAtMost:
         object.__setattr__(self, "phi", _to_angles("phi", self.phi, -np.inf, np.inf))
 
     def values(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
-        """Return the values (m,) at a point, at least 0 where the constraint is met.
+        """Return the limit less the albedo for each incident direction and channel, (m,).
 
-        They are ordered by directions, then channels.
+        The constraint is met where the values are at least 0. `u` (1, shapes): coordinates of the
+        shape parameters; `weights` (1, channels, lobes): weights of the lobes.
         """
         values = []
         for rule, T in self._iterate_quadratures(problem, problem.columns.evaluate_values, u):
-            # A model with negative weights is clamped at 0
+            # A model with negative weights is clamped at 0, in the loss as well
             values.append(self.limit - np.maximum(_evaluate_model(problem, weights, T), 0) @ rule)
         return np.concatenate(values)
 
     def slopes(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
-        """Return the derivatives (m, n) of `values` by coordinates, then by weights."""
-        change = make_derivative_matrix(problem.columns, weights, problem.space.differentiate(u))[0]
+        """Return the derivatives (m, n) of `values` by the n coordinates and weights."""
+        change = make_derivative_matrix(
+            problem.columns, weights, problem.space.differentiate_parameters(u)
+        )[0]
         shapes, (channels, lobes) = u.shape[1], weights.shape[1:]
         slopes = []
         for rule, T in self._iterate_quadratures(problem, problem.columns.evaluate, u):
@@ -82,16 +87,17 @@ class AlbedoAtMost:
         return np.array(slopes)
 
     def describe(self, rows: IntArray, channels: int) -> str:
-        """Return what the values with the indices `rows` limit, in words."""
+        """Return in words which albedos the values with the indices `rows` limit."""
         angles = np.repeat(self.theta, len(self.phi))[rows // channels]
         return f"the albedo at {', '.join(dict.fromkeys(f'{angle:g}°' for angle in angles))}"
 
     def _iterate_quadratures(
         self, problem: Problem, evaluate: Callable[..., list[JitFloat]], u: FloatArray
     ) -> Iterator[tuple[FloatArray, FloatArray]]:
-        """Yield for each incident direction a quadrature's weights (n,) and the columns there.
+        """Yield the weights (n,) of a quadrature and the model's columns, for each direction.
 
-        `evaluate`: a method of `Columns`, which returns (columns, n).
+        The product of both is the directional albedo of each lobe for the incident direction.
+        `evaluate`: a method of `Columns` that returns columns, each an array (n,).
         """
         wi, wo, rules = _place_quadrature_nodes(self.theta, self.phi)
         shapes = [
@@ -101,7 +107,7 @@ class AlbedoAtMost:
         T = np.stack([np.asarray(column) for column in evaluate(shapes, wi, wo)])
         values = len(problem.columns.lobes)
         require_finite_lobes(problem.model, T[: problem.columns.lobes.max() + 1], wi, wo)
-        # For the derivative of 0^p by p, which is 0, Dr.Jit's forward mode returns NaN
+        # Dr.Jit's forward mode returns NaN for the derivative of 0^p by p, which is 0
         T[values:] = np.nan_to_num(T[values:], posinf=0, neginf=0)
         ends = np.cumsum([len(rule) for rule in rules])
         yield from zip(rules, np.split(T, ends[:-1], axis=1), strict=True)
@@ -111,9 +117,10 @@ class AlbedoAtMost:
 def _place_quadrature_nodes(
     theta: tuple[float, ...], phi: tuple[float, ...]
 ) -> tuple[Vector, Vector, tuple[FloatArray, ...]]:
-    """Return wi and wo of the quadratures for all incident directions, and their weights.
+    """Return the nodes of the quadratures over outgoing directions, for all incident directions.
 
-    wi and wo are `double_precision.Vector`; the weights are an array (n,) for each direction.
+    `theta`, `phi`: angles of incidence [degrees]. The result is (wi, wo, weights): the directions
+    of all nodes, and an array of weights (n,) for each incident direction.
     """
     angles = np.meshgrid(np.radians(theta), np.radians(phi), indexing="ij")
     incident = from_angles(*angles).reshape(-1, 3)
@@ -123,14 +130,17 @@ def _place_quadrature_nodes(
 
 
 def _evaluate_model(problem: Problem, weights: FloatArray, T: FloatArray) -> FloatArray:
-    """Return the model (channels, n), not clamped, from its columns (columns, n)."""
+    """Return the model's BRDF (channels, n) from its columns (columns, n), not clamped at 0."""
     columns = problem.columns
     factors = (weights[0][:, columns.lobes]) ** columns.powers
     return factors @ T[: len(columns.lobes)]
 
 
 def _to_angles(name: str, given: Any, low: float, high: float) -> tuple[float, ...]:
-    """Return one or several angles [degrees], from `low` to below `high`, as a tuple of floats."""
+    """Return one or several angles [degrees] as a tuple of floats.
+
+    Raises `BrdfkitError` unless they are from `low` to below `high`; `name`: name of the argument.
+    """
     try:
         angles = tuple(map(float, given if isinstance(given, Iterable) else [given]))
     except (TypeError, ValueError):

@@ -1,4 +1,9 @@
-"""The constraints of a fit, which its parameters have to meet beside their bounds."""
+"""Defines constraints, which the parameters of a fit have to meet in addition to their bounds.
+
+A constraint returns values that are at least 0 where it is met, and their derivatives. A point is
+given by coordinates `u` (1, shapes) of the shape parameters and weights (1, channels, lobes) of the
+lobes, or by a vector z (n,) of both.
+"""
 
 from __future__ import annotations
 
@@ -17,20 +22,21 @@ from brdfkit.regression.problem.parameter_space import join_point, make_limits, 
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.solvers.objective import End
 
-# A constraint is met if its value is above minus the first, and active if it is below the second
+# A constraint counts as met if its value is above minus the first number, and as active if its
+# value is below the second one
 MET_TOLERANCE, ACTIVE_TOLERANCE = 1e-8, 1e-6
-# Step of the differences of a user's function
+# Step of the finite differences of a user's constraint
 DIFFERENCE_STEP = 1e-5
 
 
 @dataclass(frozen=True)
 class WeightsAtMost:
-    """A constraint: in each channel the sum of the weights is at most `limit`, as k_d + k_s ≤ 1.
+    """A constraint of a fit: the sum of the lobes' weights is limited, as in k_d + k_s ≤ 1.
 
     Parameters
     ----------
     limit : float, default 1
-        The largest sum of a channel's weights, above 0.
+        The largest sum of the weights in each channel, above 0.
 
     Examples
     --------
@@ -43,32 +49,40 @@ class WeightsAtMost:
         object.__setattr__(self, "limit", to_positive_number("WeightsAtMost: limit", self.limit))
 
     def values(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
-        """Return the values (m,) at a point, at least 0 where the constraint is met."""
+        """Return the limit less the sum of the weights in each channel, (channels,).
+
+        `weights` (1, channels, lobes): weights of the lobes. The limit is met where the values are
+        at least 0.
+        """
         return self.limit - weights[0].sum(axis=1)
 
     def slopes(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
-        """Return the derivatives (m, n) of `values` by coordinates, then by weights."""
+        """Return the derivatives (channels, n) of `values` by the n coordinates and weights."""
         _, channels, lobes = weights.shape
         by_weights = np.kron(np.eye(channels), np.ones(lobes))
         return np.hstack([np.zeros((channels, u.shape[1])), -by_weights])
 
     def describe(self, rows: IntArray, channels: int) -> str:
-        """Return what the values with the indices `rows` limit, in words."""
+        """Return in words what the constraint limits; the arguments have no effect."""
         return "the sum of the weights"
 
 
 class UserConstraint:
-    """A user's function of a model, which returns numbers ≥ 0 where the constraint is met."""
+    """A constraint of a fit given as a user's function of the model.
+
+    The function takes the `Model` and returns one or several numbers, which are at least 0 where
+    the constraint is met.
+    """
 
     def __init__(self, function: Callable[[Model], Any]) -> None:
         self.function = function
 
     def values(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
-        """Return the values (m,) at a point."""
-        return self._call(problem, join_point(u, weights)[0])
+        """Return the numbers (m,) that the user's function returns for the model at a point."""
+        return self._call_function(problem, join_point(u, weights)[0])
 
     def slopes(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
-        """Return the derivatives (m, n) of the values by central differences."""
+        """Return the derivatives (m, n) of the numbers by parameters, by central differences."""
         z = join_point(u, weights)[0]
         low, high = make_limits(u.shape[1], problem.channels, problem.least)
         slopes = []
@@ -76,12 +90,15 @@ class UserConstraint:
             below, above = z.copy(), z.copy()
             step = DIFFERENCE_STEP * max(1.0, abs(z[k]))
             below[k], above[k] = max(z[k] - step, low[k]), min(z[k] + step, high[k])
-            change = self._call(problem, above) - self._call(problem, below)
+            change = self._call_function(problem, above) - self._call_function(problem, below)
             slopes.append(change / (above[k] - below[k]))
         return np.stack(slopes, axis=1)
 
-    def _call(self, problem: Problem, z: FloatArray) -> FloatArray:
-        """Call the function at a point z (n,); raise `BrdfkitError` if it fails."""
+    def _call_function(self, problem: Problem, z: FloatArray) -> FloatArray:
+        """Return the numbers (m,) of the function for the model at a point z (n,).
+
+        Raises `BrdfkitError` if the function fails or returns something else.
+        """
         u, weights = split_point(z[None], len(problem.space.names), problem.channels)
         model = make_model(problem.columns.model, problem.space.to_values(u[0]), weights[0])
         try:
@@ -103,35 +120,38 @@ class UserConstraint:
         return values
 
     def describe(self, *_: Any) -> str:
-        """Return the name of the function."""
+        """Return the constraint in words, by the name of the function."""
         return f"the constraint {getattr(self.function, '__name__', repr(self.function))}"
 
 
 class Constraints:
-    """All constraints of a fit, as one vector of values that must be at least 0."""
+    """The constraints of a fit, evaluated as one vector of values that should be at least 0.
+
+    The methods take points z (n,): coordinates of the shape parameters, then the lobes' weights.
+    """
 
     def __init__(self, constraints: Iterable[Any], problem: Problem) -> None:
         self.each = [c if hasattr(c, "slopes") else UserConstraint(c) for c in constraints]
         self.problem = problem
 
     def values(self, z: Any) -> Any:
-        """Return the values (m,) at a point z (n,)."""
+        """Return the values (m,) of all constraints at a point z, at least 0 where they are met."""
         return np.concatenate([c.values(self.problem, *self._split(z)) for c in self.each])
 
     def slopes(self, z: Any) -> Any:
-        """Return the derivatives (m, n) of the values at a point z (n,)."""
+        """Return the derivatives (m, n) of the constraints' values at a point z by its entries."""
         return np.concatenate([c.slopes(self.problem, *self._split(z)) for c in self.each])
 
     def are_met(self, z: FloatArray) -> bool:
-        """Return whether a point z (n,) meets all constraints."""
+        """Return whether a point z meets all constraints, up to rounding errors."""
         return bool((self.values(z) >= -MET_TOLERANCE).all())
 
-    def select_met(self, ends: list[End]) -> list[End]:
-        """Return the `ends` that meet all constraints; raise `BrdfkitError` if none does."""
+    def keep_valid_ends(self, ends: list[End]) -> list[End]:
+        """Return those ends of searches that meet all constraints; raise an error if none does."""
         met = [end for end in ends if self.are_met(end.point)]
         if not met:
             nearest = max((end.point for end in ends), key=lambda z: self.values(z).min())
-            broken = " and ".join(self._describe(nearest, -MET_TOLERANCE))
+            broken = " and ".join(self._describe_below(nearest, -MET_TOLERANCE))
             raise BrdfkitError(
                 f"{self.problem.model.type_name()}: no parameters were found that meet the "
                 f"constraints: {broken} stays beyond the limit; loosen it, or take another model."
@@ -139,14 +159,14 @@ class Constraints:
         return met
 
     def notes(self, z: FloatArray) -> tuple[str, ...]:
-        """Return a sentence on each constraint that is active at a point z (n,)."""
+        """Return a sentence on each constraint that is at its limit at a point z, for a fit."""
         return tuple(
             f"{quantity} is at its limit, which standard errors and intervals do not know of"
-            for quantity in self._describe(z, ACTIVE_TOLERANCE)
+            for quantity in self._describe_below(z, ACTIVE_TOLERANCE)
         )
 
-    def _describe(self, z: FloatArray, limit: float) -> list[str]:
-        """Return what the constraints with values below `limit` restrict, in words."""
+    def _describe_below(self, z: FloatArray, limit: float) -> list[str]:
+        """Return in words what the constraints limit whose values at z are below `limit`."""
         quantities = []
         for constraint in self.each:
             (rows,) = np.nonzero(constraint.values(self.problem, *self._split(z)) < limit)
@@ -155,5 +175,5 @@ class Constraints:
         return quantities
 
     def _split(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return coordinates (1, shapes) and weights (1, channels, lobes) of a point z (n,)."""
+        """Return the coordinates (1, shapes) and weights (1, channels, lobes) of a point z."""
         return split_point(z[None], len(self.problem.space.names), self.problem.channels)

@@ -1,7 +1,7 @@
-"""`DifferentialEvolution`: a global search by a population of points, for difficult fits.
+"""Defines `DifferentialEvolution`, a global search by a population of points, for difficult fits.
 
-SciPy's implementation of [Storn & Price 1997] searches the shape parameters; the best weights are
-computed at each point.
+SciPy's implementation of [Storn & Price 1997] searches the shape parameters. The best weights of
+the lobes are computed at each point.
 """
 
 from dataclasses import dataclass
@@ -14,9 +14,9 @@ from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt
 from brdfkit.regression.solvers.objective import End, Objective
 
-# Steps to the best weights at a point, if the loss is not linear
+# Largest number of steps to the best weights at a point; a linear loss needs none
 WEIGHT_STEPS = 4
-# They stop if a step lowers no E² by more than this share
+# The steps end if the last one lowered no E² by more than this share
 SETTLED = 1e-3
 
 
@@ -24,7 +24,8 @@ SETTLED = 1e-3
 class DifferentialEvolution:
     """Differential evolution, a global search by `scipy.optimize.differential_evolution`.
 
-    `LevenbergMarquardt` refines its end. It takes longer, and depends less on the start points.
+    `LevenbergMarquardt` refines the result. The search takes longer than `LevenbergMarquardt` alone
+    and depends less on the start points.
 
     Parameters
     ----------
@@ -48,12 +49,12 @@ class DifferentialEvolution:
         check_number_fields(self)
 
     def minimise(self, objective: Objective) -> End:
-        """Return the end of the search."""
+        """Return the `End` with the least E² that the search finds."""
         coordinates = self._explore(objective) if objective.shapes else objective.coordinates
         return LevenbergMarquardt().search_best_ends(objective, coordinates)[0]
 
     def _explore(self, objective: Objective) -> FloatArray:
-        """Return the coordinates (points, shapes) of the last population, the best first."""
+        """Return the last population of the evolution, coordinates (points, shapes), best first."""
         from scipy.optimize import differential_evolution
 
         first = objective.stages()[0]
@@ -74,7 +75,10 @@ class DifferentialEvolution:
 
 
 def _find_least_error(objective: Objective, u: FloatArray) -> FloatArray:
-    """Return E² (points,) at coordinates `u` (points, shapes), with nearly the best weights."""
+    """Return the least E² (points,) over all weights of the lobes, nearly, at given coordinates.
+
+    `u` (points, shapes): coordinates of the shape parameters.
+    """
     shapes, problem = objective.shapes, objective.problem
     low = np.tile(problem.least, problem.channels)
     z, least = objective.join(u, problem.estimate_weights(u)), np.full(len(u), np.inf)

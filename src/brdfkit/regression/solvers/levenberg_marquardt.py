@@ -1,4 +1,4 @@
-"""`LevenbergMarquardt`: the default solver, damped Gauss-Newton steps from all starts at once.
+"""Defines `LevenbergMarquardt`, the default solver: damped Gauss-Newton steps from all starts.
 
 [Levenberg 1944]; [Marquardt 1963].
 """
@@ -17,7 +17,7 @@ from brdfkit.regression.solvers.objective import End, Objective
 
 @dataclass(frozen=True)
 class LevenbergMarquardt:
-    """Damped Gauss-Newton steps from all starts side by side; the solver of `fit` by default.
+    """A search by damped Gauss-Newton steps, from all starts at once; the default of `fit`.
 
     Parameters
     ----------
@@ -39,11 +39,14 @@ class LevenbergMarquardt:
         check_number_fields(self)
 
     def minimise(self, objective: Objective) -> End:
-        """Return the end of the search."""
+        """Return the `End` with the least E² that the search finds."""
         return self.search_best_ends(objective, objective.coordinates)[0]
 
     def search_best_ends(self, objective: Objective, coordinates: FloatArray) -> list[End]:
-        """Return the best ends of the search from `coordinates` (count, shapes), the best first."""
+        """Return the best few `End`s of searches from several start points, the best first.
+
+        `coordinates` (count, shapes): the start points; weights are computed for them.
+        """
         problems = [stage.problem for stage in objective.stages()]
         ends, converged, evaluations = search_from_starts(
             problems, coordinates, objective.report, self.iterations, self.tolerance

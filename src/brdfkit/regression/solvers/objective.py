@@ -1,4 +1,4 @@
-"""`Objective`: the function that a solver minimises, E² of a model on samples by one vector.
+"""Defines `Objective`, the function that a solver minimises: the squared loss E² of one vector.
 
 A point z (n,) has the coordinates of the searched shape parameters, each from 0 to 1 between its
 bounds, then the weights of the first channel, of the second and so on.
@@ -24,16 +24,16 @@ from brdfkit.regression.problem.problem import Problem
 
 @dataclass(frozen=True, eq=False)
 class End:
-    """The result of a search: the best point, and why the search stopped.
+    """The result of a solver: the best point that it found, and why it stopped.
 
     Attributes
     ----------
     point : ndarray, shape (n,)
-        The point z.
+        The coordinates of the shape parameters, then the weights of the lobes by channel.
     error : float
-        E² at the point.
+        The squared loss E² at the point.
     message : str
-        Why the search stopped.
+        The reason why the solver stopped.
     """
 
     point: FloatArray
@@ -42,22 +42,26 @@ class End:
 
 
 class Objective:
-    """E² at points z, with bounds and start points.
+    """The function that a solver minimises, the squared loss E² of a fit, with start points.
+
+    A point (n,) contains the coordinates of the searched shape parameters, each from 0 to 1 between
+    its bounds, then the weights of the lobes, channel by channel.
 
     Attributes
     ----------
     low, high : ndarray, shape (n,)
-        The bounds of z; `high` is infinite for weights.
+        The bounds of points; `high` is infinite for weights.
     starts : ndarray, shape (count, n)
         Points that are spread over the bounds, the model's defaults first, with suitable weights.
     parts : tuple of Objective
-        The objectives on ever larger parts of many samples; empty if there are few.
+        The objectives on growing parts of many samples; empty if there are few samples.
     constraints : Constraints, optional
-        Functions of z that must be at least 0: `values(z)` (m,) and `slopes(z)` (m, n).
+        Functions of a point that should be at least 0: `values(z)` (m,), with derivatives
+        `slopes(z)` (m, n).
     seed : int
         The seed of the fit, for a solver that draws random numbers.
     report : callable
-        Called with (number of steps done, number of all steps).
+        A function that shows progress, called with (number of steps done, number of all steps).
     evaluations : int
         The number of points at which E² was computed so far.
     """
@@ -80,9 +84,10 @@ class Objective:
 
     @classmethod
     def of(cls, problems: Sequence[Any], *given: Any) -> Objective:
-        """Return the objective of the last of the `problems`, with the others as its parts.
+        """Return the objective of the last of the `problems`, with the ones before as its parts.
 
-        The `problems` are on ever more samples; `given`: the other arguments.
+        The problems have growing numbers of samples; `given`: the arguments of the class after the
+        problem.
         """
         *parts, whole = problems
         objective = cls(whole, *given)
@@ -91,17 +96,19 @@ class Objective:
 
     @cached_property
     def starts(self) -> FloatArray:
+        """The start points (count, n), with the best weights at their coordinates."""
         return self.join(self.coordinates, self.problem.estimate_weights(self.coordinates))
 
     def error(self, points: ArrayLike) -> FloatArray:
-        """Return E² (count,) at `points` (count, n) within the bounds, all in one kernel."""
+        """Return E² (count,) at `points` (count, n) within the bounds, evaluated at once."""
         return self.expand(points, curvature=False).error
 
     def expand(self, points: ArrayLike, curvature: bool = True) -> Expansion:
-        """Return E² about `points` (count, n) to second order, by Gauss and Newton.
+        """Return a quadratic approximation of E² about `points` (count, n).
 
-        The result has ``error`` (count,), ``gradient`` (count, n) and, unless `curvature` is False,
-        ``hessian`` (count, n, n). The derivatives are half the derivatives of E².
+        The result has ``error``, E² (count,), ``gradient``, half the gradient of E² (count, n), and
+        ``hessian``, half its Gauss-Newton Hessian (count, n, n). Without `curvature` it has no
+        ``hessian``, which saves time.
         """
         points = np.array(points, float, ndmin=2)
         self.evaluations += len(points)
@@ -112,25 +119,29 @@ class Objective:
         return expansion
 
     def clip(self, points: ArrayLike) -> FloatArray:
-        """Return the nearest points within the bounds."""
+        """Return the points (count, n) within the bounds that are nearest to some points."""
         return np.clip(points, self.low, self.high)
 
     def split(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return coordinates (count, shapes) and weights (count, channels, lobes) of points."""
+        """Return the two parts of points (count, n): coordinates and weights.
+
+        Coordinates (count, shapes) belong to shape parameters, weights (count, channels, lobes) to
+        the lobes of the model.
+        """
         return split_point(points, self.shapes, self.problem.channels)
 
     def join(self, u: FloatArray, weights: FloatArray) -> FloatArray:
-        """Return the points (count, n) of coordinates and weights."""
+        """Return points (count, n) made of coordinates and weights, the inverse of `split`."""
         return join_point(u, weights)
 
     def count(self) -> int:
-        """Return the number of evaluations, on all samples and on parts of them."""
+        """Return how often E² was evaluated, on all samples and on parts of them."""
         return self.evaluations + sum(part.evaluations for part in self.parts)
 
     def require_end(self, end: Any) -> End:
-        """Return the `End` that a user's solver returned, with E² computed again.
+        """Return the `End` that a user's solver returned, with its E² computed again.
 
-        Raises `BrdfkitError` if it is no `End` within the bounds that meets the constraints.
+        Raises `BrdfkitError` if it is no `End`, outside the bounds, or violates the constraints.
         """
         inside = isinstance(end, End) and np.shape(end.point) == self.low.shape
         if not (inside and np.all((self.low <= end.point) & (end.point <= self.high))):
@@ -147,10 +158,10 @@ class Objective:
         return End(point, float(sums.error[0]), str(end.message))
 
     def best_so_far(self, ends: Expansion | None = None) -> End | None:
-        """Return the best `End` of an interrupted search, None without any.
+        """Return the best `End` so far of an interrupted search, or None if there is none.
 
-        `ends`: an `Expansion` about the last points; by default the points evaluated so far, on as
-        many samples as possible.
+        `ends`: expansion about the last points of the search; by default, all points that were
+        evaluated count, those on the largest part of the samples.
         """
         if ends is not None:
             best = ends.select([int(np.argmin(ends.error))])
@@ -162,12 +173,12 @@ class Objective:
         return End(point, float(self.error(point)[0]), "interrupted")
 
     def stages(self) -> tuple[Any, ...]:
-        """Return the objectives of a search on ever more samples: the parts, then this one."""
+        """Return the objectives on growing parts of the samples, and last this one on all."""
         return (*self.parts, self)
 
 
 class Solver(Protocol):
-    """An algorithm that minimises the loss of a fit."""
+    """The protocol of solvers, the algorithms that minimise the loss of a fit."""
 
     def minimise(self, objective: Objective) -> End:
-        """Return the end with the least E² that it finds."""
+        """Return the `End` with the least E² that the solver finds."""

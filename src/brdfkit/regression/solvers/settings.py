@@ -1,4 +1,7 @@
-"""Reads solvers and constraints from arguments: objects, names, or the data of a saved fit."""
+"""Converts arguments of a fit to solvers and constraints, and these to data for saved fits.
+
+An argument may be an object, a name, or a dictionary from a saved fit.
+"""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -22,7 +25,10 @@ CONSTRAINTS: dict[str, Any] = {"albedo_at_most": AlbedoAtMost, "weights_at_most"
 
 
 def to_solver(value: Any) -> Any:
-    """Return the solver that a name, a dictionary of settings or a solver itself describes."""
+    """Return the solver that an argument of a fit describes.
+
+    `value`: the solver itself, its name, or a dictionary with its name and settings.
+    """
     if isinstance(value, str):
         value = {"name": value}
     if isinstance(value, Mapping):
@@ -36,7 +42,10 @@ def to_solver(value: Any) -> Any:
 
 
 def to_constraints(value: Any) -> tuple[Any, ...]:
-    """Return the constraints for an argument: data, objects of brdfkit, or functions."""
+    """Return the constraints that an argument of a fit describes, as a tuple.
+
+    `value`: one or several objects of brdfkit, functions, or dictionaries from a saved fit.
+    """
     if value is None:
         return ()
     several = isinstance(value, Iterable) and not isinstance(value, Mapping | str)
@@ -44,7 +53,7 @@ def to_constraints(value: Any) -> tuple[Any, ...]:
 
 
 def _to_constraint(value: Any) -> Any:
-    """Return the constraint for a value: data, an object of brdfkit, or a function."""
+    """Return one constraint; `value`: an object of brdfkit, a function, or a dictionary."""
     if isinstance(value, Mapping):
         return _make_from_data("constraint", CONSTRAINTS, value)
     if isinstance(value, type) or not (callable(value) or hasattr(value, "slopes")):
@@ -56,7 +65,10 @@ def _to_constraint(value: Any) -> Any:
 
 
 def to_plain_data(setting: Any) -> Any:
-    """Return a solver or a constraint as data for JSON, or only the name of a user's own."""
+    """Return a solver or a constraint as data that JSON can store.
+
+    An object of brdfkit becomes a dictionary of its name and settings, a user's own only a name.
+    """
     for name, cls in (SOLVERS | CONSTRAINTS).items():
         if type(setting) is cls:
             return {"name": name, **to_json(setting)}
@@ -66,11 +78,11 @@ def to_plain_data(setting: Any) -> Any:
 def require_supported_constraints(
     solver: Any, constraints: tuple[Any, ...], robust: str | None
 ) -> None:
-    """Raise `BrdfkitError` for constraints that the solver, or a robust fit, does not support."""
+    """Raise `BrdfkitError` for constraints that the solver or a robust fit does not support."""
     if constraints and robust:
         raise BrdfkitError(
-            "A robust fit takes no constraints, because its passes would violate them; give one or "
-            "the other."
+            "A robust fit takes no constraints, because its passes would violate them; leave out "
+            "robust or the constraints."
         )
     if constraints and solver is not None and not getattr(solver, "constrained", False):
         raise BrdfkitError(
@@ -79,7 +91,7 @@ def require_supported_constraints(
 
 
 def require_plain_data(solver: Any, constraints: tuple[Any, ...]) -> None:
-    """Raise `BrdfkitError` for a solver or constraints that cannot be sent to other processes."""
+    """Raise `BrdfkitError` for a user's solver or constraint, as other processes lack its code."""
     for setting in (solver, *constraints):
         if isinstance(to_plain_data(setting), str):
             raise BrdfkitError(
@@ -89,7 +101,10 @@ def require_plain_data(solver: Any, constraints: tuple[Any, ...]) -> None:
 
 
 def _make_from_data(kind: str, classes: Mapping[str, Any], data: Mapping[str, Any]) -> Any:
-    """Rebuild an object of one of the `classes` from the data that `to_plain_data` made of it."""
+    """Return an object of one of the `classes` from the data that `to_plain_data` made of it.
+
+    `kind`: "solver" or "constraint", for error messages.
+    """
     numbers = dict(data)
     name = numbers.pop("name", None)
     if not isinstance(name, str) or name not in classes:

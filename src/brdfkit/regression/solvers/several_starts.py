@@ -1,4 +1,4 @@
-"""Runs a local search from several starts, on ever larger parts of the samples."""
+"""Runs a solver's local search from several start points, on growing parts of the samples."""
 
 from collections.abc import Callable, Iterable
 
@@ -8,9 +8,9 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.search.multistart import CLOSE, FINALISTS
 from brdfkit.regression.solvers.objective import End, Objective
 
-# Two ends are one if E² differs by a smaller share
+# Ends of searches whose E² differs by a smaller share count as one
 SAME_END = 1e-6
-# An end within this distance of a bound is moved onto it, if E² rises by less than this share
+# An end within this distance of a bound is moved onto the bound if E² grows by less than this share
 BOUND_DISTANCE, EQUAL_ERROR = 1e-4, 1e-10
 
 
@@ -19,17 +19,17 @@ def search_stages(
     minimise: Callable[[Objective, FloatArray], End],
     points: Iterable[FloatArray],
 ) -> End:
-    """Search from `points` (count, n) on ever more samples, and return the best `End`.
+    """Search from several start `points` (count, n) in stages, and return the best `End`.
 
-    `minimise(objective, z)` returns the `End` of a search from one point. All points are searched
-    on the smallest part of the samples, the best ends on the next one, and so on.
+    All points are searched on the smallest part of the samples, the best ends on the next larger
+    part, and so on. `minimise(objective, z)`: a function that searches from one point z (n,).
     """
     stages = objective.stages()
     for number, stage in enumerate(stages):
         objective.report(number, len(stages))
         ends = [minimise(stage, z) for z in points]
         if objective.constraints:
-            ends = objective.constraints.select_met(ends)
+            ends = objective.constraints.keep_valid_ends(ends)
         ends.sort(key=lambda end: end.error)
         limit = (1 + CLOSE) * ends[0].error
         points = [end.point for end in _drop_equal_ends(ends) if end.error <= limit]
@@ -39,14 +39,17 @@ def search_stages(
 
 
 def _drop_equal_ends(ends: list[End]) -> list[End]:
-    """Return one of the ends for each value of E²; the `ends` are sorted by E²."""
+    """Return the `ends`, which are sorted by E², with only one of those with equal E²."""
     errors = np.array([end.error for end in ends])
     new = np.diff(errors, prepend=-1) > SAME_END * errors
     return [end for end, is_new in zip(ends, new, strict=True) if is_new]
 
 
 def _move_to_bounds(objective: Objective, end: End) -> End:
-    """Return the `End` moved onto bounds that it nearly reached, for searches that stay inside."""
+    """Return an `End` moved onto the bounds that it nearly reached.
+
+    Some searches stay inside the bounds and never reach them exactly.
+    """
     low, high = objective.low, objective.high
     near = (end.point - low < BOUND_DISTANCE) | (high - end.point < BOUND_DISTANCE)
     bound = np.where(end.point - low < BOUND_DISTANCE, low, high)
@@ -64,7 +67,7 @@ def _move_to_bounds(objective: Objective, end: End) -> End:
 
 
 def find_best_starts(objective: Objective, count: int) -> FloatArray:
-    """Return the `count` starts (count, n) with the least E² on the smallest part."""
+    """Return the `count` start points (count, n) with the least E² on the smallest part."""
     stage = objective.stages()[0]
     order = np.argsort(stage.error(stage.starts), kind="stable")
     return stage.starts[order[:count]]

@@ -1,6 +1,6 @@
-"""`SLSQP`: sequential quadratic programming, the solver for constraints.
+"""Defines `SLSQP`, sequential quadratic programming, the default solver for fits with constraints.
 
-This is the method of [Kurt 2007, ch. 5], in SciPy's implementation of [Kraft 1988].
+It is the method of [Kurt 2007, ch. 5], in SciPy's implementation of [Kraft 1988].
 """
 
 import math
@@ -14,17 +14,18 @@ from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt
 from brdfkit.regression.solvers.objective import End, Objective
 from brdfkit.regression.solvers.several_starts import find_best_starts, search_stages
 
-# A search is repeated from its end, in new units, because it may end early in the old units
+# Largest number of repetitions of a search from its end. They use new units of the parameters,
+# because SciPy's search may end too early in the old ones
 REPETITIONS = 8
-# The unit of E² is at least this share of a black model's E²
+# E² is divided by its value at the start, but at least by this share of a black model's E²
 SMALLEST_UNIT = 1e-6
 
 
 @dataclass(frozen=True)
 class SLSQP:
-    """Sequential quadratic programming with exact gradients, by `scipy.optimize.minimize`.
+    """A search by sequential quadratic programming, with `scipy.optimize.minimize`.
 
-    It is the default solver of `fit` with constraints.
+    It is the default solver of `fit` with constraints, and uses exact gradients.
 
     Parameters
     ----------
@@ -45,16 +46,16 @@ class SLSQP:
     tolerance: float = 1e-10
     starts: int = 8
 
-    constrained = True  # takes constraints
+    constrained = True  # the solver meets constraints
 
     def __post_init__(self) -> None:
         check_number_fields(self)
 
     def minimise(self, objective: Objective) -> End:
-        """Return the end of the search."""
+        """Return the `End` with the least E² that meets the constraints."""
         if objective.constraints is None:
             return search_stages(objective, self._search, find_best_starts(objective, self.starts))
-        # If the optimum without constraints meets them, it is the result
+        # If the optimum without constraints happens to meet them, it is the result
         free = LevenbergMarquardt().search_best_ends(objective, objective.coordinates)
         if objective.constraints.are_met(free[0].point):
             return free[0]
@@ -63,7 +64,7 @@ class SLSQP:
         return replace(end, message=f"{end.message}; {without}")
 
     def _search(self, objective: Objective, z: FloatArray) -> End:
-        """Return the `End` of the search from one point."""
+        """Return the `End` of a search from one point `z` (n,)."""
         u, weights = objective.split(z[None])
         least = SMALLEST_UNIT * objective.error(objective.join(u, 0 * weights))[0]
         for _ in range(REPETITIONS):
@@ -78,13 +79,17 @@ class SLSQP:
     def _search_once(
         self, objective: Objective, start: FloatArray, hessian: FloatArray, scale: float
     ) -> tuple[FloatArray, float]:
-        """Return the end (z, E²) of SciPy's search; `hessian`: of E² / `scale` at the start."""
+        """Return the end (z, E²) of one search by SciPy from the point `start` (n,).
+
+        `hessian` (n, n): Hessian of E² / `scale` at the start, which decides the units.
+        """
         from scipy.optimize import Bounds, minimize
 
-        # Units in which E² is about 1 and has equal curvature along all axes
+        # In these units E² has equal curvature along all axes, which the search is made for
         unit = 1 / np.sqrt(np.maximum(hessian.diagonal(), 1))
 
         def error(y: FloatArray) -> tuple[float, FloatArray]:
+            """Return E² / `scale` and its gradient at a point `y` (n,) in these units."""
             there = objective.expand(objective.clip(y * unit), curvature=False)
             return there.error[0] / scale, 2 * there.gradient[0] * unit / scale
 

@@ -1,9 +1,10 @@
-"""`TrustRegion`: Gauss-Newton steps within a trust region, by SciPy's `least_squares`.
+"""Defines `TrustRegion`, a solver with Gauss-Newton steps within a trust region.
 
-Its method "trf" [Branch et al. 1999] takes residuals and their Jacobian, which would be a gigabyte
-for a full table. It uses only their products. So it receives few residuals r and a small Jacobian J
-with the same products: E² = rᵀr, g = Jᵀr and H = JᵀJ. SciPy's "trust-constr" with the same Hessian
-reaches the same end after three to seven times as many evaluations.
+SciPy's `least_squares` with its method "trf" [Branch et al. 1999] takes residuals and their
+Jacobian, which would be a gigabyte for a full table. But it uses only their products. So it
+receives few residuals r and a small Jacobian J with the same products: the squared loss E² = rᵀr,
+half its gradient, g = Jᵀr, and half its Hessian, H = JᵀJ. SciPy's "trust-constr" with the same
+Hessian reaches the same end after three to seven times as many evaluations.
 """
 
 from dataclasses import dataclass
@@ -16,13 +17,13 @@ from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.solvers.objective import End, Objective
 from brdfkit.regression.solvers.several_starts import find_best_starts, search_stages
 
-# Eigenvalues of a Hessian below this share of the largest are rounding
+# Eigenvalues of a Hessian below this share of the largest are rounding errors, and count as 0
 SINGULAR = 1e-14
 
 
 @dataclass(frozen=True)
 class TrustRegion:
-    """Gauss-Newton steps within a trust region, by `scipy.optimize.least_squares` ("trf").
+    """A search by Gauss-Newton steps within a trust region, with `scipy.optimize.least_squares`.
 
     Parameters
     ----------
@@ -46,25 +47,26 @@ class TrustRegion:
         check_number_fields(self)
 
     def minimise(self, objective: Objective) -> End:
-        """Return the end of the search."""
+        """Return the `End` with the least E² that the search finds."""
         return search_stages(objective, self._search, find_best_starts(objective, self.starts))
 
     def _search(self, objective: Objective, z: FloatArray) -> End:
-        """Return the `End` of the search from one point."""
+        """Return the `End` of a search from one point `z` (n,)."""
         from scipy.optimize import least_squares
 
         cache: dict[bytes, tuple[FloatArray, FloatArray]] = {}
 
-        def compress(z: FloatArray) -> tuple[FloatArray, FloatArray]:
+        def compress_samples(z: FloatArray) -> tuple[FloatArray, FloatArray]:
+            """Return residuals and Jacobian at a point, evaluated once for both calls of SciPy."""
             if z.tobytes() not in cache:
                 cache.clear()
                 cache[z.tobytes()] = _compress_expansion(objective.expand(z))
             return cache[z.tobytes()]
 
         result = least_squares(
-            lambda z: compress(z)[0],
+            lambda z: compress_samples(z)[0],
             z,
-            lambda z: compress(z)[1],
+            lambda z: compress_samples(z)[1],
             bounds=(objective.low, objective.high),
             x_scale="jac",
             ftol=self.tolerance,
@@ -77,9 +79,10 @@ class TrustRegion:
 
 
 def _compress_expansion(expansion: Expansion) -> tuple[FloatArray, FloatArray]:
-    """Return residuals (n + 1,) and their Jacobian (n + 1, n) with the products of an `Expansion`.
+    """Return few residuals (n + 1,) and a small Jacobian (n + 1, n) that stand for all samples.
 
-    The expansion is about one point.
+    Their products are E², its gradient and its Hessian in the `expansion`, which is about one point
+    with n parameters.
     """
     values, vectors = np.linalg.eigh(expansion.hessian[0])
     roots = np.sqrt(np.where(values > SINGULAR * values.max(), values, 0))

@@ -1,0 +1,94 @@
+"""Adds up derivatives over the samples of a fit, for the covariance of its parameters.
+
+The results are the two factors of the sandwich estimator in `certainty.py`: the Hessian of the
+squared loss, and the scores, the contributions of the samples to its gradient.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.array_types import BoolArray, FloatArray
+from brdfkit.regression.certainty_notes import ABSENT
+from brdfkit.regression.problem.parameter_space import find_channel_entries
+
+# Eigenvalues of a Hessian with unit diagonal that are smaller come from rounding, and count as 0
+SINGULAR = 1e-11
+
+
+def find_undetermined_at_bounds(
+    jacobians: list[FloatArray], free: BoolArray, shapes: int
+) -> BoolArray:
+    """Return for each parameter (n,) whether it is on a bound without being determined by the data.
+
+    The loss stays the same if such a shape parameter moves together with others, so that it is only
+    by chance that the search ended on the bound. `free` (n,): whether a parameter is inside its
+    bounds; `shapes`: number of shape parameters; `jacobians`: for each channel the derivatives
+    (shapes + lobes, samples) of the residuals.
+    """
+    is_open = np.zeros(len(free), bool)
+    moving = free.copy()
+    # A shape parameter of a lobe without weight has derivatives of 0, and must not count as
+    # undetermined together with others
+    moving[:shapes] |= np.any([jacobian[:shapes].any(axis=1) for jacobian in jacobians], axis=0)
+    if (moving != free).any():
+        hessian, _, _, _ = _sum_hessian(jacobians, moving, shapes)
+        values, vectors = np.linalg.eigh(hessian)
+        null = vectors[:, np.abs(values) <= SINGULAR * max(values.max(), 1)]
+        is_open[moving] = (np.abs(null) > ABSENT).any(axis=1)
+    return is_open & ~free
+
+
+def compute_scores(
+    residuals: list[FloatArray],
+    jacobians: list[FloatArray],
+    free: BoolArray,
+    shapes: int,
+    shares: FloatArray,
+    passes: tuple[list[FloatArray], list[FloatArray]] | None,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the scores (n, samples) and the Hessian (n, n) for the sandwich estimator.
+
+    A score is the contribution of a sample to the gradient of the squared loss, over √(1 - its
+    leverage). Both are in units of the n `free` parameters that make the diagonal of the Hessian 1;
+    the units (n,) are returned, too. `residuals`, `jacobians`: by channel; `shares` (samples,):
+    number of samples for which a drawn sample stands; `passes`: as in `compute_certainty`.
+    """
+    hessian, scale, owns, jacobians = _sum_hessian(jacobians, free, shapes)
+    inverse = np.linalg.pinv(hessian, rcond=SINGULAR, hermitian=True)
+    scores = np.zeros((len(hessian), len(shares)))
+    for c, (own, jacobian) in enumerate(zip(owns, jacobians, strict=True)):
+        jacobian *= scale[own, None]
+        lever = (jacobian * (inverse[np.ix_(own, own)] @ jacobian)).sum(axis=0) * shares
+        factor = np.sqrt(shares / np.maximum(1 - lever, 1e-4))
+        if passes:
+            factor = factor * passes[0][c]
+        scores[own] += jacobian * (residuals[c] * factor)
+    if passes:
+        hessian = np.zeros_like(hessian)
+        for own, jacobian, slope in zip(owns, jacobians, passes[1], strict=True):
+            hessian[np.ix_(own, own)] += (jacobian * slope) @ jacobian.T
+    return scores, hessian, scale
+
+
+def _sum_hessian(
+    jacobians: list[FloatArray], free: BoolArray, shapes: int
+) -> tuple[FloatArray, FloatArray, list[Any], list[FloatArray]]:
+    """Return the scaled Hessian (n, n) of the squared loss by the n `free` parameters.
+
+    Its units (n,), which make its diagonal 1, are returned as well, and for each channel the
+    indices of the free parameters that it depends on and the derivatives of its residuals by them.
+    `jacobians`: derivatives (shapes + lobes, samples) for each channel; `shapes`: number of shape
+    parameters.
+    """
+    where = np.cumsum(free) - 1
+    rows, derivatives = [], []
+    for c, jacobian in enumerate(jacobians):
+        own = find_channel_entries(c, shapes, len(jacobian) - shapes)
+        rows.append(where[own[free[own]]])
+        derivatives.append(jacobian[free[own]])
+    hessian = np.zeros((free.sum(), free.sum()))
+    for own, jacobian in zip(rows, derivatives, strict=True):
+        hessian[np.ix_(own, own)] += jacobian @ jacobian.T
+    scale = 1 / np.sqrt(np.maximum(np.diagonal(hessian), 1e-300))
+    return hessian * np.outer(scale, scale), scale, rows, derivatives
