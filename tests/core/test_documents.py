@@ -19,7 +19,7 @@ from brdfkit.core.documents.text import to_text
 from brdfkit.core.figures import to_png
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.images.ball.ball import WHITE, draw_ball
-from brdfkit.images.ball.lights import studio
+from brdfkit.images.ball.lights import studio_radiance
 from brdfkit.images.ball.normals import find_normals
 from brdfkit.regression.certainty import Certainty
 from brdfkit.volumes.summary.summary import summarise
@@ -278,7 +278,7 @@ def test_the_ball_is_a_picture_of_the_material(monkeypatch):
     at = (np.arange(24) + 0.5) / 12 - 1
     x, y = (grid[cover == 1] for grid in np.meshgrid(at, -at))
     cosines = np.maximum(find_normals(x, y) @ light.T, 0)
-    ratios = white[cover == 1, 0] / (cosines @ studio(light))
+    ratios = white[cover == 1, 0] / (cosines @ studio_radiance(light))
     assert ratios.std() < 0.02 * ratios.mean()
 
 

@@ -9,7 +9,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.images.ball import LIGHTS, draw_pixels
 from brdfkit.images.ball.half_vectors import HalfVectors
-from brdfkit.images.ball.lights import get_sampling
+from brdfkit.images.ball.lights import get_light_sampling
 from brdfkit.images.ball.normals import VIEW, draw_normals
 from brdfkit.images.ball.pixels import BRIGHT_SHARE
 from brdfkit.materials.measured.selection import select_samples
@@ -35,7 +35,7 @@ def directions(n):
 @pytest.mark.quick
 @pytest.mark.parametrize("light", LIGHTS)
 def test_a_light_is_drawn_by_its_density(light):
-    w, sampling = directions(600), get_sampling(light)
+    w, sampling = directions(600), get_light_sampling(light)
     drawn = sampling.sample(np.random.default_rng(0).random((20_000, 3)))
     assert_drawn_by(sampling.pdf(w), w, drawn)
 
@@ -63,7 +63,7 @@ def test_normals_show_the_disc_evenly():
     """Weighted, their means are those of the disc: of x, y, x² and y², and of a small spot."""
     of_material = HalfVectors(bk.models()["ggx"](**GLOSSY, alpha_u=0.1).eval)
     rng = np.random.default_rng(3)
-    normals, weights = draw_normals(4000, get_sampling("hall"), of_material, rng)
+    normals, weights = draw_normals(4000, get_light_sampling("hall"), of_material, rng)
     right = np.cross((0, 0, 1), VIEW) / np.hypot(*VIEW[:2])
     x, y = normals @ right, normals @ np.cross(VIEW, right)
     spot = (np.hypot(x + 0.2, y - 0.4) < 0.2) / 0.04
@@ -100,7 +100,7 @@ def test_pixels_are_those_of_a_rendered_ball(light, llvm_variant):
         "ball": {"type": "sphere", "bsdf": model.scene_dict()},
     }
     picture = np.array(mi.render(mi.load_dict(scene)))[..., :3]
-    of_light, of_material = get_sampling(light), HalfVectors(model.eval)
+    of_light, of_material = get_light_sampling(light), HalfVectors(model.eval)
     normals, _ = draw_normals(400, of_light, of_material, np.random.default_rng(0))
     right = np.cross((0, 0, 1), VIEW) / np.hypot(*VIEW[:2])
     x, y = normals @ right, normals @ np.cross(VIEW, right)
@@ -126,8 +126,8 @@ def directions_of_map(height):
 def test_pixels_are_exposed_and_linear():
     dark, bright = (bk.models()["lambert"](diffuse_reflectance=r) for r in (0.1, 0.8))
     pixels = draw_pixels(("court", "hall"), dark.eval, pixels=200)
-    np.testing.assert_allclose(pixels.look(bright.eval), 8 * pixels.values, rtol=1e-12)
-    assert pixels.take_first(7).look(dark.eval) == pytest.approx(pixels.values[:7])
+    np.testing.assert_allclose(pixels.evaluate(bright.eval), 8 * pixels.values, rtol=1e-12)
+    assert pixels.take_first(7).evaluate(dark.eval) == pytest.approx(pixels.values[:7])
     for picture in (0, 1):
         values, weights = pixels.values[picture::2, 0], pixels.weights[picture::2]
         assert weights[values > 1].sum() / weights.sum() == pytest.approx(BRIGHT_SHARE, abs=0.01)
@@ -193,7 +193,7 @@ def test_a_fit_by_pictures_looks_better(monkeypatch):
     decibels, errors = {}, {}
     for loss in ("log", "cbrt", "picture"):
         found = bk.fit(data, "ggx", loss=loss)
-        squares = np.square(pixels.look(found.eval) - pixels.values).mean(axis=1)
+        squares = np.square(pixels.evaluate(found.eval) - pixels.values).mean(axis=1)
         decibels[loss] = -10 * np.log10(pixels.weights @ squares)
         errors[loss] = bk.compare(data, found).errors["ggx"]["log"]
     assert decibels["picture"] > max(decibels["log"], decibels["cbrt"]) + 1

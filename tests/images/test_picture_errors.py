@@ -244,7 +244,7 @@ def test_the_noise_of_the_halves_is_that_of_two_seeds(passes, rng):
     """
     halves = Halves()
     for spp in passes:
-        halves = halves.plus(rng.standard_normal(100_000) / np.sqrt(spp), spp)
+        halves = halves.add_pass(rng.standard_normal(100_000) / np.sqrt(spp), spp)
     found = np.square(halves.other_seed - halves.picture).mean() * sum(passes) / 2
     assert abs(found - 1) < 4 * np.sqrt(2 / 100_000)
 

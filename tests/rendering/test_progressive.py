@@ -111,11 +111,11 @@ def test_standard_errors_are_those_of_the_mean():
     n, w = 4000, RNG.integers(1, 4, 9)
     found = Accumulated()
     for spp in w.tolist():
-        found = found.plus(RNG.normal(2, 0.3 / np.sqrt(spp), n).astype(np.float32), spp)
+        found = found.add_pass(RNG.normal(2, 0.3 / np.sqrt(spp), n).astype(np.float32), spp)
     t = (found.picture - 2) / found.standard_error
     assert abs(t.mean()) < 4 * np.sqrt(8 / 6 / n)
     assert abs(np.square(t).mean() - 8 / 6) < 4 * np.sqrt((8 - (8 / 6) ** 2) / n)
-    assert Accumulated().plus(np.ones(3), 4).standard_error is None
+    assert Accumulated().add_pass(np.ones(3), 4).standard_error is None
 
 
 @pytest.mark.quick
@@ -124,5 +124,5 @@ def test_sums_do_not_stall():
     passes = RNG.random((10_000, 20)) < 0.1
     found = Accumulated()
     for one in passes.astype(np.float32):
-        found = found.plus(one, 1)
+        found = found.add_pass(one, 1)
     np.testing.assert_allclose(found.picture, passes.mean(axis=0), rtol=1e-7)

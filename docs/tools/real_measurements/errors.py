@@ -142,6 +142,6 @@ def light_of(name):
 def psnr(picture, fit):
     """PSNR [dB] of what a screen shows of a fit beside the measurement, of which the brightest
     hundredth is white."""
-    shown, own = (to_srgb(values) for values in (picture.look(fit.eval), picture.values))
+    shown, own = (to_srgb(values) for values in (picture.evaluate(fit.eval), picture.values))
     squares = ((shown - own) ** 2).mean(axis=1)
     return -10 * np.log10(max(np.average(squares, weights=picture.weights), 1e-10))

@@ -173,7 +173,7 @@ def _compute_albedos(brdf: Any, pixels: Pixels) -> tuple[float, ...]:
     """Return the albedos of a BRDF at `ANGLES`, as means over the channels, by quadrature."""
     if isinstance(brdf, Measured):
         return brdf.albedo.means
-    return tuple(pixels.look(brdf.eval).mean(axis=1).tolist())
+    return tuple(pixels.evaluate(brdf.eval).mean(axis=1).tolist())
 
 
 def _evaluate_at_samples(brdf: Any, data: Measured, samples: Samples) -> FloatArray:

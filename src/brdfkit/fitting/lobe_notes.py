@@ -84,7 +84,7 @@ def compute_lobe_albedos(model: Model) -> NDArray[np.float64]:
 
     The shape is (incidences, lobes, channels).
     """
-    both = make_albedo_pixels(INCIDENCES).look(
+    both = make_albedo_pixels(INCIDENCES).evaluate(
         lambda wi, wo: np.hstack(compute_lobe_values(model, wi, wo))
     )
     plain, squared = np.split(both[..., None], 2, axis=1)

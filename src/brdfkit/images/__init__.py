@@ -1,1 +1,1 @@
-"""Pictures in memory: errors between them, tone mapping, and small pictures of materials."""
+"""Pictures as arrays: errors between pictures, tone mapping, and small pictures of materials."""

@@ -1,4 +1,4 @@
-"""Small pictures of any BRDF, which notebooks show beside its figures: a ball, and its lobes."""
+"""Small pictures of any BRDF, for notebooks and reports: a ball, and the lobes as polar plots."""
 
 import io
 import math
@@ -16,29 +16,30 @@ from brdfkit.images.ball.ball import draw_ball
 from brdfkit.images.ball.half_vectors import Brdf
 
 BALL_SIZE = 92  # pixels
-LARGEST_RANGE = 5  # decades of values between the centre and the rim
-# The distance of the smallest value from the centre, over the range. Without it both sides of a
-# line would meet at the centre, and a dark lobe would look like a wedge
+LARGEST_RANGE = 5  # [decades] largest ratio of the values at the rim and at the centre
+# The distance of the smallest value from the centre, relative to the range of values. Without it
+# both sides of a line would meet at the centre, and a dark lobe would look like a wedge
 MARGIN = 0.2
 
 
 def make_thumbnails(name: str, brdf: Brdf) -> tuple[Picture, Picture]:
-    """Return pictures of the ball and of the lobes of a BRDF, the material called `name`.
+    """Return two pictures of a BRDF, a ball and a polar plot of its lobes.
 
-    The BRDF takes direction pairs (n, 3) and returns values (n, 1 or 3) in sr⁻¹.
+    `brdf` takes direction pairs (n, 3) and returns values (n, 1 or 3) in sr⁻¹; `name` is the
+    material's name in the descriptions of the pictures.
     """
     return make_ball_picture(name, brdf), make_lobe_picture(name, brdf)
 
 
 def make_ball_picture(name: str, brdf: Brdf) -> Picture:
-    """Return a picture of a ball of a BRDF, the material `name`, without background."""
+    """Return a picture of a ball made of the material `name` with this BRDF, on no background."""
     return Picture(
         partial(_draw_ball_png, brdf), f"a ball of {name} under two softboxes", BALL_SIZE
     )
 
 
 def _draw_ball_png(brdf: Brdf) -> bytes:
-    """Draw the ball as a PNG."""
+    """Draw a ball with this BRDF, and return the picture as the bytes of a PNG."""
     from PIL import Image
 
     linear, cover = draw_ball(brdf, BALL_SIZE)
@@ -50,10 +51,10 @@ def _draw_ball_png(brdf: Brdf) -> bytes:
 
 
 class Radius:
-    """Maps BRDF values to radii by their logarithm, with the largest value nearly at 1.
+    """The logarithmic scale of a polar plot of lobes: maps values of a BRDF to radii, 0 to 1.
 
-    `curves` are the values (n,) of each lobe that is drawn. The radius 0 is a power of ten below
-    the values, at most `LARGEST_RANGE` decades below the largest.
+    `curves` are the values (n,) of all lobes in the plot. The radius 0 is a power of ten below the
+    values, at most `LARGEST_RANGE` decades below the largest, whose radius is nearly 1.
     """
 
     def __init__(self, curves: list[AnyArray]) -> None:
@@ -66,13 +67,13 @@ class Radius:
         self.decades = 1.03 * (highest - self.lowest)
 
     def __call__(self, values: ArrayLike) -> Any:
-        floor = 10.0**self.lowest  # NaN, where nothing was measured, stays NaN
+        floor = 10.0**self.lowest  # unknown values (NaN) have the radius NaN
         return (np.log10(np.maximum(values, floor)) - self.lowest) / self.decades
 
     def ticks(self) -> AnyArray:
-        """Return the values to label: powers of ten, so few that their labels do not touch.
+        """Return the values to label: powers of ten, so few that their labels do not overlap.
 
-        If fewer than two decades are shown, 2 and 5 or 3 times these powers are labelled, too.
+        If the scale has fewer than two decades, 3 times these powers, or 2 and 5 times, are added.
         """
         step = math.ceil(self.decades / 4.5)
         powers = 10.0 ** np.arange(self.lowest, self.lowest + self.decades, step)
@@ -81,22 +82,22 @@ class Radius:
         return ticks[np.log10(ticks) - self.lowest < self.decades]
 
 
-THETA_I = (30, 60)  # degrees
+THETA_I = (30, 60)  # [degrees] angles of incidence of the plotted lobes
 # Two of Okabe and Ito's colours, which are visible on white and on black
 COLOURS = ("#d55e00", "#3d94d1")
-RADIUS, BORDER = 100, 14  # pixels, of the half disc and around it
-STEP = 1.5  # degrees between points of a line
+RADIUS, BORDER = 100, 14  # [pixels] radius of the half disc, and width of the border around it
+STEP = 1.5  # [degrees] angle between neighbouring points of a line
 
 
 def make_lobe_picture(name: str, brdf: Brdf) -> Picture:
-    """Return a picture of the lobes of a BRDF in the plane of incidence, on a logarithmic scale."""
+    """Return a polar plot of a BRDF's lobes in the plane of incidence, on a logarithmic scale."""
     angles = " and ".join(f"{theta}°" for theta in THETA_I)
-    says = f"lobes of {name}, lit at {angles} from the left"
-    return Picture(partial(_draw_lobes_svg, brdf, says), says, 2 * (RADIUS + BORDER))
+    description = f"lobes of {name}, lit at {angles} from the left"
+    return Picture(partial(_draw_lobes_svg, brdf, description), description, 2 * (RADIUS + BORDER))
 
 
-def _draw_lobes_svg(brdf: Brdf, says: str) -> str:
-    """Draw the lobes as an SVG with the description `says`."""
+def _draw_lobes_svg(brdf: Brdf, description: str) -> str:
+    """Draw the lobes of a BRDF, and return them as the text of an SVG with this `description`."""
     theta_o = np.arange(-90 + STEP / 2, 90, STEP)
     curves = [_compute_lobe(brdf, theta_i, theta_o) for theta_i in THETA_I]
     radius = Radius(curves)
@@ -107,15 +108,15 @@ def _draw_lobes_svg(brdf: Brdf, says: str) -> str:
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
         f'viewBox="{-RADIUS - BORDER} {-RADIUS - BORDER} {width} {height}" role="img" '
-        f'aria-label="{escape(says)}" font-size="9" fill="none" text-anchor="middle">'
-        f"<title>{escape(says)}</title>{''.join(parts)}</svg>"
+        f'aria-label="{escape(description)}" font-size="9" fill="none" text-anchor="middle">'
+        f"<title>{escape(description)}</title>{''.join(parts)}</svg>"
     )
 
 
 def _compute_lobe(brdf: Brdf, theta_i: float, theta_o: AnyArray) -> AnyArray:
-    """Compute the luminances (n,) at one incidence towards angles `theta_o` (n,) [degrees].
+    """Compute the BRDF's luminances (n,) in the plane of incidence, towards `theta_o` (n,).
 
-    They are 0 where the BRDF is unknown.
+    The angles are in degrees. The luminance is 0 where the BRDF is unknown.
     """
     wi = np.broadcast_to(from_angles(np.radians(theta_i), np.pi), (len(theta_o), 3))
     values = luminance(np.asarray(brdf(wi, from_angles(np.radians(theta_o), 0.0))))
@@ -123,7 +124,7 @@ def _compute_lobe(brdf: Brdf, theta_i: float, theta_o: AnyArray) -> AnyArray:
 
 
 def _draw_half_disc(radius: Radius) -> str:
-    """Draw the base line, and labelled half circles at powers of ten."""
+    """Draw the base line of the plot, and labelled half circles at the ticks of the scale."""
     parts = [f'<path d="M{-RADIUS} 0H{RADIUS}" stroke="currentColor" stroke-opacity=".4"/>']
     for tick in radius.ticks():
         r = RADIUS * float(radius(tick))
@@ -136,13 +137,13 @@ def _draw_half_disc(radius: Radius) -> str:
 
 
 def _draw_curve(theta_o: AnyArray, radii: AnyArray, colour: str) -> str:
-    """Draw a line through radii (n,), as shares of the rim, at `theta_o` (n,) [degrees]."""
+    """Draw a line through points with the `radii` (n,), relative to the rim, at `theta_o` (n,)."""
     points = " ".join(f"{x:.1f},{y:.1f}" for x, y in zip(*_to_pixels(theta_o, radii), strict=True))
     return f'<polyline points="{points}" stroke="{colour}" stroke-width="1.6"/>'
 
 
 def _draw_arrow(theta_i: float, colour: str) -> str:
-    """Draw the direction of the light from the rim, with its angle [degrees]."""
+    """Draw an arrow at the rim for the light's direction, labelled with its angle [degrees]."""
     (x, y), (to_x, to_y) = (_to_pixels(-theta_i, r) for r in (1.0, 0.86))
     label_x, label_y = _to_pixels(-theta_i, 1.09)
     return (
@@ -152,6 +153,6 @@ def _draw_arrow(theta_i: float, colour: str) -> str:
 
 
 def _to_pixels(theta: Any, radius: Any) -> tuple[Any, Any]:
-    """Return the place of a radius, a share of the rim, at an angle [degrees]; y is down."""
+    """Convert an angle [degrees] and a radius, 1 at the rim, to pixels x and y (downwards)."""
     theta = np.radians(theta)
     return RADIUS * radius * np.sin(theta), -RADIUS * radius * np.cos(theta)

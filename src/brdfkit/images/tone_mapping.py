@@ -1,8 +1,8 @@
-"""`ToneMapping`: maps radiance of any size to the range of a screen, 0 to 1.
+"""Tone mapping: maps radiance of any size to the range of a screen, 0 to 1.
 
-`range` cuts a window out; `reinhard` [Reinhard et al. 2002], `logarithmic` [Drago et al. 2003] and
-`filmic` [Hable 2010] compress bright values. The result is linear; the curve of sRGB follows when a
-picture becomes a PNG.
+The curve `range` shows a window of values linearly; `reinhard` [Reinhard et al. 2002],
+`logarithmic` [Drago et al. 2003] and `filmic` [Hable 2010] compress bright values. The result is
+linear; the transfer curve of sRGB is applied when a picture is written as a PNG.
 """
 
 from __future__ import annotations
@@ -19,34 +19,37 @@ from brdfkit.core.array_types import AnyArray
 from brdfkit.core.colours import luminance
 from brdfkit.core.errors import BrdfkitError, no_such_error
 
-BIAS = 0.85  # of the logarithm, as Drago recommends
-WHITE = 11.2  # the value that Hable's curve shows as white, for twice the light
+BIAS = 0.85  # b in the formula of Drago, who recommends this value
+WHITE = 11.2  # the value that Hable's curve, which takes twice the radiance, shows as white
 MEANS = ("channel", "luminance")
 
 
 def _range(light: AnyArray, tone: ToneMapping, highest: float) -> AnyArray:
-    """Return (L - low) / (high - low) [Lesar 2018, eq. 6.4]."""
+    """Map the radiance L to (L - low) / (high - low) [Lesar 2018, eq. 6.4]."""
     return (light - tone.low) / (tone.high - tone.low)
 
 
 def _reinhard(light: AnyArray, tone: ToneMapping, highest: float) -> AnyArray:
-    """Return L / (1 + L) [Lesar 2018, eq. 6.5]."""
+    """Map the radiance L to L / (1 + L), Reinhard's curve [Lesar 2018, eq. 6.5]."""
     return light / (1 + light)
 
 
 def _logarithmic(light: AnyArray, tone: ToneMapping, highest: float) -> AnyArray:
-    """Return log₁₀(1 + L) / log₁₀(1 + L_max) · ln 10 / ln(2 + 8 (L / L_max)^(ln b / ln 0.5))."""
+    """Map the radiance L by Drago's curve, where L_max is `highest` and b is `BIAS`:
+
+    log₁₀(1 + L) / log₁₀(1 + L_max) · ln 10 / ln(2 + 8 (L / L_max)^(ln b / ln 0.5))
+    """
     share = (light / highest) ** (np.log(BIAS) / np.log(0.5))
     return np.log1p(light) / np.log1p(highest) * np.log(10) / np.log(2 + 8 * share)
 
 
 def _filmic(light: AnyArray, tone: ToneMapping, highest: float) -> AnyArray:
-    """Return f(2 L) / f(11.2), with Hable's rational function f."""
+    """Map the radiance L to f(2 L) / f(11.2), with the rational function f of Hable's curve."""
 
-    def f(x: float | AnyArray) -> Any:
+    def hable(x: float | AnyArray) -> Any:
         return (x * (0.22 * x + 0.03) + 0.002) / (x * (0.22 * x + 0.3) + 0.06) - 1 / 30
 
-    return f(2 * light) / f(WHITE)
+    return hable(2 * light) / hable(WHITE)
 
 
 CURVES: dict[str, Callable[[AnyArray, ToneMapping, float], AnyArray]] = {
@@ -59,7 +62,7 @@ CURVES: dict[str, Callable[[AnyArray, ToneMapping, float], AnyArray]] = {
 
 @dataclass(frozen=True)
 class ToneMapping:
-    """A curve from radiance to the brightness on a screen.
+    """A curve that maps radiance to the brightness on a screen, 0 to 1.
 
     Attributes
     ----------
@@ -70,14 +73,14 @@ class ToneMapping:
         The factor of radiance before the curve, at least 0.
     by : str, default "channel"
         "channel" applies the curve to red, green and blue, so that bright colours become white;
-        "luminance" applies it to luminance alone, so that R : G : B stays until a channel is full.
+        "luminance" applies it to luminance alone, which preserves R : G : B up to full channels.
     low, high : float, default 0 and 1
         The radiances that "range" shows as black and as white.
 
     Raises
     ------
     BrdfkitError
-        For an unknown curve or `by`, and for numbers that make no curve.
+        For an unknown curve or `by`, a negative exposure, and `low` not below `high`.
 
     Examples
     --------
@@ -101,15 +104,15 @@ class ToneMapping:
             raise BrdfkitError(f"low = {self.low!r} should be below high = {self.high!r}.")
 
     def __call__(self, picture: ArrayLike, brightest: float | None = None) -> NDArray:
-        """Map a picture to the linear brightness on a screen.
+        """Map a picture to the brightness on a screen, before the transfer curve of sRGB.
 
         Parameters
         ----------
         picture : array
             Radiance; (..., 3) in linear sRGB for a mapping by luminance.
         brightest : float, optional
-            The largest radiance that the curve is made for, as `brightest_of` finds it; by default
-            this picture's.
+            The largest radiance, up to which "logarithmic" goes; by default that of this picture.
+            Several pictures look alike with one value, found by `brightest_of`.
 
         Returns
         -------
@@ -144,7 +147,7 @@ class ToneMapping:
         return float(np.max(values, initial=0, where=np.isfinite(values)))
 
     def __str__(self) -> str:
-        """Return a few words for captions, or "" for a mapping that changes nothing."""
+        """Return a short description for captions, or "" for the default mapping."""
         if self == ToneMapping():
             return ""
         window = f" {self.low:g} to {self.high:g}" if self.curve == "range" else ""

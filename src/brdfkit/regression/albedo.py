@@ -46,7 +46,7 @@ def make_albedo_pixels(
 ) -> Pixels:
     """Return a quadrature for directional albedos, as `Pixels` without measured values.
 
-    `Pixels.look` applies it to a BRDF and returns the albedos (n, channels) at the n angles of
+    `Pixels.evaluate` applies it to a BRDF and returns the albedos (n, channels) at the n angles of
     incidence `theta_i` [degrees], averaged over the `azimuths` [rad] of incidence.
     """
     rules = [
@@ -109,7 +109,7 @@ class TargetAlbedo:
         (n, channels).
         """
         angles = (*self.theta_i, *OTHER_ANGLES)
-        every = [make_albedo_pixels(angles, (azimuth,)).look(brdf) for azimuth in self.azimuths]
+        every = [make_albedo_pixels(angles, (azimuth,)).evaluate(brdf) for azimuth in self.azimuths]
         fit = np.mean(every, axis=0)[: len(self.theta_i)]
         measured = [
             tuple(row.tolist()) if known else None
@@ -137,7 +137,7 @@ class TargetAlbedo:
 
     def compute_albedos(self, brdf: Callable[[FloatArray, FloatArray], FloatArray]) -> FloatArray:
         """Return the albedos (n, channels) of a model; `brdf(wi, wo)`: its values (n, channels)."""
-        return self.pixels.look(brdf)
+        return self.pixels.evaluate(brdf)
 
     def accepts(self, albedos: FloatArray) -> bool:
         """Return whether `albedos` (n, channels) are near the measured albedos and at most 1."""

@@ -66,7 +66,7 @@ class Progressive:
     def integrate(self, generated: Mapping[str, NDArray[Any]], spp: int) -> None:
         """Add a pass of all scenes, with its pictures by scene name, to the accumulated passes."""
         self.accumulated = {
-            name: before.plus(generated[name], spp) for name, before in self.accumulated.items()
+            name: before.add_pass(generated[name], spp) for name, before in self.accumulated.items()
         }
 
 

@@ -258,7 +258,7 @@ def _warn_of_gains(models: Sequence[Any]) -> None:
     from brdfkit.regression.albedo import LARGEST_ALBEDO, format_share, make_albedo_pixels
 
     for model in models:
-        albedo = float(make_albedo_pixels((5.0, 45.0, 75.0)).look(model.eval).max())
+        albedo = float(make_albedo_pixels((5.0, 45.0, 75.0)).evaluate(model.eval).max())
         if albedo > LARGEST_ALBEDO:
             print_message(
                 f"{model.name} reflects {format_share(albedo)} of the light, more than arrives."

@@ -49,7 +49,7 @@ class Appearance:
         self.azimuths = (0.0, np.pi / 2) if data.anisotropic else ISOTROPIC_AZIMUTHS
         end = samples.largest_angle
         angles = [angle for angle in ANGLES if angle <= end] or [end]
-        self.albedos = make_albedo_pixels(tuple(angles), self.azimuths).look(brdf)
+        self.albedos = make_albedo_pixels(tuple(angles), self.azimuths).evaluate(brdf)
 
     def compute_picture_error(self, brdf: Brdf) -> float:
         """Return the RMS difference of a BRDF's picture from the measured one, in sRGB values.
@@ -57,13 +57,13 @@ class Appearance:
         It is divided by the brightness of the brightest measured pixel.
         """
         pixels, shown = self.pixels, to_srgb(self.pixels.values)
-        apart = to_srgb(np.nan_to_num(pixels.look(brdf))) - shown
+        apart = to_srgb(np.nan_to_num(pixels.evaluate(brdf))) - shown
         error = math.sqrt(np.average((apart**2).mean(axis=1), weights=pixels.weights))
         return error / max(find_peak(shown[None]), DARKEST)
 
     def find_implausibility(self, brdf: Brdf) -> str:
         """Return a clause if the albedo or the colour of a BRDF at 85° is implausible, else ""."""
-        (albedo,) = make_albedo_pixels((GRAZING,), self.azimuths).look(brdf)
+        (albedo,) = make_albedo_pixels((GRAZING,), self.azimuths).evaluate(brdf)
         if (albedo > GAIN * np.maximum(self.albedos.max(axis=0), 1)).any():
             return f"more light is reflected at {GRAZING:g}° than arrives"
         if len(albedo) == 3 and self._find_colour_difference(albedo) > OTHER:

@@ -104,7 +104,7 @@ class HeldOut:
         pixels = self.pixels.at(of_pixels)
         brdf = make_model(model, solution.shapes, solution.weights).eval
         apart = sum_squared_differences(
-            self.loss.pixel_loss, pixels.look(brdf), _to_samples_at_normal(pixels)
+            self.loss.pixel_loss, pixels.evaluate(brdf), _to_samples_at_normal(pixels)
         )
         return np.concatenate([squares, apart])
 

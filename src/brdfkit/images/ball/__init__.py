@@ -1,7 +1,9 @@
-"""Pictures of a ball under direct light; each pixel is a sum of the BRDF at pairs of directions.
+"""Pictures of a ball under direct light, computed from a BRDF alone, without a renderer.
 
-`lights.py` defines the lights, and `half_vectors.py` the directions to which a material reflects.
-With both, `normals.py` draws points of the ball, and `pixels.py` draws directions at each point.
+A pixel is a weighted sum of the BRDF at pairs of directions, so a fit can compare pictures of the
+ball. `lights.py` defines the lights, `half_vectors.py` draws directions by a BRDF. With both,
+`normals.py` draws points of the ball, and `pixels.py` draws directions at each point. `ball.py`
+draws the whole ball as a thumbnail.
 """
 
 from brdfkit.images.ball.lights import LIGHTS as LIGHTS

@@ -1,4 +1,4 @@
-"""Draws a small picture of a ball under direct light, with all of its pixels."""
+"""Draws a thumbnail of a ball under direct light: all pixels of a small picture."""
 
 from functools import cache
 
@@ -10,17 +10,15 @@ from brdfkit.images.ball.normals import find_normals
 from brdfkit.images.ball.pixels import draw_directions, sum_pairs
 
 LIGHT = "studio"
-# Directions of each pixel that the light draws, and as many that the BRDF draws
-DIRECTIONS = 40
-# The brightest value of a matt white ball, and its albedo
-WHITE = 0.8
+DIRECTIONS = 40  # directions per pixel drawn by the light, and as many drawn by the BRDF
+WHITE = 0.8  # albedo of a matt white ball, and the brightest value in its picture
 
 
 def draw_ball(brdf: Brdf, side: int) -> tuple[AnyArray, AnyArray]:
-    """Draw the linear picture (side, side, channels) of a ball of a BRDF.
+    """Draw a picture of a ball with this BRDF, `side` pixels wide and high.
 
-    Also returns how much of each pixel the ball covers (side, side). The light and the exposure are
-    the same for all materials.
+    Returns the linear picture (side, side, channels), and the share of each pixel that the ball
+    covers (side, side). The light and the exposure are the same for all materials.
     """
     x, y, cover = _place_pixels(side)
     values = _compute_radiance(brdf, x[cover > 0], y[cover > 0]) * _compute_exposure()
@@ -30,20 +28,20 @@ def draw_ball(brdf: Brdf, side: int) -> tuple[AnyArray, AnyArray]:
 
 
 def _place_pixels(side: int) -> tuple[AnyArray, AnyArray, AnyArray]:
-    """Return places x, y of pixels in a disc of radius 1, and its cover of each pixel."""
-    at = (np.arange(side) + 0.5) / side * 2 - 1
-    x, y = np.meshgrid(at, -at)
+    """Return the pixels' coordinates x, y in the unit disc, and the share that the disc covers."""
+    centres = (np.arange(side) + 0.5) / side * 2 - 1
+    x, y = np.meshgrid(centres, -centres)
     radius = np.hypot(x, y)
     cover = np.clip((1 - radius) * side / 2 + 0.5, 0, 1)
-    inside = np.minimum(1, 0.999 / np.maximum(radius, 1e-9))  # move points of the rim inside
+    inside = np.minimum(1, 0.999 / np.maximum(radius, 1e-9))  # moves points of the rim inside
     return x * inside, y * inside, cover
 
 
 def _compute_radiance(brdf: Brdf, x: AnyArray, y: AnyArray) -> AnyArray:
-    """Compute the radiance (n, channels) that the ball reflects to the eye at `x`, `y` (n,)."""
+    """Compute the radiance (n, channels) of the ball at the coordinates `x`, `y` (n,)."""
     from scipy.stats import qmc
 
-    # All pixels use the same points, so that their errors are alike and the picture has no grain
+    # All pixels use the same random points, so that their errors are alike and show no grain
     points = np.stack([qmc.Halton(3, rng=seed).random(DIRECTIONS) for seed in range(2)])
     for_light, for_brdf = np.repeat(points[:, None], len(x), axis=1)
     normals, half_vectors = find_normals(x, y), HalfVectors(brdf)
@@ -53,7 +51,7 @@ def _compute_radiance(brdf: Brdf, x: AnyArray, y: AnyArray) -> AnyArray:
 
 @cache
 def _compute_exposure() -> float:
-    """Return the factor of radiances for which a matt white ball has the peak `WHITE`."""
+    """Return the factor of all pictures, by which a matt white ball has the peak `WHITE`."""
     x, y, cover = _place_pixels(32)
     white = _compute_radiance(
         lambda wi, wo: np.full((len(wi), 1), WHITE / np.pi), x[cover > 0], y[cover > 0]

@@ -1,7 +1,7 @@
-"""The lights of pictures: formulas for the grey radiance from each direction.
+"""The lights of the ball's pictures: formulas for the grey radiance from each direction.
 
 In the world z points up, and the camera looks at the ball from the south (-y). Each picture has its
-own exposure, so that only ratios within a light matter.
+own exposure, so that only the ratios of a light's radiances matter.
 """
 
 from collections.abc import Callable
@@ -12,20 +12,20 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.geometry.directions import from_angles
 
-# Cells of a tabulated light over polar angle and azimuth, and points along the side of a cell
+# Numbers of cells of a tabulated light over polar angle and azimuth, and of points along the side
+# of a cell, over which the light is averaged
 CELLS, POINTS = (96, 192), 4
-# The least density of a direction, as a share of the mean one
-FLOOR = 0.02
+FLOOR = 0.02  # smallest density of a direction, relative to the mean density
 
 
-def court(w: AnyArray) -> AnyArray:
-    """Return the radiance of a court: bright sky, walls that are darker upwards, and ground."""
+def court_radiance(w: AnyArray) -> AnyArray:
+    """Return the radiance (n,) of a court from directions `w` (n, 3): bright sky, walls, ground."""
     walls = np.where(w[:, 2] < 0, 0.3, 0.5 - 0.25 * w[:, 2])
     return walls + 6 * (w[:, 2] > 0.75)
 
 
-def hall(w: AnyArray) -> AnyArray:
-    """Return the radiance of a dim hall with seven small lamps."""
+def hall_radiance(w: AnyArray) -> AnyArray:
+    """Return the radiance (n,) of a dim hall with seven small lamps from directions `w` (n, 3)."""
     lamps = (  # azimuth and elevation [degrees], and radiance
         ((180, 40), 500),
         ((140, 30), 200),
@@ -40,8 +40,11 @@ def hall(w: AnyArray) -> AnyArray:
     )
 
 
-def sky(w: AnyArray) -> AnyArray:
-    """Return the radiance of a clear sky with a low sun behind the ball to the right."""
+def sky_radiance(w: AnyArray) -> AnyArray:
+    """Return the radiance (n,) of a clear sky with a low sun from directions `w` (n, 3).
+
+    The sun is behind the ball, to the right.
+    """
     sun = 56, 27
     glow = 3 * np.exp(6 * (w @ _direction_to(*sun) - 1))
     above = (
@@ -53,32 +56,43 @@ def sky(w: AnyArray) -> AnyArray:
     return np.where(w[:, 2] < 0, 0.25, above)
 
 
-def studio(w: AnyArray) -> AnyArray:
-    """Return the radiance of a dim room with softboxes at the upper left and at the right."""
+def studio_radiance(w: AnyArray) -> AnyArray:
+    """Return the radiance (n,) of a dim room with two softboxes from directions `w` (n, 3).
+
+    The softboxes are at the upper left and at the right.
+    """
     grey = np.where(w[:, 2] < 0, 0.15, 0.05 + 0.25 * w[:, 2])
     softbox, other = (234, 38), (117, 13)
     return grey + 3.3 * _is_in_disc(w, *softbox, radius=22) + 2 * _is_in_disc(w, *other, radius=12)
 
 
-LIGHTS = {light.__name__: light for light in (court, hall, sky, studio)}
+LIGHTS = {
+    "court": court_radiance,
+    "hall": hall_radiance,
+    "sky": sky_radiance,
+    "studio": studio_radiance,
+}
 
 
 def _direction_to(azimuth: float, elevation: float) -> AnyArray:
-    """Return the unit vector to an azimuth, from north (+y) to east, and elevation [degrees]."""
+    """Return the unit vector towards an azimuth, from north (+y) to east, and an elevation.
+
+    The angles are in degrees.
+    """
     return from_angles(np.radians(90 - elevation), np.radians(90 - azimuth))
 
 
 def _is_in_disc(w: AnyArray, azimuth: float, elevation: float, radius: float) -> AnyArray:
-    """Return 1 within the `radius` of a disc about a direction, else 0 [degrees]."""
+    """Return 1 for directions `w` (n, 3) within the `radius` [degrees] of a direction, else 0."""
     return 1.0 * (w @ _direction_to(azimuth, elevation) > np.cos(np.radians(radius)))
 
 
 class LightSampling:
-    """Draws directions by the radiance of a light, tabulated over polar angle and azimuth."""
+    """Draws directions by a light's radiance, tabulated over polar angle and azimuth."""
 
     def __init__(self, light: Callable[[AnyArray], AnyArray]) -> None:
         heights, widths = CELLS
-        # Cells are even in polar angle, and directions are uniform within a cell
+        # All cells have the same range of polar angles; directions are uniform within a cell
         self.z = np.cos(np.arange(heights + 1) / heights * np.pi)
         inside = (np.arange(POINTS) + 0.5) / POINTS
         z = (self.z[:-1, None] + np.diff(self.z)[:, None] * inside).ravel()
@@ -91,7 +105,7 @@ class LightSampling:
         self.densities = masses / masses.sum() / areas
 
     def sample(self, u: AnyArray) -> AnyArray:
-        """Draw directions (n, 3) for points `u` (n, 3) of the unit cube."""
+        """Draw directions (n, 3) by random points `u` (n, 3) of the unit cube."""
         heights, widths = CELLS
         cell = np.minimum(np.searchsorted(self.sums, u[:, 0]), heights * widths - 1)
         row, column = np.divmod(cell, widths)
@@ -99,7 +113,7 @@ class LightSampling:
         return from_angles(np.arccos(z), (column + u[:, 2]) / widths * 2 * np.pi)
 
     def pdf(self, w: AnyArray) -> AnyArray:
-        """Return the densities (n,) per solid angle of directions `w` (n, 3)."""
+        """Return the densities (n,) [sr⁻¹] with which `sample` draws the directions `w` (n, 3)."""
         heights, widths = CELLS
         row = np.arccos(np.clip(w[:, 2], -1, 1)) / np.pi * heights
         column = np.arctan2(w[:, 1], w[:, 0]) / (2 * np.pi) % 1 * widths
@@ -108,6 +122,6 @@ class LightSampling:
 
 
 @cache
-def get_sampling(name: str) -> LightSampling:
-    """Return the `LightSampling` of the light called `name`, which is made once."""
+def get_light_sampling(name: str) -> LightSampling:
+    """Return the `LightSampling` of the light called `name`; its table is made only once."""
     return LightSampling(LIGHTS[name])

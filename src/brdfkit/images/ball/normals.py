@@ -1,4 +1,4 @@
-"""Draws points of the ball for pictures, by their normals: everywhere, and more in highlights."""
+"""Draws points of the ball, given by their normals: everywhere, and more in highlights."""
 
 import numpy as np
 
@@ -7,19 +7,20 @@ from brdfkit.core.geometry.directions import normalize
 from brdfkit.images.ball.half_vectors import HalfVectors
 from brdfkit.images.ball.lights import LightSampling
 
-# The direction to the eye, as in the scene of `render`
+# The direction to the camera, as in the scene of `brdfkit.render`
 VIEW = normalize((0.0, -8.0, 2.2))
-SOURCES = 256  # directions of a light, by which highlights are found
+SOURCES = 256  # directions drawn by a light, whose highlights get more normals
 
 
 def draw_normals(
     count: int, light: LightSampling, half_vectors: HalfVectors, rng: np.random.Generator
 ) -> tuple[AnyArray, AnyArray]:
-    """Draw normals (count, 3) of points of the ball, and weights (count,) that even them out.
+    """Draw normals of points of the ball, half of them in highlights.
 
-    Half of them are drawn evenly over the disc, half in highlights: about the half vectors of the
-    eye and the light, by the distribution of the material. So even a narrow highlight of a small
-    lamp, which few pixels of a picture show, gets some normals.
+    Returns the normals (count, 3), and their weights (count,), with which they count like points
+    that are spread evenly over the ball's disc. Half of the normals are spread evenly; the others
+    are drawn by the material's distribution of half vectors, about the half vectors of camera and
+    light. So even the narrow highlight of a small lamp gets some normals.
     """
     from scipy.stats import qmc
 
@@ -27,11 +28,11 @@ def draw_normals(
     points = np.stack(point, axis=1)
     centres = normalize(VIEW + light.sample(qmc.Halton(3, rng=rng).random(SOURCES)))
     about = make_frames(centres[(source * SOURCES).astype(int)])
-    normals = (half_vectors.draw(points)[:, None] @ about)[:, 0]
-    # Normals that face away are replaced by normals that are even over the disc
+    normals = (half_vectors.draw_half_vectors(points)[:, None] @ about)[:, 0]
+    # Normals that face away from the camera are replaced by evenly spread ones
     spread = (choice < 0.5) | (normals @ VIEW < 1e-3)
     normals = np.where(spread[:, None], _spread_normals(points), normals)
-    # Densities per solid angle of both kinds, mixed by their numbers of normals
+    # Densities per solid angle of the evenly spread normals and of those in highlights
     even = normals @ VIEW / np.pi
     bright = half_vectors.density(np.arccos(np.minimum(normals @ centres.T, 1))).mean(axis=1)
     weights = even / (spread.mean() * even + 0.5 * bright)
@@ -39,15 +40,15 @@ def draw_normals(
 
 
 def _spread_normals(u: AnyArray) -> AnyArray:
-    """Return normals (n, 3), even over the disc, for points `u` (n, 3) of the unit cube."""
+    """Return normals (n, 3) spread evenly over the ball's disc, by points `u` of the unit cube."""
     radius, phi = np.sqrt(u[:, 0]), 2 * np.pi * u[:, 1]
     return find_normals(radius * np.cos(phi), radius * np.sin(phi))
 
 
 def find_normals(x: AnyArray, y: AnyArray) -> AnyArray:
-    """Return the ball's normals (n, 3) at places `x` to the right and `y` upwards (n,).
+    """Return the ball's normals (n, 3) at picture coordinates `x`, to the right, and `y`, up (n,).
 
-    The places lie within the disc of radius 1 about the middle of the ball.
+    The coordinates lie within the unit disc, which is the ball as the camera sees it.
     """
     right = normalize(np.cross((0.0, 0.0, 1.0), VIEW))
     up = np.cross(VIEW, right)
@@ -56,9 +57,10 @@ def find_normals(x: AnyArray, y: AnyArray) -> AnyArray:
 
 
 def make_frames(normals: AnyArray) -> AnyArray:
-    """Return matrices (n, 3, 3) from the world to the frame of each normal (n, 3).
+    """Return the matrices (n, 3, 3) that rotate from the world to the frame of each normal (n, 3).
 
-    x runs along the ball's parallels, along which `render` brushes an anisotropic material.
+    The z axis of a frame is the normal, its x axis follows the ball's parallels, which is also the
+    direction in which `brdfkit.render` brushes anisotropic materials.
     """
     x = normalize(np.cross((0.0, 0.0, 1.0), normals))
     return np.stack([x, np.cross(normals, x), normals], axis=1)

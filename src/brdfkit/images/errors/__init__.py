@@ -1,7 +1,7 @@
-"""Compares pictures with a reference by several metrics, each beside its noise floor.
+"""Compares pictures with a reference by several metrics, and with the error by noise alone.
 
-Pictures are arrays (height, width, 3) of linear sRGB; a mask (height, width) says which pixels
-count.
+Pictures are arrays (height, width, 3) of linear sRGB; a mask (height, width) selects the pixels to
+compare.
 """
 
 from brdfkit.images.errors.image_errors import ImageErrors as ImageErrors

@@ -1,4 +1,4 @@
-"""Differences in colour, pixel by pixel: ΔE2000 and, for colours brighter than white, ΔE ITP."""
+"""Colour differences of pixels: ΔE2000 and, for high dynamic range, ΔE ITP."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ from brdfkit.core.array_types import AnyArray
 
 TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
 WHITE_XYZ = np.array([0.3127 / 0.3290, 1, 0.3583 / 0.3290])  # D65, by its x and y
-# Luminance of the value 1 [cd/m²]: the white of paper in HDR pictures, by Report ITU-R BT.2408
+# [cd/m²] luminance of the value 1: the white of paper in HDR pictures, by Report ITU-R BT.2408
 WHITE = 203.0
 # Matrices from XYZ to BT.2020, from BT.2020 to LMS, and from LMS after PQ's curve to ITP
 # [ITU-R 2019]
@@ -24,20 +24,21 @@ TO_ITP = np.array([[2048, 2048, 0], [3305, -6806.5, 3501.5], [17933, -17390, -54
 
 
 def ciede2000(reference: AnyArray, picture: AnyArray) -> AnyArray:
-    """Return ΔE2000 (...) of linear sRGB (..., 3) [Luo et al. 2001].
+    """Return the colour differences ΔE2000 (...) of colours in linear sRGB (..., 3).
 
-    A difference of 1 is just visible; black and white differ by 100. Values above white are not
-    clipped, so that differences within highlights count. It is nan where a value is not finite.
+    A difference of 1 is just visible; black and white differ by 100 [Luo et al. 2001]. Values above
+    white are not clipped, so that highlights can differ. The result is nan where a value is not
+    finite.
     """
     with np.errstate(invalid="ignore"):
         return _compare_lab(_to_lab(reference), _to_lab(picture))
 
 
 def delta_e_itp(reference: AnyArray, picture: AnyArray) -> AnyArray:
-    """Return ΔE ITP (...) of linear sRGB (..., 3) [ITU-R 2019].
+    """Return the colour differences ΔE ITP (...) of colours in linear sRGB (..., 3).
 
-    A difference of 1 is just visible in the best case. The metric is made for high dynamic range,
-    and so for absolute luminances: the value 1 is shown at 203 cd/m².
+    A difference of 1 is just visible under the best conditions [ITU-R 2019]. The metric is made for
+    high dynamic range, and needs absolute luminances: the value 1 is taken as 203 cd/m².
     """
     with np.errstate(invalid="ignore"):
         return 720 * np.linalg.norm(_to_itp(reference) - _to_itp(picture), axis=-1)
@@ -52,13 +53,13 @@ def _to_lab(rgb: AnyArray) -> tuple[Any, Any, Any]:
 
 
 def _compare_lab(first: tuple[Any, Any, Any], other: tuple[Any, Any, Any]) -> AnyArray:
-    """Return ΔE2000 of colours (L*, a*, b*), in the symbols of [Luo et al. 2001]."""
+    """Return ΔE2000 of two colours (L*, a*, b*), in the symbols of [Luo et al. 2001]."""
     (L1, a1, b1), (L2, a2, b2) = first, other
     G = 0.5 * (1 - _chroma_share((np.hypot(a1, b1) + np.hypot(a2, b2)) / 2))
     a1, a2 = (1 + G) * a1, (1 + G) * a2
     C1, C2 = np.hypot(a1, b1), np.hypot(a2, b2)
     h1, h2 = (np.degrees(np.arctan2(b, a)) % 360 for a, b in ((a1, b1), (a2, b2)))
-    # Hues differ along the shorter arc; a grey has no hue, and gets that of the other colour
+    # Hues differ along the shorter arc; a grey has no hue, and takes the hue of the other colour
     grey = C1 * C2 == 0
     Δh = np.where(grey, 0, (h2 - h1 + 180) % 360 - 180)
     ΔL, ΔC, ΔH = L2 - L1, C2 - C1, 2 * np.sqrt(C1 * C2) * np.sin(np.radians(Δh / 2))
@@ -79,12 +80,12 @@ def _compare_lab(first: tuple[Any, Any, Any], other: tuple[Any, Any, Any]) -> An
 
 
 def _chroma_share(C: AnyArray) -> AnyArray:
-    """Return √(C⁷ / (C⁷ + 25⁷)), which is near 1 for chromas whose differences are less visible."""
+    """Return the factor √(C⁷ / (C⁷ + 25⁷)) of ΔE2000, near 1 for colours of high chroma C."""
     return np.sqrt(C**7 / (C**7 + 25.0**7))
 
 
 def _to_itp(rgb: AnyArray) -> AnyArray:
-    """Convert linear sRGB (..., 3) to I, T and P (..., 3), by PQ's curve [ITU-R 2019]."""
+    """Convert linear sRGB (..., 3) to the colour space ITP (..., 3) of ΔE ITP [ITU-R 2019]."""
     y = (WHITE * np.maximum(rgb, 0) @ (TO_LMS @ TO_2020 @ TO_XYZ).T / 10_000) ** (2610 / 16384)
     pq = ((3424 / 4096 + 2413 / 128 * y) / (1 + 2392 / 128 * y)) ** (2523 / 32)
     return pq @ TO_ITP.T

@@ -1,7 +1,8 @@
-"""HDR-FLIP: the difference that flipping between pictures shows [Andersson et al. 2021].
+"""HDR-FLIP: the visible difference when flipping between two pictures [Andersson et al. 2021].
 
-The package flip-evaluator computes it. By default it takes the exposures from all pixels, and a
-black background makes these too many and too long. Here they come from the masked pixels.
+The package flip-evaluator computes this metric at several exposures. It would choose them by all
+pixels, and a black background would make them too many and too long; here only the pixels of the
+mask determine them.
 """
 
 from math import ceil
@@ -13,18 +14,18 @@ from brdfkit.core.colours import luminance
 from brdfkit.images.errors.masks import crop_to_mask
 from brdfkit.images.errors.psnr import PEAK
 
-# The shortest exposure lifts the brightest pixel to this value, the longest one the median pixel.
-# There the tone curve of ACES reaches 0.85 of its range
+# The shortest exposure brings the brightest pixel to this value, the longest one the median pixel;
+# at this value the tone curve of ACES reaches 0.85 of its range
 EXPOSED_VALUE = 2.1188
-# The largest range of exposures [stops]; a median of 0 would make it infinite
+# [stops] largest range of exposures, since a median of 0 would make the range infinite
 LARGEST_RANGE = 8
 
 
 def flip(reference: AnyArray, picture: AnyArray, mask: BoolArray) -> float:
-    """Return the mean of HDR-FLIP over the mask, from 0 for equal pictures to 1.
+    """Return the mean error HDR-FLIP over the mask, from 0 for equal pictures to 1.
 
-    It is for 67 pixels per degree of the eye. nan for a black reference. Raises `ImportError`
-    without the package flip-evaluator.
+    It assumes 67 pixels per degree of the visual field. The result is nan for a black reference.
+    Raises `ImportError` without the package flip-evaluator.
     """
     from flip_evaluator import evaluate
 
@@ -44,7 +45,10 @@ def flip(reference: AnyArray, picture: AnyArray, mask: BoolArray) -> float:
 
 
 def find_exposures(reference: AnyArray, mask: BoolArray) -> tuple[float, float]:
-    """Return the shortest and the longest exposure [stops] for a reference; inf for a black one."""
+    """Return the shortest and the longest exposure [stops] at which FLIP compares pictures.
+
+    The pixels of the reference within the mask determine them; they are inf if it is black.
+    """
     values = luminance(np.maximum(reference[mask], 0))
     brightest, median = np.percentile(values, [PEAK, 50])
     with np.errstate(divide="ignore"):

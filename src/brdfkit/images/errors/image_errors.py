@@ -1,4 +1,4 @@
-"""Compares pictures with a reference by every metric, beside the noise floor."""
+"""Compares pictures with a reference by all metrics, and tells real differences from noise."""
 
 from __future__ import annotations
 
@@ -20,27 +20,29 @@ NOISE = "({})"  # the format of an error that does not exceed the noise floor
 
 @dataclass(frozen=True, repr=False)
 class ImageErrors(Shown):
-    """Errors of pictures by several metrics, beside their noise floor; prints as a table.
+    """Errors of pictures by several metrics, and the errors by noise alone; prints as a table.
 
-    `Rendering.errors` makes them. The floor is the error of the reference against itself with
-    another seed. A difference that does not exceed it counts as none. The pictures share their
-    samples, and so part of their noise: small differences of similar materials may be real.
+    `Rendering.errors` computes them. The noise floor is the error of the reference against itself
+    with another random seed. A difference that does not exceed the floor counts as none, although
+    small differences of similar materials may be real: the pictures share their samples, and so
+    part of their noise.
 
     Attributes
     ----------
     reference : str
-        Name of the picture that the others are compared with.
+        Name of the picture with which all other pictures are compared.
     by_name : dict of str to dict of str to float
-        Name → metric → error: "psnr" [dB]; "delta_e_2000", the median, and "delta_e_2000_95", the
-        95th percentile; "delta_e_itp_95", likewise, with 1 at 203 cd/m²; the means "flip" (HDR,
-        67 pixels per degree) and "ssim" (of sRGB in 0..1), if their packages are installed. nan
-        for a picture that is not finite, and where no pixel shows the material.
+        Name → metric → error: "psnr" [dB]; the median "delta_e_2000" and the 95th percentile
+        "delta_e_2000_95" of ΔE2000; the 95th percentile "delta_e_itp_95" of ΔE ITP, with the value
+        1 at 203 cd/m²; the means "flip" (HDR, 67 pixels per degree) and "ssim" (of sRGB in 0..1),
+        if their packages are installed. An error is nan for a picture that is not finite, and if no
+        pixel shows the material.
     floor : dict of str to float
-        Metric → the error of noise alone; nan where there is one sample per pixel.
+        Metric → the error by noise alone; nan if there is one sample per pixel.
     peak : float
         The peak of PSNR: the 99.9th percentile of the reference.
     notes : tuple of str
-        Sentences on missing metrics, and how to get them.
+        Sentences on metrics that are missing, with the packages to install.
     """
 
     reference: str
@@ -59,18 +61,21 @@ class ImageErrors(Shown):
         return "picture", *(f">{METRICS[m].title}" for m in self.floor)
 
     def table(self) -> list[tuple[str, ...]]:
-        """Return a row of texts for every picture, under `columns`, and the noise floor last."""
-        rows = [(n, *(self._text(n, m) for m in row)) for n, row in self.by_name.items()]
-        return [*rows, ("noise floor", *(METRICS[m].text(e) for m, e in self.floor.items()))]
+        """Return the table's rows of texts under `columns`, one per picture and the noise floor."""
+        rows = [(n, *(self._format_error(n, m) for m in row)) for n, row in self.by_name.items()]
+        return [
+            *rows,
+            ("noise floor", *(METRICS[m].format_value(e) for m, e in self.floor.items())),
+        ]
 
-    def _text(self, name: str, metric: str) -> str:
+    def _format_error(self, name: str, metric: str) -> str:
         """Format the error of a picture, in brackets if it does not exceed the noise floor."""
-        text = METRICS[metric].text(self.by_name[name][metric])
+        text = METRICS[metric].format_value(self.by_name[name][metric])
         return text if self.exceeds(name, metric) else NOISE.format(text)
 
     @property
     def remarks(self) -> list[str]:
-        """Sentences on how to read the table, and the notes."""
+        """Sentences that explain how to read the table, followed by the notes."""
         none = (
             f"{NOISE.format('...')} is no difference: not above the noise floor, the reference "
             "against itself with another seed."
@@ -78,12 +83,12 @@ class ImageErrors(Shown):
         unknown = "The noise floor needs two samples per pixel."
         shown = any(text.startswith("(") for _, *row in self.table() for text in row)
         reading = [none] * shown + [unknown] * math.isnan(self.floor["psnr"])
-        if math.isnan(self.peak):  # the notes say why nothing is known
+        if math.isnan(self.peak):  # no pixel was compared, and a note says why
             return list(self.notes)
         return [*reading, f"PSNR's peak is {self.peak:.3g}.", *self.notes]
 
     def document(self) -> Document:
-        """Return a table of the errors, a row for each picture, above the noise floor."""
+        """Return the errors as a table, one row per picture and a last row for the noise floor."""
         *rows, floor = self.table()
         remarks = (Paragraph(remark, SOFT) for remark in self.remarks)
         title = f"Pictures beside that of {self.reference}"
@@ -95,17 +100,18 @@ def compare_pictures(
     other_seed: AnyArray | None = None,
     mask: BoolArray | None = None,
 ) -> ImageErrors:
-    """Compare pictures by name with the first of them, the reference.
+    """Compare pictures with the first of them, the reference, by all metrics.
 
-    `other_seed` is the reference as another seed would give it; None leaves the floor unknown.
-    `mask` (height, width) selects the pixels that count; None means all.
+    `pictures` are arrays (height, width, 3) by name. `other_seed` is the reference rendered with
+    another seed, which gives the noise floor; None leaves the floor unknown. `mask` (height, width)
+    selects the pixels to compare; None means all.
     """
     reference, *names = pictures
     first = pictures[reference]
     mask = to_mask(first, mask)
     compared = [*(pictures[name] for name in names), other_seed]
 
-    errors, absent = {}, []  # by metric, errors of the pictures and, last, of noise
+    errors, absent = {}, []  # errors: metric → errors of the pictures, followed by the noise floor
     for key, metric in METRICS.items():
         try:
             errors[key] = [_compute_error(metric, first, picture, mask) for picture in compared]
@@ -124,20 +130,20 @@ def compare_pictures(
 def _compute_error(
     metric: Metric, reference: AnyArray, picture: AnyArray | None, mask: BoolArray
 ) -> float:
-    """Return the error of a picture; nan for none, an empty mask, or values not finite."""
+    """Return a picture's error; nan for no picture, an empty mask, or values not finite."""
     if picture is None or not mask.any() or not np.isfinite([reference[mask], picture[mask]]).all():
         return math.nan
     return metric.function(reference, picture, mask)
 
 
 def _describe_empty_mask(mask: BoolArray) -> Iterator[str]:
-    """Yield a sentence where the mask is empty."""
+    """Yield a sentence if the mask is empty, so that no error is known."""
     if not mask.any():
         yield "No pixel shows the material, which leaves all errors unknown: render it larger."
 
 
 def _describe_not_finite(pictures: Mapping[str, AnyArray], mask: BoolArray) -> Iterator[str]:
-    """Yield a sentence on each picture that is not finite."""
+    """Yield a sentence on each picture whose errors are unknown, since pixels are not finite."""
     for name, picture in pictures.items():
         broken = (~np.isfinite(picture[mask]).all(axis=-1)).sum()
         if broken:
@@ -146,7 +152,7 @@ def _describe_not_finite(pictures: Mapping[str, AnyArray], mask: BoolArray) -> I
 
 
 def _describe_missing(metrics: Sequence[Metric]) -> Iterator[str]:
-    """Yield a sentence on metrics whose packages are not installed."""
+    """Yield a sentence on the metrics whose packages are not installed, and how to install them."""
     if metrics:
         titles = " and ".join(metric.title for metric in metrics)
         packages = " and ".join(metric.package for metric in metrics)

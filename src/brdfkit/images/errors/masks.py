@@ -1,4 +1,4 @@
-"""Masks that say which pixels count, and pictures cropped to them."""
+"""Masks, which select the pixels to compare, and the cropping of pictures to a mask."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from brdfkit.core.array_types import AnyArray, BoolArray
 
 
 def to_mask(picture: AnyArray, mask: BoolArray | None) -> BoolArray:
-    """Return the mask (height, width) of the pixels that count, all of them if `mask` is None.
+    """Return `mask` (height, width), or a mask of all pixels of the picture if it is None.
 
     >>> to_mask(np.zeros((1, 2, 3)), None)
     array([[ True,  True]])
@@ -19,10 +19,10 @@ def to_mask(picture: AnyArray, mask: BoolArray | None) -> BoolArray:
 def crop_to_mask(
     pictures: Sequence[AnyArray], mask: BoolArray, margin: int = 0
 ) -> tuple[list[AnyArray], BoolArray]:
-    """Crop pictures and their mask to the bounding box of the mask and a black `margin` [pixels].
+    """Crop pictures and their mask to the bounding box of the mask, with a `margin` [pixels].
 
-    All pixels outside the mask become black in every picture, so that they do not count in metrics
-    that look around a pixel.
+    All pixels outside the mask become black in every picture, so that they do not differ in metrics
+    that use the neighbourhood of a pixel.
 
     >>> pictures, mask = crop_to_mask([np.ones((9, 9, 3))], np.eye(9) > 0)
     """

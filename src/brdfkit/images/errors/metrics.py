@@ -1,4 +1,4 @@
-"""The metrics of pictures: their titles, functions and directions."""
+"""The metrics by which pictures are compared: functions, titles, and whether more is better."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,13 +12,14 @@ from brdfkit.images.errors.flip import flip
 from brdfkit.images.errors.masks import crop_to_mask
 from brdfkit.images.errors.psnr import psnr
 
-RADIUS = 5  # pixels: the window is 11 × 11, a Gaussian of σ = 1.5, as in the paper
+RADIUS = 5  # [pixels] of SSIM's window: 11 × 11, a Gaussian of σ = 1.5, as in the paper
 
 
 def ssim(reference: AnyArray, picture: AnyArray, mask: BoolArray) -> float:
-    """Return the mean structural similarity over the mask and R, G, B of sRGB [Wang et al. 2004].
+    """Return the mean structural similarity (SSIM) over the mask and R, G, B of sRGB.
 
-    Equal pictures have 1. Raises `ImportError` without the package scikit-image.
+    It is 1 for equal pictures [Wang et al. 2004]. Raises `ImportError` without the package
+    scikit-image.
     """
     from skimage.metrics import structural_similarity
 
@@ -38,11 +39,13 @@ def ssim(reference: AnyArray, picture: AnyArray, mask: BoolArray) -> float:
 
 @dataclass(frozen=True)
 class Metric:
-    """A metric of pictures.
+    """A metric that compares a picture with a reference.
 
-    `title` is that of its column, `function` takes (reference, picture, mask), `digits` is the
-    number of decimals that are shown. `more` says whether a larger value is better; `package` names
-    the package that it needs, if any.
+    `title`: heading of the metric's column in a table.
+    `function`: function (reference, picture, mask) → error.
+    `digits`: number of decimals in the table.
+    `more`: whether a larger value means a better picture.
+    `package`: name of the package that the metric needs, "" if none.
     """
 
     title: str
@@ -51,31 +54,31 @@ class Metric:
     more: bool = False
     package: str = ""
 
-    def text(self, value: float) -> str:
-        """Format a value of the metric; nan becomes a dash."""
+    def format_value(self, value: float) -> str:
+        """Format a value of the metric for a table; nan becomes a dash."""
         return "-" if np.isnan(value) else f"{value:.{self.digits}f}"
 
     def exceeds(self, value: float, floor: float) -> bool:
-        """Return whether an error is worse than the noise floor, or either is unknown."""
+        """Return whether an error is worse than the noise floor, or one of them is unknown."""
         return not (value >= floor if self.more else value <= floor)
 
 
-def _percentile_of(
+def _make_percentile_metric(
     differences: Callable[[AnyArray, AnyArray], AnyArray], share: float
 ) -> Callable[[AnyArray, AnyArray, BoolArray], float]:
-    """Return the metric that takes a percentile of per-pixel `differences`."""
+    """Return a metric: the percentile `share` of the `differences` of two pictures' pixels."""
 
-    def of(reference: AnyArray, picture: AnyArray, mask: BoolArray) -> float:
+    def compute_percentile(reference: AnyArray, picture: AnyArray, mask: BoolArray) -> float:
         return float(np.percentile(differences(reference[mask], picture[mask]), share))
 
-    return of
+    return compute_percentile
 
 
 METRICS = {
     "psnr": Metric("PSNR [dB]", psnr, 1, more=True),
-    "delta_e_2000": Metric("ΔE2000 [median]", _percentile_of(ciede2000, 50), 2),
-    "delta_e_2000_95": Metric("ΔE2000 [95 %]", _percentile_of(ciede2000, 95), 2),
-    "delta_e_itp_95": Metric("ΔE ITP [95 %]", _percentile_of(delta_e_itp, 95), 2),
+    "delta_e_2000": Metric("ΔE2000 [median]", _make_percentile_metric(ciede2000, 50), 2),
+    "delta_e_2000_95": Metric("ΔE2000 [95 %]", _make_percentile_metric(ciede2000, 95), 2),
+    "delta_e_itp_95": Metric("ΔE ITP [95 %]", _make_percentile_metric(delta_e_itp, 95), 2),
     "flip": Metric("FLIP", flip, 4, package="flip-evaluator"),
     "ssim": Metric("SSIM", ssim, 4, more=True, package="scikit-image"),
 }

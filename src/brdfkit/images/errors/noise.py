@@ -1,9 +1,9 @@
 """Estimates the noise of a path-traced picture from its passes.
 
-The passes of a rendering are independent, so that two halves of them differ by their noise alone.
-From the halves follows how far away the picture of another seed would be; it need not be rendered.
-For squared differences that is exact on average, for other metrics if the noise is small: at 16
-samples per pixel SSIM becomes up to 0.02 too large.
+The passes of a rendering are independent, so the means of two halves of them differ by noise alone.
+From the halves follows a picture that differs from the mean as much as a rendering with another
+seed would, which need not be rendered. For squared differences this is exact on average, for other
+metrics if the noise is small: at 16 samples per pixel SSIM becomes up to 0.02 too large.
 """
 
 from __future__ import annotations
@@ -19,17 +19,22 @@ from brdfkit.core.array_types import AnyArray
 
 @dataclass(frozen=True)
 class Halves:
-    """The samples of a picture in two halves, as their sums and their numbers of samples.
+    """The samples of a picture in two halves, whose difference shows the noise.
 
-    >>> Halves().plus(picture=1.0, spp=8).plus(picture=2.0, spp=8).other_seed
+    `sums`: sum of the samples in each half. `spp`: number of samples per pixel in each half.
+
+    >>> Halves().add_pass(picture=1.0, spp=8).add_pass(picture=2.0, spp=8).other_seed
     0.7928932188134524
     """
 
     sums: tuple[Any, Any] = (0.0, 0.0)
     spp: tuple[int, int] = (0, 0)
 
-    def plus(self, picture: Any, spp: int) -> Halves:
-        """Add a pass, a picture of `spp` samples per pixel, to the half that has fewer samples."""
+    def add_pass(self, picture: Any, spp: int) -> Halves:
+        """Return the halves with a further pass, added to the half that has fewer samples.
+
+        The pass is a picture with `spp` samples per pixel.
+        """
         (a, b), (m, n) = self.sums, self.spp
         if m <= n:
             return Halves((a + spp * picture, b), (m + spp, n))
@@ -37,15 +42,16 @@ class Halves:
 
     @property
     def picture(self) -> Any:
-        """The picture of all samples."""
+        """The mean over the samples of both halves, which is the rendered picture."""
         return sum(self.sums) / sum(self.spp)
 
     @property
     def other_seed(self) -> Any:
-        """The picture moved by as much noise as another seed would have; None for one pass.
+        """A picture that differs as much as one rendered with another seed; None for one pass.
 
-        With σ² the variance of a sample, halves of m and n samples differ by σ² (1/m + 1/n), and
-        pictures of two seeds by 2σ²/(m + n).
+        If σ² is the variance of a sample, the difference of halves with m and n samples has the
+        variance σ² (1/m + 1/n), and that of two seeds 2σ²/(m + n). So the picture is moved by the
+        difference of the halves, scaled to this variance.
         """
         (a, b), (m, n) = self.sums, self.spp
         if not (m and n):
@@ -55,12 +61,14 @@ class Halves:
 
 @dataclass(frozen=True)
 class Accumulated:
-    """The sum of the passes of a picture, in 64 bits.
+    """The sum over the passes of a progressive rendering, and its standard error.
 
-    Half floats stop to converge near 1,000 passes [Lesar 2018, chapter 6]. `squares` is Σ w x² over
-    passes x of w samples per pixel.
+    The sum has 64 bits, because sums of half floats stop to converge near 1,000 passes [Lesar 2018,
+    chapter 6]. `halves`: the samples in two halves. `squares`: Σ w x² over passes x with w samples
+    per pixel. `passes`: their number.
 
-    >>> four = Accumulated().plus(np.ones(1), 1).plus(np.zeros(1), 1).plus(np.full(1, 0.5), 2)
+    >>> two = Accumulated().add_pass(np.ones(1), 1).add_pass(np.zeros(1), 1)
+    >>> four = two.add_pass(np.full(1, 0.5), 2)
     >>> four.picture, four.standard_error, four.spp
     (array([0.5], dtype=float32), array([0.25], dtype=float32), 4)
     """
@@ -69,33 +77,33 @@ class Accumulated:
     squares: Any = 0.0
     passes: int = 0
 
-    def plus(self, generated: AnyArray, spp: int) -> Accumulated:
-        """Add a pass, a picture of `spp` samples per pixel."""
+    def add_pass(self, generated: AnyArray, spp: int) -> Accumulated:
+        """Return the sum with a further pass, a picture with `spp` samples per pixel."""
         x = generated.astype(float)
-        return Accumulated(self.halves.plus(x, spp), self.squares + spp * x**2, self.passes + 1)
+        return Accumulated(self.halves.add_pass(x, spp), self.squares + spp * x**2, self.passes + 1)
 
     @property
     def spp(self) -> int:
-        """The samples per pixel of all passes."""
+        """The number of samples per pixel of all passes together."""
         return sum(self.halves.spp)
 
     @property
     def picture(self) -> AnyArray:
-        """The mean over all samples, float32."""
+        """The mean over all samples, which is the rendered picture, as float32."""
         return self.halves.picture.astype(np.float32)
 
     @property
     def other_seed(self) -> AnyArray | None:
-        """The picture as another seed would give it, see `Halves`; None for one pass."""
+        """A picture that differs as much as one rendered with another seed; None for one pass."""
         other = self.halves.other_seed
         return None if other is None else other.astype(np.float32)
 
     @property
     def standard_error(self) -> AnyArray | None:
-        """The standard error of each number of the picture; None for one pass, rough for a few.
+        """The standard error of every pixel and channel; None for one pass, and rough for a few.
 
-        With σ² the variance of a sample, k passes have Σ w (x - mean)² = (k - 1) σ² on average, and
-        their mean has the variance σ² / Σ w.
+        If σ² is the variance of a sample, Σ w (x - mean)² over k passes is (k - 1) σ² on average,
+        and the mean has the variance σ² / Σ w.
         """
         if self.passes < 2:
             return None
@@ -104,10 +112,10 @@ class Accumulated:
 
 
 def estimate_samples(decibels: float, floor: float, spp: float) -> float:
-    """Estimate the samples per pixel for a noise floor of `decibels`, if `spp` give `floor` [dB].
+    """Estimate the samples per pixel that a noise floor (PSNR) of `decibels` needs.
 
-    The squared error of the noise is inversely proportional to their number, so that twice as many
-    gain 3 dB.
+    A rendering with `spp` samples per pixel has the noise floor `floor` [dB]. The squared error is
+    inversely proportional to the number of samples, so twice as many gain 3 dB.
 
     >>> round(estimate_samples(46, 40, 100), 6)
     398.107171

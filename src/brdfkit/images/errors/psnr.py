@@ -1,4 +1,4 @@
-"""Computes the peak signal-to-noise ratio (PSNR) of a picture."""
+"""The peak signal-to-noise ratio (PSNR) of a picture, with a peak that ignores fireflies."""
 
 from math import inf, nan
 
@@ -7,13 +7,13 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, BoolArray
 from brdfkit.images.errors.masks import to_mask
 
-PEAK = 99.9  # percentile of the reference, so that a single firefly does not set the peak
+PEAK = 99.9  # percentile of the reference that is the peak, so that fireflies do not determine it
 
 
 def find_peak(reference: AnyArray, mask: BoolArray | None = None) -> float:
-    """Return the 99.9th percentile of a reference (height, width, 3), in the mask (height, width).
+    """Return the peak for PSNR: the 99.9th percentile of the reference's values within the mask.
 
-    nan for an empty mask.
+    The reference is (height, width, 3), the mask (height, width). An empty mask gives nan.
 
     >>> find_peak(np.full((4, 4, 3), 0.5))
     0.5
@@ -28,10 +28,11 @@ def psnr(
     mask: BoolArray | None = None,
     peak: float | None = None,
 ) -> float:
-    """Return 10·log10(peak² / mean squared difference) [dB] over all channels.
+    """Return the PSNR [dB] of a picture: 10·log10(peak² / mean squared difference).
 
-    The pictures are (height, width, 3), the mask (height, width); `peak` is by default
-    `find_peak` of the reference. inf for equal pictures, nan for an empty mask.
+    The pictures are (height, width, 3), the mask (height, width); the mean is over all channels of
+    its pixels. `peak` is by default `find_peak(reference, mask)`. The result is inf for equal
+    pictures, nan for an empty mask.
 
     >>> psnr(np.full((4, 4, 3), 0.5), np.full((4, 4, 3), 0.45))
     20.0

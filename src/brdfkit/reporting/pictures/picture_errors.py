@@ -36,7 +36,7 @@ class PictureError:
 
     def text(self, value: float) -> str:
         """Return a value as text."""
-        return str(self.metric.text(value))
+        return str(self.metric.format_value(value))
 
     def exceeds(self, value: float) -> bool:
         """Return whether a value is a larger difference than noise makes."""
