@@ -14,7 +14,11 @@ from urllib.error import URLError
 from urllib.request import urlopen
 
 import drjit as dr
+import jupytext
+import matplotlib.pyplot as plt
 import pytest
+from IPython.core.interactiveshell import InteractiveShell
+from IPython.utils.capture import capture_output
 
 TOP = Path(__file__).parents[2]
 NOTEBOOKS = sorted(path for path in (TOP / "notebooks").glob("*.md") if path.stem != "README")
@@ -24,21 +28,47 @@ SMALLER = {  # smaller pictures and shorter searches, of which the notebooks' as
     r"starts=4": "starts=1",
     r"samples=256": "samples=64",
 }
+IN_A_KERNEL = "first_render"  # alone, because a kernel takes as long to start as a notebook to run
 # a notebook has as many threads as a test (conftest.py): more would wait for the other tests'
 SHARE_THE_CORES = (
     f"import brdfkit.core.jit.threads as t; t.set_thread_count({dr.thread_count()}); del t"
 )
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_a_notebook_runs(path, tmp_path):
-    import jupytext  # only here: both take seconds
-    import nbclient
-
+def read_notebook(path):
+    """The notebook, with smaller pictures."""
     text = path.read_text(encoding="utf-8")
     for large, small in SMALLER.items():
         text = re.sub(large, small, text)
-    notebook = jupytext.reads(text, fmt="md:myst")
+    return jupytext.reads(text, fmt="md:myst")
+
+
+@pytest.mark.parametrize(
+    "path", [p for p in NOTEBOOKS if p.stem != IN_A_KERNEL], ids=lambda path: path.stem
+)
+def test_a_notebook_runs(path, tmp_path, monkeypatch, llvm_variant, no_user_plugins):
+    """Each cell runs without an error or a warning, and something is displayed."""
+    monkeypatch.chdir(tmp_path)
+    shell = InteractiveShell.instance()
+    shell.reset(new_session=False)
+    displayed = 0
+    with plt.rc_context():
+        for cell in read_notebook(path).cells:
+            if cell.cell_type == "code":
+                with capture_output() as output:
+                    shell.run_cell(cell.source).raise_error()
+                assert output.stderr == "", cell.source
+                displayed += bool(output.outputs or output.stdout)
+    plt.close("all")
+    shell.reset(new_session=False)
+    assert displayed
+    assert not list(tmp_path.iterdir()), "it leaves files behind"
+
+
+def test_a_notebook_runs_in_a_kernel(tmp_path):
+    import nbclient  # only here: it takes seconds
+
+    notebook = read_notebook(TOP / "notebooks" / f"{IN_A_KERNEL}.md")
     client = nbclient.NotebookClient(
         notebook,
         timeout=300,
@@ -46,9 +76,9 @@ def test_a_notebook_runs(path, tmp_path):
         extra_arguments=[f"--IPKernelApp.exec_lines={SHARE_THE_CORES}"],
     )
     client.execute()
-    said = [output for cell in notebook.cells for output in cell.get("outputs", ())]
-    assert said
-    assert not [output for output in said if output.get("name") == "stderr"]
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", ())]
+    assert outputs
+    assert not [output for output in outputs if output.get("name") == "stderr"]
     assert not list(tmp_path.iterdir()), "it leaves files behind"
 
 
