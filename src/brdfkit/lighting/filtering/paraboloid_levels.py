@@ -10,6 +10,7 @@ so that it can be interpolated at the rim.
 """
 
 import math
+from functools import lru_cache
 
 import drjit as dr
 import numpy as np
@@ -30,6 +31,7 @@ CUT_OFF = 12.0  # where a lobe ends: at e^-12 of its peak, beyond which lies as 
 # convolved with a lobe that much sharper
 BLUR = 0.03
 COVERAGE = 0.5  # a: the share of a lobe within one texel of the level of its size
+CACHED_PICTURES = 4  # whose filtered levels are kept, a few MB each
 
 
 def texel_directions(side: int) -> FloatArray:
@@ -83,8 +85,16 @@ def convolve_with_lobes(picture: FloatArray, side: float) -> list[FloatArray]:
     """Convolve a `picture` (height, 2 height, channels) with ever wider lobes.
 
     Their κ are `sharpest_kappa(side)`, its `STEP`-th part and so on. Returns discs (2, texels,
-    texels, channels) for each.
+    texels, channels) for each. The last few results are kept, as most previews share their light.
     """
+    pixels = np.asarray(picture, float).tobytes()
+    return list(_convolve_with_lobes(pixels, picture.shape, side))
+
+
+@lru_cache(CACHED_PICTURES)
+def _convolve_with_lobes(pixels: bytes, shape: tuple[int, ...], side: float) -> list[FloatArray]:
+    """Convolve a picture with ever wider lobes; its `pixels` are the bytes of doubles."""
+    picture: FloatArray = np.frombuffer(pixels).reshape(shape)
     kappa, levels = sharpest_kappa(side), []
     while kappa > SMALLEST_KAPPA:
         while len(picture) > ROWS * max(side, SMALLEST_SIDE):
