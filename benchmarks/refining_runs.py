@@ -19,7 +19,7 @@ import numpy as np
 import brdfkit as bk
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.rendering.scenes._meshes import make_grid_mesh
-from brdfkit.rendering.scenes.knot import make_tube
+from brdfkit.rendering.scenes.knot import make_knot_tube
 
 FILE = Path(__file__).with_suffix(".json")
 SIZE, NOISE = 24, 0.01
@@ -100,7 +100,7 @@ def scene(shape, light, model, values, size=SIZE):
         "sun": sun,
         "sun and sky": sun,
     }
-    seen = shapes[shape] if shape in shapes else {"ball": make_grid_mesh(*make_tube(), bsdf)}
+    seen = shapes[shape] if shape in shapes else {"ball": make_grid_mesh(*make_knot_tube(), bsdf)}
     sky = {"sky": {"type": "constant", "radiance": 0.3}} if light == "sun and sky" else {}
     film = {"type": "hdrfilm", "width": size, "height": size, "pixel_format": "rgb"}
     return {

@@ -7,7 +7,7 @@ from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
 from brdfkit.inverse.scenes.problem.targets import read_targets
 from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.rendering.scenes._meshes import make_grid_mesh
-from brdfkit.rendering.scenes.knot import make_tube
+from brdfkit.rendering.scenes.knot import make_knot_tube
 
 SIZE = 20
 TRUTH = {
@@ -113,6 +113,6 @@ def knot(mi, alpha, diffuse, size=16):
     lamp = {"type": "area", "radiance": 3000.0}
     return {
         **entries,
-        "ball": make_grid_mesh(*make_tube(), bsdf),
+        "ball": make_grid_mesh(*make_knot_tube(), bsdf),
         "lamp": {"type": "sphere", "center": [1.5, -3, 4], "radius": 0.05, "emitter": lamp},
     }

@@ -124,12 +124,12 @@ def test_a_volume_of_any_unit_is_as_dense():
 )
 def test_the_default_look_depends_on_the_data(values, settings, name):
     volume = Volume(np.reshape(values, (1, 1, 3)), **settings)
-    assert defaults.default_transfer_function(volume, "single_scattering").name == name
+    assert defaults.choose_transfer_function(volume, "single_scattering").name == name
 
 
 def test_labels_have_colours_and_0_has_none():
     labels = Volume(np.arange(30).reshape(2, 3, 5), labels=True)
-    rgba = defaults.default_transfer_function(labels, "single_scattering")(np.arange(30))
+    rgba = defaults.choose_transfer_function(labels, "single_scattering")(np.arange(30))
     assert rgba[0, 3] == 0
     assert (rgba[1:, 3] == 1).all()
     assert all((rgba[i, :3] != rgba[i + 1, :3]).any() for i in range(1, 29))
@@ -160,7 +160,7 @@ def test_the_level_parts_the_values_best():
         return len(low) * len(high) * (low.mean() - high.mean()) ** 2
 
     best = max(np.linspace(values.min() + 0.01, values.max() - 0.01, 500), key=between)
-    found = defaults.default_level(Volume(values.reshape(10, 10, 10)))
+    found = defaults.choose_surface_level(Volume(values.reshape(10, 10, 10)))
     assert between(found) == pytest.approx(between(best), rel=1e-3)
 
 

@@ -29,10 +29,10 @@ WHITE = {"name": "white", "type": "diffuse", "reflectance": 0.8}
 BLACK = {"name": "black", "type": "diffuse", "reflectance": 0.02}
 SCENES = scene_names()
 SURFACES = {
-    "vase": lambda: _meshes.revolve(*vase.PROFILE.T, between=8),
-    "knot": knot.make_tube,
-    "ball": lambda: _meshes.revolve(*material_ball._ball_profile()),
-    "ring": lambda: _meshes.revolve(*material_ball._ring_profile()),
+    "vase": lambda: _meshes.revolve_profile(*vase.PROFILE.T, between=8),
+    "knot": knot.make_knot_tube,
+    "ball": lambda: _meshes.revolve_profile(*material_ball._make_ball_profile()),
+    "ring": lambda: _meshes.revolve_profile(*material_ball._make_ring_profile()),
 }
 CUBE = """v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv -1 4 -1\nv 1 4 -1\nv 1 4 1\nv -1 4 1
 f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"""

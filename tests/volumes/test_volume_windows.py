@@ -55,7 +55,7 @@ def test_by_default_matter_shows_and_air_does_not(name, axes, renderer):
     if name == "in HU" and axes:
         pytest.skip("values in HU have presets")
     volume = Volume(WINDOWS[name][0], axes=axes)
-    transfer = defaults.default_transfer_function(volume, renderer)
+    transfer = defaults.choose_transfer_function(volume, renderer)
     depth = transfer.extinction * transfer(volume.values)[..., 3]  # of a voxel
     if name not in ("without air", "nearly empty", "one voxel"):
         assert np.median(depth[BALL]) > 0.01
@@ -66,7 +66,7 @@ def test_by_default_matter_shows_and_air_does_not(name, axes, renderer):
 def test_largest_values_use_all_greys():
     """The largest values of a ball of tissue differ by a tenth, its greys by half of the scale."""
     ball = np.where(BALL, 500 + 50 * X, 0)
-    function = defaults.default_transfer_function(Volume(ball, axes="RAS"), "maximum_intensity")
+    function = defaults.choose_transfer_function(Volume(ball, axes="RAS"), "maximum_intensity")
     largest = ball.max(axis=0)
     greys = to_srgb(function(largest[largest > 0])[:, 0])
     assert np.ptp(np.percentile(greys, [10, 90])) > 0.4
@@ -79,13 +79,13 @@ def test_scans_without_bone_show_their_skin(densest, name):
     hu[18:22, 18:22, 18:24] = densest
     hu[0, 0, 0] = 250  # metal beside the body
     assert (
-        defaults.default_transfer_function(Volume(hu, axes="RAS"), "single_scattering").name == name
+        defaults.choose_transfer_function(Volume(hu, axes="RAS"), "single_scattering").name == name
     )
 
 
 def test_the_level_is_not_of_outliers():
     clean = np.where(BALL, TISSUE, NOISE)
-    level = defaults.default_level(Volume(with_outliers(clean)))
+    level = defaults.choose_surface_level(Volume(with_outliers(clean)))
     assert 45 < level < 430
 
 

@@ -21,7 +21,7 @@ from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.rendering.scene_input.environment import describe_environment
 from brdfkit.rendering.scene_input.loading import find_scene
-from brdfkit.rendering.scene_input.material import find_mask
+from brdfkit.rendering.scene_input.material import find_material_mask
 from brdfkit.theses.claims import UNSTATED, Claim, verdict
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 from brdfkit.theses.page import Picture, Section, Table
@@ -83,7 +83,7 @@ def pictures_of(made, light, bsdf, methods):
     """(halves of the truth, (method, filter) → picture, pixels where the BSDF is seen)."""
     halves, scene = truth(made, light)
     pictures = {kind: render(made, light, by)[0] for kind, by in methods.items()}
-    return halves, pictures, find_mask(scene, bsdf)
+    return halves, pictures, find_material_mask(scene, bsdf)
 
 
 def over(by_kind, method, filter_="mips"):

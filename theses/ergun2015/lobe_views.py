@@ -8,7 +8,7 @@ from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.rendering.scene_input.environment import describe_environment
 from brdfkit.rendering.scene_input.loading import find_scene
-from brdfkit.rendering.scene_input.material import find_mask
+from brdfkit.rendering.scene_input.material import find_material_mask
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.drawing import figure
 from brdfkit.theses.page import Picture, Section
@@ -34,7 +34,7 @@ def run(sources, report):
     made = find_scene("ball")(bsdf, (SIZE, SIZE))
     halves, scene = truth(made, light)
     report(1, 2)
-    reference, seen = np.mean(halves, axis=0), find_mask(scene, bsdf)
+    reference, seen = np.mean(halves, axis=0), find_material_mask(scene, bsdf)
     pictures, views = {}, None
     for kind, method in KINDS.items():
         integrator = mi.load_dict({"type": "filtered_environment", "method": method})

@@ -9,7 +9,7 @@ import numpy as np
 
 from brdfkit.core.files import read_bytes
 from brdfkit.rendering.scene_input import mesh_file
-from brdfkit.rendering.scenes._meshes import make_grid_mesh, make_mesh, revolve
+from brdfkit.rendering.scenes._meshes import make_grid_mesh, make_mesh, revolve_profile
 from brdfkit.rendering.scenes._studio import make_studio
 
 MESHES = (
@@ -78,7 +78,7 @@ def torus(bsdf, size):
     """A ring of the ball's size, leaning towards the camera."""
     phi = np.linspace(0, 2 * np.pi, COLUMNS)
     phi[-1] = 0  # the profile closes
-    points, normals = revolve(0.68 + 0.32 * np.cos(phi), 0.32 * np.sin(phi))
+    points, normals = revolve_profile(0.68 + 0.32 * np.cos(phi), 0.32 * np.sin(phi))
     points = points.round(9)  # it closes around the axis, too
     lean = np.array([[1, 0, 0], [0, 0.64, 0.768375], [0, -0.768375, 0.64]])
     points = points @ lean + [0, 0, 1]

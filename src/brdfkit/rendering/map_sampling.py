@@ -20,7 +20,7 @@ from brdfkit.rendering.progressive import to_rgb
 from brdfkit.rendering.sampler_comparison import SamplerComparison
 from brdfkit.rendering.scene_input.arguments import load_mitsuba
 from brdfkit.rendering.scene_input.environment import describe_environment, replace_light
-from brdfkit.rendering.scene_input.loading import find_scene, find_suffix
+from brdfkit.rendering.scene_input.loading import find_scene, find_scene_suffix
 from brdfkit.rendering.scene_input.material import load_material
 
 SAMPLERS: dict[str, dict[str, Any]] = {
@@ -157,7 +157,7 @@ def _load_scene_for_each_sampler(
     """Load a `mitsuba.Scene` for each sampler, by the sampler's name."""
     import mitsuba as mi
 
-    light, is_mesh = describe_environment(environment), bool(find_suffix(scene))
+    light, is_mesh = describe_environment(environment), bool(find_scene_suffix(scene))
     shown = load_material(material.scene_dict(), str(material.name), both_sides=is_mesh)
     made, scenes = find_scene(scene)(shown, (size, size)), {}
     for name, sampler in SAMPLERS.items():

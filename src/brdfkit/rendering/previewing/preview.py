@@ -1,8 +1,8 @@
-"""`preview`: pictures of materials under an environment, without noise.
+"""`preview`: pictures of materials under an environment map, without noise.
 
 The integrator `filtered_environment` uses the same directions in every pixel. Whatever takes long
 to prepare is kept between calls: the filtered light, the materials, the shape and its shadow
-casters. So the first picture takes seconds, and the next ones about a tenth of a second.
+casters. So the first picture takes seconds, and later ones about a tenth of a second.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from brdfkit.core.memory import require_memory
 from brdfkit.lighting.environments.map_files import find_map
 from brdfkit.materials.resolve import Material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
-from brdfkit.rendering.previewing.cache import load_bsdf, read_cached
-from brdfkit.rendering.previewing.scene import Shape, describe_preview
+from brdfkit.rendering.previewing.cache import load_bsdf, load_through_cache
+from brdfkit.rendering.previewing.scene import PreviewShape, describe_preview
 from brdfkit.rendering.progressive import to_rgb
 from brdfkit.rendering.render_materials import to_size
 from brdfkit.rendering.result import Rendering
@@ -38,8 +38,8 @@ from brdfkit.rendering.scene_input.arguments import (
     to_material_list,
 )
 from brdfkit.rendering.scene_input.environment import describe_environment, replace_lower_half
-from brdfkit.rendering.scene_input.loading import find_suffix
-from brdfkit.rendering.scene_input.material import find_mask
+from brdfkit.rendering.scene_input.loading import find_scene_suffix
+from brdfkit.rendering.scene_input.material import find_material_mask
 from brdfkit.rendering.scenes._studio import GROUND
 
 STUDIO, SIZE, SPP = "studio", 256, 4
@@ -56,7 +56,7 @@ def preview(
     method: str = "filtered_sampling",
     shadows: bool = False,
 ) -> Rendering:
-    """Show one or several materials under an environment, without noise.
+    """Show one or several materials under an environment map, without noise.
 
     A preview contains the light that a material reflects directly from the environment, but no
     light that surfaces reflect to each other. Equal calls give equal pictures. The first call in a
@@ -73,7 +73,7 @@ def preview(
     size : int or (int, int), default 256
         Side, or width and height, of a picture [pixels].
     scene : str or Path, default "ball"
-        A scene of `render` without lamps of its own, or a mesh (.obj, .ply; "FILE.obj#z" if its
+        The name of a scene without lamps of its own, or a mesh (.obj, .ply; "FILE.obj#z" if its
         z axis points up).
     environment : str or Path, default "studio"
         An environment map by latitude and longitude: its name or its file. It is scaled to the
@@ -104,22 +104,24 @@ def preview(
     """
     size, subjects = (
         to_size(size),
-        [read_cached(subject) for subject in to_material_list(materials)],
+        [load_through_cache(subject) for subject in to_material_list(materials)],
     )
     spp = to_whole_number("spp", spp, least=1)
     require_memory(size, len(subjects))
-    load_mitsuba()  # sets a variant, on which the dictionaries depend
-    _require_rays(spp)
+    load_mitsuba()  # the BSDF dictionaries below depend on the variant that this sets
+    _require_valid_ray_count(spp)
     if not isinstance(scene, str | Path):
         raise BrdfkitError(f"scene = {scene!r:.60} should be a scene's name or a mesh's file.")
-    return _render(name_materials(subjects), environment, size, scene, method, spp, bool(shadows))
+    return _render_preview(
+        name_materials(subjects), environment, size, scene, method, spp, bool(shadows)
+    )
 
 
-def _require_rays(spp: int) -> None:
-    """Raise `BrdfkitError` for rays per pixel that make no square grid, or too few wavelengths.
+def _require_valid_ray_count(spp: int) -> None:
+    """Raise `BrdfkitError` if `spp` rays per pixel make no square grid, or give wrong colours.
 
-    In spectral variants a ray has four wavelengths, a quarter of the range apart. A grid with an
-    even number of rays repeats the same wavelengths.
+    In spectral variants each ray has four wavelengths, a quarter of the range apart. The rays of a
+    grid with an even number of rays have equal wavelengths, so the colours would be wrong.
     """
     import mitsuba as mi
 
@@ -132,7 +134,7 @@ def _require_rays(spp: int) -> None:
 
 
 @in_turn
-def _render(
+def _render_preview(
     materials: dict[str, Material],
     environment: str | Path,
     size: tuple[int, int],
@@ -145,11 +147,11 @@ def _render(
     import mitsuba as mi
 
     start, variant = time.perf_counter(), str(mi.variant())
-    shape = _load_shape(variant, scene, _time_of_change(str(scene).partition("#")[0]))
-    changed = _time_of_change(find_map(environment))
+    shape = _load_shape(variant, scene, _find_time_of_change(str(scene).partition("#")[0]))
+    changed = _find_time_of_change(find_map(environment))
     light = _load_light(variant, environment, changed, shadows)
     integrator = _load_integrator(variant, method, shadows)
-    both_sides = find_suffix(scene) in mesh_file.SUFFIXES
+    both_sides = find_scene_suffix(scene) in mesh_file.SUFFIXES
     pictures: dict[str, FloatArray] = {}
     mask = None
     for name, subject in materials.items():
@@ -159,7 +161,7 @@ def _render(
         loaded = load_by_mitsuba(mi.load_dict, described, name)
         if shadows:
             integrator.casters.set(loaded, None, shape.casters)
-        mask = find_mask(loaded, material) if mask is None else mask
+        mask = find_material_mask(loaded, material) if mask is None else mask
         with raise_first_cause():
             pictures[name] = to_rgb(integrator.render(loaded, seed=0, spp=spp)).astype(np.float32)
     first, seconds = next(iter(pictures.values())), time.perf_counter() - start
@@ -169,8 +171,8 @@ def _render(
     )
 
 
-def _time_of_change(path: str | Path) -> int | None:
-    """Return when a file was changed [ns]; None for the name of a scene or a map."""
+def _find_time_of_change(path: str | Path) -> int | None:
+    """Return when a file was changed [ns]; None for the name of a scene or of a map."""
     return Path(path).stat().st_mtime_ns if Path(path).is_file() else None
 
 
@@ -180,7 +182,7 @@ def _load_light(
 ) -> MitsubaObject:
     """Load the emitter of an environment map; with `ground` its lower half shows lit ground.
 
-    `variant` and `changed`, the time when the map's file was changed, only key the cache.
+    `variant` and `changed`, the time of change of the map's file, only key the cache.
     """
     import mitsuba as mi
 
@@ -191,7 +193,7 @@ def _load_light(
 
 @lru_cache(maxsize=4)
 def _load_integrator(variant: str, method: str, shadows: bool) -> MitsubaObject:
-    """Load the integrator, which keeps the light that it has filtered."""
+    """Load the integrator of previews, which keeps the light that it has filtered."""
     import mitsuba as mi
 
     entries = {"type": "filtered_environment", "method": method}
@@ -200,6 +202,6 @@ def _load_integrator(variant: str, method: str, shadows: bool) -> MitsubaObject:
 
 
 @lru_cache(maxsize=4)
-def _load_shape(variant: str, scene: str | Path, changed: int | None) -> Shape:
-    """Read the `Shape` of a scene or mesh; `variant` and the time of change only key the cache."""
-    return Shape(scene)
+def _load_shape(variant: str, scene: str | Path, changed: int | None) -> PreviewShape:
+    """Load the shape of a scene or mesh; `variant` and `changed`, a time, only key the cache."""
+    return PreviewShape(scene)

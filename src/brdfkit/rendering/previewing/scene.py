@@ -1,4 +1,4 @@
-"""Makes the scene of a preview: the shape of a scene under another light.
+"""Makes the scene of a preview: the shape of one of the scenes under another light.
 
 The ground is left out, unless the preview shows shadows.
 """
@@ -12,16 +12,17 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.rendering.scene_input.environment import replace_light
 from brdfkit.rendering.scene_input.loading import find_scene
 
-SURROUNDINGS = "sensor", "integrator", "sky", "softbox", "ground"  # all but a scene's shape
+# Entries of a scene's dictionary that do not belong to its shape
+SURROUNDINGS = "sensor", "integrator", "sky", "softbox", "ground"
 
 
-class Shape:
-    """The shape that a scene or a mesh shows; it is read once for all pictures.
+class PreviewShape:
+    """The shape of a scene or a mesh, which is loaded once for all pictures.
 
     Attributes
     ----------
     build : callable
-        The function that makes the scene's dictionary, see `find_scene`.
+        Function that returns the scene's dictionary for a BSDF and a size, see `find_scene`.
     """
 
     def __init__(self, scene: str | Path) -> None:
@@ -46,10 +47,10 @@ def describe_preview(
     spp: int,
     ground: bool = False,
 ) -> dict[str, Any]:
-    """Return the dictionary of a scene under another light, with or without its ground.
+    """Return the dictionary of a `scene` under another light, with or without its ground.
 
-    Each pixel is divided into `spp` equal parts, and a ray goes through the middle of each, so
-    nothing is random. Raises `BrdfkitError` for a scene without a sky that the light can replace.
+    Each pixel is divided into `spp` equal cells with a ray through the middle of each, so nothing
+    is random. Raises `BrdfkitError` for a scene without a sky that the light can replace.
     """
     if not isinstance(scene, dict) or "sky" not in scene:
         raise BrdfkitError(

@@ -1,4 +1,4 @@
-"""Turns the materials that `render` receives into names, BSDF dictionaries and parameters."""
+"""Converts the materials that `render` receives to names, BSDF dictionaries and parameters."""
 
 from typing import Any, TypeAlias
 
@@ -15,7 +15,7 @@ Renderable: TypeAlias = MaterialLike | tuple[str, MaterialLike]
 
 
 def load_mitsuba() -> MitsubaModule:
-    """Import `mitsuba`, set a variant unless one is set, and return the module."""
+    """Import `mitsuba`, set the best variant unless one is set, and return the module."""
     import mitsuba as mi
 
     use_variant()
@@ -25,7 +25,7 @@ def load_mitsuba() -> MitsubaModule:
 def to_material_list(materials: Any) -> list[Renderable]:
     """Return one material or several as a list; raise `BrdfkitError` if there is none."""
     is_single = (
-        _is_pair(materials)
+        _is_named_material(materials)
         or isinstance(materials, dict | str)
         or not hasattr(materials, "__iter__")
     )
@@ -35,8 +35,8 @@ def to_material_list(materials: Any) -> list[Renderable]:
     return listed
 
 
-def _is_pair(material: Any) -> bool:
-    """Tell whether `material` is a pair of a name and a material."""
+def _is_named_material(material: Any) -> bool:
+    """Return whether `material` is a pair of a name and a material."""
     return isinstance(material, tuple) and len(material) == 2 and isinstance(material[0], str)
 
 
@@ -50,7 +50,7 @@ def describe_materials(
 
 
 def name_materials(renderables: list[Renderable]) -> dict[str, Material]:
-    """Load the materials and give each a unique name; the result is by that name."""
+    """Load materials and return them by unique names."""
     materials: dict[str, Material] = {}
     for name, material in map(to_named_material, renderables):
         materials[make_unique(name, materials)] = material
@@ -58,10 +58,7 @@ def name_materials(renderables: list[Renderable]) -> dict[str, Material]:
 
 
 def collect_parameters(materials: dict[str, Material]) -> dict[str, dict[str, Any]]:
-    """Return the parameter values of all models and fits among the `materials`, by name.
-
-    Materials without parameters are left out.
-    """
+    """Return the parameter values of the models and fits among the `materials`, by name."""
     models = {
         name: material for name, material in materials.items() if isinstance(material, Model | Fit)
     }
@@ -71,11 +68,11 @@ def collect_parameters(materials: dict[str, Material]) -> dict[str, dict[str, An
 def to_named_material(renderable: Any) -> tuple[str, Material]:
     """Return the name and the material of anything that `render` takes as a material.
 
-    Raises `BrdfkitError` for a volume, and for what is no material.
+    Raises `BrdfkitError` for a volume, and for anything that is no material.
     """
     if isinstance(renderable, Volume):
         raise BrdfkitError(f"{renderable.name} is a volume, not a material: call render_volume.")
-    if _is_pair(renderable):
+    if _is_named_material(renderable):
         return renderable[0], to_named_material(renderable[1])[1]
     material = to_material(renderable)
     return str(material.name), material

@@ -1,9 +1,9 @@
-"""Makes the scene that shows a distance field: a camera and two round lamps around it.
+"""Makes the scene that shows a distance field: a camera and two spherical lamps around it.
 
-The camera looks from the front, the right and above. All lengths are multiples of the radius of the
-field's bounding sphere, so the field fills the picture whatever its size; endless parts, such as
-planes, do not count for the sphere. A part that is named after a material (`made_of`) consists of
-that material; all other parts are grey.
+The camera is in front of the field, to the right and above. All lengths are multiples of the radius
+of the field's bounding sphere, so the field fills the picture whatever its size; the sphere does
+not enclose infinite parts, such as planes. A part that is named after a material (`made_of`)
+consists of that material; all other parts are grey.
 """
 
 from typing import Any
@@ -19,17 +19,18 @@ from brdfkit.materials.resolve import to_material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
 SIZE = 400, 300  # pixels
-SPP = 4  # samples per pixel; they only smooth edges, because there is no noise
+SPP = 4  # samples per pixel, which only smooth edges: the shading has no noise
 FIELD_OF_VIEW = 30.0  # [degrees]
 CAMERA = (0.35, -0.85, 0.45)  # direction from the field to the camera
-LAMPS = {  # name: (centre and radius [radii of the bounding sphere], radiance)
+# Centre and radius [radii of the bounding sphere] and radiance of each lamp
+LAMPS = {
     "key": ((-3.0, -2.5, 4.5), 0.7, 70.0),
     "fill": ((7.0, -5.0, 5.0), 3.0, 2.5),
 }
 
 
 def load_field_scene(field: Node, size: tuple[int, int]) -> MitsubaObject:
-    """Load the `mitsuba.Scene` that shows a field; `size` is (width, height) [pixels]."""
+    """Load the `mitsuba.Scene` that shows a distance field; `size` is (width, height) [pixels]."""
     import mitsuba as mi
 
     middle, radius = bounding_sphere(field)
@@ -63,7 +64,7 @@ def load_field_scene(field: Node, size: tuple[int, int]) -> MitsubaObject:
 
 
 def _describe_material(name: str) -> dict[str, Any]:
-    """Return the BSDF dictionary of the material `name`, or of a grey one if there is none."""
+    """Return the BSDF dictionary of a material, or of a grey one if the name is unknown."""
     try:
         return to_material(name).scene_dict()
     except BrdfkitError:

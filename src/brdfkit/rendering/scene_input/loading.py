@@ -12,11 +12,11 @@ from brdfkit.mitsuba_bridge import scene_file
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.scene_input import mesh_file
 from brdfkit.rendering.scene_input.environment import describe_environment, replace_light
-from brdfkit.rendering.scene_input.material import find_mask, load_material
+from brdfkit.rendering.scene_input.material import find_material_mask, load_material
 from brdfkit.rendering.scenes import find_scene as find_scene_by_name
 from brdfkit.rendering.scenes import scene_names
 
-SIZE = 512, 512  # of a picture [pixels]
+SIZE = 512, 512  # width and height of a picture by default [pixels]
 
 
 def load_scenes(
@@ -27,15 +27,15 @@ def load_scenes(
 ) -> tuple[dict[str, MitsubaObject], BoolArray | None]:
     """Load a `mitsuba.Scene` for each material, and the mask of the pixels that show the material.
 
-    `materials` are BSDF dictionaries by name, and the scenes are by the same names. `scene` is what
-    `find_scene` takes. `size` is (width, height) [pixels], by default 512 × 512, or the size in a
-    scene file. `environment` is the name or file of an environment map. The mask is (height,
-    width); it is None for a user's function, which receives the BSDF dictionary itself. Raises
-    `BrdfkitError` for what cannot be loaded.
+    `materials` are BSDF dictionaries by name, and the scenes have the same names. `scene` is an
+    argument of `find_scene`. `size` is (width, height) [pixels], by default 512 × 512, or the size
+    in a scene file. `environment` is the name or file of an environment map. The mask is (height,
+    width); it is None if the user gave a function as the scene, which receives the BSDF dictionary
+    itself. Raises `BrdfkitError` for anything that cannot be loaded.
     """
     import mitsuba as mi
 
-    build, suffix = find_scene(scene), "" if callable(scene) else find_suffix(scene)
+    build, suffix = find_scene(scene), "" if callable(scene) else find_scene_suffix(scene)
     if suffix != scene_file.SUFFIX:
         size = size or SIZE
     light = None if environment is None else describe_environment(environment)
@@ -46,19 +46,19 @@ def load_scenes(
         built = build(material or bsdf, size)
         built = replace_light(light, built) if light else built
         if material and isinstance(built, dict) and "sky" in built:
-            # All scenes share one emitter. Kernels contain its number, so one kernel serves all
+            # Kernels contain the number of the emitter: one emitter for all scenes saves compiling
             sky = sky or load_by_mitsuba(mi.load_dict, built["sky"], name)
             built["sky"] = sky
         loaded = load_by_mitsuba(mi.load_dict, built, name) if isinstance(built, dict) else built
         _require_mitsuba_scene(loaded)
         if material and not scenes:
-            mask = find_mask(loaded, material)
+            mask = find_material_mask(loaded, material)
         scenes[name] = loaded
     return scenes, mask
 
 
 def require_scene(scene: Any, environment: str | Path | None = None) -> None:
-    """Raise `BrdfkitError` for a missing scene or environment map, before long work begins."""
+    """Raise `BrdfkitError` for a missing scene or environment map, before a long computation."""
     find_scene(scene)
     if environment is not None:
         find_map(environment)
@@ -77,7 +77,7 @@ def find_scene(scene: Any) -> Callable[..., Any]:
     place = find_file_or_name(file, "scene", scene_names())
     if isinstance(place, str):
         return find_scene_by_name(place)
-    suffix = find_suffix(scene)
+    suffix = find_scene_suffix(scene)
     if suffix == scene_file.SUFFIX:
         return scene_file.make_scene_builder(scene)
     if suffix in mesh_file.SUFFIXES:
@@ -101,6 +101,6 @@ def _require_mitsuba_scene(loaded: Any) -> None:
         raise BrdfkitError("The scene has no sensor or no integrator; add them to its dictionary.")
 
 
-def find_suffix(scene: str | Path) -> str:
+def find_scene_suffix(scene: str | Path) -> str:
     """Return the suffix of a scene's file, such as ".obj"; "" for the name of a scene."""
     return Path(str(scene).partition("#")[0]).suffix.lower()

@@ -1,4 +1,4 @@
-"""Loads the material that a scene shows, and finds the pixels that show it."""
+"""Loads the material of a scene, and finds the pixels of a picture that show it."""
 
 from typing import Any
 
@@ -12,8 +12,8 @@ from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 def load_material(bsdf: dict[str, Any], name: str, both_sides: bool = False) -> MitsubaObject:
     """Load the BSDF that a dictionary describes; error messages call it `name`.
 
-    With `both_sides` the material also reflects at the back of a surface, which a mesh may show. A
-    material that transmits light needs no such change, because it describes both sides itself.
+    With `both_sides` the material also reflects at the back of a surface, which meshes may show. A
+    material that transmits light does so anyway.
     """
     import mitsuba as mi
 
@@ -23,8 +23,8 @@ def load_material(bsdf: dict[str, Any], name: str, both_sides: bool = False) -> 
     return mi.load_dict({"type": "twosided", "bsdf": material}, parallel=False)
 
 
-def find_mask(scene: MitsubaObject, material: MitsubaObject) -> BoolArray:
-    """Return a mask (height, width): True where the ray through a pixel's centre hits the material.
+def find_material_mask(scene: MitsubaObject, material: MitsubaObject) -> BoolArray:
+    """Return the mask (height, width) of the pixels whose central ray hits the material.
 
     `scene` is a `mitsuba.Scene`, and `material` the BSDF object in it.
     """
@@ -38,7 +38,7 @@ def find_mask(scene: MitsubaObject, material: MitsubaObject) -> BoolArray:
         ray, _ = sensor.sample_ray(0.0, 0.5, place, mi.Point2f(0.5))
         return scene.ray_intersect_preliminary(ray).shape
 
-    if str(mi.variant()).startswith("scalar"):  # one ray at a time
+    if str(mi.variant()).startswith("scalar"):  # scalar variants trace single rays only
         shapes = (find_shape(mi.Point2f(*p)) for p in zip(x.flat, y.flat, strict=True))
         mask = np.array([s is not None and s.bsdf() is material for s in shapes])
     else:

@@ -1,6 +1,7 @@
-"""Makes a scene from a mesh file, OBJ or PLY; the mesh takes the place of the ball.
+"""Makes a scene from a mesh file, OBJ or PLY, in which the mesh takes the place of the ball.
 
-Mesh files do not say which of their axes points up, so this file also guesses it.
+Mesh files do not contain which of their axes points up, so the axis is guessed if the user gives
+none.
 """
 
 import warnings
@@ -20,12 +21,12 @@ from brdfkit.rendering.scenes._studio import make_studio
 
 SUFFIXES = ".obj", ".ply"
 SIZE = 2.0  # longest side of the mesh's bounding box in the scene, as large as the ball's
-SHARP_ANGLE = np.radians(35)  # between the normal at a corner of a face and the face's own
-SMALLEST_AREA = 1e-12  # of a face, for a mesh whose longest side is 1
-FOOT_HEIGHT = 0.02  # share of the height: vertices below it touch the ground
-FOOT_SHARE = 0.1  # smallest share of the outline from above that a foot covers
+SHARP_ANGLE = np.radians(35)  # largest angle between a face's normal and the one at its corner
+SMALLEST_AREA = 1e-12  # smallest area of a face, for a mesh whose longest side is 1
+FOOT_HEIGHT = 0.02  # vertices below this share of the mesh's height touch the ground
+FOOT_SHARE = 0.1  # smallest area of a foot, relative to the mesh's outline from above
 
-# Rotations (axis, degrees) from the file's axes, by the one that points up, to z up
+# Rotations (axis, degrees) that turn the file's upward axis to z
 TURNS: dict[str, tuple[list[int], int]] = {
     "x": ([0, 1, 0], -90),
     "y": ([1, 0, 0], 90),
@@ -34,22 +35,22 @@ TURNS: dict[str, tuple[list[int], int]] = {
 
 
 def make_mesh_scene(source: str | Path) -> Callable[..., dict[str, Any]]:
-    """Return a function like those of `brdfkit.rendering.scenes`, which shows the mesh in a file.
+    """Return a function like those of `brdfkit.rendering.scenes`, whose scene shows a mesh.
 
     `source` is the file, "FILE.obj", or the file with the axis that points up, "FILE.obj#z".
-    Without an axis it is guessed (`guess_up`). With y up, z points to the camera. The mesh is
-    scaled to the size of the ball and stands on the ground. Missing normals are computed. An
-    anisotropic material is brushed along the texture coordinate u, or around the vertical axis
-    if the mesh has no texture coordinates. Raises `BrdfkitError` for a missing file, for one that
-    is no such mesh, for faces without vertices or without an area, and for an unknown axis.
+    Without an axis it is guessed (`guess_up_axis`). If y points up, z points to the camera. The
+    mesh is scaled to the size of the ball and stands on the ground. Missing normals are computed.
+    An anisotropic material is brushed along the texture coordinate u, or around the vertical axis
+    if the mesh has no texture coordinates. Raises `BrdfkitError` for a missing file, for a file
+    that is no such mesh, for faces with missing vertices or without an area, and for an unknown
+    axis.
     """
     name, _, up = str(source).partition("#")
     if up and up not in TURNS:
         raise BrdfkitError(f"{source}: the axis that points up, behind the #, is x, y or z.")
     path = require_file(name)
-    meshes: list[
-        tuple[FloatArray, FloatArray, FloatArray, IntArray]
-    ] = []  # read once, because every material has the same mesh
+    # The mesh is read once, because it is the same for every material
+    meshes: list[tuple[FloatArray, FloatArray, FloatArray, IntArray]] = []
 
     def build(
         bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512)
@@ -61,10 +62,11 @@ def make_mesh_scene(source: str | Path) -> Callable[..., dict[str, Any]]:
 
 
 def read_mesh(path: Path, up: str = "") -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
-    """Read a mesh file and move the mesh to the ball's place.
+    """Read a mesh file, and scale and move the mesh to the place of the ball.
 
-    `up` is the axis of the file that points up, by default a guess. Returns the points (n, 3),
-    their normals (n, 3), texture coordinates (n, 2), and the faces (m, 3), indices of points.
+    `up` is the axis of the file that points up; by default it is guessed. Return the points (n, 3),
+    their normals (n, 3), texture coordinates (n, 2), and the faces (m, 3), which are indices of
+    points.
     """
     import mitsuba as mi
 
@@ -74,33 +76,33 @@ def read_mesh(path: Path, up: str = "") -> tuple[FloatArray, FloatArray, FloatAr
             plugin = {"type": path.suffix.lower()[1:], "filename": str(file)}
             return mi.traverse(load_by_mitsuba(mi.load_dict, plugin | settings, path))
 
-        # First without normals: Mitsuba computes none for faces that are empty or very small
-        points, faces = _points_and_faces(load(face_normals=True), path)
-        middle, extent = _box(points, faces, path)
+        # First without normals, because Mitsuba cannot compute them for empty or very small faces
+        points, faces = _read_points_and_faces(load(face_normals=True), path)
+        middle, extent = _find_bounding_box(points, faces, path)
         to_world = mi.ScalarTransform4f().rotate(
-            *TURNS[up or _guess_up_and_warn(path, points, faces)]
+            *TURNS[up or _guess_up_axis_with_warning(path, points, faces)]
         )
         to_world = to_world.scale([SIZE / extent] * 3).translate((-middle).tolist())
         buffers = load(to_world=to_world)
 
-    # From here on arrays are (faces, corners, 3) in scene axes: faces share no vertices
-    points, faces = _points_and_faces(buffers, path)
-    faces = faces[_areas(points, faces) > SMALLEST_AREA * SIZE**2]
+    # From here on faces share no vertices: arrays are (faces, corners, 3), in the scene's axes
+    points, faces = _read_points_and_faces(buffers, path)
+    faces = faces[_compute_triangle_areas(points, faces) > SMALLEST_AREA * SIZE**2]
     normals, uv = (
         np.array(buffers[name]).reshape(-1, width)
         for name, width in (("vertex_normals", 3), ("vertex_texcoords", 2))
     )
     points, normals = points[faces], normals[faces]
     points[..., 2] -= points[..., 2].min()
-    uv = uv[faces] if len(uv) else _uv_around_axis(points)
-    normals = _sharpen(normals, points)
+    uv = uv[faces] if len(uv) else _make_uv_around_axis(points)
+    normals = _keep_sharp_edges(normals, points)
     points, normals, uv = (x.reshape(-1, x.shape[-1]) for x in (points, normals, uv))
     return points, normals, uv, np.arange(faces.size).reshape(-1, 3)
 
 
-def _guess_up_and_warn(path: Path, points: FloatArray, faces: IntArray) -> str:
-    """Return the axis that points up, "y" or "z", as a guess; warn if it is z."""
-    up = guess_up(points[np.unique(faces)])
+def _guess_up_axis_with_warning(path: Path, points: FloatArray, faces: IntArray) -> str:
+    """Guess which axis of a mesh points up, "y" or "z", and warn if it is z."""
+    up = guess_up_axis(points[np.unique(faces)])
     if up != "y":
         warnings.warn(
             f"{path}: its axis {up} is taken to point up, because the mesh then stands on its "
@@ -110,10 +112,11 @@ def _guess_up_and_warn(path: Path, points: FloatArray, faces: IntArray) -> str:
     return up
 
 
-def _points_and_faces(buffers: MitsubaObject, path: Path) -> tuple[FloatArray, IntArray]:
-    """Return the points (n, 3) of a mesh and its faces (m, 3), indices of points.
+def _read_points_and_faces(buffers: MitsubaObject, path: Path) -> tuple[FloatArray, IntArray]:
+    """Return the points (n, 3) of a mesh and its faces (m, 3), which are indices of points.
 
-    Raises `BrdfkitError` for an index without a point. `buffers` are Mitsuba's mesh parameters.
+    `buffers` are Mitsuba's parameters of the mesh. Raises `BrdfkitError` for an index without a
+    point.
     """
     points = np.array(buffers["vertex_positions"], float).reshape(-1, 3)
     faces = np.array(buffers["faces"]).reshape(-1, 3)
@@ -125,7 +128,7 @@ def _points_and_faces(buffers: MitsubaObject, path: Path) -> tuple[FloatArray, I
     return points, faces
 
 
-def _box(points: FloatArray, faces: IntArray, path: Path) -> tuple[FloatArray, float]:
+def _find_bounding_box(points: FloatArray, faces: IntArray, path: Path) -> tuple[FloatArray, float]:
     """Return the middle (3,) and the longest side of the bounding box of the `faces`.
 
     Raises `BrdfkitError` if no face has an area.
@@ -133,34 +136,37 @@ def _box(points: FloatArray, faces: IntArray, path: Path) -> tuple[FloatArray, f
     used = points[faces] if faces.size else np.zeros((1, 3, 3))
     low, high = used.min(axis=(0, 1)), used.max(axis=(0, 1))
     extent = float(np.max(high - low))
-    if not (0 < extent < np.inf and np.any(_areas(points, faces) > SMALLEST_AREA * extent**2)):
+    if not (
+        0 < extent < np.inf
+        and np.any(_compute_triangle_areas(points, faces) > SMALLEST_AREA * extent**2)
+    ):
         raise BrdfkitError(f"{path}: the mesh has no faces, or none with an area; export it again.")
     return (low + high) / 2, extent
 
 
-def _areas(points: FloatArray, faces: IntArray) -> FloatArray:
-    """Return the areas (m,) of triangles."""
+def _compute_triangle_areas(points: FloatArray, faces: IntArray) -> FloatArray:
+    """Return the areas (m,) of the triangles `faces` (m, 3), indices of `points` (n, 3)."""
     a, b, c = np.moveaxis(points[faces], 1, 0)
     return np.linalg.norm(np.cross(b - a, c - a), axis=-1) / 2
 
 
-def _sharpen(normals: FloatArray, points: FloatArray) -> FloatArray:
-    """Return normals (m, 3, 3) at the corners of faces, with the sharp edges of the mesh kept.
+def _keep_sharp_edges(normals: FloatArray, points: FloatArray) -> FloatArray:
+    """Return the normals (m, 3, 3) at the corners of faces, without smoothing across sharp edges.
 
-    Where the normal at a corner differs much from the face's own normal, the edge is meant to be
-    sharp, and the face's normal replaces it.
+    If the normal at a corner differs much from the face's own normal, the edge is meant to be
+    sharp, and the face's own normal replaces it.
     """
     flat = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
     flat /= np.maximum(np.linalg.norm(flat, axis=-1, keepdims=True), 1e-30)
     flat = np.broadcast_to(flat[:, None], normals.shape)
     cos = np.einsum("fci,fci->fc", flat, normals)
-    # A negative cosine means that the order of the vertices is reversed; the normals are right
+    # A negative cosine means that the vertices are in reverse order, and the normals are right
     sharp = np.abs(cos) < np.cos(SHARP_ANGLE)
     return np.where(sharp[..., None], np.where(cos < 0, -1, 1)[..., None] * flat, normals)
 
 
-def _uv_around_axis(points: FloatArray) -> FloatArray:
-    """Return texture coordinates (m, 3, 2) at the corners of faces, for a mesh without its own.
+def _make_uv_around_axis(points: FloatArray) -> FloatArray:
+    """Return texture coordinates (m, 3, 2) at the corners of faces, for a mesh without any.
 
     u is the angle around the vertical axis, which does not jump within a face; v is the angle from
     that axis. Both are in radians.
@@ -170,19 +176,19 @@ def _uv_around_axis(points: FloatArray) -> FloatArray:
     return np.stack([u, np.arctan2(np.hypot(x, y), z - z.max() / 2)], axis=-1)
 
 
-def guess_up(points: FloatArray) -> str:
+def guess_up_axis(points: FloatArray) -> str:
     """Guess which axis of a mesh points up, "y" or "z", from its vertices (n, 3).
 
     A solid stands if the centroid of its convex hull is above its foot, which is the convex polygon
-    around the vertices that touch the ground, and if that foot is not a mere tip. The guess is "z"
-    if the mesh stands with z up and not with y up. Otherwise it is "y", the custom of OBJ files: a
-    cube stands both ways, and a sheet neither way.
+    around the vertices that touch the ground, and if this foot is not a mere tip. The guess is "z"
+    if the mesh stands with z up but not with y up. Otherwise it is "y", the convention of OBJ
+    files; a cube, for example, stands both ways, and a sheet neither way.
     """
-    return "z" if _stands(points, 2) and not _stands(points, 1) else "y"
+    return "z" if _stands_upright(points, 2) and not _stands_upright(points, 1) else "y"
 
 
-def _stands(points: FloatArray, axis: int) -> bool:
-    """Tell whether a solid with the vertices `points` (n, 3) stands when `axis` points up."""
+def _stands_upright(points: FloatArray, axis: int) -> bool:
+    """Return whether a solid with the vertices `points` (n, 3) stands if `axis` points up."""
     from scipy.spatial import ConvexHull, QhullError
 
     level = [k for k in range(3) if k != axis]
@@ -197,5 +203,5 @@ def _stands(points: FloatArray, axis: int) -> bool:
     volumes = np.abs(np.linalg.det(corners))
     middle = points[hull.vertices].mean(axis=0) + volumes @ corners.sum(axis=1) / 4 / volumes.sum()
     inside = np.all(foot.equations @ np.append(middle[level], 1) < 0)
-    # SciPy calls the area of a polygon its volume
+    # SciPy calls the area of a polygon `volume`
     return bool(inside and foot.volume > FOOT_SHARE * outline.volume)

@@ -1,16 +1,16 @@
-"""The scenes that pictures show: each file of this folder is one scene and is found by its name.
+"""The scenes that pictures show: each file in this folder is one scene, and is found by its name.
 
-A file NAME.py holds the function `NAME(bsdf, size=(512, 512))`, the dictionary of the scene for
-`mitsuba.load_dict`:
+A file NAME.py contains the function `NAME(bsdf, size=(512, 512))`, which returns the scene's
+dictionary for `mitsuba.load_dict`:
 
-- `bsdf`: the material, a BSDF as a dictionary or an object, for whatever is to show it;
+- `bsdf`: the BSDF, a dictionary or an object, of the shape that shows the material;
 - `size`: (width, height) of the picture [pixels];
-- the first line of the file's docstring says what the picture shows;
-- the light has the keys "sky" and "softbox" where an environment map may take its place.
+- the first line of the file's docstring describes the picture;
+- the keys of the lights are "sky" and "softbox" if an environment map may replace them.
 
-It works in every variant of Mitsuba, and is exposed so that a white wall paint nearly fills the
-range of sRGB: then pictures of different materials, and of different scenes, can be compared. A
-file whose name begins with an underscore is no scene: it holds what several scenes share.
+The function works in every variant of Mitsuba. The exposure is such that a white wall paint nearly
+reaches the largest value of sRGB, so pictures of different materials and scenes can be compared. A
+file whose name begins with an underscore is no scene, but contains parts that scenes share.
 """
 
 import importlib

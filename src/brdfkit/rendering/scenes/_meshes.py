@@ -1,8 +1,8 @@
 """Makes meshes of smooth surfaces p(u, v), with exact normals and with tangents along u.
 
-An anisotropic material is brushed along the tangent. Mitsuba takes a triangle's tangent from the
-(u, v) of its vertices and turns it into the plane of the interpolated normal, so a fine grid has
-the tangents of the surface itself.
+An anisotropic material is brushed along the tangent. Mitsuba computes the tangent of a triangle
+from the (u, v) of its vertices and rotates it into the plane of the interpolated normal, so the
+tangents of a fine grid are nearly those of the surface.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray, MitsubaObject
 from brdfkit.core.jit.padding import pad
 
-AROUND = 192  # columns of a surface of revolution
+AROUND = 192  # number of columns of the grid on a surface of revolution
 
 
 def make_grid_mesh(
@@ -22,14 +22,14 @@ def make_grid_mesh(
 ) -> MitsubaObject:
     """Make a `mitsuba.Mesh` from a grid of points on a surface and their unit normals.
 
-    `points` and `normals` are (rows, columns, 3). u runs along the columns, v along the rows, both
-    from 0 to 1. A closed surface has its first points once more as its last. `bsdf` is the
+    `points` and `normals` are (rows, columns, 3). u runs along the columns and v along the rows,
+    both from 0 to 1. On a closed surface the last row or column repeats the first. `bsdf` is the
     material, a dictionary or an object.
     """
     rows, columns = points.shape[:2]
     v, u = np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij")
 
-    # Each cell has two triangles; its corners are a and b in this row, c and d in the next
+    # Two triangles for each cell, with the corners a and b in one row, c and d in the next
     number = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, :-1], number[1:, 1:]
     faces = np.moveaxis(np.array([[a, b, d], [a, d, c]]), 1, -1).reshape(-1, 3)
@@ -43,9 +43,10 @@ def make_mesh(
     faces: IntArray,
     bsdf: dict[str, Any] | MitsubaObject,
 ) -> MitsubaObject:
-    """Make a `mitsuba.Mesh` from vertices and `faces` (n, 3), the indices of their corners.
+    """Make a `mitsuba.Mesh` from vertices (n, ...) and `faces` (m, 3), indices of their corners.
 
-    Faces without an area are left out. The others are oriented like their normals.
+    Faces without an area are left out. The vertices of the others are ordered so that the face
+    points in the direction of its normals.
     """
     import mitsuba as mi
 
@@ -66,13 +67,15 @@ def make_mesh(
     return made
 
 
-def revolve(r: FloatArray, z: FloatArray, between: int = 1) -> tuple[FloatArray, FloatArray]:
-    """Return a grid of points, and the normals there, on a surface of revolution about the z axis.
+def revolve_profile(
+    r: FloatArray, z: FloatArray, between: int = 1
+) -> tuple[FloatArray, FloatArray]:
+    """Return a grid of points and their normals on a surface of revolution about the z axis.
 
     `r` and `z` are the radii and heights of points (n,) of the profile, which a cubic spline joins;
-    a closed profile has its first point once more as its last. The inside lies to the left of the
-    profile as it runs. `between` is the number of rows from one point to the next. u runs around
-    the axis, v along the profile.
+    the last point of a closed profile repeats the first. The inside of the surface is on the left
+    of the profile. `between` is the number of rows from one point to the next. u runs around the
+    axis, v along the profile.
     """
     from scipy.interpolate import CubicSpline
 
@@ -88,6 +91,9 @@ def revolve(r: FloatArray, z: FloatArray, between: int = 1) -> tuple[FloatArray,
 
 
 def rotate_profile(r: FloatArray, z: FloatArray, phi: FloatArray) -> FloatArray:
-    """Return points (rows, columns, 3) at radii `r` and heights `z` (rows,) and angles `phi`."""
+    """Return points (rows, columns, 3) on a surface of revolution about the z axis.
+
+    `r` and `z` (rows,) are the radii and heights of its profile, and `phi` (columns,) the angles.
+    """
     x, y = np.multiply.outer(r, np.cos(phi)), np.multiply.outer(r, np.sin(phi))
     return np.stack([x, y, np.broadcast_to(np.asarray(z)[:, None], x.shape)], axis=-1)

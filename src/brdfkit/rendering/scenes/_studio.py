@@ -1,7 +1,7 @@
 """The studio that most scenes share: a camera, a clear sky with one softbox, and grey ground.
 
-The world has z up, in metres. The subject stands on the plane z = 0 at the origin and is about as
-large as a ball of radius 1. The camera looks at it from the south (-y).
+z points up, and the unit is the metre. The subject stands on the plane z = 0 at the origin and is
+about as large as a ball of radius 1. The camera looks at it from the south (-y).
 """
 
 from typing import Any
@@ -12,12 +12,12 @@ from brdfkit.core.array_types import FloatArray, MitsubaObject
 
 CAMERA = (0.0, -8.0, 3.2)
 TARGET = (0.0, 0.0, 0.96)
-FOV = 19.8  # [degrees] along the shorter side of the picture, of which the ball fills 70 %
+FOV = 19.8  # angle of the picture's shorter side [degrees], of which the ball fills 70 %
 SOFTBOX = (-4.4, -3.2, 5.4)
 BALL = (0.0, 0.0, 1.0)
 SUN = (0.75, 0.5, 0.45)
 GREY_SKY = 0.18
-GROUND = 0.32  # reflectance
+GROUND = 0.32  # reflectance of the ground
 
 
 def make_studio(size: tuple[int, int] = (512, 512), spp: int = 64) -> dict[str, Any]:
@@ -37,8 +37,8 @@ def make_studio(size: tuple[int, int] = (512, 512), spp: int = 64) -> dict[str, 
         "type": "scene",
         "integrator": {"type": "path", "max_depth": 6},
         "sensor": make_camera(CAMERA, TARGET, FOV, size, spp),
-        "sky": _grey_sky(at) if mi.is_monochromatic else _sky(),
-        "softbox": _softbox(at),
+        "sky": _make_grey_sky(at) if mi.is_monochromatic else _make_sky(),
+        "softbox": _make_softbox(at),
         "ground": {
             "type": "disk",
             "to_world": at.scale(1000),
@@ -54,7 +54,7 @@ def make_camera(
     size: tuple[int, int] = (512, 512),
     spp: int = 64,
 ) -> dict[str, Any]:
-    """Return a sensor's dictionary; `fov` [degrees] is along the shorter side of the picture."""
+    """Return the dictionary of a camera; `fov` [degrees] is along the picture's shorter side."""
     import mitsuba as mi
 
     return {
@@ -73,11 +73,11 @@ def make_camera(
     }
 
 
-def _sky() -> dict[str, Any]:
-    """Return a Hosek-Wilkie sky, brightest behind the ball to the right, where it lights the rim.
+def _make_sky() -> dict[str, Any]:
+    """Return a Hosek-Wilkie sky, brightest behind the ball on the right, so that it lights the rim.
 
-    The sun's disc is left out. It is half a degree wide, so every path that a material samples
-    imperfectly would become a firefly; the softbox is the better key light.
+    The sun's disc is left out, because it is only half a degree wide: every path that is sampled
+    imperfectly would become a firefly. The softbox is the main light instead.
     """
     return {
         "type": "sunsky",
@@ -89,22 +89,22 @@ def _sky() -> dict[str, Any]:
     }
 
 
-def _grey_sky(at: MitsubaObject) -> dict[str, Any]:
-    """Return a grey sky for mono variants, in which Mitsuba's own sky does not work.
+def _make_grey_sky(at: MitsubaObject) -> dict[str, Any]:
+    """Return a grey sky for monochromatic variants, in which Mitsuba's own sky does not work.
 
     It is the CIE standard sky 13, clear over polluted air (ISO 15469:2004), scaled so that the
-    ground receives the same illuminance as from `_sky`. `at` is an identity transform.
+    ground receives the same illuminance as from `_make_sky`. `at` is an identity transform.
     """
     import mitsuba as mi
 
-    # The direction of each pixel: rows run over the polar angle, columns over the azimuth
+    # Direction of each pixel: the polar angle changes along columns, the azimuth along rows
     height, width = 129, 256
-    theta = np.linspace(0, np.pi / 2, height // 2 + 1)[:, None]  # the first and last row are poles
+    theta = np.linspace(0, np.pi / 2, height // 2 + 1)[:, None]  # the first row is the zenith
     phi = (np.arange(width) + 0.5) / width * 2 * np.pi
     up, side = np.cos(theta), np.sin(theta)
     towards = np.stack(np.broadcast_arrays(side * np.sin(phi), side * np.cos(phi), up), axis=-1)
 
-    # The standard's gradation towards the horizon and its indicatrix about the sun
+    # The standard's factors: gradation towards the horizon, and scattering about the sun
     from_sun = np.arccos(np.clip(towards @ SUN / np.linalg.norm(SUN), -1, 1))
     gradation = 1 - np.exp(-0.32 / np.maximum(up, 1e-6))
     glow = 16 * (np.exp(-3 * from_sun) - np.exp(-3 * np.pi / 2)) + 0.3 * np.cos(from_sun) ** 2
@@ -114,12 +114,15 @@ def _grey_sky(at: MitsubaObject) -> dict[str, Any]:
     return {
         "type": "envmap",
         "bitmap": mi.Bitmap(luminance),
-        "to_world": at.rotate([1, 0, 0], 90),  # an environment map has y up
+        "to_world": at.rotate([1, 0, 0], 90),  # from y up in environment maps to z up
     }
 
 
-def _softbox(at: MitsubaObject) -> dict[str, Any]:
-    """Return a square light at the upper left in front, for the highlight and the terminator."""
+def _make_softbox(at: MitsubaObject) -> dict[str, Any]:
+    """Return a square light at the upper left in front, which makes a highlight and a terminator.
+
+    `at` is an identity transform.
+    """
     return {
         "type": "rectangle",
         "to_world": at.look_at(list(SOFTBOX), list(BALL), [0, 0, 1]) @ at.scale(2.6),

@@ -34,32 +34,32 @@ def cornell_box(
             "to_world": at.translate([0, -0.5, 2 * HALF - 0.01]).rotate([1, 0, 0], 180).scale(0.9),
             "emitter": {"type": "area", "radiance": {"type": "rgb", "value": [7.0, 6.4, 5.4]}},
         },
-        **_walls(),
+        **_make_walls(),
         "ball": {"type": "sphere", "center": [0.8, -0.55, 0.85], "radius": 0.85, "bsdf": bsdf},
         "block": {"type": "cube", "to_world": block, "bsdf": bsdf},
     }
 
 
-def _walls() -> dict[str, Any]:
-    """Return the dictionaries of the six walls by name."""
+def _make_walls() -> dict[str, Any]:
+    """Return the dictionaries of the six walls of the room, by name."""
     middle, half_depth = (HALF + FRONT) / 2, (HALF - FRONT) / 2
     return {
-        "floor": _wall((0, middle, 0), (0, 0, 1), (HALF, half_depth), WHITE),
-        "ceiling": _wall((0, middle, 2 * HALF), (0, 0, -1), (HALF, half_depth), WHITE),
-        "back": _wall((0, HALF, HALF), (0, -1, 0), (HALF, HALF), WHITE),
-        "front": _wall((0, FRONT, HALF), (0, 1, 0), (HALF, HALF), WHITE),
-        "left": _wall((-HALF, middle, HALF), (1, 0, 0), (half_depth, HALF), RED),
-        "right": _wall((HALF, middle, HALF), (-1, 0, 0), (half_depth, HALF), GREEN),
+        "floor": _make_wall((0, middle, 0), (0, 0, 1), (HALF, half_depth), WHITE),
+        "ceiling": _make_wall((0, middle, 2 * HALF), (0, 0, -1), (HALF, half_depth), WHITE),
+        "back": _make_wall((0, HALF, HALF), (0, -1, 0), (HALF, HALF), WHITE),
+        "front": _make_wall((0, FRONT, HALF), (0, 1, 0), (HALF, HALF), WHITE),
+        "left": _make_wall((-HALF, middle, HALF), (1, 0, 0), (half_depth, HALF), RED),
+        "right": _make_wall((HALF, middle, HALF), (-1, 0, 0), (half_depth, HALF), GREEN),
     }
 
 
-def _wall(
+def _make_wall(
     middle: tuple[float, float, float],
     normal: tuple[int, int, int],
     halves: tuple[float, float],
     colour: tuple[float, float, float],
 ) -> dict[str, Any]:
-    """Return a wall's dictionary; `halves` are half of its width and half of its height [m]."""
+    """Return the dictionary of a wall; `halves` are half its width and half its height [m]."""
     import mitsuba as mi
 
     target = [m + f for m, f in zip(middle, normal, strict=True)]

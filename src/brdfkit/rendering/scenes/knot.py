@@ -8,9 +8,9 @@ from brdfkit.core.array_types import FloatArray, MitsubaObject
 from brdfkit.rendering.scenes._meshes import make_grid_mesh
 from brdfkit.rendering.scenes._studio import make_studio
 
-TUBE = 0.235  # radius [m]
+TUBE = 0.235  # radius of the tube [m]
 LEAN = 0.3  # angle by which the knot leans away from the camera [radians]
-ROWS, AROUND = 512, 64  # points along the tube and around it
+ROWS, AROUND = 512, 64  # numbers of points along the tube and around it
 
 
 def knot(
@@ -23,11 +23,11 @@ def knot(
     >>> knot({"type": "diffuse"})["knot"].class_name()    # doctest: +SKIP
     'Mesh'
     """
-    return make_studio(size) | {"knot": make_grid_mesh(*make_tube(), bsdf)}
+    return make_studio(size) | {"knot": make_grid_mesh(*make_knot_tube(), bsdf)}
 
 
-def make_tube() -> tuple[FloatArray, FloatArray]:
-    """Return a grid of points (rows, columns, 3) and normals of a tube that stands on the ground.
+def make_knot_tube() -> tuple[FloatArray, FloatArray]:
+    """Return a grid of points (rows, columns, 3) and normals of a knotted tube on the ground.
 
     The tube's axis is the trefoil, the torus knot with two turns about the axis y and three through
     the hole. u runs around the tube, v along it.
@@ -37,9 +37,9 @@ def make_tube() -> tuple[FloatArray, FloatArray]:
     axis: FloatArray = 0.3 * np.hstack(
         [wide * np.sin(2 * t), 1.2 * np.sin(3 * t), wide * np.cos(2 * t)]
     )
-    axis = _lean(axis)
+    axis = _lean_backwards(axis)
 
-    # Two directions across the axis: one away from the middle, and one at right angles to it
+    # Two directions across the tube: away from the middle of the knot, and perpendicular to this
     along = np.gradient(axis, axis=0)
     along[[0, -1]] = axis[1] - axis[-2]  # the curve is closed
     along /= np.linalg.norm(along, axis=1, keepdims=True)
@@ -53,7 +53,7 @@ def make_tube() -> tuple[FloatArray, FloatArray]:
     return points - (0, 0, points[..., 2].min()), normals
 
 
-def _lean(points: FloatArray) -> FloatArray:
-    """Rotate points (n, 3) about the axis x, so that the top leans backwards."""
+def _lean_backwards(points: FloatArray) -> FloatArray:
+    """Rotate points (n, 3) about the axis x, so that the top leans away from the camera."""
     cos, sin = np.cos(LEAN), np.sin(LEAN)
     return points @ np.array([[1, 0, 0], [0, cos, -sin], [0, sin, cos]])

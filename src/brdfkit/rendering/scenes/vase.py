@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.array_types import MitsubaObject
-from brdfkit.rendering.scenes._meshes import make_grid_mesh, revolve
+from brdfkit.rendering.scenes._meshes import make_grid_mesh, revolve_profile
 from brdfkit.rendering.scenes._studio import make_studio
 
 # Radii and heights of the profile, from the middle of the foot up the outside and down the inside
@@ -52,5 +52,5 @@ def vase(
     'Mesh'
     """
     return make_studio(size) | {
-        "vase": make_grid_mesh(*revolve(PROFILE[:, 0], PROFILE[:, 1], between=8), bsdf)
+        "vase": make_grid_mesh(*revolve_profile(PROFILE[:, 0], PROFILE[:, 1], between=8), bsdf)
     }

@@ -1,4 +1,4 @@
-"""Places the camera so that the picture contains all visible parts of a volume, head up."""
+"""Places the camera so that the picture contains all visible parts of a volume, with its top up."""
 
 from __future__ import annotations
 
@@ -10,21 +10,23 @@ import numpy as np
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.volumes import Volume
 
-# Tells which of every k-th voxel along each axis are visible
+# A function that receives a volume and k, and returns a mask of every k-th voxel along each axis,
+# which is True if the voxel is visible
 VisibilityTest: TypeAlias = Callable[[Volume, int], BoolArray]
 
-FOV = 25.0  # along the shorter side of the picture [degrees]
-MARGIN = 1.03  # size of the picture over the size of the visible parts
-TESTED_VOXELS = 5e4  # about the largest number that is tested for visibility
+FOV = 25.0  # angle of the picture's shorter side [degrees]
+MARGIN = 1.03  # size of the picture divided by the size of the visible parts
+TESTED_VOXELS = 5e4  # largest number of voxels, roughly, that are tested for visibility
 
 
 def camera_direction(volume: Volume, azimuth: float, elevation: float) -> FloatArray:
     """Return the unit vector (3,) from a volume to the camera; the angles are in degrees.
 
-    z is up. At azimuth 0 the camera is in front of the patient, at +y in RAS coordinates; for other
-    volumes it is at -y. A larger azimuth moves the camera to its right.
+    z points up. At azimuth 0 the camera is in front of the patient, at +y in RAS coordinates
+    (right, anterior, superior); for other volumes it is at -y. A larger azimuth moves the camera to
+    its right.
 
-    >>> camera_direction(volume, 90, 0)    # of a scan: from the patient's left
+    >>> camera_direction(volume, 90, 0)    # the patient's left, if the volume is a scan
     array([-1.,  0.,  0.])
     """
     turn, lift = np.radians([azimuth, min(max(elevation, -89.99), 89.99)])
@@ -36,20 +38,22 @@ def camera_direction(volume: Volume, azimuth: float, elevation: float) -> FloatA
 def place_camera(
     volume: Volume, is_visible: VisibilityTest, sides: list[FloatArray], aspect: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the camera's position (3,) and its target, the middle of the visible parts' box.
+    """Return the camera's position (3,) and its target, the middle of the box of the visible parts.
 
-    `is_visible` maps a volume and k to a mask of every k-th voxel along each axis. `sides` begins
-    with the unit vector to the camera. If more vectors follow, as for a turn around the volume, the
-    distance is the one that suits all of these. `aspect` is the picture's width over its height.
+    `is_visible` finds the visible voxels. `sides` begins with the unit vector from the volume to
+    the camera. If more vectors follow, for a turn around the volume, the distance is large enough
+    for all of them. `aspect` is the picture's width divided by its height.
     """
-    points = _visible_corners(volume, is_visible)
+    points = _find_visible_corners(volume, is_visible)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2
-    distance = max(_camera_distance(points - middle, side, aspect) for side in sides[1:] or sides)
+    distance = max(
+        _find_camera_distance(points - middle, side, aspect) for side in sides[1:] or sides
+    )
     return middle + distance * sides[0], middle
 
 
-def _camera_distance(from_middle: FloatArray, towards: FloatArray, aspect: float) -> float:
-    """Return the smallest distance of a camera that sees all points (n, 3).
+def _find_camera_distance(from_middle: FloatArray, towards: FloatArray, aspect: float) -> float:
+    """Return the smallest distance from which a camera sees all points (n, 3).
 
     The points are relative to the camera's target; `towards` is the unit vector to the camera.
     """
@@ -64,17 +68,17 @@ def _camera_distance(from_middle: FloatArray, towards: FloatArray, aspect: float
     return float(needed.max())
 
 
-def _visible_corners(volume: Volume, is_visible: VisibilityTest) -> FloatArray:
+def _find_visible_corners(volume: Volume, is_visible: VisibilityTest) -> FloatArray:
     """Return corners (n, 3), in world coordinates, of the cells around all visible voxels.
 
-    A large volume is tested at every k-th voxel along each axis. If no voxel is visible, the
-    corners are those of the whole box.
+    Of a large volume, every k-th voxel along each axis is tested. If no voxel is visible, the
+    corners of the whole box are returned.
     """
     k = int(np.ceil((volume.values.size / TESTED_VOXELS) ** (1 / 3)))
     kji = k * np.argwhere(is_visible(volume, k))
     if not len(kji):
         kji, k = np.array([[0, 0, 0], volume.values.shape]), 0
-    # Interpolation reaches to the next voxel, but not out of the box
+    # A voxel's value is interpolated up to the next voxels, but not beyond the box
     cells = kji[:, None] + k * (2 * np.indices((2, 2, 2)).reshape(3, -1).T - 1)
     corners = np.clip(cells.reshape(-1, 3), -0.5, np.array(volume.values.shape) - 0.5)
     return corners[:, ::-1] @ volume.to_world[:3, :3].T + volume.to_world[:3, 3]

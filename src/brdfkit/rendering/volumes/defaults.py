@@ -1,4 +1,4 @@
-"""Chooses a volume's transfer function, surface level and material for a user who gives none."""
+"""Chooses a volume's transfer function, surface level and material if the user gives none."""
 
 from dataclasses import replace
 from typing import Any
@@ -12,17 +12,18 @@ from brdfkit.volumes import Volume
 from brdfkit.volumes.transfer import windows
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
-AIR, TISSUE = -900, 200  # [HU]; values of computed tomography reach below and above these two
-BODY, BONE = -500, 250  # [HU]; values of the body and of bone are above
-BONE_SHARE = 0.002  # smallest share of bone in a body that is shown with its bones
-# Mean free paths across the visible parts, at the largest extinction
+AIR, TISSUE = -900, 200  # a scan with values below and above these two [HU] is a CT scan
+BODY, BONE = -500, 250  # least values of the body and of bone [HU]
+BONE_SHARE = 0.002  # a body with a larger share of bone is shown without its skin
+# Optical thickness of the visible parts at the largest extinction, for three kinds of pictures
 GLOWING, DENSE, OPAQUE = 10, 50, 400
-RAMP = [(0, 0), (1, 1)]  # (share of the window, opacity)
-# Percentiles of the largest values along rays, where maximum intensity changes its slope. The grey
-# at each is halfway between even steps of value and even shares of rays: all parts have contrast
+RAMP = [(0, 0), (1, 1)]  # opacity that rises linearly over the volume's window of values
+# Percentiles of the largest values along rays, between which the grey of maximum intensity is
+# linear. It is the mean of a grey that is linear in the value and one that is linear in the
+# percentile, so that frequent and rare values both have contrast
 NODES = (2, 10, 30, 50, 70, 90, 99.8)
-DARKEST = 0.1  # share of the colour map, at the first node
-LEVELS = 256  # of the histogram that finds a surface, and of the function for maximum intensity
+DARKEST = 0.1  # position in the colour map of the first of these percentiles
+LEVELS = 256  # number of bins of the histogram of values, and of entries of a transfer function
 CLAY: dict[str, Any] = {
     "type": "roughplastic",
     "alpha": 0.25,
@@ -30,22 +31,23 @@ CLAY: dict[str, Any] = {
 }
 
 
-def default_transfer_function(volume: Volume, renderer: str) -> TransferFunction:
+def choose_transfer_function(volume: Volume, renderer: str) -> TransferFunction:
     """Choose the transfer function of a volume for a renderer.
 
     A volume of labels gets a colour for each label. Renderers without light get a colour map that
-    glows. Scans in HU (Hounsfield units) get the preset ct_bone, or ct_skin without bone; other
-    scans of patients get mri_head, and all other volumes a colour map of light colours. Except in
-    HU, the function spans the volume's window, and the extinction suits the volume's size.
+    glows. CT scans in HU (Hounsfield units) get the preset ct_bone, or ct_skin if there is hardly
+    any bone; other scans of patients get mri_head, and all other volumes a colour map of bright
+    colours. Except for CT, the function spans the volume's window, and the extinction suits the
+    volume's size.
     """
     from_colormap = TransferFunction.from_colormap
     if volume.labels:
-        return _label_function(volume, OPAQUE / float(np.ptp(volume.bounds, axis=0).max()))
+        return _make_label_function(volume, OPAQUE / float(np.ptp(volume.bounds, axis=0).max()))
     if renderer == "maximum_intensity":
-        return _maximum_intensity_function(volume, "gray" if volume.axes else "inferno")
+        return _make_maximum_intensity_function(volume, "gray" if volume.axes else "inferno")
     if renderer == "emission_absorption":
         return from_colormap(
-            "magma", volume.window, opacity=RAMP, extinction=GLOWING / _longest_edge(volume)
+            "magma", volume.window, opacity=RAMP, extinction=GLOWING / _find_longest_edge(volume)
         )
     low, high = volume.range
     if volume.axes and low < AIR and high > TISSUE:
@@ -54,17 +56,17 @@ def default_transfer_function(volume: Volume, renderer: str) -> TransferFunction
         return TransferFunction.load("ct_bone" if bony else "ct_skin")
     if volume.axes:
         preset = TransferFunction.load("mri_head").scaled_to(*volume.window)
-        return replace(preset, extinction=DENSE / _longest_edge(volume), length_unit="")
-    density = DENSE / _longest_edge(volume)
+        return replace(preset, extinction=DENSE / _find_longest_edge(volume), length_unit="")
+    density = DENSE / _find_longest_edge(volume)
     return from_colormap(
         "RdYlBu_r", volume.window, opacity=RAMP, extinction=density, colour="albedo"
     )
 
 
-def _longest_edge(volume: Volume) -> float:
-    """Return the longest edge of the box around all voxels whose values are above the window's low.
+def _find_longest_edge(volume: Volume) -> float:
+    """Return the longest edge of the box around all voxels that are above the window's lower end.
 
-    The box is along the axes of the grid, and the edge is in the volume's unit of length.
+    The box is aligned with the grid, and the edge is in the volume's unit of length.
     """
     longest = 0.0
     for axis, (n, step) in enumerate(zip(volume.values.shape, volume.spacing[::-1], strict=True)):
@@ -74,10 +76,11 @@ def _longest_edge(volume: Volume) -> float:
     return longest
 
 
-def _maximum_intensity_function(volume: Volume, colours: str) -> TransferFunction:
+def _make_maximum_intensity_function(volume: Volume, colours: str) -> TransferFunction:
     """Make the transfer function for maximum intensity, from a colour map of Matplotlib.
 
-    The contrast follows the largest values along rays, here along the three axes of the grid.
+    The contrast depends on the largest values along rays; here these are the rays along the three
+    axes of the grid.
     """
     import matplotlib as mpl
 
@@ -97,7 +100,7 @@ def _maximum_intensity_function(volume: Volume, colours: str) -> TransferFunctio
     return TransferFunction(values, np.column_stack([rgb, a]), colour="emission", name=colours)
 
 
-def _label_function(volume: Volume, extinction: float) -> TransferFunction:
+def _make_label_function(volume: Volume, extinction: float) -> TransferFunction:
     """Make a transfer function with a colour of Matplotlib's tab20 for each label.
 
     Label 0 means empty space, which is transparent.
@@ -111,10 +114,10 @@ def _label_function(volume: Volume, extinction: float) -> TransferFunction:
 
 
 def make_visibility_test(transfer: TransferFunction | None, level: float) -> VisibilityTest:
-    """Return a function that tells which of every k-th voxel along each axis are visible.
+    """Return a function that finds out which voxels are visible, to place the camera.
 
-    Its arguments are the volume and k. A voxel is visible if its opacity by the transfer function,
-    or without one its value, is above `level`.
+    Its arguments are the volume and k; it returns a mask of every k-th voxel along each axis. A
+    voxel is visible if its opacity is above `level` or, without a transfer function, its value.
     """
 
     def is_visible(volume: Volume, k: int) -> BoolArray:
@@ -129,21 +132,22 @@ def make_visibility_test(transfer: TransferFunction | None, level: float) -> Vis
     return is_visible
 
 
-def default_level(volume: Volume) -> float:
+def choose_surface_level(volume: Volume) -> float:
     """Choose the value of the surface to show; the surface of labels encloses all but label 0.
 
-    It divides the values into two classes with the largest variance between them [Otsu 1979].
+    It divides the values into the two classes with the largest variance between them [Otsu 1979].
     """
     low, high = volume.range
     if volume.labels or low == high:
         return 0.5 * (1 if volume.labels else high)
     values = windows.sample_values(volume.values)
-    # Without outliers, which would leave only a few bins of the histogram to all other values
+    # Outliers are left out, because they would compress all other values into a few bins
     values = values[
         (values >= np.percentile(values, 0.1)) & (values <= np.percentile(values, 99.9))
     ]
     counts, edges = np.histogram(values, LEVELS)
     below = np.cumsum(counts)[:-1]
     sums = np.cumsum(counts * (edges[1:] + edges[:-1]) / 2)
-    difference = sums[-1] / values.size * below - sums[:-1]  # of the two means, times both counts
+    # The difference of the two classes' means is proportional to this
+    difference = sums[-1] / values.size * below - sums[:-1]
     return float(edges[1:-1][np.argmax(difference**2 / (below * (values.size - below)))])

@@ -1,4 +1,4 @@
-"""`render_orbit`: a film of a camera that goes once around a volume."""
+"""`render_orbit`: a film from a camera that moves once around a volume."""
 
 from __future__ import annotations
 
@@ -45,10 +45,10 @@ def render_orbit(
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Film:
-    """Render a film of a camera that goes once around a volume, to the camera's right.
+    """Render a film from a camera that moves once around a volume, to the camera's right.
 
-    All frames have the same distance, from which none is cut off, and the same seed, so that the
-    noise does not flicker. Ctrl-C keeps the frames that are finished.
+    The distance of the camera is the same for all frames, and nothing is cut off in any of them.
+    All have the same seed, so that the noise does not flicker. Ctrl-C keeps the finished frames.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def render_orbit(
     background : float or (float, float, float), optional
         As in `render_volume`; by default 0.02.
     azimuth : float, default 30
-        Azimuth at which the camera begins [degrees].
+        Azimuth of the camera in the first frame [degrees].
     elevation : float, default 20
         As in `render_volume`.
     density : float, default 1
@@ -79,7 +79,7 @@ def render_orbit(
     noise_floor : float, optional
         As in `render_volume`, for each frame.
     seconds : float, optional
-        Time for which samples are added [s, above 0], all frames together.
+        Time for which samples are added [s, above 0], for all frames together.
     seed : int, default 0
         Seed of the samples of every frame.
     progress : callable, optional
@@ -129,9 +129,9 @@ def render_orbit(
 
 
 class _FrameProgress:
-    """Reports the progress of one frame after the other as that of the whole film.
+    """Converts the progress of single frames to the progress of the whole film, and reports it.
 
-    It remembers whether the user interrupted a frame with Ctrl-C.
+    `frame` is the number of finished frames; `stopped` becomes True if the user presses Ctrl-C.
     """
 
     def __init__(self, progress: Progress | None, frames: int) -> None:

@@ -25,9 +25,9 @@ from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.transfer_function import TransferLike
 from brdfkit.volumes.transfer.windows import scale_to_values
 
-SPP, UNLIT_SPP = 64, 8  # samples per pixel
-MOST_SPP = 16_384  # samples per pixel, where a noise floor or a time is requested
-PASS_SPP = 4  # samples per pixel in a pass: few, so that the first picture appears soon
+SPP, UNLIT_SPP = 64, 8  # samples per pixel by default, for renderers with and without light
+MOST_SPP = 16_384  # largest number of samples per pixel, if a noise floor or a time is requested
+PASS_SPP = 4  # samples per pixel in a pass, few so that the first picture appears soon
 BACKGROUND = 0.02  # radiance behind the volume
 
 VolumeLike: TypeAlias = Volume | str | Path
@@ -55,18 +55,19 @@ def render_volume(
 ) -> Rendering:
     """Render a volume: CT, MRI, microscopy or simulation data in the light of an environment.
 
-    The camera shows the whole box, with the head of patients up. It runs in the current variant of
-    Mitsuba; if none is set, in the best that works. Ctrl-C keeps the passes that are done.
+    The picture contains all visible parts of the volume, and patients are upright. The current
+    variant of Mitsuba is used or, if none is set, the best one that works. Ctrl-C keeps the passes
+    that are finished.
 
     Parameters
     ----------
     volume : Volume, str or Path
         The volume; or the file, folder or name that `brdfkit.volumes.load` takes.
     transfer : TransferFunction, str or Path, optional
-        The colour and extinction of its values: a transfer function, the name of a preset, or a
-        file. By default a colour for each label; for scans in HU "ct_bone", or "ct_skin" without
-        bone; for other scans of patients "mri_head" over the volume's `window`; otherwise a colour
-        map over it.
+        Colour and extinction as a function of the volume's values: a transfer function, the name of
+        a preset, or a file. By default a colour for each label; for scans in HU "ct_bone", or
+        "ct_skin" if there is no bone; for other scans of patients "mri_head" over the volume's
+        `window`; otherwise a colour map over the window.
     renderer : str, default "single_scattering"
         "single_scattering": light of the environment, scattered once; "emission_absorption": a
         glowing and absorbing medium; "maximum_intensity": the largest value along each ray;
@@ -75,8 +76,8 @@ def render_volume(
         Other parameters of the renderer, which `brdfkit plugins RENDERER` lists, as
         ``{"max_depth": 8, "phase": "rayleigh"}`` or ``{"level": 110, "bsdf": "dusty_gold"}``.
     spp : int, optional
-        Samples per pixel, by default 64, or 8 for renderers without light from outside, which then
-        have no visible noise. With `noise_floor` or `seconds` the largest number, by default
+        Samples per pixel, by default 64, or 8 for renderers without light from outside, whose noise
+        is then not visible. With `noise_floor` or `seconds` the largest number, by default
         16,384.
     size : int or (int, int), default 512
         Side, or width and height, of the picture [pixels].
@@ -92,7 +93,7 @@ def render_volume(
     density : float, default 1
         Factor of the transfer function's extinction, above 0.
     all_around : bool, default False
-        Whether the camera is so far away that nothing is cut off at any azimuth, as in films.
+        Whether the camera is so far away that nothing would be cut off at any azimuth, as in films.
     noise_floor : float, optional
         The noise floor to reach by adding samples [dB, above 0]: the PSNR of the picture to itself
         with another seed. At 45 noise is hardly visible.
@@ -132,15 +133,17 @@ def render_volume(
     spp = to_whole_number("spp", most if spp is None else spp, least=1)
     seed, size = to_whole_number("seed", seed, least=0), to_size(size)
     view = to_number("azimuth", azimuth), to_number("elevation", elevation)
-    light = environment, _to_background(background)
+    light = environment, _to_background_rgb(background)
     if renderer not in RENDERERS:
         raise no_such_error("renderer", renderer, RENDERERS)
     volume = volume if isinstance(volume, Volume) else volumes.load(volume)
     require_memory(size, 1)
-    mi = load_mitsuba()  # sets a variant, on which the dictionaries depend
+    mi = load_mitsuba()  # the dictionaries of scenes depend on the variant that this sets
     if mi.variant().startswith("scalar"):
         raise BrdfkitError(f"Volumes do not render in {mi.variant()}; set llvm_ad_rgb.")
-    function = _choose_function(volume, transfer, renderer, to_positive_number("density", density))
+    function = _choose_transfer_function(
+        volume, transfer, renderer, to_positive_number("density", density)
+    )
     if function is None and "level" in settings:
         _require_surface(volume, to_number("level", settings["level"]))
     described = volume, function, renderer, size, view, light, settings, all_around
@@ -170,31 +173,32 @@ def _load_and_trace(described: tuple[Any, ...], **settings: Any) -> Traced:
 
 
 def _is_plain(value: object) -> bool:
-    """Tell whether a setting is a truth value, a number or a text, which files can hold."""
+    """Return whether a setting is a Boolean, a number or a text, which an EXR file can contain."""
     return isinstance(value, bool | int | float | str)
 
 
-def _choose_function(
+def _choose_transfer_function(
     volume: Volume, transfer: TransferLike | None, renderer: str, density: float
 ) -> TransferFunction | None:
-    """Return the transfer function to show, in the volume's unit; None for the surface of a level.
+    """Return the transfer function to show, in the volume's unit of length, or None for a surface.
 
-    `density` is a factor of its extinction.
+    `density` is a factor of its extinction. None means that the surface of one level of the volume
+    is shown.
     """
     if transfer is None and renderer == "isosurface":
         return None
     if transfer is None:
-        transfer = defaults.default_transfer_function(volume, renderer)
+        transfer = defaults.choose_transfer_function(volume, renderer)
     elif not isinstance(transfer, TransferFunction):
         transfer = TransferFunction.load(transfer)
-    transfer = scale_to_values(transfer, volume.values)  # the camera is placed by its visible parts
+    transfer = scale_to_values(transfer, volume.values)  # the camera is placed by the opaque voxels
     if volume.unit and transfer.length_unit:
         transfer = transfer.per(volume.unit)
     return replace(transfer, extinction=density * transfer.extinction)
 
 
 def _require_surface(volume: Volume, level: float) -> None:
-    """Raise `BrdfkitError` if the level is outside the values of the volume."""
+    """Raise `BrdfkitError` if no surface exists, because `level` is beyond the volume's values."""
     low, high = volume.range
     if not low <= level <= high:
         raise BrdfkitError(
@@ -203,8 +207,8 @@ def _require_surface(volume: Volume, level: float) -> None:
         )
 
 
-def _to_background(background: Radiance | None) -> list[float] | None:
-    """Return the background's radiance as R, G, B, or None for None."""
+def _to_background_rgb(background: Radiance | None) -> list[float] | None:
+    """Return the radiance of the background as R, G, B; None stays None."""
     if background is None:
         return None
     try:

@@ -1,4 +1,4 @@
-"""Describes the scene of a volume for Mitsuba: voxels, transfer function, light and camera."""
+"""Describes the scene of a volume for Mitsuba: the integrator with the volume, light and camera."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from brdfkit.materials.resolve import to_material
 from brdfkit.rendering.scenes._studio import make_camera
 from brdfkit.rendering.volumes import defaults
 from brdfkit.rendering.volumes.camera import FOV, camera_direction, place_camera
-from brdfkit.rendering.volumes.light import background_light, environment_light
+from brdfkit.rendering.volumes.light import make_background_light, make_environment_light
 from brdfkit.volumes import TransferFunction, Volume
 
-# The renderers are plugins; here is the parameter of each that takes the volume
+# Each renderer is a plugin, an integrator; the value is the name of its parameter for the volume
 RENDERERS = {
     "single_scattering": "extinction",
     "emission_absorption": "extinction",
@@ -26,11 +26,11 @@ RENDERERS = {
     "isosurface": "volume",
 }
 UNLIT = "emission_absorption", "maximum_intensity"  # renderers without light from outside
-# Illuminance of level ground by renderer. A dense volume that scatters once reflects much less of
-# the light than a surface does, and should look as bright
+# Illuminance of level ground for each renderer. A volume that scatters once gets more light: it
+# reflects much less than a surface does, but should look as bright
 ILLUMINANCES = {"single_scattering": 10.0, "isosurface": 3.0}
-LEAST_STEPS = 64  # along a ray
-TURN_AZIMUTHS = range(0, 360, 15)  # [degrees]; a turning camera should see all from each
+LEAST_STEPS = 64  # least number of steps along a ray
+TURN_AZIMUTHS = range(0, 360, 15)  # azimuths [degrees] from which a film shows the whole volume
 
 
 def describe_scene(
@@ -47,7 +47,8 @@ def describe_scene(
 
     Without a transfer function the scene shows the surface of one level. `size` is (width, height)
     [pixels], `view` (azimuth, elevation) [degrees], and `light` (environment, background radiance).
-    `settings` are further parameters of the integrator; `all_around` is as in `render_volume`.
+    `settings` are further parameters of the integrator. With `all_around` the camera is so far away
+    that nothing would be cut off at any azimuth.
     """
     towards, (width, height) = camera_direction(volume, *view), size
     environment, background = light
@@ -57,21 +58,21 @@ def describe_scene(
     sides = [towards, *(camera_direction(volume, azimuth, view[1]) for azimuth in others)]
     origin, target = place_camera(volume, is_visible, sides, width / height)
     if renderer in UNLIT:
-        emitter = background_light(0.0 if background is None else background)
+        emitter = make_background_light(0.0 if background is None else background)
     else:
         aspect = width / height
-        emitter = environment_light(
+        emitter = make_environment_light(
             environment, ILLUMINANCES[renderer], background, towards, aspect
         )
     return {
         "type": "scene",
         "integrator": entries,
-        "sensor": make_camera(origin, target, FOV, size) | _clip_distances(origin, target),
+        "sensor": make_camera(origin, target, FOV, size) | _find_clip_distances(origin, target),
         "sky": emitter,
     }
 
 
-def _clip_distances(origin: FloatArray, target: FloatArray) -> dict[str, float]:
+def _find_clip_distances(origin: FloatArray, target: FloatArray) -> dict[str, float]:
     """Return the camera's near and far clipping distances, which suit any unit of length."""
     distance = float(np.linalg.norm(origin - target))
     return {"near_clip": 1e-3 * distance, "far_clip": 1e3 * distance}
@@ -85,7 +86,8 @@ def describe_integrator(
 ) -> dict[str, Any]:
     """Return the dictionary of the integrator, which contains the volume.
 
-    Raises `BrdfkitError` for an unknown renderer.
+    `settings` are further parameters of the integrator. Raises `BrdfkitError` for an unknown
+    renderer.
     """
     if renderer not in RENDERERS:
         raise no_such_error("renderer", renderer, RENDERERS)
@@ -97,12 +99,12 @@ def describe_integrator(
         entries["jitter"] = True
     if renderer == "isosurface":
         entries |= {"bsdf": defaults.CLAY, "shadows": True}
-        entries["level"] = defaults.default_level(volume) if transfer is None else 0.5
+        entries["level"] = defaults.choose_surface_level(volume) if transfer is None else 0.5
     return entries | {name: _to_plugin_value(name, value) for name, value in settings.items()}
 
 
 def _to_plugin_value(name: str, value: Any) -> Any:
-    """Return an integrator's parameter; the names of a BSDF and of a phase become dictionaries."""
+    """Convert a user's setting for the integrator; names of BSDFs become dictionaries."""
     if name == "bsdf":
         return to_material(value).scene_dict()
     return {"type": value} if name == "phase" and isinstance(value, str) else value

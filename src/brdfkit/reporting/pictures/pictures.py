@@ -22,7 +22,7 @@ from brdfkit.regression import Fit
 from brdfkit.rendering import render
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input.loading import find_scene, require_scene
-from brdfkit.rendering.scene_input.material import find_mask, load_material
+from brdfkit.rendering.scene_input.material import find_material_mask, load_material
 from brdfkit.rendering.tracing import PASS
 from brdfkit.reporting.pictures.defaults import LARGEST_SIZE, SCENE, SIZE, SMALLEST_SIZE, SPP
 
@@ -98,5 +98,5 @@ def _find_material(build: BuildScene, size: int) -> BoolArray:
     import mitsuba as mi
 
     material = load_material({"type": "diffuse"}, "material")
-    pixels: BoolArray = find_mask(mi.load_dict(build(material, (size, size))), material)
+    pixels: BoolArray = find_material_mask(mi.load_dict(build(material, (size, size))), material)
     return pixels
