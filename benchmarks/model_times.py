@@ -1,6 +1,6 @@
 """Figures for release notes: `make bench`. Ratios within one run; seconds are of this machine.
 
-Per model: the spread of its sample weights at five incidences, its greatest albedo to 85°, the
+Per model: the spread of its sample weights at five list_incidences, its greatest albedo to 85°, the
 time of a rendering in units of Mitsuba's roughplastic, the seconds that the first rendering of a
 tiny scene takes longer than the next (compiled anew where DRJIT_CACHE_DIR is an empty folder), and
 those of a warm fit of a full MERL table.
@@ -14,8 +14,8 @@ from rich.console import Console
 from rich.table import Table as Printed
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences
-from brdfkit.checks.sampling import spread
+from brdfkit.checks.material_subject import INCIDENCES, Subject, list_incidences
+from brdfkit.checks.sampling import compute_weight_spread
 from brdfkit.core.discovery.plugin_pages import read_page
 from brdfkit.core.jit import llvm
 from brdfkit.model.samples import Table
@@ -105,8 +105,8 @@ def main():
             table.add_row(name, *[""] * len(columns), "", *row)
             continue
         subject = Subject(bk.models()[name]())
-        spreads = [f"{spread(subject, degrees):.2f}" for degrees in INCIDENCES]
-        brightest = max(bk.albedo(subject.material, wi).max() for _, wi in incidences())
+        spreads = [f"{compute_weight_spread(subject, degrees):.2f}" for degrees in INCIDENCES]
+        brightest = max(bk.albedo(subject.material, wi).max() for _, wi in list_incidences())
         fits = [f"{fit_seconds(name, data, loss):.2f}" for loss in bk.losses.named.by_sample]
         table.add_row(name, *spreads, f"{brightest:.3f}", *row, *fits)
     out.print(table)

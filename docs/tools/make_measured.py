@@ -17,7 +17,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import INCIDENCES, Subject
-from brdfkit.checks.sampling import spread
+from brdfkit.checks.sampling import compute_weight_spread
 from brdfkit.core import catalogue
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.geometry.directions import from_angles
@@ -77,7 +77,7 @@ def row(name, ward):
     subject = Subject(material)
     bsdf = subject.bsdf
     seconds = time.perf_counter() - began
-    stds = " ".join(f"{spread(subject, d, SAMPLES):.2f}" for d in INCIDENCES)
+    stds = " ".join(f"{compute_weight_spread(subject, d, SAMPLES):.2f}" for d in INCIDENCES)
     albedos = [bk.albedo(material, from_angles(np.radians(d), 0.0)).mean() for d in (0, 60)]
     picture, took = pictured(bsdf)
     _, unit = pictured(ward)  # anew: the machine may be busier than before

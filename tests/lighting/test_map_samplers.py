@@ -124,7 +124,7 @@ def test_the_forms_of_an_emitter_pass_its_checks(name, settings, llvm_variant):
     entries = make_example(name, **settings)
     emitter = SimpleNamespace(plugin=llvm_variant.load_dict(entries))
     draw, radiance_and_pdf = checks.make_sampler(emitter)
-    p = directions.chi_squared(draw, lambda w: radiance_and_pdf(w)[1], tests=len(FORMS))
+    p = directions.run_chi_squared_test(draw, lambda w: radiance_and_pdf(w)[1], tests=len(FORMS))
     assert p is not None
     report = bk.check(entries, only=["weights", "normalisation", "mean light"])
     assert report, str(report)

@@ -9,9 +9,9 @@ import pytest
 from small_files import adaptive, place, rgl_file, written
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences, random_pairs
+from brdfkit.checks.material_subject import INCIDENCES, Subject, list_incidences, random_pairs
 from brdfkit.checks.registry import checks
-from brdfkit.checks.sampling import spread
+from brdfkit.checks.sampling import compute_weight_spread
 from brdfkit.core import catalogue
 from brdfkit.core.colours import import_colour_package
 from brdfkit.core.geometry.directions import from_angles
@@ -91,7 +91,7 @@ def test_looked_up_as_in_numpy(name, llvm_variant):
     material = MATERIALS[name]()
     wi, wo = random_pairs(5000, seed=1)
     expected = material.eval(wi, wo)
-    found = Subject(material).plugin_eval(wi, wo) / wo[:, 2:]
+    found = Subject(material).eval_plugin(wi, wo) / wo[:, 2:]
     np.testing.assert_allclose(found, expected, rtol=2e-3, atol=1e-4 * expected.max())
 
 
@@ -220,14 +220,16 @@ def test_says_what_file_it_needs(entries, said, llvm_variant):
 def test_albedo_image(name, llvm_variant):
     """The diffuse reflectance that an albedo image asks for is the albedo at the incidence."""
     subject = Subject(material := MATERIALS[name]())
-    for degrees, wi in incidences()[:4]:
-        found = np.array(subject.bsdf.eval_diffuse_reflectance(subject.interaction(wi))).ravel()
+    for degrees, wi in list_incidences()[:4]:
+        found = np.array(
+            subject.bsdf.eval_diffuse_reflectance(subject.make_interaction(wi))
+        ).ravel()
         np.testing.assert_allclose(found, bk.albedo(material, wi), rtol=0.02, err_msg=str(degrees))
 
 
 def cosine_spread(material, degrees):
     """Standard deviation over mean of the weights by cosine sampling."""
-    wi = dict(incidences())[degrees]
+    wi = dict(list_incidences())[degrees]
     rng = np.random.default_rng(3)
     u, phi = rng.random(200_000), rng.random(200_000) * 2 * np.pi
     wo = from_angles(np.arcsin(np.sqrt(u)), phi)
@@ -241,7 +243,7 @@ def test_weights_of_samples_vary_little(name, llvm_variant):
     material = MATERIALS.get(name, lambda: bk.load(name))()
     subject = Subject(material)
     for degrees in INCIDENCES:
-        found = spread(subject, degrees, samples=200_000)
+        found = compute_weight_spread(subject, degrees, samples=200_000)
         assert found <= 0.5
         assert found <= max(cosine_spread(material, degrees), 0.25), degrees
 
@@ -256,7 +258,9 @@ RGL = tuple(
 @pytest.mark.parametrize("name", GLOSSY + RGL)
 def test_real_materials_are_sampled_well(name, measured_data, llvm_variant):
     subject = Subject(bk.load(measured_data / name).rgb)
-    spreads = [spread(subject, degrees, samples=200_000) for degrees in INCIDENCES[:4]]
+    spreads = [
+        compute_weight_spread(subject, degrees, samples=200_000) for degrees in INCIDENCES[:4]
+    ]
     assert max(spreads) <= 0.5, spreads
     for check in ("chi squared", "coverage"):
         passed, figure = checks["bsdfs"][check](subject)

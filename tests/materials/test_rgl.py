@@ -10,8 +10,8 @@ from small_files import adaptive, rgl_file, written
 
 import brdfkit as bk
 from brdfkit import checks
-from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences, random_pairs
-from brdfkit.checks.sampling import draw_uniform, spread
+from brdfkit.checks.material_subject import INCIDENCES, Subject, list_incidences, random_pairs
+from brdfkit.checks.sampling import compute_weight_spread, draw_uniform
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.formats.rgl import encoding, tensor_file
@@ -57,7 +57,7 @@ class Rendered(Subject):
         self.__dict__["bsdf"] = Above(mi.load_dict(scene_dict))
 
     def eval(self, wi, wo):
-        return self.plugin_eval(wi, wo) / wo[:, 2:]
+        return self.eval_plugin(wi, wo) / wo[:, 2:]
 
 
 class Above:
@@ -423,7 +423,7 @@ def test_what_is_rendered_is_what_eval_says(llvm_variant, kind):
     assert "MeasuredAdaptive" in str(subject.bsdf)
     for wi, wo in (pairs(degrees=89.5), random_pairs(20_000, seed=6, max_degrees=89.99)):
         expected = material.eval(wi, wo) * wo[:, 2:]
-        found = subject.plugin_eval(wi, wo)
+        found = subject.eval_plugin(wi, wo)
         assert np.median(relative(found, expected)) < 2e-6
         assert np.quantile(relative(found, expected), 0.999) < 1e-3
         assert np.abs(found - expected).max() < 1e-4 * expected.max()
@@ -444,7 +444,7 @@ def test_a_plane_of_symmetry_is_no_edge(llvm_variant, kind, x):
     material = rendered(kind)
     _, wo = pairs(1000)
     wi = np.tile([0.6 * x, 0, 0.8], (1000, 1))
-    found = Subject(material).plugin_eval(wi, wo) / wo[:, 2:]
+    found = Subject(material).eval_plugin(wi, wo) / wo[:, 2:]
     assert np.quantile(relative(found, material.eval(wi, wo)), 0.99) < 1e-3
 
 
@@ -454,7 +454,7 @@ def test_spectra_are_rendered(variant):
     for label in ("llvm_ad_spectral", "llvm_ad_rgb"):
         variant(label)
         subject = Subject(material)
-        found, expected = subject.plugin_eval(wi, wo), subject.values(wi, wo) * wo[:, 2:]
+        found, expected = subject.eval_plugin(wi, wo), subject.eval_expected(wi, wo) * wo[:, 2:]
         assert np.quantile(relative(found, expected), 0.999) < 1e-4
         assert bk.check(material, only=["coverage"])
     assert "MeasuredAdaptive" in str(subject.bsdf)  # as the colours of the spectra
@@ -467,16 +467,16 @@ def test_the_database_is_rendered_as_by_mitsuba(llvm_variant, measured_data, nam
     ours, theirs = Subject(load(path)), Rendered(path)
     wi, wo = pairs(50_000, degrees=89.5)
     grazing = np.minimum(wi[:, 2], wo[:, 2]) < np.cos(np.radians(80))
-    expected = np.maximum(theirs.plugin_eval(wi, wo), 0)
-    differences = relative(ours.plugin_eval(wi, wo), expected)
+    expected = np.maximum(theirs.eval_plugin(wi, wo), 0)
+    differences = relative(ours.eval_plugin(wi, wo), expected)
     bright = expected.mean(axis=1) > 1e-3 * expected.mean(axis=1).max()
     for where in (grazing, ~grazing):
         assert np.median(differences[where]) < 1e-6
         assert np.quantile(differences[where], 0.95) < 1e-4
         assert differences[where & bright].max() < 1e-3
     for degrees in INCIDENCES:
-        most = (1 + spread(theirs, degrees, 100_000) ** 2) / 0.98
-        assert 1 + spread(ours, degrees, 100_000) ** 2 < most + 1e-3
+        most = (1 + compute_weight_spread(theirs, degrees, 100_000) ** 2) / 0.98
+        assert 1 + compute_weight_spread(ours, degrees, 100_000) ** 2 < most + 1e-3
 
 
 # -- writing ----------------------------------------------------------------------------------
@@ -524,8 +524,8 @@ def test_mitsuba_renders_what_was_written(llvm_variant, tmp_path, name):
     wi, wo = material.samples.wi[rows], material.samples.wo[rows]
     assert relative(material.values[rows], source.eval(wi, wo)).max() < 1e-4
 
-    for _degrees, wi in incidences():
-        si = rendered.interaction(np.tile(wi, (200_000, 1)))
+    for _degrees, wi in list_incidences():
+        si = rendered.make_interaction(np.tile(wi, (200_000, 1)))
         _, weight = rendered.bsdf.sample(
             llvm_variant.BSDFContext(), si, *draw_uniform(200_000, seed=1)
         )
@@ -567,7 +567,7 @@ def test_spectra(variant, tmp_path):
 
     mi = variant("llvm_ad_spectral") or __import__("mitsuba")
     rendered = Rendered(path)
-    si = rendered.interaction(wi)
+    si = rendered.make_interaction(wi)
     si.wavelengths = mi.Spectrum(380, 415, 450, 650)
     values = rendered.bsdf.eval(mi.BSDFContext(), si, mi.Vector3f(wo.T.astype(np.float32)))
     values = np.array(values).T / wo[:, 2:]

@@ -171,7 +171,7 @@ def test_ggx_is_mitsubas(llvm_variant):
             }
 
     wi, wo = random_pairs(5000, seed=0, max_degrees=85)
-    theirs = Subject(Thing()).plugin_eval(wi, wo)[:, 0] / wo[:, 2]
+    theirs = Subject(Thing()).eval_plugin(wi, wo)[:, 0] / wo[:, 2]
     facets = mi.MicrofacetDistribution(mi.MicrofacetType.GGX, 0.3)
     h = (wi + wo) / np.linalg.norm(wi + wo, axis=1, keepdims=True)
     wi_, wo_, h_ = (mi.Vector3f(w.T.astype(np.float32)) for w in (wi, wo, h))

@@ -62,7 +62,7 @@ def p_value(entries):
     it.p, it.wi = mi.Point3f(0), mi.Vector3f(0, 0, -1)
     it.sh_frame = mi.Frame3f(it.wi)
     context = mi.PhaseFunctionContext(None)
-    return directions.chi_squared(
+    return directions.run_chi_squared_test(
         lambda u, v, w: phase.sample(context, it, u, mi.Point2f(v, w)),
         lambda wo: phase.eval_pdf(context, it, wo)[1],
         len(PLUGINS),

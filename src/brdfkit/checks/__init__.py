@@ -1,9 +1,10 @@
-"""Checks materials and plugins against what a renderer and a fit require of them.
+"""Checks whether materials and plugins do what a renderer and a fit require of them.
 
-A check is a function `(subject) -> (passed, figure)` with the decorator `check_of(KIND)`, in a
-file of this folder. Checks of a material take a `Subject`; they are in `physics.py`, `sampling.py`
-and `derivatives.py`. Checks of another kind of plugin take a `PluginSubject`; they are in the file
-of their kind. The tests run all checks on all materials and plugins.
+A check is a function `(subject) -> (passed, figure)` with the decorator `check_of(KIND)`, in a file
+of this folder; the figure is a text with what was measured. Checks of a material take a `Subject`;
+they are in `physics.py`, `sampling.py` and `derivatives.py`. Checks of another kind of plugin take
+a `PluginSubject`; they are in the file of their kind. The tests run all checks on all materials and
+plugins.
 """
 
 from __future__ import annotations
@@ -35,14 +36,14 @@ for _module in pkgutil.iter_modules(__path__):
 
 @dataclass(frozen=True, repr=False)
 class Report(Shown):
-    """The result of `check`: true if all checks passed; it prints as a list.
+    """The result of `check`, which is true if all checks passed; it prints as a list.
 
     Attributes
     ----------
     name : str
         Name of the material or plugin.
     findings : tuple of Finding
-        For each check its name (`check`), whether it `passed`, and the measured `figure` in words.
+        For each check its name (`check`), whether it `passed`, and the measured `figure` as a text.
     """
 
     name: str
@@ -52,7 +53,7 @@ class Report(Shown):
         return all(finding.passed for finding in self.findings)
 
     def document(self) -> Document:
-        """Return a table of the checks: whether each passed, its name and its figure."""
+        """Return the report as a table, with one row per check: result, name, measured figure."""
         rows = tuple(
             (Cell("ok", GOOD) if f.passed else Cell("FAIL", BAD), f.check, f.figure)
             for f in self.findings
@@ -67,14 +68,14 @@ def check(
     only: Iterable[str] | None = None,
     progress: Progress | None = None,
 ) -> Report:
-    """Check that a material, or a plugin of another kind, meets a renderer's and a fit's needs.
+    """Check whether a material or a plugin does what a renderer and a fit require of it.
 
     The checks of a material are its sampling (χ² tests at five angles of incidence, coverage,
     weight = eval / pdf), reciprocity, finite values up to the horizon, energy, derivatives, and
     that the Mitsuba plugin computes the formula. The checks of an emitter or a phase function are
-    χ² tests, weights, normalisation and means. An integrator has to render the reference that its
-    file gives. A plugin whose code raises an error has failed. Everything runs in the current
-    variant of Mitsuba or, if none is set, in the best one that works.
+    χ² tests, weights, normalisation and means. An integrator has to render the reference scene of
+    its file with the known radiance. A plugin whose code raises an error has failed. All checks run
+    in the current variant of Mitsuba or, if none is set, in the best variant that works.
 
     Parameters
     ----------
@@ -122,7 +123,7 @@ def check(
 
 
 def _make_subject(material: MaterialLike) -> tuple[Subject | PluginSubject, str, str]:
-    """Return the subject of the checks, its kind of plugin, and its name."""
+    """Return the `Subject` or `PluginSubject` to check, its kind of plugin, and its name."""
     if isinstance(material, str) and is_no_model(material):
         material = make_example(material)
     name = material.get("type") if isinstance(material, dict) else None
@@ -130,7 +131,7 @@ def _make_subject(material: MaterialLike) -> tuple[Subject | PluginSubject, str,
     if isinstance(material, dict) and kind not in (None, MODELS):
         return PluginSubject(kind, material), kind, str(name)
     converted = _to_material(material)
-    if name and kind is None:  # a plugin of Mitsuba's, or none at all
+    if name and kind is None:  # one of Mitsuba's own plugins, or an unknown one
         import mitsuba as mi
 
         load_by_mitsuba(mi.load_dict, converted.scene_dict(), name)
@@ -138,7 +139,7 @@ def _make_subject(material: MaterialLike) -> tuple[Subject | PluginSubject, str,
 
 
 def _to_material(material: MaterialLike) -> Any:
-    """Return `to_material(material)`; the error for an unknown name proposes plugins, too."""
+    """Convert to a material as `to_material` does, but propose plugins, too, for unknown names."""
     try:
         return to_material(material)
     except BrdfkitError:
@@ -149,7 +150,7 @@ def _to_material(material: MaterialLike) -> Any:
 
 
 def _can_load(subject: Any) -> bool:
-    """Return whether Mitsuba makes an instance of the plugin."""
+    """Return whether Mitsuba can make an instance of the subject's plugin."""
     try:
         return subject.plugin is not None
     except Exception:
@@ -157,7 +158,7 @@ def _can_load(subject: Any) -> bool:
 
 
 def _run_check(kind: str, name: str, subject: Subject | PluginSubject) -> tuple[bool, str]:
-    """Run a check and return (passed, figure); an error that the plugin's code raises fails it."""
+    """Run one check and return (passed, figure); it fails if the plugin's code raises an error."""
     try:
         return checks[kind][name](subject)
     except BrdfkitError:

@@ -1,4 +1,4 @@
-"""Checks the derivatives of a model: of the formula, of the Mitsuba BSDF, and of its samples."""
+"""Checks the derivatives by a model's parameters: of its formula, its BSDF and its samples."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -6,8 +6,8 @@ from contextlib import contextmanager
 import drjit as dr
 import numpy as np
 
-from brdfkit.checks.material_subject import Subject, incidences, random_pairs
-from brdfkit.checks.registry import check_of, larger
+from brdfkit.checks.material_subject import Subject, list_incidences, random_pairs
+from brdfkit.checks.registry import check_of, larger_or_nan
 from brdfkit.checks.sampling import draw_uniform, sample_weights
 from brdfkit.core.array_types import FloatArray, JitColour, JitFloat, MitsubaModule, MitsubaObject
 from brdfkit.core.discovery.plugin_files import MODELS
@@ -19,38 +19,38 @@ NO_SHAPES = "nothing to check: no shape parameters"
 
 
 @check_of(MODELS)
-def plugin_is_formula(subject: Subject) -> tuple[bool, str]:
-    """Check that the Mitsuba BSDF computes the formula, times the cosine.
+def check_plugin_is_formula(subject: Subject) -> tuple[bool, str]:
+    """Check that Mitsuba's BSDF returns the values of the model's formula times the cosine.
 
     The BSDF computes in single precision, the formula in double precision.
     """
     wi, wo = random_pairs(20_000, seed=5, max_degrees=85)
-    formula = subject.values(wi, wo) * wo[:, 2:]
-    difference = np.abs(subject.plugin_eval(wi, wo) - formula)
+    formula = subject.eval_expected(wi, wo) * wo[:, 2:]
+    difference = np.abs(subject.eval_plugin(wi, wo) - formula)
     worst = float(np.max(difference / np.maximum(formula, 1e-3 * formula.max() + 1e-12)))
     return worst < 5e-3, f"relative difference at most {worst:.1e}"
 
 
 @check_of(MODELS)
-def gradient(subject: Subject) -> tuple[bool, str]:
-    """Check that derivatives by every shape parameter are equal to finite differences."""
+def check_gradient(subject: Subject) -> tuple[bool, str]:
+    """Check that the formula's derivatives by shape parameters equal finite differences."""
     model = subject.model
     if model is None or not model.shapes():
         return True, NO_SHAPES
-    if unused := [n for n in model.shapes(anisotropic=True) if not has_effect(model, n)]:
+    if unused := [n for n in model.shapes(anisotropic=True) if not is_tracked(model, n)]:
         return False, f"{unused[0]} has no effect that Dr.Jit can follow"
     wi, wo = random_pairs(2_000, seed=6, max_degrees=80)
     weights, worst = to_weight_matrix(model), 0.0
-    for name in free_shapes(model):
-        exact = exact_derivative(model, weights, name, wi, wo)
-        difference = np.abs(exact - finite_difference(model, name, wi, wo))
-        worst = larger(worst, float(difference.max() / (np.abs(exact).max() + 1e-12)))
+    for name in list_free_shapes(model):
+        exact = compute_exact_derivative(model, weights, name, wi, wo)
+        difference = np.abs(exact - compute_finite_difference(model, name, wi, wo))
+        worst = larger_or_nan(worst, float(difference.max() / (np.abs(exact).max() + 1e-12)))
     return worst < 1e-5, f"relative difference at most {worst:.1e}"
 
 
 @check_of(MODELS)
-def plugin_gradient(subject: Subject) -> tuple[bool, str]:
-    """Check that the Mitsuba BSDF has the derivatives of the formula, by every parameter."""
+def check_plugin_gradient(subject: Subject) -> tuple[bool, str]:
+    """Check that Mitsuba's BSDF has the derivatives of the formula by every parameter."""
     import mitsuba as mi
 
     model = subject.model
@@ -58,26 +58,27 @@ def plugin_gradient(subject: Subject) -> tuple[bool, str]:
         return True, "nothing to check: no parameters"
     wi, wo = random_pairs(2_000, seed=7, max_degrees=80)
 
-    # Every parameter must be in `mitsuba.traverse`; colours that are spectra are left out below
+    # Every parameter must be in `mitsuba.traverse`; colours that Mitsuba stores as spectra are
+    # exempt from the comparison
     exposed = {key.split(".")[0] for key in mi.traverse(subject.bsdf).keys()}  # noqa: SIM118
     if missing := [name for name in model.free_values if name not in exposed]:
         return False, f"not in traverse: {', '.join(missing)}"
     names = [name for name in model.free_values if not _is_spectrum(mi, model, name)]
 
-    # Compare derivatives of the sum over all directions and channels with those of the formula
+    # Compare the derivatives of the sum over all directions and channels
     with _track_gradients(subject.bsdf, names) as values:
         image = subject.bsdf.eval(
-            mi.BSDFContext(), subject.interaction(wi), mi.Vector3f(wo.astype(np.float32).T)
+            mi.BSDFContext(), subject.make_interaction(wi), mi.Vector3f(wo.astype(np.float32).T)
         )
         dr.backward(_sum_spectrum(mi, image), dr.ADFlag.Default | dr.ADFlag.AllowNoGrad)
         gradients = [dr.grad(value) for value in values]
-        dr.eval(gradients)  # one kernel compiles faster than one for each
+        dr.eval(gradients)  # in one kernel, which compiles faster than one per parameter
         derivatives = [float(np.sum(np.array(gradient))) for gradient in gradients]
     worst = 0.0
     for name, derivative in zip(names, derivatives, strict=True):
-        expected = exact_derivative(model, subject.weights, name, wi, wo) * wo[:, 2:]
+        expected = compute_exact_derivative(model, subject.weights, name, wi, wo) * wo[:, 2:]
         difference = abs(derivative - float(expected.sum()))
-        worst = larger(worst, difference / max(float(np.abs(expected).sum()), 1e-6))
+        worst = larger_or_nan(worst, difference / max(float(np.abs(expected).sum()), 1e-6))
 
     left_out = len(model.free_values) - len(names)
     but = f"; not checked: {left_out} colours that are spectra in this variant" if left_out else ""
@@ -85,40 +86,40 @@ def plugin_gradient(subject: Subject) -> tuple[bool, str]:
 
 
 @check_of(MODELS)
-def sampling_gradient(subject: Subject) -> tuple[bool, str]:
-    """Check that the mean weight of samples has the derivatives of the albedo.
+def check_sampling_gradient(subject: Subject) -> tuple[bool, str]:
+    """Check that the mean weight of samples has the same derivatives as the albedo.
 
-    The derivatives of the albedo come from cosine samples. A sampler fails if its directions depend
-    on a parameter while its density does not.
+    The derivatives of the albedo are estimated from cosine-weighted directions. A sampler fails if
+    its directions depend on a parameter while its density does not.
     """
     import mitsuba as mi
 
     model = subject.model
     if model is None or not model.shapes():
         return True, NO_SHAPES
-    n, wi = 200_000, incidences()[1][1]
+    n, wi = 200_000, list_incidences()[1][1]
     _, u = draw_uniform(n, seed=9)
     wo = np.array(mi.warp.square_to_cosine_hemisphere(u)).T.astype(float)
     worst = 0.0
-    for name in free_shapes(model):
-        # Derivatives of the weights, sample by sample
+    for name in list_free_shapes(model):
+        # Derivatives of the weight of every sample
         with _track_gradients(subject.bsdf, [name]) as [value]:
             weight = sample_weights(subject, wi, n, seed=8)
             dr.forward_from(value)
             own = np.array(dr.grad(mi.unpolarized_spectrum(weight)))
             own = np.broadcast_to(own.mean(axis=0, dtype=float), n)
 
-        # Derivatives of the formula over the density cos θ / π of cosine samples
-        exact = exact_derivative(model, subject.weights, name, np.tile(wi, (n, 1)), wo)
+        # Derivatives of the formula, divided by the density cos θ / π of cosine-weighted directions
+        exact = compute_exact_derivative(model, subject.weights, name, np.tile(wi, (n, 1)), wo)
         cosine = np.pi * exact.mean(axis=1)
         error = np.hypot(own.std(), cosine.std()) / np.sqrt(n)
-        worst = larger(worst, abs(own.mean() - cosine.mean()) / max(error, 1e-9))
+        worst = larger_or_nan(worst, abs(own.mean() - cosine.mean()) / max(error, 1e-9))
     return worst < 4.5, f"at most {worst:.1f} standard errors apart"
 
 
 @contextmanager
 def _track_gradients(bsdf: MitsubaObject, names: Sequence[str]) -> Iterator[list[JitFloat]]:
-    """Track derivatives by parameters of the BSDF within the block, and yield their values."""
+    """Track derivatives by parameters of a BSDF in the `with` block, and yield their values."""
     import mitsuba as mi
 
     parameters = mi.traverse(bsdf)
@@ -133,22 +134,22 @@ def _track_gradients(bsdf: MitsubaObject, names: Sequence[str]) -> Iterator[list
 
 
 def _sum_spectrum(mi: MitsubaModule, image: JitColour) -> JitFloat:
-    """Return the sum of a spectrum over directions and channels, without its polarisation."""
+    """Return the sum of spectra over directions and channels, without polarisation."""
     return dr.sum(dr.sum(mi.unpolarized_spectrum(image)))
 
 
 def _is_spectrum(mi: MitsubaModule, model: Model, name: str) -> bool:
-    """Return whether a weight is a colour, which Mitsuba stores as coefficients of a spectrum."""
+    """Return whether Mitsuba stores a weight as coefficients of a spectrum: a colour."""
     return mi.is_spectral and len(np.unique(getattr(model, name))) > 1
 
 
-def free_shapes(model: Model) -> list[str]:
-    """Return the names of the shape parameters, without any that follows another and equals it."""
+def list_free_shapes(model: Model) -> list[str]:
+    """Return the shape parameters' names, without those that follow another and equal it."""
     return [name for name in model.free_values if not model.parameters[name].linear]
 
 
-def has_effect(model: Model, name: str) -> bool:
-    """Return whether Dr.Jit can follow the parameter to the value of a lobe."""
+def is_tracked(model: Model, name: str) -> bool:
+    """Return whether the value of some lobe depends on the parameter, as Dr.Jit tracks it."""
     values = {
         n: double_precision.to_scalar(getattr(model, n)) for n in model.shapes(anisotropic=True)
     }
@@ -160,31 +161,33 @@ def has_effect(model: Model, name: str) -> bool:
     return any(dr.grad_enabled(term) for term in terms)
 
 
-def exact_derivative(
+def compute_exact_derivative(
     model: Model, weights: FloatArray, name: str, wi: FloatArray, wo: FloatArray
 ) -> FloatArray:
-    """Return the exact derivative (n, channels) of the BRDF by a parameter of the model.
+    """Return the exact derivative (n, channels) of the BRDF by the parameter called `name`.
 
-    `weights`: (lobes, channels). A weight changes by the same amount in all channels, and a
-    parameter that follows the parameter `name` changes with it. Where a negative BRDF is clamped at
-    0, the derivative is 0.
+    `weights` (lobes, channels) are those of the model. A weight changes by the same amount in all
+    channels; parameters that follow the parameter change with it. Where a negative BRDF is clamped
+    at 0, the derivative is 0.
     """
     plain, squared = compute_lobe_values(model, wi, wo)
     if model.parameters[name].linear:
         lobe = model.weights().index(name)
         derivative = plain[:, [lobe]] + 2 * squared[:, [lobe]] * weights[lobe]
     else:
-        plain_slopes, squared_slopes = _lobe_slopes(model, name, wi, wo)
+        plain_slopes, squared_slopes = _differentiate_lobes(model, name, wi, wo)
         derivative = plain_slopes @ weights + squared_slopes @ weights**2
     if not model.has_signed_weights():
         return derivative
     return np.where(plain @ weights + squared @ weights**2 > 0, derivative, 0)
 
 
-def _lobe_slopes(model: Model, name: str, wi: FloatArray, wo: FloatArray) -> list[FloatArray]:
-    """Return the derivatives of the lobes by a shape parameter, by Dr.Jit's forward mode.
+def _differentiate_lobes(
+    model: Model, name: str, wi: FloatArray, wo: FloatArray
+) -> list[FloatArray]:
+    """Return the derivatives of all lobes by a shape parameter, by Dr.Jit's forward mode.
 
-    These are two arrays (n, lobes): of the factors of the weights, and of the weights' squares.
+    They are two arrays (n, lobes): of the terms with the weights, and with the weights' squares.
     """
     values = to_shape_scalars(model)
     dr.enable_grad(values[name])
@@ -200,10 +203,13 @@ def _lobe_slopes(model: Model, name: str, wi: FloatArray, wo: FloatArray) -> lis
     ]
 
 
-def finite_difference(model: Model, name: str, wi: FloatArray, wo: FloatArray) -> FloatArray:
-    """Return the derivative (n, channels) of the BRDF by a parameter, by finite differences.
+def compute_finite_difference(
+    model: Model, name: str, wi: FloatArray, wo: FloatArray
+) -> FloatArray:
+    """Approximate the derivative (n, channels) of the BRDF by a parameter, by finite differences.
 
-    The differences are central, or one-sided near a bound of the parameter, of second order.
+    The differences are central, or one-sided near a bound of the parameter; both are of second
+    order.
     """
     value = getattr(model, name)
     low, high = model.parameters[name].bounds

@@ -1,7 +1,7 @@
-"""Tests samplers of directions over the sphere, for the checks of emitters and phase functions.
+"""Statistical tests of samplers of directions, for the checks of emitters and phase functions.
 
-A sampler is given as two functions. `draw(u, v)`, or `draw(u, v, w)`, takes a point of the unit
-square or cube to (direction, weight, density). `pdf(direction)` returns the density.
+A sampler is given as two functions. `draw(u, v)`, or `draw(u, v, w)`, maps a random point of the
+unit square or cube to (direction, weight, density). `pdf(direction)` returns the density.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,21 +13,21 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitFloat, JitVector, MitsubaObject
 from brdfkit.core.jit.padding import pad
 
-SIGNIFICANCE = 0.01
+SIGNIFICANCE = 0.01  # probability that the χ² tests of a check reject a correct sampler
 SAMPLES = 400_000
-# Cells of the χ² test's histogram, and points to integrate the density in a cell, both along each
-# axis; with fewer points the correct sampler of a small sun is rejected
+# Numbers of the χ² histogram's cells, and of points in a cell at which the density is integrated,
+# both along each axis; with fewer points the correct sampler of a small sun is rejected
 CELLS, SUBCELLS = 101, 32
-RINGS, POINTS = 512, 1024  # polar angles and azimuths of the quadrature
+RINGS, POINTS = 512, 1024  # numbers of polar angles and azimuths of the quadrature
 
 
-def chi_squared(
+def run_chi_squared_test(
     draw: Callable[..., Any], pdf: Callable[[JitVector], JitFloat], tests: int, dimensions: int = 2
 ) -> float | None:
-    """Return the p-value of Pearson's χ² test that directions have their density.
+    """Test by Pearson's χ² test whether drawn directions have the density `pdf`.
 
-    None stands for a rejection. `tests`: the number of such tests in a check, which share the level
-    of significance; `dimensions`: the number of arguments of `draw`.
+    Returns the p-value, or None if the test rejects. `tests` is the number of such tests in a
+    check, which share the level of significance; `dimensions` is the number of arguments of `draw`.
     """
     import drjit as dr
     import mitsuba as mi
@@ -44,7 +44,7 @@ def chi_squared(
 
 
 def draw_points(n: int, seed: int, dimensions: int = 2) -> tuple[JitFloat, ...]:
-    """Draw `n` random points in the unit square or cube, as one `mi.Float` for each axis."""
+    """Draw `n` random points of the unit square or cube, as one `mi.Float` for each axis."""
     import mitsuba as mi
 
     u = np.random.default_rng(seed).random((dimensions, n), np.float32)
@@ -52,7 +52,7 @@ def draw_points(n: int, seed: int, dimensions: int = 2) -> tuple[JitFloat, ...]:
 
 
 def make_quadrature() -> tuple[JitVector, FloatArray]:
-    """Return directions over the sphere, a `mi.Vector3f`, and their solid angles (n,) [sr]."""
+    """Return a quadrature over the sphere: directions (mi.Vector3f) and solid angles (n,) [sr]."""
     import mitsuba as mi
 
     w, solid_angle = _make_grid()
@@ -61,7 +61,7 @@ def make_quadrature() -> tuple[JitVector, FloatArray]:
 
 @cache
 def _make_grid() -> tuple[FloatArray, FloatArray]:
-    """Return directions (3, n) evenly spaced in both angles, and their solid angles (n,) [sr]."""
+    """Return directions (3, n), spaced evenly in both angles, and their solid angles (n,) [sr]."""
     theta = (np.arange(RINGS) + 0.5) / RINGS * np.pi
     phi = (np.arange(POINTS) + 0.5) / POINTS * 2 * np.pi
     theta, phi = (a.ravel() for a in np.meshgrid(theta, phi, indexing="ij"))
@@ -70,16 +70,17 @@ def _make_grid() -> tuple[FloatArray, FloatArray]:
 
 
 def to_numbers(value: JitFloat, n: int) -> FloatArray:
-    """Return a value of Mitsuba as an array (n,), also if it is a constant for all directions."""
+    """Convert a value of Mitsuba to an array (n,), even if it is one number for all directions."""
     return np.broadcast_to(np.array(value, float).ravel(), n)
 
 
-def deviation(weights: FloatArray, expected: FloatArray) -> float:
-    """Return the deviation of the mean of `weights` (channels, n) from `expected` (channels,).
+def count_standard_errors(weights: FloatArray, expected: FloatArray) -> float:
+    """Return how many standard errors the mean of samples is away from its expected value.
 
-    It is counted in standard errors, and is the largest over the channels.
+    `weights` (channels, n) are the samples, `expected` (channels,) their expected means; the result
+    is the largest deviation of a channel.
     """
     weights = np.asarray(weights, float)
-    # The error of the mean, and of the quadrature that gave `expected`
+    # The error combines those of the mean and of the quadrature that gave `expected`
     error = np.hypot(weights.std(axis=1) / np.sqrt(weights.shape[1]), 1e-3 * np.abs(expected))
     return float(np.max(np.abs(weights.mean(axis=1) - expected) / np.maximum(error, 1e-12)))

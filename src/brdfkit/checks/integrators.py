@@ -1,4 +1,4 @@
-"""Checks that integrators render the known radiance of a reference scene."""
+"""Checks that an integrator renders its reference scene with the known radiance."""
 
 import numpy as np
 
@@ -9,18 +9,18 @@ SPP = 64
 
 
 @check_of("integrators")
-def reference(subject: PluginSubject) -> tuple[bool, str]:
-    """Check that the mean of a picture is the radiance that the plugin's file gives.
+def check_reference(subject: PluginSubject) -> tuple[bool, str]:
+    """Check that the picture of the reference scene has the known radiance in the mean.
 
-    The function `reference` of the file returns (scene, radiance), from a closed form or another
-    integrator.
+    The function `reference` in the plugin's file returns the scene and its radiance, which a closed
+    form or another integrator gives.
     """
     import mitsuba as mi
 
     if not hasattr(subject.module, "reference"):
         return True, "nothing to check: the file has no function `reference`"
 
-    # The picture, as (pixels, channels)
+    # Render the scene to an array (pixels, channels)
     scene, expected = subject.module.reference()
     scene["integrator"] = {**scene["integrator"], **subject.entries}
     loaded = mi.load_dict(scene, parallel=False)
@@ -28,7 +28,7 @@ def reference(subject: PluginSubject) -> tuple[bool, str]:
     pixels = np.array(film, float)
     pixels = pixels.reshape(-1, pixels.shape[-1])
 
-    # The expected radiance in the channels of the film, which may have an alpha channel
+    # Convert the expected radiance to the channels of the film, of which an alpha is left out
     expected = np.asarray(expected, float)
     if pixels.shape[1] == 1:
         expected = np.atleast_1d(np.array(mi.luminance(mi.Color3f(*expected.tolist()))).ravel())

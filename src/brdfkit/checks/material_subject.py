@@ -1,7 +1,7 @@
-"""The subject of checks of a material: its formula and its Mitsuba BSDF in the current variant.
+"""The subject of the checks of a material: its formula, and its BSDF in Mitsuba's current variant.
 
-Spectral variants are checked at fixed wavelengths. There, the expected values of a model are its
-lobes in double precision, times its weights from Mitsuba's textures at these wavelengths.
+Spectral variants are checked at fixed wavelengths. For a model, the expected values there are its
+lobes in double precision, times the weights that Mitsuba's textures have at these wavelengths.
 """
 
 import sys
@@ -25,7 +25,7 @@ from brdfkit.mitsuba_bridge.bsdf.from_dictionary import BsdfMaterial
 from brdfkit.model import Model
 from brdfkit.model.evaluation import compute_lobe_values
 
-# Angles of incidence of the statistical checks [degrees], and an azimuth [rad] beside the axes
+# [degrees] angles of incidence of the statistical checks, and their azimuth [rad], off the axes
 INCIDENCES = (0, 30, 60, 75, 85)
 AZIMUTH = 0.5
 
@@ -34,37 +34,38 @@ AZIMUTH = 0.5
 class Subject:
     """A material to check: a model, a fit, a measured material, or a BSDF of Mitsuba.
 
-    `material`: any object with `eval(wi, wo)` and `scene_dict()`.
+    `material` is any object with the methods `eval(wi, wo)` and `scene_dict()`.
     """
 
     material: Any
 
     @property
     def model(self) -> Model | None:
-        """The `Model` with its values, None for a measured material."""
+        """The `Model` of the material or of the fit, None for a measured material."""
         model = getattr(self.material, "model", self.material)
         return model if isinstance(model, Model) else None
 
     @property
     def is_single_precision(self) -> bool:
-        """Whether `values` come from a BSDF of Mitsuba, in single precision."""
+        """Whether the expected values come from a BSDF of Mitsuba, in single precision."""
         return isinstance(self.material, BsdfMaterial)
 
     @property
     def source(self) -> Path | None:
-        """The file of the model's class, or the name of a class that a notebook defines.
+        """The file that defines the model's class, None if there is no model.
 
-        None if there is no model.
+        For a class that a notebook defines, it is the name of the class.
         """
         if self.model is None:
             return None
         module = sys.modules[type(self.model).__module__]
         return Path(getattr(module, "__file__", None) or type(self.model).__name__)
 
-    def values(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return the expected BRDF (n, channels of the variant) [sr⁻¹], in double precision.
+    def eval_expected(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
+        """Return the expected BRDF (n, channels) [sr⁻¹], computed without Mitsuba's BSDF.
 
-        `wi`, `wo`: directions (n, 3) above the surface.
+        `wi` and `wo` are directions (n, 3) above the surface; the channels are those of Mitsuba's
+        current variant.
         """
         if isinstance(self.material, Measured):
             return to_variant_channels(self.rendered.eval(wi, wo), self.rendered)
@@ -76,26 +77,26 @@ class Subject:
 
     @property
     def rendered(self) -> Measured:
-        """The measured material as it is rendered in the current variant."""
+        """The measured material in the form in which it is rendered in the current variant."""
         import mitsuba as mi
 
         return (self.material if mi.is_spectral else self.material.rgb).rendered
 
     @cached_property
     def weights(self) -> FloatArray:
-        """The model's weights (lobes, channels of the variant)."""
+        """The model's weights (lobes, channels) in the channels of the current variant."""
         assert self.model is not None
         return read_weights(self.bsdf, self.model)
 
     @cached_property
     def bsdf(self) -> MitsubaObject:
-        """The Mitsuba BSDF in the current variant."""
+        """The BSDF that Mitsuba makes of the material in the current variant."""
         import mitsuba as mi
 
         return mi.load_dict(self.material.scene_dict(), parallel=False)
 
-    def interaction(self, wi: FloatArray) -> MitsubaObject:
-        """Return a `mi.SurfaceInteraction3f` with the incident directions `wi`, (3,) or (n, 3)."""
+    def make_interaction(self, wi: FloatArray) -> MitsubaObject:
+        """Make a `mi.SurfaceInteraction3f` with the incident directions `wi`, (3,) or (n, 3)."""
         import drjit as dr
         import mitsuba as mi
 
@@ -108,24 +109,25 @@ class Subject:
             si.wavelengths = WAVELENGTHS
         return si
 
-    def plugin_eval(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Return BRDF times cosine (n, channels of the variant) of the Mitsuba BSDF, in float32."""
+    def eval_plugin(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
+        """Return the BRDF times the cosine (n, channels), computed by Mitsuba's BSDF in float32."""
         import mitsuba as mi
 
         outgoing = mi.Vector3f(np.asarray(wo, np.float32).T)
-        value = self.bsdf.eval(mi.BSDFContext(), self.interaction(wi), outgoing)
+        value = self.bsdf.eval(mi.BSDFContext(), self.make_interaction(wi), outgoing)
         return to_channels(value, len(wi)).T
 
 
-def incidences() -> list[tuple[float, FloatArray]]:
-    """Return the angles of incidence to check, as a list of (degrees, direction)."""
+def list_incidences() -> list[tuple[float, FloatArray]]:
+    """Return the incident directions of the checks, as a list of (degrees, direction (3,))."""
     return [(degrees, from_angles(np.radians(degrees), AZIMUTH)) for degrees in INCIDENCES]
 
 
 def random_pairs(n: int, seed: int, max_degrees: float = 89.0) -> tuple[FloatArray, FloatArray]:
-    """Return random pairs of directions, two arrays (n, 3), uniform in angles: many are grazing.
+    """Draw random pairs of directions, two arrays (n, 3), for comparing values of BRDFs.
 
-    Every second pair is close to a pair of mirror directions, where most lobes have their peak.
+    Polar angles are uniform, so that many directions are grazing. Every second pair is close to a
+    pair of mirror directions, where most lobes have their peak.
     """
     rng = np.random.default_rng(seed)
     theta = rng.uniform(0, np.radians(max_degrees), (2, n))

@@ -1,8 +1,8 @@
-"""Checks that a BRDF is reciprocal, finite and not negative, and conserves energy."""
+"""Checks that a BRDF is physical: reciprocal, finite, not negative, and energy-conserving."""
 
 import numpy as np
 
-from brdfkit.checks.material_subject import AZIMUTH, Subject, incidences, random_pairs
+from brdfkit.checks.material_subject import AZIMUTH, Subject, list_incidences, random_pairs
 from brdfkit.checks.registry import check_of
 from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.core.errors import BrdfkitError
@@ -14,8 +14,8 @@ from brdfkit.regression.problem.not_finite import require_finite_lobes, require_
 
 
 @check_of(MODELS)
-def reciprocity(subject: Subject) -> tuple[bool, str]:
-    """Check that f(wi, wo) = f(wo, wi) at 10,000 pairs of directions, in double precision."""
+def check_reciprocity(subject: Subject) -> tuple[bool, str]:
+    """Check that the BRDF is reciprocal, f(wi, wo) = f(wo, wi), at 10,000 pairs of directions."""
     wi, wo = random_pairs(10_000, seed=4)
     forth, back = subject.material.eval(wi, wo), subject.material.eval(wo, wi)
     difference = np.max(np.abs(forth - back) / np.maximum(np.abs(forth), 1e-12))
@@ -24,15 +24,15 @@ def reciprocity(subject: Subject) -> tuple[bool, str]:
 
 
 @check_of(MODELS)
-def finite(subject: Subject) -> tuple[bool, str]:
-    """Check that values are finite and not negative above the horizon, and 0 below it.
+def check_finite(subject: Subject) -> tuple[bool, str]:
+    """Check that the BRDF is finite and not negative above the horizon, and 0 below it.
 
-    The values are those of the Mitsuba BSDF, in single precision.
+    The values come from the Mitsuba BSDF, in single precision.
     """
     heights = np.array([-1, -1e-3, 0, 1e-8, 1e-6, 1e-4, 1e-2, 0.1, 0.5, 1.0])
     phi = np.linspace(0, 2 * np.pi, 13)
     z_i, z_o, phi = (a.ravel() for a in np.meshgrid(heights, heights, phi))
-    value = subject.plugin_eval(from_angles(np.arccos(z_i), 0.1), from_angles(np.arccos(z_o), phi))
+    value = subject.eval_plugin(from_angles(np.arccos(z_i), 0.1), from_angles(np.arccos(z_o), phi))
     below = (z_i <= 0) | (z_o <= 0)
     problems = {
         "not finite": (~np.isfinite(value)).sum(),
@@ -44,11 +44,11 @@ def finite(subject: Subject) -> tuple[bool, str]:
 
 
 @check_of(MODELS)
-def defined(subject: Subject) -> tuple[bool, str]:
-    """Check that the formula and its derivatives are finite at special pairs of directions.
+def check_defined(subject: Subject) -> tuple[bool, str]:
+    """Check that the formula and its derivatives are finite at mirror and at equal directions.
 
-    These are mirror directions, whose half vector is the normal, and pairs of equal directions, up
-    to 89.9°. A fit, which computes in double precision, may need them.
+    These pairs of directions, up to 89.9° from the normal, may occur in a fit. There a formula may
+    divide by 0, because the half vector or the difference vector is the normal.
     """
     model = subject.model
     if model is None:
@@ -63,16 +63,16 @@ def defined(subject: Subject) -> tuple[bool, str]:
         require_finite_lobes(model, plain.T, *directions)
         require_finite_slopes(model, shapes, shapes, *directions)
     except BrdfkitError as error:
-        # Only the reason, between the model's name and the remedy
+        # Keep only the reason, without the model's name before it and the remedy after it
         return False, str(error).partition(": ")[2].partition(";")[0]
     return True, f"formula and derivatives are finite at {len(wi):,} pairs"
 
 
 @check_of(MODELS)
-def energy(subject: Subject) -> tuple[bool, str]:
-    """Check that the albedo is at most 1 at every angle of incidence up to 85°."""
-    f = subject.values
-    figures = {degrees: directional_albedo(f, wi).max() for degrees, wi in incidences()}
+def check_energy(subject: Subject) -> tuple[bool, str]:
+    """Check that energy is conserved: the albedo is at most 1 at angles of incidence up to 85°."""
+    f = subject.eval_expected
+    figures = {degrees: directional_albedo(f, wi).max() for degrees, wi in list_incidences()}
     degrees = max(figures, key=lambda d: figures[d])
     value = figures[degrees]
     return bool(value <= 1 + TOLERANCE), f"albedo at most {value:.4f}, at {degrees}°"

@@ -1,4 +1,4 @@
-"""The subject of checks of a plugin that is no material: its instance and its file."""
+"""The subject of the checks of a plugin other than a material: its instance and its file."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from brdfkit.model import labels
 
 @dataclass(frozen=True, eq=False)
 class PluginSubject:
-    """A plugin of a `kind` of `KINDS`; `entries`: its dictionary for `mitsuba.load_dict`."""
+    """A plugin to check, of a `kind` such as "emitters", made by `mitsuba.load_dict(entries)`."""
 
     kind: str
     entries: dict
@@ -29,12 +29,12 @@ class PluginSubject:
 
     @property
     def source(self) -> Path:
-        """The file of the plugin."""
+        """The path of the plugin's file."""
         return plugin_files.find_plugins(self.kind)[self.name]
 
     @property
     def module(self) -> ModuleType:
-        """The file of the plugin, as a module."""
+        """The module that was imported from the plugin's file."""
         return _find_module(self.name)
 
     @cached_property
@@ -46,7 +46,10 @@ class PluginSubject:
 
 
 def is_no_model(name: str) -> bool:
-    """Return whether a plugin of this name exists and is no `Model`; it may be another BSDF."""
+    """Return whether a plugin with this name exists and is not a `Model`.
+
+    It may be a BSDF of another kind, such as a measured one.
+    """
     kind = plugin_files.find_plugin_kind(name)
     return kind is not None and (
         kind != MODELS or labels.find_model_in(plugin_files.find_plugins(MODELS)[name]) is None
@@ -54,7 +57,7 @@ def is_no_model(name: str) -> bool:
 
 
 def require_declared(name: str, parameters: Iterable[str]) -> None:
-    """Raise `BrdfkitError` if the plugin's file does not declare one of the `parameters`."""
+    """Raise `BrdfkitError` if the plugin called `name` lacks one of the `parameters`."""
     declared = getattr(_find_module(name), "PARAMETERS", None)
     for parameter in parameters:
         if declared is not None and parameter not in declared:
@@ -62,9 +65,10 @@ def require_declared(name: str, parameters: Iterable[str]) -> None:
 
 
 def make_example(name: str, **values: Any) -> dict[str, Any]:
-    """Return the dictionary of a plugin for the checks, with other `values` of its parameters.
+    """Return the dictionary with which a plugin is checked, with `values` of some parameters.
 
-    The function `example` in the plugin's file makes it; without one it is {"type": name}.
+    The function `example` in the plugin's file makes it; without this function it is
+    {"type": name}.
     """
     module = _find_module(name)
     entries = module.example() if hasattr(module, "example") else {"type": name}
@@ -72,14 +76,14 @@ def make_example(name: str, **values: Any) -> dict[str, Any]:
 
 
 def _find_module(name: str) -> ModuleType:
-    """Return the module of the plugin of this name."""
+    """Return the module that is imported from the file of the plugin with this name."""
     kind = str(plugin_files.find_plugin_kind(name))
     return plugin_files.import_plugin(plugin_files.find_plugins(kind)[name])
 
 
 @check_of(*(kind for kind in KINDS if kind != MODELS))
-def loads(subject: PluginSubject) -> tuple[bool, str]:
-    """Check that Mitsuba makes an instance of the right class, which can be printed."""
+def check_loads(subject: PluginSubject) -> tuple[bool, str]:
+    """Check that Mitsuba can make an instance of the plugin, of the right class, and print it."""
     import mitsuba as mi
 
     base, _ = KINDS[subject.kind]

@@ -1,4 +1,4 @@
-"""Registers the checks by kind of plugin, and describes their results and errors."""
+"""The register of all checks by kind of plugin, and helpers for their results and errors."""
 
 import traceback
 from collections.abc import Callable
@@ -10,12 +10,12 @@ import numpy as np
 from brdfkit.core.discovery.plugin_files import KINDS
 
 
-def larger(a: float, b: float) -> float:
-    """Return the larger of two figures, or NaN if one is NaN, which must not pass as small."""
+def larger_or_nan(a: float, b: float) -> float:
+    """Return the larger of two numbers, or NaN if one is NaN, so that a NaN fails the check."""
     return float(np.maximum(a, b))
 
 
-# Words in an error of Dr.Jit → what the author of the plugin should write
+# Word in an error message of Dr.Jit → hint for the author of the plugin
 HINTS = {
     "'bool'": "write dr.select in place of `if` on values",
     "'ndarray'": "write functions of dr in place of NumPy's",
@@ -23,7 +23,7 @@ HINTS = {
 
 
 def describe_error(error: BaseException, path: Path) -> str:
-    """Return an error in words: the plugin's file and line that raised it, and the reason."""
+    """Describe an error that a plugin raised: the file at `path`, the line, and the reason."""
     frames = traceback.extract_tb(error.__traceback__)
     lines = [f.lineno for f in frames if Path(f.filename) == path]
     place = f"{path.name}, line {lines[-1]}" if lines else path.name
@@ -41,7 +41,7 @@ checks: dict[str, dict[str, Check]] = {kind: {} for kind in KINDS}
 
 @dataclass(frozen=True)
 class Finding:
-    """The result of one check: its name, whether it passed, and the measured `figure` in words."""
+    """The result of one check: its name, whether it passed, and the measured figure as a text."""
 
     check: str
     passed: bool
@@ -51,13 +51,13 @@ class Finding:
 def check_of(*kinds: str) -> Callable[[Check], Check]:
     """Return a decorator that registers a function as a check of these kinds of plugins.
 
-    The function takes the subject and returns (passed, figure). The check has the name of the
-    function, with spaces for underscores.
+    The function takes the subject of the check and returns (passed, figure). The name of the check
+    is that of the function, without "check_" and with spaces for underscores.
     """
 
     def register(function: Check) -> Check:
         for kind in kinds:
-            checks[kind][function.__name__.replace("_", " ")] = function
+            checks[kind][function.__name__.removeprefix("check_").replace("_", " ")] = function
         return function
 
     return register

@@ -1,11 +1,11 @@
-"""Checks the sampling of a BSDF: its density, its weights, and that it reaches every lobe."""
+"""Checks the sampling of a BSDF: its density, its weights, and that it misses no lobe."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from brdfkit.checks.material_subject import INCIDENCES, Subject, incidences
-from brdfkit.checks.registry import check_of, larger
+from brdfkit.checks.material_subject import INCIDENCES, Subject, list_incidences
+from brdfkit.checks.registry import check_of, larger_or_nan
 from brdfkit.checks.variants import to_channels
 from brdfkit.core.array_types import (
     FloatArray,
@@ -19,21 +19,21 @@ from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.core.geometry.quadrature import TOLERANCE, directional_albedo
 from brdfkit.core.jit.padding import pad
 
-# All tests of one check together reject a correct sampler once in a hundred runs. Seeds are fixed,
+# All tests of one check together reject a correct sampler with this probability. Seeds are fixed,
 # so a check that has passed will pass again.
 SIGNIFICANCE = 0.01
 SAMPLES = 1_000_000
-# Cells of the histogram, and points to integrate the density in a cell, both along each axis. If
-# the test rejects, it is repeated with the next, finer integral, which narrow lobes need.
+# Numbers of the histogram's cells, and of points in a cell at which the density is integrated, both
+# along each axis. If a test rejects, it is repeated with more points, which narrow lobes need.
 CELLS, SUBCELLS = 48, (16, 64, 128)
 
 
 @check_of(MODELS)
-def chi_squared(subject: Subject) -> tuple[bool, str]:
-    """Check by Pearson's χ² test that samples have the density `pdf`, at every angle of incidence.
+def check_chi_squared(subject: Subject) -> tuple[bool, str]:
+    """Check by Pearson's χ² test that sampled directions have the density `pdf`.
 
-    The histogram is over half vectors, where a narrow lobe is as round at grazing as at normal
-    incidence. Its cells become smaller towards the normal.
+    The test runs at every angle of incidence. Its histogram is over half vectors, where a narrow
+    lobe is as round at grazing as at normal incidence. Its cells become smaller towards the normal.
     """
     import drjit as dr
     import mitsuba as mi
@@ -42,8 +42,8 @@ def chi_squared(subject: Subject) -> tuple[bool, str]:
     corners = mi.ScalarPoint2f(0, 0), mi.ScalarPoint2f(1, 1)
     domain = PlanarDomain(mi.ScalarBoundingBox2f(*corners))
     p_values, rejected = [], []
-    for degrees, wi in incidences():
-        si = subject.interaction(wi)
+    for degrees, wi in list_incidences():
+        si = subject.make_interaction(wi)
 
         def sample(u: Sequence[JitFloat], si: MitsubaObject = si) -> tuple[JitVector, JitFloat]:
             drawn, _ = subject.bsdf.sample(mi.BSDFContext(), si, u[0], mi.Point2f(u[1], u[2]))
@@ -53,7 +53,7 @@ def chi_squared(subject: Subject) -> tuple[bool, str]:
             wo, jacobian = _to_direction(mi, point, si.wi)
             return subject.bsdf.pdf(mi.BSDFContext(), si, wo) * jacobian
 
-        # The finest integral decides if the coarser ones reject
+        # If the coarser integrals of the density reject, the finest one decides
         for subcells in SUBCELLS:
             test: MitsubaObject = ChiSquareTest(
                 domain, sample, pdf, 3, SAMPLES, res=CELLS, ires=subcells
@@ -67,25 +67,27 @@ def chi_squared(subject: Subject) -> tuple[bool, str]:
 
 
 def _to_square(mi: MitsubaModule, wo: JitVector, wi: JitVector) -> JitVector:
-    """Return the point (φ_h / 2π, y) of the unit square, where θ_h = π/2 y³.
+    """Map the half vector of two directions to the point (φ_h / 2π, y) of the unit square.
 
-    θ_h and φ_h are the polar angle and azimuth of the half vector of two directions. The power
-    makes cells small near the normal.
+    θ_h = π/2 y³ and φ_h are the polar angle and azimuth of the half vector. The power makes cells
+    of the square small near the normal.
     """
     import drjit as dr
 
     s = wi + wo
     s = s * dr.rsqrt(dr.maximum(dr.dot(s, s), 1e-20))
-    s = dr.select(s.z < 0, -s, s)  # below the surface, where the density is 0
+    s = dr.select(
+        s.z < 0, -s, s
+    )  # the half vector of a direction below the surface, where the density is 0
     theta = dr.atan2(dr.sqrt(s.x * s.x + s.y * s.y), s.z)
     phi = dr.atan2(s.y, s.x) / (2 * dr.pi)
     return mi.Point2f(dr.select(phi < 0, phi + 1, phi), (theta / (dr.pi / 2)) ** (1 / 3))
 
 
 def _to_direction(mi: MitsubaModule, point: JitVector, wi: JitVector) -> tuple[JitVector, JitFloat]:
-    """Return wo at a point of the unit square, and the Jacobian d solid angle / d area.
+    """Map a point of the unit square to the direction wo, the inverse of `_to_square`.
 
-    This is the inverse of `_to_square`.
+    Returns wo, and the Jacobian of the map, d solid angle / d area.
     """
     import drjit as dr
 
@@ -98,16 +100,16 @@ def _to_direction(mi: MitsubaModule, point: JitVector, wi: JitVector) -> tuple[J
 
 
 @check_of(MODELS)
-def coverage(subject: Subject) -> tuple[bool, str]:
-    """Check that the mean weight of samples is the albedo by quadrature: no lobe is missed.
+def check_coverage(subject: Subject) -> tuple[bool, str]:
+    """Check that samples miss no lobe: their mean weight is the albedo by quadrature.
 
-    The χ² test cannot detect a lobe that neither `sample` nor `pdf` knows.
+    The χ² test cannot detect a lobe that neither `sample` nor `pdf` includes.
     """
     worst, where = 0.0, ""
-    for degrees, wi in incidences():
+    for degrees, wi in list_incidences():
         weights = _average_channels(sample_weights(subject, wi), SAMPLES)
         mean = float(weights.mean())
-        expected = float(directional_albedo(subject.values, wi).mean())
+        expected = float(directional_albedo(subject.eval_expected, wi).mean())
         error = np.hypot(weights.std() / np.sqrt(len(weights)), TOLERANCE * expected)
         deviation = abs(mean - expected) / max(error, 1e-12)
         if deviation >= worst:
@@ -117,15 +119,15 @@ def coverage(subject: Subject) -> tuple[bool, str]:
 
 
 @check_of(MODELS)
-def weights(subject: Subject) -> tuple[bool, str]:
-    """Check that samples have the weight eval / pdf and the density pdf, as by eval_pdf."""
+def check_weights(subject: Subject) -> tuple[bool, str]:
+    """Check that samples have the weight eval / pdf, and that eval_pdf equals eval and pdf."""
     import drjit as dr
     import mitsuba as mi
 
     worst = 0.0
-    for _degrees, wi in incidences():
+    for _degrees, wi in list_incidences():
         n = 20_000
-        si = subject.interaction(wi)
+        si = subject.make_interaction(wi)
         drawn, weight = subject.bsdf.sample(mi.BSDFContext(), si, *draw_uniform(n, seed=3))
         value, pdf = subject.bsdf.eval_pdf(mi.BSDFContext(), si, drawn.wo)
         value_2 = subject.bsdf.eval(mi.BSDFContext(), si, drawn.wo)
@@ -138,16 +140,17 @@ def weights(subject: Subject) -> tuple[bool, str]:
         pdf, pdf_2, sample_pdf = (np.array(x)[valid] for x in (pdf, pdf_2, drawn.pdf))
         pairs = [(weight * pdf, value), (value, value_2), (pdf, pdf_2), (pdf, sample_pdf)]
         for a, b in pairs:
-            worst = larger(worst, float(np.max(np.abs(a - b) / np.maximum(np.abs(b), 1e-6))))
+            worst = larger_or_nan(worst, float(np.max(np.abs(a - b) / np.maximum(np.abs(b), 1e-6))))
     return worst < 1e-3, f"relative difference at most {worst:.1e}"
 
 
-def spread(subject: Subject, degrees: float, samples: int = SAMPLES) -> float:
-    """Return the standard deviation of the samples' weights over their mean.
+def compute_weight_spread(subject: Subject, degrees: float, samples: int = SAMPLES) -> float:
+    """Return the standard deviation of the weights of samples, relative to their mean.
 
-    `degrees`: an angle of incidence, one of `INCIDENCES`.
+    A small number means little noise in a rendering. `degrees` is an angle of incidence, one of
+    `INCIDENCES`.
     """
-    spectrum = sample_weights(subject, dict(incidences())[degrees], samples)
+    spectrum = sample_weights(subject, dict(list_incidences())[degrees], samples)
     weights = _average_channels(spectrum, samples)
     return float(weights.std() / weights.mean())
 
@@ -155,20 +158,20 @@ def spread(subject: Subject, degrees: float, samples: int = SAMPLES) -> float:
 def sample_weights(
     subject: Subject, wi: FloatArray, samples: int = SAMPLES, seed: int = 1
 ) -> JitColour:
-    """Draw samples at one incident direction, and return their weights, a spectrum of Mitsuba."""
+    """Draw samples of the BSDF at one incident direction, and return their weights."""
     import mitsuba as mi
 
-    si = subject.interaction(wi)
+    si = subject.make_interaction(wi)
     return subject.bsdf.sample(mi.BSDFContext(), si, *draw_uniform(samples, seed))[1]
 
 
 def _average_channels(spectrum: JitColour, n: int) -> FloatArray:
-    """Return the mean (n,) over the channels of a spectrum of Mitsuba."""
+    """Return the mean (n,) over the channels of `n` spectra of Mitsuba."""
     return to_channels(spectrum, n).mean(axis=0)
 
 
 def draw_uniform(n: int, seed: int) -> tuple[JitFloat, JitVector]:
-    """Draw uniform random numbers for `n` samples, (mi.Float, mi.Point2f)."""
+    """Draw the uniform random numbers for `n` samples of a BSDF, as (mi.Float, mi.Point2f)."""
     import mitsuba as mi
 
     u = [pad(row) for row in np.random.default_rng(seed).random((3, n), np.float32)]

@@ -1,4 +1,4 @@
-"""Converts spectra of Mitsuba's current variant to arrays: RGB, one channel, or wavelengths."""
+"""Converts spectra between arrays and Mitsuba's current variant: RGB, mono, or wavelengths."""
 
 import numpy as np
 
@@ -8,11 +8,11 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 from brdfkit.model import Model
 
-WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # nm, at which spectral variants are checked
+WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # [nm] at which spectral variants are checked
 
 
 def to_channels(spectrum: JitColour, n: int) -> FloatArray:
-    """Return the channels (channels, n) of a spectrum of Mitsuba, without its polarisation."""
+    """Convert `n` spectra of Mitsuba to an array (channels, n), without polarisation."""
     import mitsuba as mi
 
     channels = np.array(mi.unpolarized_spectrum(spectrum), float)
@@ -20,15 +20,16 @@ def to_channels(spectrum: JitColour, n: int) -> FloatArray:
 
 
 def to_variant_channels(values: FloatArray, material: Measured) -> FloatArray:
-    """Return `values` (n, c) of a `Measured` in the channels of the current variant (n, channels).
+    """Convert values (n, c) of a measured material to the channels of the current variant.
 
-    In a spectral variant a colour becomes a sum of three basis spectra [Mallett & Yuksel 2019].
+    Returns an array (n, channels). In a spectral variant a colour becomes a sum of three basis
+    spectra [Mallett & Yuksel 2019].
     """
     import mitsuba as mi
 
     if values.shape[1] == 1:
         return np.broadcast_to(values, (len(values), len(WAVELENGTHS) if mi.is_spectral else 1))
-    if material.channels != RGB:  # only in a spectral variant; in others, `rendered` is in RGB
+    if material.channels != RGB:  # only in a spectral variant, since others convert to RGB
         nm = wavelengths(material)
         order = np.argsort(nm)
         return np.stack([np.interp(WAVELENGTHS, nm[order], row) for row in values[:, order]])
@@ -42,7 +43,7 @@ def to_variant_channels(values: FloatArray, material: Measured) -> FloatArray:
 
 
 def read_weights(bsdf: MitsubaObject, model: Model) -> FloatArray:
-    """Return the weights (lobes, channels) of a model from the textures of its BSDF."""
+    """Read the weights (lobes, channels) of a model from the textures of its Mitsuba BSDF."""
     import drjit as dr
     import mitsuba as mi
 
