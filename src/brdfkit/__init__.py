@@ -8,8 +8,8 @@
 >>> bk.render([paint, *fits]).write("paint.exr")    # doctest: +SKIP
 >>> bk.report(paint, fits, path="paint.html")    # all of it on one page    # doctest: +SKIP
 
-Importing brdfkit is light and sets no Mitsuba variant. It makes the models known to Mitsuba as
-BSDF plugins in every variant, and chooses the LLVM that Dr.Jit loads (`brdfkit.core.jit.llvm`).
+Importing brdfkit is fast and sets no Mitsuba variant. It makes the models known to Mitsuba as BSDF
+plugins in every variant, and chooses the LLVM that Dr.Jit loads (`brdfkit.core.jit.llvm`).
 """
 
 import lazy_loader
@@ -18,7 +18,7 @@ from brdfkit.core.jit import llvm
 from brdfkit.core.version import __version__ as __version__
 from brdfkit.mitsuba_bridge.registration import hook
 
-# The public names are listed in __init__.pyi alone, and imported when used
+# Only __init__.pyi lists the public names; each is imported when it is first used
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 llvm.choose_llvm_library()

@@ -1,4 +1,4 @@
-"""`python -m brdfkit`: the command line, where the program `brdfkit` is not on the path."""
+"""Runs the command line as `python -m brdfkit`, where the program `brdfkit` is not on the PATH."""
 
 from brdfkit.cli import main
 

@@ -1,1 +1,1 @@
-"""Tools that know nothing of BRDFs: errors, files, geometry, Dr.Jit, documents, pages."""
+"""Tools that all packages share: errors, files, geometry, Dr.Jit, summaries of results, pages."""

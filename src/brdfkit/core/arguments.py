@@ -14,7 +14,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
-LONGEST = 80  # characters of a value in an error
+LONGEST = 80  # characters of a value that an error message shows
 
 
 def wrong_value_error(what: str, value: object, expected: str) -> BrdfkitError:
@@ -41,7 +41,9 @@ def is_number(value: object) -> TypeGuard[float]:
 def describe_range(
     noun: str, least: float | None, most: float | None = None, above: float | None = None
 ) -> str:
-    """Return a noun with the range that a value should lie in; an infinite `most` is no limit.
+    """Return a noun with the range in which a value should lie, for an error message.
+
+    `least` and `most` are allowed values, `above` is not; an infinite `most` is no limit.
 
     >>> describe_range("a number", 0, 1), describe_range("a whole number", 2)
     ('a number between 0 and 1', 'a whole number, at least 2')
@@ -62,7 +64,7 @@ def to_number(
     *,
     above: float | None = None,
 ) -> float:
-    """Return a number as a finite float from `least` to `most`, or larger than `above`."""
+    """Check that the argument `what` is in [`least`, `most`], or above `above`; return a float."""
     if is_number(value):
         number = float(value)
         low = (least is None or number >= least) and (above is None or number > above)
@@ -72,14 +74,14 @@ def to_number(
 
 
 def to_positive_number(what: str, value: object) -> float:
-    """Return a number as a finite float above 0."""
+    """Check that the argument `what` is a finite number above 0; return it as a float."""
     return to_number(what, value, above=0)
 
 
 def to_whole_number(
     what: str, value: object, least: int | None = None, most: int | None = None
 ) -> int:
-    """Return a whole number as an int from `least` to `most`; a float such as 2.0 is an error."""
+    """Check that the argument `what` is an integer from `least` to `most`; return it as an int."""
     if isinstance(value, int | np.integer) and not isinstance(value, bool):
         number = int(value)
         if (least is None or number >= least) and (most is None or number <= most):
@@ -88,7 +90,7 @@ def to_whole_number(
 
 
 def to_number_pair(what: str, value: Any) -> tuple[float, float]:
-    """Return two numbers as floats (low, high)."""
+    """Check that the argument `what` is two numbers; return them as floats (low, high)."""
     try:
         low, high = map(float, value)
     except (TypeError, ValueError):
@@ -97,17 +99,17 @@ def to_number_pair(what: str, value: Any) -> tuple[float, float]:
 
 
 def to_dictionary(what: str, value: Any) -> dict[str, Any]:
-    """Return a mapping from names of parameters as a dictionary, which is empty for None."""
+    """Check that the argument `what` is a mapping by names; return a dictionary, empty for None."""
     if not isinstance(value, Mapping | None):
-        raise wrong_value_error(what, value, "a dictionary by parameter")
+        raise wrong_value_error(what, value, "a dictionary by the names of parameters")
     return dict(value or {})
 
 
 def to_array(what: str, value: Any, shape: tuple[int, ...] | None = None) -> FloatArray:
-    """Return numbers, such as nested lists, as an array of floats.
+    """Check that the argument `what` holds numbers, also nested lists; return a float array.
 
-    An array of floats is returned without a copy. Where a `shape` is given, the array must
-    have it, and all of its numbers must be finite.
+    An array of floats is not copied. Where a `shape` is given, the array must have it, and all of
+    its numbers must be finite.
     """
     try:
         array: AnyArray = np.asarray(value)
@@ -123,9 +125,9 @@ def to_array(what: str, value: Any, shape: tuple[int, ...] | None = None) -> Flo
 
 
 def check_number_fields(solver: Any) -> None:
-    """Check that the fields of a frozen dataclass are above 0, and whole where their defaults are.
+    """Check that the fields of a solver, a frozen dataclass, are numbers above 0.
 
-    The fields then hold plain ints and floats.
+    A field whose default is whole must be whole. The fields then hold plain ints and floats.
     """
     for field in fields(solver):
         what, value = f"{type(solver).__name__}: {field.name}", getattr(solver, field.name)

@@ -15,7 +15,7 @@ IntArray: TypeAlias = NDArray[np.integer[Any]]
 BoolArray: TypeAlias = NDArray[np.bool_]
 AnyArray: TypeAlias = NDArray[Any]
 
-# Values of Dr.Jit in any variant, of core/jit/double_precision.py, or plain Python numbers
+# Numbers of Dr.Jit in a variant or in double precision (core/jit), or plain Python numbers
 JitFloat: TypeAlias = Any
 JitInt: TypeAlias = Any
 JitMask: TypeAlias = Any

@@ -1,7 +1,7 @@
 """Finds the materials and environment maps that come with brdfkit: files, origins and licences.
 
-Each folder, `data/measured` and `data/environments`, has an `index.toml` of its entries by name.
-The wheel copies both folders into the package; a checkout has them at its top.
+Each folder, `data/measured` and `data/environments`, has an `index.toml` that describes its files
+by name. An installed package contains both folders; a checkout has them at its top.
 """
 
 import tomllib
@@ -16,13 +16,13 @@ MEASURED, ENVIRONMENTS = "measured", "environments"
 
 
 def read_index(kind: str = MEASURED) -> dict[str, Any]:
-    """Return the content of an index by name; the entry "collections" holds public collections."""
+    """Return the content of `data/KIND/index.toml`; "collections" holds the public collections."""
     with (find_data_folder(kind) / "index.toml").open("rb") as stream:
         return tomllib.load(stream)
 
 
 def find_data_folder(kind: str = MEASURED) -> Path:
-    """Return the folder of an index, in the installed package or at the top of a checkout."""
+    """Return the folder `data/KIND`, in the installed package or at the top of a checkout."""
     package = Path(__file__).resolve().parents[1]
     installed, checkout = (place / "data" / kind for place in (package, package.parents[1]))
     return installed if installed.is_dir() else checkout
@@ -30,11 +30,11 @@ def find_data_folder(kind: str = MEASURED) -> Path:
 
 @dataclass(frozen=True)
 class MapCollection:
-    """A public collection of environment maps, as the index describes it.
+    """A public collection of environment maps, which users download themselves.
 
-    `licence` (a word) and `terms` (a sentence) are the owners' conditions, `page` is the web page
-    with the files. `convention` is the word for `brdfkit convert --source`, or says why it is
-    unknown.
+    `licence` (a word) and `terms` (a sentence) are the owners' conditions, `citation` is the work
+    to cite, and `page` the web page with the files. `convention` is the word for `brdfkit convert
+    --source`, or says why it is unknown.
     """
 
     title: str
@@ -66,8 +66,8 @@ class Shipped:
     """A material or an environment map that comes with brdfkit.
 
     `name` is what `brdfkit.load` or the argument ``environment`` takes; `title` and `what` describe
-    it for people; `source` names the data and the command that made it; `file` is its name in the
-    folder of the index, and `sha256` the checksum of the file.
+    it for people; `source` names the data and the command that made it; `file` is the file's name
+    in its folder, and `sha256` its checksum.
     """
 
     name: str
@@ -124,13 +124,16 @@ def find_environment_file(name: str) -> Path:
 
 
 def _list_shipped(kind: str) -> dict[str, Shipped]:
-    """Return the entries of an index that come with brdfkit."""
+    """Return the materials ("measured") or "environments" that come with brdfkit, by name."""
     entries = read_index(kind).items()
     return {name: Shipped(name, **entry) for name, entry in entries if name != "collections"}
 
 
 def _find_verified_file(what: str, name: str, known: dict[str, Shipped], folder: Path) -> Path:
-    """Return the file of a known entry in a folder; `what` names its kind in errors."""
+    """Return the path of one of the `known` files in a folder, after a check of its checksum.
+
+    `what` is the kind of thing in an error, such as "material".
+    """
     if name not in known:
         raise no_such_error(what, name, known)
     file = folder / known[name].file

@@ -1,4 +1,4 @@
-"""Converts between spectra, linear sRGB, as in Mitsuba and in pictures, and sRGB for screens."""
+"""Converts spectra to linear sRGB, Mitsuba's colours, and linear sRGB to sRGB for screens."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
 RGB = ("R", "G", "B")  # names of the channels
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # weights of linear R, G and B
 ILLUMINANT = "D65"
 OBSERVER = "CIE 1931 2 Degree Standard Observer"
 # The wavelengths of a spectrum must span this range; otherwise its colour would be a guess
@@ -16,7 +16,7 @@ REQUIRED_RANGE = (480, 620)  # nm
 
 
 def luminance(values: FloatArray) -> FloatArray:
-    """Return the luminance (...) of values (..., 1), achromatic, or (..., 3), linear sRGB.
+    """Return the luminance (...) of linear sRGB (..., 3), or the one channel of values (..., 1).
 
     >>> luminance(np.array([0.0, 1.0, 0.0]))
     np.float64(0.7152)
@@ -30,7 +30,7 @@ def luminance(values: FloatArray) -> FloatArray:
 
 
 def to_srgb(linear: ArrayLike) -> FloatArray:
-    """Apply the curve of sRGB [IEC 1999] to linear values, which are clipped to 0 to 1.
+    """Encode linear values, clipped to [0, 1], by the curve of sRGB [IEC 1999] for screens.
 
     >>> to_srgb(np.array([0.0, 0.5, 2.0])).round(3)
     array([0.   , 0.735, 1.   ])
@@ -40,7 +40,7 @@ def to_srgb(linear: ArrayLike) -> FloatArray:
 
 
 def from_srgb(values: ArrayLike) -> FloatArray:
-    """Invert the curve of sRGB [IEC 1999]: return linear values from 0 to 1.
+    """Decode sRGB values, clipped to [0, 1], to linear values by the inverse curve [IEC 1999].
 
     >>> from_srgb(np.array([0.0, 0.7354, 1.0])).round(3)
     array([0. , 0.5, 1. ])
@@ -57,7 +57,7 @@ def import_colour_package() -> Any:
 
 
 def compute_rgb_weights(wavelengths: ArrayLike, name: str) -> FloatArray:
-    """Compute the weights (n, 3) by which reflectances at n wavelengths [nm] add up to linear sRGB.
+    """Compute the matrix (n, 3) that converts reflectances at n wavelengths [nm] to linear sRGB.
 
     Reflectance is linear between the wavelengths and constant beyond them; every column sums to 1.
     Raises `BrdfkitError` for wavelengths of the material `name` that do not span 480 to 620 nm.
@@ -81,7 +81,7 @@ def compute_rgb_weights(wavelengths: ArrayLike, name: str) -> FloatArray:
     hats = np.stack(
         [np.interp(observer.wavelengths, wavelengths[order], row) for row in np.eye(len(order))]
     )
-    # Integrate over the observer and the illuminant; XYZ to sRGB
+    # Integrate each hat times the illuminant and the observer to XYZ, and convert XYZ to sRGB
     xyz = hats @ (light[:, None] * observer.values)
     rgb = xyz @ colour.RGB_COLOURSPACES["sRGB"].matrix_XYZ_to_RGB.T
     weights = np.empty_like(rgb)

@@ -1,4 +1,4 @@
-"""The error that brdfkit raises for people to read, and proposals for misspelt names."""
+"""The error class of brdfkit, and errors for unknown names, which propose a similar one."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -12,7 +12,9 @@ class BrdfkitError(ValueError):
 
 
 def no_such_error(what: str, name: object, known: Iterable[Any], where: str = "") -> BrdfkitError:
-    """Return the error for an unknown `name`; it proposes the nearest of the `known` names.
+    """Return the error for an unknown `name` of a thing `what`; it proposes the nearest known name.
+
+    `where` is the file or object that lacks the name.
 
     >>> no_such_error("model", "wrad", ["ggx", "ward"])
     BrdfkitError("There is no model 'wrad'; did you mean ward? There are ggx, ward.")

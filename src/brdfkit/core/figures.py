@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 
 from brdfkit.core.array_types import AnyArray
 
-# The grey level of lines and text: its contrast is 4 to white, 4.5 to dark notebooks
+# The grey level of lines and text: its contrast ratio is 4 to white, 4.5 to dark notebooks
 INK_LEVEL = 0.49
-OPACITY_GAIN = 1.6  # opacity over darkness: a grey of 0.4 becomes opaque, one of 0.9 a sixth
+OPACITY_GAIN = 1.6  # opacity over (1 - grey): 0.4 becomes opaque, 0.9 one sixth opaque
 GREY_TOLERANCE = 0.02  # a colour whose channels differ by less counts as grey
 COLOURS = {
     "Text": ("color",),
@@ -23,7 +23,7 @@ COLOURS = {
 
 
 class Plot(Figure):
-    """A matplotlib `Figure` apart from pyplot, without a window and global state.
+    """A matplotlib `Figure` without pyplot, its windows and its global state.
 
     Notebooks show it even if pyplot was not set up for them.
     """
@@ -65,7 +65,7 @@ def _with_visible_greys(figure: Figure) -> Iterator[None]:
 def _replace_greys(colours: Any) -> AnyArray | tuple[float, ...] | str:
     """Return colours with black and greys replaced by a middle grey, fainter for lighter greys.
 
-    White becomes transparent; other colours stay.
+    White becomes transparent; colours that are not grey stay.
     """
     from matplotlib.colors import to_rgba_array
 

@@ -14,7 +14,7 @@ GZIP, XZ = ".gz", ".xz"
 # A function that is called with the path of a file before or after it is written
 Watcher = Callable[[Path], object]
 _watchers: ContextVar[tuple[tuple[Watcher, Watcher], ...]] = ContextVar("watchers", default=())
-COMPRESSED = {GZIP: b"\x1f\x8b", XZ: b"\xfd7zXZ\x00"}  # suffix: first bytes
+COMPRESSED = {GZIP: b"\x1f\x8b", XZ: b"\xfd7zXZ\x00"}  # suffix: first bytes of the file
 
 
 @contextmanager
@@ -50,7 +50,7 @@ def write_safely(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 @contextmanager
 def _link_as_utf8(folder: Path) -> Iterator[Path]:
-    """Yield a path of the folder in UTF-8 for native libraries; if necessary, a link's path."""
+    """Yield a path of the folder that native libraries can read, in UTF-8: if necessary, a link."""
     if is_utf8_path(folder):
         yield folder
         return
@@ -63,7 +63,7 @@ def _link_as_utf8(folder: Path) -> Iterator[Path]:
 
 
 def is_utf8_path(path: str | os.PathLike[str]) -> bool:
-    """Return whether the bytes of a path are UTF-8; others appear as lone surrogates in Python."""
+    """Return whether the bytes of a path are UTF-8, as native libraries such as Mitsuba need."""
     try:
         str(path).encode()
     except UnicodeEncodeError:
@@ -89,9 +89,10 @@ def make_folder(path: str | os.PathLike[str]) -> None:
 
 
 def require_writable(path: str | os.PathLike[str]) -> Path:
-    """Return the file that `write_safely` will write; for a link, the file that it leads to.
+    """Check before a long computation that `write_safely` can write `path`; return the real path.
 
-    Raises the `BrdfkitError` of `write_safely` before the work, as far as it can be foreseen.
+    For a link, that is the file to which it leads. Raises `BrdfkitError` for each failure that can
+    be foreseen.
     """
     try:
         os.fsencode(path)
@@ -122,7 +123,7 @@ def require_writable(path: str | os.PathLike[str]) -> Path:
 
 @contextmanager
 def watch_writing(before: Watcher, after: Watcher) -> Iterator[None]:
-    """Call `before(path)` and `after(path)` around every file that is written in the block.
+    """Within the block, call `before(path)` and `after(path)` around the writing of every file.
 
     `before` is also called as soon as it is known that a file will be written. It may raise a
     `BrdfkitError`: then the file stays as it is.
@@ -236,5 +237,5 @@ def _too_large_error(path: Path) -> BrdfkitError:
 
 
 def _describe_cause(error: BaseException) -> str:
-    """Return the reason of an error in words."""
+    """Return why an error happened: the system's reason, or else the error's own message."""
     return getattr(error, "strerror", None) or str(error).strip().rstrip(".") or "unknown cause"

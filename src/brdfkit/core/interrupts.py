@@ -17,9 +17,10 @@ _received: int | None = None  # the signal that ended the command
 
 
 class Interrupted(KeyboardInterrupt):
-    """The error that Ctrl-C raises in a search, with its best result, for ``sys.last_value.best``.
+    """The error that Ctrl-C raises in a fit or a search, with the best result so far.
 
-    Loops and programs end by it, as by any KeyboardInterrupt.
+    Loops and programs end by it, as by any KeyboardInterrupt; ``sys.last_value.best`` is the
+    result.
 
     Attributes
     ----------
@@ -37,7 +38,7 @@ class Interrupted(KeyboardInterrupt):
 def stop_on_signals() -> Iterator[None]:
     """Let Ctrl-C and SIGTERM raise KeyboardInterrupt within the block.
 
-    A Ctrl-C that the shell has the command ignore, in the background, stays ignored.
+    A command that the shell runs in the background still ignores Ctrl-C.
     """
     global _received
     _received = None
@@ -56,20 +57,20 @@ def stop_on_signals() -> Iterator[None]:
 
 
 def is_stopped_by_signal() -> bool:
-    """Return whether a signal ended the command: native code may have raised another error then."""
+    """Return whether a signal ended the command; native code may then raise any other error."""
     return _received is not None
 
 
 def find_exit_status() -> int:
     """Return the exit status of a command that a signal ended: 130 by Ctrl-C, 143 by SIGTERM."""
-    # After Ctrl-C within exec, as in making a dataclass, Python would end by the signal itself and
-    # without a status; the next exec clears that
+    # Ctrl-C within exec, by which dataclasses are made, would let Python end by the signal itself
+    # and without an exit status; another exec clears that
     exec("")
     return 128 + (_received or signal.SIGINT)
 
 
 def _raise_interrupt(number: int, _frame: FrameType | None) -> None:
-    """Remember a signal and raise KeyboardInterrupt."""
+    """Raise KeyboardInterrupt, and keep the number of the signal for the exit status."""
     global _received
     _received = number
     raise KeyboardInterrupt
@@ -87,7 +88,7 @@ def delay_signals() -> Iterator[None]:
         return
     received: list[int] = []
     before = {number: signal.getsignal(number) for number in SIGNALS}
-    before = {number: h for number, h in before.items() if h is not None}  # not set by Python
+    before = {number: h for number, h in before.items() if h is not None}  # not by native code
     for number in before:
         signal.signal(number, lambda number, _frame: received.append(number))
     try:

@@ -12,9 +12,9 @@ from brdfkit.core.files import require_file
 def find_file_or_name(
     given: object, what: str, known: Iterable[str], folders: bool = False
 ) -> Path | str:
-    """Return the `Path` of an existing file, or else a known name, as a str, that `given` means.
+    """Return what `given` means: an existing file as a `Path`, or else one of the `known` names.
 
-    `what` is the kind of thing in the error, such as "material". With `folders`, a folder takes
+    `what` is the kind of thing in errors, such as "material". With `folders`, a folder takes
     precedence over a known name as well. Raises `BrdfkitError`, which proposes the nearest name,
     where there is neither a file nor a name.
 

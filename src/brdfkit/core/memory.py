@@ -4,8 +4,8 @@ import psutil
 
 from brdfkit.core.errors import BrdfkitError
 
-# Peak of the resident memory [bytes per pixel], measured from 2 to 9 million pixels. Several
-# pictures take BYTES_OF_SEVERAL + BYTES_OF_EACH · pictures, most of it for colour differences
+# Peak of the resident memory [bytes per pixel], measured from 2 to 9 million pixels. n > 1
+# pictures take BYTES_OF_SEVERAL + n BYTES_OF_EACH, most of it for colour differences
 BYTES_OF_ONE = 220
 BYTES_OF_SEVERAL, BYTES_OF_EACH = 330, 75
 

@@ -4,12 +4,12 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 
 CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}  # ASCII and ISO 6429
-RESERVED = '/\\:*?"<>|'  # not allowed in a file name, here or on another system
-LONGEST_STEM = 100  # bytes; a file system takes 255, including the suffix
+RESERVED = '/\\:*?"<>|'  # not allowed in file names on some system
+LONGEST_STEM = 100  # bytes; file systems allow 255 with the suffix
 
 
 def make_unique(name: str, taken: Collection[str]) -> str:
-    """Return `name`, with the first free number behind it if `name` is taken.
+    """Return `name`, or if it is `taken`, the name with the first free number behind it.
 
     >>> make_unique("ward", {"ward"})
     'ward (2)'

@@ -24,7 +24,7 @@ def count_steps(function: Progress | None, total: int) -> Callable[[], None]:
     done = 0
 
     def report_step() -> None:
-        """Count a step and report it."""
+        """Count a step, and report the number of steps so far."""
         nonlocal done
         done += 1
         if function:

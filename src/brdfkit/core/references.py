@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 from unicodedata import normalize
 
-# a line may break within a citation
+# [Key 1992] or [Key 1992, place in the work]; a line may break within it
 CITATION = re.compile(r"\[([A-ZÀ-Ž][^\[\]]*?\s\d{4}[a-z]?)(?:,\s[^\[\]]*)?\]")
 
 

@@ -1,1 +1,1 @@
-"""Finds plugins, one file each, and reads the pages in their docstrings."""
+"""Finds plugins, one file each, and reads the pages of help in their docstrings."""

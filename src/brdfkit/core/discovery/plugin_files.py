@@ -20,7 +20,7 @@ from brdfkit.core.errors import BrdfkitError
 
 
 def find_module_names(path: Iterable[str]) -> tuple[str, ...]:
-    """Return the names of the modules in a package, by its `__path__`, in alphabetical order.
+    """Return the names of the modules in a package, given by its `__path__`, in alphabetical order.
 
     Names that begin with an underscore are left out.
 
@@ -32,7 +32,7 @@ def find_module_names(path: Iterable[str]) -> tuple[str, ...]:
 
 
 def import_modules(package: str, path: Iterable[str]) -> tuple[ModuleType, ...]:
-    """Import the modules of a package that `find_module_names` finds."""
+    """Import the modules of a package that `find_module_names` finds in its `__path__`."""
     return tuple(importlib.import_module(f"{package}.{name}") for name in find_module_names(path))
 
 
@@ -58,6 +58,8 @@ _listeners: list[Callable[[], None]] = []
 def find_plugins(kind: str) -> dict[str, Any]:
     """Return the source of every plugin of a kind by name: its file, or a class from a notebook.
 
+    A kind is a folder of plugins, such as "bsdfs" or "emitters".
+
     >>> find_plugins("bsdfs")["ward"].name
     'ward.py'
     """
@@ -65,7 +67,7 @@ def find_plugins(kind: str) -> dict[str, Any]:
 
 
 def find_plugin_kind(name: str) -> str | None:
-    """Return the kind of the plugin `name`, None where there is no such plugin."""
+    """Return the kind of the plugin `name`, such as "bsdfs", or None if no plugin has this name."""
     return next((kind for kind in KINDS if name in find_plugins(kind)), None)
 
 
@@ -85,12 +87,12 @@ def add_plugins(kind: str, added: Mapping[str, Path | type]) -> None:
 
 
 def call_when_plugins_added(listener: Callable[[], None]) -> None:
-    """Have `listener()` called each time that plugins have been added."""
+    """Register a function that is called each time after plugins have been added."""
     _listeners.append(listener)
 
 
 def find_python_files(path: str | Path) -> list[Path]:
-    """Return the Python file at `path`, or those in a folder without a leading "_".
+    """Return the Python file at `path`, or the files of a folder except those with a leading "_".
 
     Raises `BrdfkitError` where there are none.
     """
@@ -118,14 +120,14 @@ def import_plugin(file: Path) -> ModuleType:
 
 @cache
 def _find_own_plugins(kind: str) -> dict[str, Path]:
-    """Return the files of brdfkit's own plugins of a kind by name."""
+    """Return the files of the plugins of a kind that come with brdfkit, by name."""
     files = [f for folder in plugins.__path__ for f in Path(folder, kind).glob("[!_]*.py")]
     return {file.stem: file for file in sorted(files)}
 
 
 @cache
 def _import_user_file(file: Path, _modified: int) -> ModuleType:
-    """Import a user's file; another time of its last change makes the cache import it anew."""
+    """Import a user's plugin file; another `_modified`, the time of its change, does so again."""
     name = f"{USERS}.{file.stem}"
     if file.suffix != ".py":
         raise BrdfkitError(f"{file} is not a Python file.")
@@ -158,7 +160,7 @@ class _Loader(SourceFileLoader):
 
 
 def require_free_name(name: str, source: Path | type) -> None:
-    """Raise `BrdfkitError` where another plugin, of any kind, has the name of `source`.
+    """Raise `BrdfkitError` if another plugin than `source`, of any kind, has the `name`.
 
     Mitsuba would go on using the other plugin.
     """
@@ -176,7 +178,7 @@ def require_free_name(name: str, source: Path | type) -> None:
 
 
 def _is_same_file(known: Path, source: Path | type) -> bool:
-    """Return whether a new `source` is the file `known`, perhaps by another path."""
+    """Return whether `source` is the file `known`, perhaps by another path."""
     return known == source or (
         isinstance(source, Path) and known.exists() and source.exists() and known.samefile(source)
     )

@@ -1,4 +1,4 @@
-"""Reads the page of a plugin, which is the docstring of its file.
+"""Reads a plugin's page of help, which is the docstring of its file.
 
 The first line is ``Title: one sentence.``; then follow the formula, if there is one, and prose.
 """
@@ -17,7 +17,7 @@ SHOWS = re.compile(r"\b(?:It s|S)(hows .*?\.)(?=\s|$)")
 
 @dataclass(frozen=True)
 class Page:
-    """The page of a plugin: its `title`, one `sentence`, and the `lines` after the first."""
+    """A plugin's page: `title` and `sentence` are its first line, and `lines` the others."""
 
     title: str
     sentence: str
@@ -28,7 +28,7 @@ class Page:
 
     @property
     def shown_materials(self) -> str:
-        """The sentence that says which materials a model shows and which it does not, or ""."""
+        """The sentence on the materials that a BRDF model can show and cannot show, or ""."""
         match = SHOWS.search(" ".join(self.lines))
         return f"S{match.group(1)}" if match else ""
 
@@ -39,7 +39,7 @@ class Page:
 
 
 def read_page(source: Path | type) -> Page:
-    """Read the page of a plugin, given as its file or its class.
+    """Read the page of help of a plugin, given as its file or its class.
 
     A class that no plugin file defines has its own docstring as its page.
     """

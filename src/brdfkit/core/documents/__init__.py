@@ -1,7 +1,7 @@
-"""The summary of an object, written once and shown as text in terminals and as HTML in notebooks.
+"""Shows the summary of a result as text in terminals and as HTML in notebooks.
 
-A class that derives from `Shown` returns the summary from `document()`: a title and the parts of
-`parts.py`. `text.py` turns them into text, and `html.py` into HTML.
+A class that derives from `Shown` returns its summary from `document()`: a title and the parts of
+`parts.py`. `text.py` converts the summary to text, and `html.py` to HTML.
 """
 
 from brdfkit.core.documents.parts import Cell as Cell

@@ -1,6 +1,6 @@
-"""Turns a document into HTML for notebooks, without scripts and without anything from elsewhere.
+"""Converts a document to HTML for notebooks, without scripts and without links to other files.
 
-Its colours derive from the colour of the text, so that they are right in light and dark themes.
+Its colours derive from the notebook's colour of text, so that they suit light and dark themes.
 Where a viewer removes the style sheet, plain tables remain.
 """
 
@@ -84,7 +84,7 @@ def _format_table(table: Table) -> str:
 
 
 def _format_rows(rows: Sequence[Row], columns: Sequence[str]) -> str:
-    """Return the rows of a table as HTML."""
+    """Return the rows of a table as HTML; columns whose names begin with ">" hold numbers."""
     numeric = [name.startswith(">") for name in columns]
     return "".join(
         f"<tr>{''.join(map(_format_cell, row, numeric or [False] * len(row)))}</tr>" for row in rows
@@ -92,7 +92,7 @@ def _format_rows(rows: Sequence[Row], columns: Sequence[str]) -> str:
 
 
 def _format_cell(cell: str | Cell, is_number: bool) -> str:
-    """Return a cell with its colour, its text and its bar as HTML."""
+    """Return a cell as HTML: a square of its colour, its text, and a bar with its place."""
     if not isinstance(cell, Cell):
         cell = Cell(cell)
     kinds = " ".join(filter(None, ["number" if is_number else "", cell.kind]))
@@ -103,7 +103,10 @@ def _format_cell(cell: str | Cell, is_number: bool) -> str:
 
 
 def _format_colour_square(colour: Sequence[float]) -> str:
-    """Return a square of a linear colour, scaled down to 1 if it is brighter, or "" for none."""
+    """Return a small square of a linear sRGB colour as HTML, or "" for an empty colour.
+
+    A colour with a channel above 1 is divided by that channel.
+    """
     if len(colour) != 3:
         return ""
     rgb = np.maximum(colour, 0)
@@ -112,7 +115,7 @@ def _format_colour_square(colour: Sequence[float]) -> str:
 
 
 def _format_bar(place: float | None) -> str:
-    """Return a bar with a mark at `place`, 0 to 1, or "" for None."""
+    """Return a bar with a mark at `place`, from 0 to 1, as HTML, or "" for None."""
     if place is None:
         return ""
     return f'<span class="bar"><i style="left:{100 * place:.0f}%"></i></span>'
@@ -128,7 +131,7 @@ def _format_picture(picture: Picture) -> str:
     """Draw a picture and return its HTML, or a sentence that says why it is not shown."""
     try:
         content = picture.draw()
-    except Exception as error:  # a user's model may raise anything; the rest is shown all the same
+    except Exception as error:  # a user's model may raise anything; the other parts should be shown
         said = f"Not shown: {picture.says} ({type(error).__name__}: {error})."
         return _format_paragraph(Paragraph(said, SOFT))
     if isinstance(content, str):
@@ -142,17 +145,17 @@ def _format_picture(picture: Picture) -> str:
 
 
 def _format_folded(folded: Folded) -> str:
-    """Return folded lines as HTML that unfolds at a click."""
+    """Return a heading with hidden lines as HTML; a click on the heading shows the lines."""
     text = "\n".join(map(_escape, folded.text.splitlines()))
     return f"<details><summary>{_escape(folded.heading)}</summary><pre>{text}</pre></details>"
 
 
 def _escape(text: object) -> str:
-    """Escape a text for HTML."""
+    """Escape a text for HTML, without its control characters."""
     return escape(to_printable(text))
 
 
-KINDS = {b"\x89PNG": "png", b"RIFF": "webp", b"\xff\xd8": "jpeg"}  # by the first bytes
+KINDS = {b"\x89PNG": "png", b"RIFF": "webp", b"\xff\xd8": "jpeg"}  # by the first bytes of a file
 MAKERS: dict[type, Callable[[Any], str]] = {
     Table: _format_table,
     Paragraph: _format_paragraph,

@@ -1,19 +1,19 @@
-"""The parts of a document: paragraphs, tables, pictures and folded lines."""
+"""The parts of a document: paragraphs, tables, pictures and lines that a click unfolds."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-GOOD, BAD, STRONG, SOFT = "good", "bad", "strong", "soft"  # kinds of cells and paragraphs
+GOOD, BAD, STRONG, SOFT = "good", "bad", "strong", "soft"  # emphasis of cells and paragraphs
 
 
 @dataclass(frozen=True)
 class Cell:
     """A cell of a table with more than a text.
 
-    `kind` is one of the kinds above and says how the cell stands out. HTML alone shows the rest:
-    `hint` under the pointer, `colour`, linear R, G, B, as a small square, and `place`, from 0 to 1,
-    as a mark on a bar, for a value between its bounds.
+    `kind` is its emphasis: "good", "bad", "strong", "soft" or "". Only HTML shows the other fields:
+    `hint` is a text under the pointer; `colour`, in linear sRGB, a small square; `place`, from 0 to
+    1, a mark on a bar, for a value between its bounds.
     """
 
     text: str
@@ -41,7 +41,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Paragraph:
-    """One or more sentences; `kind`, one of the kinds above, says how they stand out."""
+    """One or more sentences; their emphasis `kind` is "good", "bad", "strong", "soft" or ""."""
 
     text: str
     kind: str = ""
@@ -49,7 +49,7 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture, which HTML alone shows.
+    """A picture that only HTML shows; plain text leaves it out.
 
     `draw()` returns the bytes of a PNG, WebP or JPEG, or the text of an SVG; it is called when the
     picture is shown. `says` describes the picture for those who do not see it; `width` is in pixels
@@ -63,7 +63,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Folded:
-    """A `text` whose lines HTML alone shows, below a heading that unfolds them."""
+    """A `text` below a `heading` that unfolds it at a click; plain text leaves both out."""
 
     heading: str
     text: str
@@ -74,7 +74,7 @@ Part: TypeAlias = Table | Paragraph | Picture | Folded
 
 @dataclass(frozen=True)
 class Document:
-    """A `title` and `parts` in their order; pictures that follow each other stand side by side."""
+    """A summary: a `title` and `parts` below it; successive pictures stand side by side."""
 
     title: str
     parts: tuple[Part, ...] = ()

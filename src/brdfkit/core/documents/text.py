@@ -1,4 +1,4 @@
-"""Turns a document into text: the title, and below it, indented, its paragraphs and tables."""
+"""Converts a document to text: the title, and below it, indented, its paragraphs and tables."""
 
 from brdfkit.core.documents.html import to_html
 from brdfkit.core.documents.parts import BAD, Cell, Document, Paragraph, Table
@@ -49,16 +49,16 @@ def _format_table(table: Table) -> list[str]:
 
 
 def _split_long_name(row: list[str]) -> list[list[str]]:
-    """Return a row as one row, or as two if its name is long: the name, and the numbers."""
+    """Return a row of a table, or two rows if its name is long: the name, then the numbers."""
     name, *others = row
     return [[name, *("" for _ in others)], ["", *others]] if len(name) > LONGEST_NAME else [row]
 
 
 class Shown:
-    """An object with a summary, `document()`; terminals show it as text and notebooks as HTML."""
+    """Base class of results: terminals show their `document()` as text, notebooks as HTML."""
 
     def document(self) -> Document:
-        """Return the summary of the object."""
+        """Return the summary of the object: a title with paragraphs, tables and pictures."""
         raise NotImplementedError
 
     def __str__(self) -> str:

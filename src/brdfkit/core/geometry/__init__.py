@@ -1,1 +1,1 @@
-"""Directions, integrals over them and multilinear interpolation."""
+"""Direction vectors, integrals over directions, and multilinear interpolation."""

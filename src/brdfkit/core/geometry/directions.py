@@ -36,6 +36,7 @@ def normalize(w: ArrayLike) -> AnyArray:
 def to_half_difference(wi: ArrayLike, wo: ArrayLike) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return (theta_h, theta_d, phi_d) [rad] of direction pairs (..., 3), with phi_d in [0, 2π).
 
+    theta_h is the polar angle of the half vector; theta_d and phi_d are the angles of `wi` to it.
     Exchanging `wi` and `wo` adds π to phi_d, so that a reciprocal BRDF has the period π in phi_d.
     `half_azimuth` gives the azimuth of the half vector, on which only an anisotropic BRDF depends.
     """

@@ -11,7 +11,7 @@ from brdfkit.core.array_types import JitFloat
 
 
 def to_disc(x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, JitFloat]:
-    """Return the place (s, t) of a unit direction in the unit disc that the sign of `z` selects.
+    """Return the point (s, t) of a unit direction in the unit disc of its hemisphere, by its z.
 
     >>> to_disc(0.6, 0.0, -0.8)
     (0.3333333333333333, 0.0)
@@ -21,7 +21,7 @@ def to_disc(x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, JitFloat]:
 
 
 def from_disc(s: JitFloat, t: JitFloat, sign: JitFloat) -> tuple[JitFloat, JitFloat, JitFloat]:
-    """Return the direction (x, y, z) at (s, t) of the disc of z ≥ 0 (`sign` = 1) or z < 0 (-1).
+    """Return the direction (x, y, z) at (s, t) of the disc for z ≥ 0 (`sign` = 1) or z < 0 (-1).
 
     >>> from_disc(0.0, 0.0, -1)
     (0.0, 0.0, -1.0)
@@ -31,7 +31,7 @@ def from_disc(s: JitFloat, t: JitFloat, sign: JitFloat) -> tuple[JitFloat, JitFl
 
 
 def solid_angle(z: JitFloat) -> JitFloat:
-    """Return the solid angle [sr] per area of the disc at a direction, (1 + |z|)².
+    """Return the solid angle [sr] per area of the disc, (1 + |z|)², at a direction with this z.
 
     >>> solid_angle(1.0)
     4.0

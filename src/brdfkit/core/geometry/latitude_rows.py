@@ -13,10 +13,10 @@ from brdfkit.core.array_types import FloatArray
 
 
 def solid_angles(height: int, width: int, at_poles: bool) -> FloatArray:
-    """Return the solid angle (height,) [sr] of a pixel of each row.
+    """Return the solid angle (height,) [sr] of a pixel in each row of a latitude-longitude map.
 
-    With `at_poles` rows lie at the poles and the map is linear between rows, so that a pixel stands
-    for the integral of its weight; otherwise each pixel is constant.
+    With `at_poles` the first and last rows lie at the poles and the map is linear between rows:
+    then the interpolation weight of a pixel is integrated. Otherwise each pixel is constant.
 
     >>> (solid_angles(3, 1, at_poles=False).sum() / np.pi).round(9)
     np.float64(4.0)
@@ -25,7 +25,9 @@ def solid_angles(height: int, width: int, at_poles: bool) -> FloatArray:
 
 
 def projected_solid_angles(height: int, width: int) -> FloatArray:
-    """Return ∫ cosθ dω (height,) [sr] over the upper hemisphere for the pixels of a file's rows.
+    """Return the integral (height,) [sr] of cosθ over the pixel of each row of a map file.
+
+    Only the upper hemisphere counts. The map is linear between rows, and rows lie at the poles.
 
     >>> (projected_solid_angles(5, 1).sum() / np.pi).round(9)
     np.float64(1.0)
@@ -48,12 +50,12 @@ def _integrate_rows(
     second_integral: Callable[..., FloatArray],
     first_integral: Callable[..., FloatArray],
 ) -> FloatArray:
-    """Return ∫ g(θ) dω (height,) for a pixel of each row.
+    """Return ∫ g(θ) w(θ) dω (height,) for a pixel of each row, with its interpolation weight w.
 
     `first_integral` is the integral of g(θ) sinθ over θ, and `second_integral` the integral of
-    that. The weight of a row falls linearly to its neighbours; by parts, its
-    integral is the difference of the mean slopes of `second_integral` on both sides, or of
-    `first_integral` itself at the poles.
+    `first_integral`. With `at_poles`, w falls linearly to the neighbouring rows. By parts, the
+    result is then the difference of the mean slopes of `second_integral` on both sides of the row;
+    at the poles, `first_integral` stands for the slope outside.
     """
     if at_poles:
         theta = np.linspace(0, np.pi, height)

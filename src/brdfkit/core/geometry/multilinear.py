@@ -18,14 +18,14 @@ Bracket: TypeAlias = tuple[Any, Any, Any]
 
 
 def find_bracket(x: AnyArray, n: int) -> Bracket:
-    """Return the bracket around the coordinate `x` on an axis of `n` nodes, clamped at its ends."""
+    """Return (lower, upper, share of the upper) of the nodes 0 ... n - 1 around `x`, clamped."""
     x = np.clip(x, 0, n - 1)
     lower = np.minimum(x.astype(int), max(n - 2, 0))
     return lower, np.minimum(lower + 1, n - 1), x - lower
 
 
 def find_periodic_bracket(x: AnyArray, n: int) -> Bracket:
-    """Return the bracket around the coordinate `x` on a periodic axis, where node n is node 0."""
+    """Return (lower, upper, share of the upper) of the nodes around `x`; node n is node 0."""
     x = np.mod(x, n)
     lower = np.minimum(x.astype(int), n - 1)
     return lower, (lower + 1) % n, x - lower
@@ -34,7 +34,8 @@ def find_periodic_bracket(x: AnyArray, n: int) -> Bracket:
 def list_corners(brackets: Sequence[Bracket]) -> Iterator[tuple[tuple[Any, ...], Any]]:
     """Yield (node on each axis, share) for every corner of the cell around a point.
 
-    `brackets` has one bracket per axis. The shares of all corners add up to 1.
+    `brackets` has (lower node, upper node, share of the upper) for each axis. The shares of all
+    corners add up to 1.
 
     >>> list(list_corners([(0, 1, 0.25)]))
     [((0,), 0.75), ((1,), 0.25)]
@@ -48,7 +49,7 @@ def list_corners(brackets: Sequence[Bracket]) -> Iterator[tuple[tuple[Any, ...],
 
 
 def to_flat_index(nodes: Sequence[Any], shape: Sequence[int]) -> Any:
-    """Return the index of a corner in a flattened array of `shape`, last axis fastest."""
+    """Return the index in a flattened array of `shape` of the element at `nodes` on the axes."""
     index = 0
     for node, n in zip(nodes, shape, strict=True):
         index = index * n + node

@@ -41,16 +41,16 @@ def directional_albedo(f: Brdf, wi: FloatArray) -> AnyArray:
 
 
 def _integrate_albedo(f: Brdf, wi: FloatArray, points: int) -> AnyArray:
-    """Compute the albedo (channels,) by 2 `points` rings of `points` points."""
+    """Compute the directional albedo (channels,) at `wi` by the points of `make_ring_rule`."""
     wo, weight = make_ring_rule(wi, points)
     return weight @ f(np.broadcast_to(wi, wo.shape), wo)
 
 
 def make_ring_rule(wi: FloatArray, points: int) -> tuple[FloatArray, FloatArray]:
-    """Return directions wo (n, 3) on 2 `points` rings of `points` points, and weights (n,).
+    """Return directions wo (n, 3) and weights (n,) that integrate over the hemisphere.
 
-    The rings lie about the mirror direction of `wi` (3,); the weights are solid angles times
-    cosθ_o.
+    The directions lie on 2 `points` rings of `points` points about the mirror direction of `wi`
+    (3,); the weights are solid angles times cosθ_o.
     """
     mirror = wi * [-1, -1, 1]
     cos_theta, sin_theta = mirror[2], np.hypot(mirror[0], mirror[1])

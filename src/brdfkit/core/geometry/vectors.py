@@ -29,7 +29,7 @@ def half_vector(wi: JitVector, wo: JitVector) -> JitVector:
 
 
 def cos_theta_d(wi: JitVector, wo: JitVector) -> JitFloat:
-    """Return the cosine of the difference angle, wi·h.
+    """Return the cosine wi·h of the difference angle, between `wi` and the half vector h.
 
     It is computed as |wi + wo| / 2, since the terms of the dot product cancel at wo ≈ -wi.
     """

@@ -1,1 +1,1 @@
-"""Helpers for Dr.Jit: finding LLVM, threads, loops, padding, and double precision."""
+"""Helpers for Dr.Jit: the choice of LLVM, threads, loops, padded arrays and double precision."""

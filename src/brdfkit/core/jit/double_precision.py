@@ -21,7 +21,7 @@ from brdfkit.core.jit.padding import pad
 
 @dataclass(frozen=True)
 class Vector:
-    """Vectors of a model's formula: x, y and z are arrays (n,) over all directions."""
+    """Vectors in a model's formula: x, y and z are arrays (n,) in double precision."""
 
     x: Any
     y: Any
@@ -44,9 +44,7 @@ class Vector:
 
 @cache
 def choose_float_type() -> type:
-    """Return the array type: Dr.Jit's `Float64` of the LLVM or CUDA backend, else `ArrayXf64`."""
-    import drjit as dr
-
+    """Return the array type for models: `Float64` of LLVM or CUDA, or without them `ArrayXf64`."""
     if llvm.find_loaded_version() >= llvm.OLDEST:
         return dr.llvm.ad.Float64
     if dr.has_backend(dr.JitBackend.CUDA):
@@ -56,8 +54,6 @@ def choose_float_type() -> type:
 
 def has_derivatives() -> bool:
     """Return whether the arrays of `choose_float_type()` have derivatives."""
-    import drjit as dr
-
     return bool(dr.is_diff_v(choose_float_type()))
 
 
@@ -73,8 +69,6 @@ def to_vector(w: FloatArray) -> Vector:
 
 def to_scalar(value: float) -> JitFloat:
     """Convert a number to an opaque array of size 1, which kernels do not contain as a constant."""
-    import drjit as dr
-
     number = choose_float_type()(float(value))
     dr.make_opaque(number)
     return number
@@ -83,7 +77,7 @@ def to_scalar(value: float) -> JitFloat:
 def differentiate(
     function: Callable[[JitFloat], JitFloat], x: JitFloat
 ) -> tuple[JitFloat, JitFloat]:
-    """Return a function of arrays at `x` and its derivative there."""
+    """Return the value and the derivative of a `function` at the array `x`."""
     if not has_derivatives():
         h = 1e-6 * dr.maximum(x, 1e-3)
         return function(x), (function(x + h) - function(x - h)) / (2 * h)

@@ -64,7 +64,7 @@ def find_llvm_library() -> str | None:
 
 
 def read_llvm_version(path: str | Path) -> int:
-    """Return the major version of a libLLVM, by its name or from itself; 0 if it does not load."""
+    """Return the major version of a libLLVM by its name or by loading it; 0 if it does not load."""
     by_name = re.search(r"libLLVM(?:-|\.so\.)(\d+)", os.path.realpath(path))
     if by_name and Path(path).exists():
         return int(by_name[1])
@@ -80,7 +80,7 @@ def read_llvm_version(path: str | Path) -> int:
 
 
 def describe_llvm_remedy() -> str:
-    """Say what to do where Dr.Jit has no usable LLVM, as the end of a sentence.
+    """Return what to do where Dr.Jit has no usable LLVM, as the end of a sentence.
 
     If the machine has a usable LLVM, it was not chosen or not installed when Dr.Jit was imported.
     """
@@ -135,7 +135,7 @@ def _warn_of_bad_choice() -> None:
 
 
 def _describe_bad_choice() -> str:
-    """Say which LLVM Dr.Jit has loaded, and what to do."""
+    """Return a sentence on the LLVM that Dr.Jit has loaded, and on what to do."""
     return (
         f"Dr.Jit was imported before brdfkit and took LLVM {find_loaded_version()}, which aborts "
         f"the process in Mitsuba's llvm variants: {describe_llvm_remedy()}."

@@ -1,8 +1,8 @@
-"""Keeps loops in one kernel while a picture is differentiated, and finds the causes of errors.
+"""Keeps loops in one kernel while a picture is differentiated, and finds the first cause of errors.
 
 While Mitsuba differentiates a picture it turns the recording of loops off, since Dr.Jit
 differentiates backwards only through loops with known `max_iterations`. Then each step of a march
-becomes a kernel of its own, a thousand for a picture, and the picture takes about 10 times as long.
+along rays becomes a kernel of its own, and a picture of a thousand steps takes ten times as long.
 """
 
 from collections.abc import Callable, Iterator
@@ -18,7 +18,7 @@ R = TypeVar("R")
 
 @contextmanager
 def raise_first_cause() -> Iterator[None]:
-    """Raise, in place of a RuntimeError that another error caused, the first error in the chain."""
+    """Replace a RuntimeError of the block by the error that caused it first, such as a plugin's."""
     try:
         yield
     except RuntimeError as error:
@@ -36,7 +36,7 @@ def is_interrupt(error: BaseException | None) -> bool:
 
 
 def record_loops(function: Callable[P, R]) -> Callable[P, R]:
-    """Decorate a function so that its loops are recorded.
+    """Decorate a function so that Dr.Jit records its loops, each in one kernel.
 
     Loops that carry derivatives need `max_iterations`, or `dr.backward` raises an error; too small
     a number silently gives a wrong derivative.

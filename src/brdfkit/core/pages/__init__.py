@@ -1,1 +1,1 @@
-"""Writes HTML pages from templates, with their style, scripts and pictures inside."""
+"""Writes HTML pages from templates; each page contains its style, scripts and pictures."""

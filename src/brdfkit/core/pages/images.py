@@ -1,4 +1,4 @@
-"""Encodes pictures as `data:` addresses, which pages hold, and maps numbers to colours."""
+"""Encodes pictures as `data:` addresses, which HTML pages contain, and maps numbers to colours."""
 
 import io
 from base64 import b64encode
@@ -11,14 +11,14 @@ from brdfkit.core.colours import to_srgb
 
 
 def encode_jpeg(linear: AnyArray) -> str:
-    """Return a picture (height, width, 3) of linear sRGB as the address of a JPEG."""
+    """Return a picture (height, width, 3) of linear sRGB as the `data:` address of a JPEG."""
     return _encode_as_address(_convert_to_bytes(to_srgb(linear)), "JPEG", quality=92, subsampling=0)
 
 
 def encode_webp(colours: AnyArray, **options: Any) -> str:
-    """Return colours (height, width, 3) in 0..1 as the address of a WebP, half as long as a JPEG.
+    """Return colours (height, width, 3) in 0..1 as the `data:` address of a WebP.
 
-    `options` are those of Pillow, such as `quality` or `lossless`.
+    It is half as long as a JPEG. `options` are those of Pillow, such as `quality` or `lossless`.
     """
     return _encode_as_address(_convert_to_bytes(colours), "WEBP", **options)
 
@@ -37,19 +37,19 @@ def shrink(picture: AnyArray, longest: int) -> AnyArray:
 
 
 def encode_png(colours: AnyArray) -> str:
-    """Return colours (height, width, 3 or 4) in 0..1 as the address of a PNG, without loss."""
+    """Return colours (height, width, 3 or 4) in 0..1 as the `data:` address of a PNG."""
     return _encode_as_address(_convert_to_bytes(colours), "PNG", optimize=True)
 
 
 def apply_colour_map(name: str, shares: ArrayLike) -> AnyArray:
-    """Return the colours (..., 4) of a colour map of matplotlib for numbers (...) in 0..1."""
+    """Return the colours (..., 4) of matplotlib's colour map `name` for numbers (...) in 0..1."""
     import matplotlib as mpl
 
     return mpl.colormaps[name](np.clip(shares, 0, 1))
 
 
 def draw_colour_bar(name: str, steps: int = 128) -> str:
-    """Return the address of a colour map from its low to its high end, one pixel high."""
+    """Return the `data:` address of a picture, one pixel high, of a colour map from low to high."""
     return encode_png(apply_colour_map(name, np.linspace(0, 1, steps))[None, :, :3])
 
 

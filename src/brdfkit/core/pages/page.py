@@ -1,4 +1,4 @@
-"""Fills the template of an HTML page, which holds its style and scripts; no others may run."""
+"""Fills templates of HTML pages, which contain their style and scripts; no other script may run."""
 
 from base64 import b64encode
 from functools import cache
@@ -13,20 +13,15 @@ from brdfkit.core.names import to_printable
 
 
 def write_page(template: str, path: str | PathLike[str], **content: Any) -> None:
-    """Write the page of a template, a file of `templates/`, to `path`, whole or not at all."""
-    text = fill_template(template, **content)
+    """Write the page of a `template`, a file of `templates/`, to `path`; `content` is escaped."""
+    text = _make_environment().get_template(template).render(**content)
     with write_safely(path) as beside:
         Path(beside).write_text(text, encoding="utf-8", newline="\n")
 
 
-def fill_template(template: str, **content: Any) -> str:
-    """Return the page of a template as text; the `content` is escaped."""
-    return _make_environment().get_template(template).render(**content)
-
-
 @cache
 def _make_environment() -> Any:
-    """Set up jinja2 for the templates."""
+    """Return the environment of jinja2 that fills the templates and escapes their content."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
     from markupsafe import Markup
 
@@ -54,7 +49,7 @@ def _remove_control_characters(value: Any) -> Any:
 def make_security_policy(style: str, *scripts: str) -> str:
     """Return a content security policy that allows only the style and the scripts of this page.
 
-    `style` and `scripts` are files of `templates/`, each in an element of its own.
+    `style` and `scripts` are files of `templates/`; each fills an element of its own in the page.
     """
     hash_of_style, *hashes = (_hash_template(name) for name in (style, *scripts))
     return (
@@ -64,12 +59,12 @@ def make_security_policy(style: str, *scripts: str) -> str:
 
 
 def _hash_template(name: str) -> str:
-    """Return the hash of an element that holds a file of `templates/`, as browsers compute it."""
+    """Return the SHA-256 of a style or script, a file of `templates/`, for a security policy."""
     digest = sha256(read_template(name).encode()).digest()
     return f"'sha256-{b64encode(digest).decode()}'"
 
 
 @cache
 def read_template(name: str) -> str:
-    """Read a file of `templates/` as it stands in its element."""
+    """Read a file of `templates/`, with the line break before it in its element of the page."""
     return "\n" + (resources.files(__package__) / "templates" / name).read_text(encoding="utf-8")

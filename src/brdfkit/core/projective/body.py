@@ -1,4 +1,4 @@
-"""Convex bodies by their corners and planes, which bound what a light's projection must cover."""
+"""Convex bodies, by corners and planes, that bound the space which a shadow map must cover."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
-LEAST_RADIUS = 1e-9  # of the largest ball within a body, over its size; a smaller one has no volume
+LEAST_RADIUS = 1e-9  # of a body's largest inner ball, over its size; below, it has no volume
 
 
 class Empty(BrdfkitError):
-    """Nothing that the camera sees is in the light, so there is nothing to be shadowed."""
+    """The error where nothing that the camera sees is in the light, so that no shadow shows."""
 
 
 @dataclass(frozen=True)
 class Body:
-    """A convex body with corners (n, 3) and planes (m, 4) with a·x + d ≤ 0 inside."""
+    """A convex body: its corners (n, 3), and rows (a, d) of planes (m, 4), a·x + d ≤ 0 inside."""
 
     corners: np.ndarray
     planes: np.ndarray
@@ -41,7 +41,7 @@ class Body:
 
     @cached_property
     def centroid(self) -> FloatArray:
-        """The centre of the volume (3,), which moves as steadily as the body does."""
+        """The centroid (3,) of the volume; when the body moves, it moves without jumps."""
         from scipy.spatial import ConvexHull
 
         inside = self.corners.mean(axis=0)
@@ -64,19 +64,19 @@ class Body:
         return Body.from_points(middle + size * corners)
 
     def extend_to_light(self, light: FloatArray, length: float) -> Body:
-        """Return the body with the space between it and a light, over at least a `length`.
+        """Return the body with the space of at least `length` in front of it that may shadow it.
 
-        light : (4,), the homogeneous point of a `Light`.
+        light : (4,), homogeneous: a position with w = 1, or the direction to the light with w = 0.
         """
         to_light = light[:3] - light[3] * self.corners
         share = 2 * length / max(np.linalg.norm(to_light, axis=1).min(), 1e-30)
-        # Not to the light itself if it is far, since hulls of long needles are inexact
+        # Not as far as a distant light, since convex hulls of long needles are inexact
         share = share if light[3] == 0 else min(share, 1)
         return Body.from_points(np.vstack([self.corners, self.corners + share * to_light]))
 
 
 def make_box(low: ArrayLike, high: ArrayLike) -> Body:
-    """Return an axis-aligned box as a body; a flat box becomes a little thicker."""
+    """Return the box from `low` to `high` (3,) as a body; a flat box becomes a little thicker."""
     low, high = np.asarray(low, float), np.asarray(high, float)
     least = 1e-4 * max((high - low).max(), 1e-30)
     grown = np.maximum(least - (high - low), 0) / 2
@@ -85,9 +85,9 @@ def make_box(low: ArrayLike, high: ArrayLike) -> Body:
 
 
 def _find_inscribed_centre(planes: AnyArray) -> FloatArray | None:
-    """Return the centre (3,) of the largest ball within the planes of a body of about the size 1.
+    """Return the centre (3,) of the largest ball in a body of size 1, given by `planes` (m, 4).
 
-    None where there is no such ball.
+    Return None where the planes enclose no volume.
     """
     from scipy.optimize import linprog
 

@@ -22,7 +22,7 @@ CUBE = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], 
 class Camera:
     """A perspective camera.
 
-    view : (4, 4), from the world to the camera, which looks along -z.
+    view : (4, 4), from the world to the camera's frame, in which it looks along -z.
     slope_x, slope_y : tangents of half the field of view, across and upwards.
     near, far : distances along the view of the planes that bound what it sees.
     """
@@ -65,13 +65,13 @@ class Camera:
 
     @property
     def projection(self) -> FloatArray:
-        """P (4, 4), from the camera to the cube [-1, 1]³, with z = -1 near [Ergun 2008, 2.1.7]."""
+        """The matrix from the camera's frame to the cube [-1, 1]³ [Ergun 2008, 2.1.7]."""
         n, f = self.near, self.far
         return self._make_projection(-(f + n) / (f - n), -2 * f * n / (f - n))
 
     @property
     def infinite_projection(self) -> FloatArray:
-        """P∞ (4, 4), the limit of P for a far plane at infinity; points there have the depth 1."""
+        """The limit of `projection` for a far plane at infinity; points there have the depth 1."""
         return self._make_projection(-1, -2 * self.near)
 
     def _make_projection(self, along: float, shift: float) -> FloatArray:
@@ -91,7 +91,7 @@ class Camera:
 
     @property
     def direction(self) -> FloatArray:
-        """The direction of the view, a unit vector (3,)."""
+        """The viewing direction, a unit vector (3,)."""
         return -self.view[2, :3]
 
     def make_pixel_rays(self, size: tuple[int, int]) -> FloatArray:
@@ -106,30 +106,27 @@ class Camera:
         return np.stack([x, y, np.full_like(x, -1)], axis=-1) @ self.view[:3, :3]
 
     def find_frustum_corners(self) -> FloatArray:
-        """Return the corners (8, 3) of the visible space; the first four are on the near plane."""
+        """Return the corners (8, 3) of the space that the camera sees; the first four are near."""
         return project_points(np.linalg.inv(self.matrix), CUBE)
 
     def compute_depths(self, points: ArrayLike) -> FloatArray:
-        """Return the distances (n,) of points (n, 3) along the view."""
+        """Return the distances (n,) of points (n, 3) from the eye, along the viewing direction."""
         return -transform(self.view, *np.asarray(points, float).T)[2]
 
     def replace_planes(self, near: float, far: float) -> Camera:
-        """Return the camera with other near and far planes."""
+        """Return the camera with other distances of the near and far planes."""
         return replace(self, near=near, far=far)
 
     def move_behind(self, points: ArrayLike) -> Camera:
-        """Return the camera moved back behind all points (n, 3), and opened to see them."""
+        """Return the camera moved back behind all points (n, 3), and opened until it sees them."""
         view = self.view.copy()
         view[2, 3] -= max(0, self.near - self.compute_depths(points).min())
         x, y, z, _ = transform(view, *np.asarray(points, float).T)
-        near, far = (
-            -z.max(),
-            max(-z.min(), -1.001 * z.max()),
-        )  # a thicker range for points in one plane
-        return Camera(view, np.abs(x / z).max(), np.abs(y / z).max(), near, far)
+        far = max(-z.min(), -1.001 * z.max())  # beyond the near plane if all points lie in it
+        return Camera(view, np.abs(x / z).max(), np.abs(y / z).max(), -z.max(), far)
 
     def fit_planes(self, points: ArrayLike) -> Camera:
-        """Return the camera with its planes drawn in to points (n, 3), such as a scene's corners.
+        """Return the camera with near and far planes moved inwards to points (n, 3) of a scene.
 
         Raises `Empty` where all of them are behind its near plane or beyond its far plane.
         """

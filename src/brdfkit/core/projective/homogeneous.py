@@ -28,7 +28,7 @@ def transform(
 def project(
     matrix: Any, x: JitFloat, y: JitFloat, z: JitFloat
 ) -> tuple[JitFloat, JitFloat, JitFloat]:
-    """Transform a point and divide by w; return (x, y, z)."""
+    """Transform a point by a projective matrix, and divide by w; return (x, y, z)."""
     x, y, z, w = transform(matrix, x, y, z)
     return x / w, y / w, z / w
 
@@ -40,12 +40,12 @@ def normalise(x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, JitFloat
 
 
 def project_points(matrix: AnyArray, points: ArrayLike) -> AnyArray:
-    """Transform points (n, 3) and divide them by w."""
+    """Transform points (n, 3) by a projective matrix (4, 4), and divide them by w."""
     return np.column_stack(project(matrix, *np.asarray(points, float).T))
 
 
 def make_rigid_matrix(rotation: ArrayLike, origin: ArrayLike) -> FloatArray:
-    """Return the matrix (4, 4) into a frame whose axes are the rows of `rotation` (3, 3)."""
+    """Return the matrix (4, 4) to the frame at `origin` with the axes `rotation` (3, 3) in rows."""
     matrix = np.eye(4)
     matrix[:3, :3] = rotation
     matrix[:3, 3] = -np.asarray(rotation) @ origin

@@ -12,7 +12,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.body import Body
 from brdfkit.core.projective.homogeneous import make_axes, normalise
 
-NEAREST = 1e-3  # the distance at which the pyramid of a spot begins, over that of its end
+NEAREST = 1e-3  # the distance at which a spot's bounding pyramid begins, over that of its end
 WIDEST_CUTOFF = math.radians(80)  # half the angle of a spot; no pyramid bounds a wider one
 
 
@@ -20,8 +20,8 @@ WIDEST_CUTOFF = math.radians(80)  # half the angle of a spot; no pyramid bounds 
 class Light:
     """A point, spot or directional light.
 
-    point : (4,), (x, y, z, 1) of a light at a position; (x, y, z, 0) of one at infinity, with the
-        unit vector to it.
+    point : (4,), homogeneous: (x, y, z, 1) for a light at a position; (x, y, z, 0) for one at
+        infinity, with the unit vector to it.
     axis, cutoff : the direction of a spot, a unit vector (3,), and half the angle of its cone
         [rad]; None for other lights.
     """
@@ -63,11 +63,11 @@ class Light:
 
     @property
     def is_bounded(self) -> bool:
-        """Whether a `make_bounding_pyramid` holds all of the light."""
+        """Whether the light is a spot so narrow that a pyramid bounds it."""
         return self.cutoff is not None and self.cutoff <= WIDEST_CUTOFF
 
     def make_bounding_pyramid(self, reach: float) -> Body:
-        """Return the square pyramid about a spot's cone, from 1/1000 of `reach` to `reach`."""
+        """Return the square pyramid about a spot's cone to `reach`, cut off at its thousandth."""
         axis, cutoff = self.axis, self.cutoff
         assert axis is not None, "only a spot has a pyramid"
         assert cutoff is not None
@@ -82,9 +82,9 @@ class Light:
         return Body.from_points(self.point[:3] + np.array(ends))
 
     def path_length(self, x: JitFloat, y: JitFloat, z: JitFloat) -> JitFloat:
-        """Return the distance that light has travelled at a point.
+        """Return the distance that light has travelled when it arrives at a point.
 
-        Light from infinity is measured from the plane through the origin.
+        Light from infinity is measured from a plane through the origin, at right angles to it.
         """
         a, b, c = (self.point[i] for i in range(3))
         if self.is_directional:
@@ -105,7 +105,7 @@ class Light:
 
 
 def _read_direction(emitter: MitsubaObject, way: AnyArray) -> FloatArray:
-    """Return the unit vector (3,) along a direction of an emitter."""
+    """Return the unit vector (3,) along a direction `way` of an emitter, if it is finite."""
     return _require_finite(emitter, way) / np.linalg.norm(way)
 
 
