@@ -1,15 +1,15 @@
-"""The file formats of materials: every file of this folder is one format, and is found by itself.
+"""Reads and writes the file formats of materials; each module of this folder is one format.
 
-A format's file defines
+A new module is found without registration. It defines
 
-- ``NAME``: the name for people; ``SUFFIXES``: such as ``(".binary",)``;
+- ``NAME``: the format's name for people; ``SUFFIXES``: its suffixes, such as ``(".binary",)``;
 - ``sniff(head)``: returns whether the first 4 kB (bytes, decompressed) look like this format;
 - ``read(source)``: returns the content of a `Source` (`_source.py`), a `Measured` or a `Fit`;
 - ``write(obj, stream)``, if the format can be written: writes `obj` to a binary stream, or raises a
-  `BrdfkitError` that says what the format cannot hold; `save` puts the path before the error;
-- ``MANY = True``, if one file holds many samples: ``source.sample`` names one of them.
+  `BrdfkitError` that says what the format cannot hold, before which the path is put;
+- ``MANY = True``, if one file holds many materials: ``source.sample`` names one of them.
 
-`_writing.py` has the functions that several writers share, and `_delimited.py` reads tables.
+`_writing.py` has functions that several writers share, and `_delimited.py` reads tables of text.
 """
 
 import gzip
@@ -27,22 +27,25 @@ from brdfkit.core.files import COMPRESSED, GZIP
 from brdfkit.materials.formats._source import Source as Source
 from brdfkit.materials.formats._source import format_suffix
 
-HEAD = 4096  # bytes that the function `sniff` of a format gets
+HEAD = 4096  # number of bytes that are passed to the function `sniff` of a format
 
 
 @cache
 def formats() -> tuple[ModuleType, ...]:
-    """Return the format modules of this folder, in alphabetical order."""
+    """Import the modules of all file formats, and return them in alphabetical order."""
     return import_modules(__name__, __path__)
 
 
 def has_format(path: Path) -> bool:
-    """Return whether the suffix of a path is the suffix of a format."""
+    """Return whether a path has the suffix of a known file format."""
     return any(format_suffix(path) in module.SUFFIXES for module in formats())
 
 
 def write(obj: Any, path: Path, beside: Path) -> None:
-    """Write `obj` in the format for the suffix of `path`, but to the temporary file `beside`."""
+    """Write a material in the format that the suffix of `path` names, to the file `beside`.
+
+    `beside` is a temporary file, which the caller moves to `path` when it is complete.
+    """
     writers = [module for module in formats() if hasattr(module, "write")]
     suitable = [module for module in writers if format_suffix(path) in module.SUFFIXES]
     if not suitable:
@@ -57,7 +60,7 @@ def write(obj: Any, path: Path, beside: Path) -> None:
 
 
 def read(source: Source) -> Any:
-    """Return the content of a `Source`, read by the format that recognises it."""
+    """Return the material or fit in a file, read in the format that recognises the file."""
     module = _recognise(source)
     if source.sample is not None and not getattr(module, "MANY", False):
         raise source.error(f"holds one material; leave '#{source.sample}' off the path")
@@ -65,17 +68,17 @@ def read(source: Source) -> Any:
 
 
 def _recognise(source: Source) -> ModuleType:
-    """Return the format of a `Source`: by its content, else by its suffix.
+    """Return the module of a file's format.
 
-    The suffix decides where several formats, or none, recognise the content.
+    The content decides; where several formats recognise it, or none does, the suffix decides.
     """
     sniffed = [module for module in formats() if module.sniff(source.data[:HEAD])]
     named = [m for m in sniffed or formats() if source.suffix in m.SUFFIXES]
-    # Two formats have the suffix .dat: only one of them holds many samples
+    # Two formats have the suffix .dat: choose the one that holds many materials if one is named
     named.sort(key=lambda m: getattr(m, "MANY", False) != (source.sample is not None))
     if len(sniffed) == 1:
         return sniffed[0]
-    if named:  # if none recognised the content, the format's reader says what is wrong
+    if named:  # where no format recognises the content, this format's reader says what is wrong
         return named[0]
     if sniffed:
         raise source.error(f"could be {_list_names(sniffed)}; rename it to one of these suffixes")
@@ -91,9 +94,9 @@ def _list_names(modules: Iterable[ModuleType]) -> str:
 
 @contextmanager
 def _open_for_writing(path: Path) -> Iterator[IO[bytes]]:
-    """Open a binary stream to `path`, which compresses where the suffix is .gz or .xz.
+    """Open a binary stream that writes to `path`, compressed if its suffix is .gz or .xz.
 
-    Equal input gives equal bytes.
+    Equal input gives equal bytes, because no time or name is stored.
     """
     with path.open("wb") as raw:
         if path.suffix.lower() not in COMPRESSED:

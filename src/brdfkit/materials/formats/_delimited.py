@@ -1,4 +1,4 @@
-"""Reads tables as spreadsheets write them: a line with the names of the columns, then numbers.
+"""Reads tables of text as spreadsheets write them: a line of column names, then rows of numbers.
 
 Tabs, semicolons, commas or blanks separate the columns. Numbers may have decimal commas where the
 separator is no comma, or in quotes.
@@ -22,19 +22,20 @@ from brdfkit.materials.measured.column_names import (
 )
 from brdfkit.materials.measured.long_form import parse_colour_name
 
-DELIMITERS = "\t;,"  # the first of them in the line of names; blanks where there is none
+# Separators of the columns: the first of these in the line of names, or blanks if it has none
+DELIMITERS = "\t;,"
 UNITS = {"", *DEGREES, *RADIANS, *PER_STERADIAN, "nm"}
 WHOLE = re.compile(r"[-+]?[0-9]*([eE][-+]?[0-9]+)?")
-MISSING = {"", "na", "n/a", "#n/a", "-"}  # what spreadsheets write where there is no number
+MISSING = {"", "na", "n/a", "#n/a", "-"}  # texts in place of a number that was not measured
 NUMERIC = re.compile(r"[-+0-9.,;eE\s]+")
 Lines = list[tuple[int, str]]  # (number of the line, text)
 
 
 def find_delimiter(head: bytes) -> str | None:
-    """Return the separator of the columns in a text that begins with the bytes `head`.
+    """Return the separator of the columns in a text file that begins with the bytes `head`.
 
-    It is one of `DELIMITERS` or " ", by the line of names; None where no line names samples of a
-    BRDF.
+    It is one of `DELIMITERS` or " ". The result is None unless a line of `head` has the column
+    names of BRDF samples.
     """
     header, _ = _find_header(Source(Path("head"), None, head))
     if header is None or not are_sample_columns(split_fields(header)):
@@ -43,10 +44,10 @@ def find_delimiter(head: bytes) -> str | None:
 
 
 def read_columns(source: Source) -> tuple[list[str], list[int], list[FloatArray]]:
-    """Return the names of the columns, the numbers of the rows' lines, and the columns (n,).
+    """Return the names of a table's columns, the line numbers of its rows, and the columns (n,).
 
-    A column without a name is left out, and so are rows without numbers. An empty field is NaN.
-    Raises `BrdfkitError` for a row with other columns or with text among numbers.
+    Columns without a name and rows without numbers are left out. An empty field becomes NaN. Raises
+    `BrdfkitError` for a row with another number of columns, or with text among numbers.
     """
     header, rows = _find_header(source)
     if header is None:
@@ -57,14 +58,14 @@ def read_columns(source: Source) -> tuple[list[str], list[int], list[FloatArray]
         )
     delimiter = _choose_delimiter(header)
     names, rows = _take_units(split_fields(header), rows, delimiter)
-    named = [k for k, name in enumerate(names) if name]  # the index that pandas writes has none
+    named = [k for k, name in enumerate(names) if name]  # skip the index column of pandas
     texts = [k for k in named if match_channel_column(names[k]) == "channel"]
     lines: list[int] = []
     data: list[list[float]] = []
     marks: dict[str, int] = {}
     for n, line in rows:
         fields = split_fields(line, delimiter)
-        if not any(fields):  # spreadsheets end with rows of delimiters
+        if not any(fields):  # a row of delimiters alone, as spreadsheets write at the end
             continue
         _refuse_split_numbers(source, n, fields, names, delimiter)
         source.require_count(n, fields, len(names))
@@ -79,7 +80,7 @@ def read_columns(source: Source) -> tuple[list[str], list[int], list[FloatArray]
 
 
 def split_fields(line: str, delimiter: str | None = None) -> list[str]:
-    """Return the fields of a line, without the blanks and quotes around them."""
+    """Split a line into its fields, and strip the blanks and quotes around them."""
     delimiter = delimiter or _choose_delimiter(line)
     if delimiter == " ":
         fields = line.split()
@@ -91,11 +92,11 @@ def split_fields(line: str, delimiter: str | None = None) -> list[str]:
 
 
 def _find_header(source: Source) -> tuple[str | None, Lines]:
-    """Return the line of names, or None, and the lines behind it.
+    """Return the line with the columns' names, or None, and the lines behind it.
 
-    It is the first line that names samples, after any titles; else the first line, which is wrong.
-    Where the first line has numbers, it is the last comment that names samples, as NumPy's
-    `savetxt` writes it.
+    Lines of text may precede it. Where the file begins with numbers, the names may stand in a
+    comment, as NumPy's `savetxt` writes them. If no line has names of BRDF samples, the first line
+    of text is returned, about which `read_columns` then complains.
     """
     lines = source.whole_lines
     texts = [line for _, line in takewhile(lambda row: not NUMERIC.fullmatch(row[1]), lines)]
@@ -109,12 +110,12 @@ def _find_header(source: Source) -> tuple[str | None, Lines]:
 
 
 def _choose_delimiter(header: str) -> str:
-    """Return the separator of the columns by the line of their names."""
+    """Return the separator of the columns, given the line with their names."""
     return next((mark for mark in DELIMITERS if mark in header), " ")
 
 
 def _take_units(names: list[str], rows: Lines, delimiter: str) -> tuple[list[str], Lines]:
-    """Return the names with the units that the first row states, if it does, and the other rows."""
+    """Append units to the columns' names if the first row states them, and remove that row."""
     units = split_fields(rows[0][1], delimiter) if rows else []
     if len(units) != len(names) or not any(units) or not UNITS.issuperset(map(str.lower, units)):
         return names, rows
@@ -125,7 +126,7 @@ def _take_units(names: list[str], rows: Lines, delimiter: str) -> tuple[list[str
 def _refuse_split_numbers(
     source: Source, line: int, fields: Sequence[str], names: Sequence[str], delimiter: str
 ) -> None:
-    """Raise `BrdfkitError` where decimal commas split numbers into two fields each."""
+    """Raise `BrdfkitError` where decimal commas in a comma-separated file split numbers in two."""
     few = len(names)
     many = max(count for count, field in enumerate(fields, 1) if field)
     if delimiter == "," and few < many <= 2 * few and all(map(WHOLE.fullmatch, fields)):
@@ -137,10 +138,10 @@ def _refuse_split_numbers(
 
 
 def _require_one_mark(source: Source, line: int, text: str, marks: dict[str, int]) -> None:
-    """Raise `BrdfkitError` where numbers have both points and commas, one of them for thousands.
+    """Raise `BrdfkitError` if numbers of the file contain both points and commas.
 
-    `text`: the fields of line number `line`; `marks`: the first line with each mark, to be added
-    to.
+    One of them would then separate thousands. `text` are the fields of line number `line`. `marks`,
+    which is updated, has the first line with each mark.
     """
     marks |= {mark: line for mark in ",." if mark in text and mark not in marks}
     if len(marks) == 2:
@@ -151,5 +152,5 @@ def _require_one_mark(source: Source, line: int, text: str, marks: dict[str, int
 
 
 def _to_python_number(text: str) -> str:
-    """Return the text of a number as Python reads it; nan where nothing was measured."""
+    """Convert the text of a number to Python's notation, with "nan" where nothing was measured."""
     return "nan" if text.lower() in MISSING else text.replace(",", ".")

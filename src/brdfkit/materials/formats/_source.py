@@ -1,4 +1,4 @@
-"""`Source`: a file that a format reads, with its bytes, lines and numbers, and errors about it."""
+"""`Source`: a file to read, with functions that parse its text and report errors about it."""
 
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Mapping, Sequence
@@ -16,17 +16,17 @@ from brdfkit.core.files import COMPRESSED, read_bytes
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured import Measured
 
-SPHERICAL = (np.pi / 2, 2 * np.pi, np.pi / 2, 2 * np.pi)  # limits of theta, phi, theta, phi
-ANGLE_TOLERANCE = 1e-3  # rad: files round 90° to 1.5708
+SPHERICAL = (np.pi / 2, 2 * np.pi, np.pi / 2, 2 * np.pi)  # limits of theta, phi, theta, phi [rad]
+ANGLE_TOLERANCE = 1e-3  # excess [rad] over a limit that is accepted: files round 90° to 1.5708
 REMEDY = "mend the line or fetch the file again"
 
 
 @dataclass(frozen=True)
 class Source:
-    """A file to read.
+    """A file that a format's reader gets, whose content is in memory.
 
-    `path`: for messages; `sample`: the text behind '#' in the path, or None; `data`: the file's
-    bytes, decompressed.
+    `path`: path of the file; `sample`: text behind '#' in the path that the user gave, which names
+    one of several materials, or None; `data`: content of the file as decompressed bytes.
 
     >>> Source(Path("paint/copper.astm.xz"), None, b"...").name
     'copper'
@@ -38,7 +38,7 @@ class Source:
 
     @property
     def suffix(self) -> str:
-        """The format's suffix in lower case, without .gz or .xz."""
+        """The suffix that names the format, in lower case, without .gz or .xz."""
         return format_suffix(self.path)
 
     @property
@@ -49,37 +49,41 @@ class Source:
 
     @cached_property
     def lines(self) -> list[tuple[int, str]]:
-        """The lines that are neither blank nor a '#' comment, as (number from 1, text)."""
+        """The lines with data, stripped of blanks, as pairs (number of the line from 1, text).
+
+        Blank lines, and comments that begin with '#', are left out.
+        """
         return [(n, line.strip()) for n, line in self.whole_lines]
 
     @cached_property
     def whole_lines(self) -> list[tuple[int, str]]:
-        """The lines of `lines`, with the blanks and tabs at their ends."""
+        """The same lines as `lines`, but with blanks and tabs at their ends, which may be columns."""
         numbered = enumerate(self._text, 1)
         return [(n, line) for n, line in numbered if line.strip()[:1] not in ("", "#")]
 
     @cached_property
     def comments(self) -> list[str]:
-        """The texts of the '#' lines."""
+        """The comments: the texts of all lines that begin with '#', without the '#'."""
         stripped = (line.strip() for line in self._text)
         return [line.strip("# ") for line in stripped if line.startswith("#")]
 
     @property
     def _text(self) -> list[str]:
-        """All lines of the file."""
-        wide = self.data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))  # "Unicode" of spreadsheets
+        """All lines of the file as text, decoded from UTF-8, or from UTF-16 with a mark."""
+        # Spreadsheets write UTF-16 when they are asked to save "Unicode text"
+        wide = self.data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
         text = self.data.decode("utf-16" if wide else "utf-8-sig", errors="replace")
         return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
     def error(self, problem: str) -> BrdfkitError:
-        """Return a `BrdfkitError` that names this file.
+        """Return a `BrdfkitError` that begins with this file's path.
 
         `problem` says what is wrong and what to do, without a full stop.
         """
         return BrdfkitError(f"{self.path}: {problem}.")
 
     def open_sibling(self, name: str) -> "Source":
-        """Return the file `name` in the same folder, compressed or not, as a `Source`."""
+        """Read the file `name` in the same folder, which may be compressed, as a `Source`."""
         for suffix in ("", *COMPRESSED):
             path = self.path.with_name(name + suffix)
             if path.exists():
@@ -89,10 +93,10 @@ class Source:
     def parse_rows(
         self, rows: Sequence[tuple[int, str]], columns: int, delimiter: str | None = None
     ) -> FloatArray:
-        """Return the numbers (n, columns) in `rows`, given as (number of the line, text).
+        """Parse the numbers (n, columns) in `rows`, which are pairs (number of the line, text).
 
-        Blanks separate the numbers, or the `delimiter`. Raises `BrdfkitError` where there is no
-        row, and for a row with text or with another number of columns.
+        The numbers are separated by blanks, or by the `delimiter`. Raises `BrdfkitError` where
+        there is no row, and for a row with text or with another number of columns.
         """
         if not rows:
             raise self.error("has no rows behind its header; fetch the file again")
@@ -101,9 +105,10 @@ class Source:
     def parse_numbers(
         self, line: int, fields: Sequence[str], count: int | None = None
     ) -> list[float]:
-        """Return the texts `fields` of line number `line` as floats.
+        """Parse the texts `fields` of line number `line` as floats.
 
-        There must be `count` of them, unless it is None.
+        Raises `BrdfkitError` where one is no number, or, unless `count` is None, where there are
+        not `count` of them.
         """
         if count is not None:
             self.require_count(line, fields, count)
@@ -118,7 +123,7 @@ class Source:
         return numbers
 
     def require_count(self, line: int, fields: Sequence[str], count: int) -> None:
-        """Raise `BrdfkitError` unless line number `line` has `count` `fields`."""
+        """Raise `BrdfkitError` unless there are `count` `fields` in line number `line`."""
         if len(fields) != count:
             raise self.error(
                 f"line {line} has {len(fields)} columns where {count} belong (cut short?); {REMEDY}"
@@ -127,10 +132,10 @@ class Source:
     def build_from_angles(
         self, lines: Sequence[int], angles: ArrayLike, values: ArrayLike, **details: Any
     ) -> Measured:
-        """Return the `Measured` with `values` (n, channels) at `angles` (n, 4) [rad].
+        """Make a `Measured` of this file from `values` (n, channels) at `angles` (n, 4) [rad].
 
-        The angles are theta_i, phi_i, theta_o, phi_o; `lines` (n,) are the numbers of their lines,
-        for errors; `details`: see `build_from_directions`.
+        The angles are theta_i, phi_i, theta_o, phi_o. Errors about them name their `lines` (n,).
+        `details` are further arguments of `build_from_directions`.
         """
         angles = np.array(angles, float)
         self.require_radians(lines, angles, SPHERICAL)
@@ -149,9 +154,10 @@ class Source:
         standard_error: FloatArray | None = None,
         **details: Any,
     ) -> Measured:
-        """Return `Measured.from_samples` with the file's name, masking values that are not finite.
+        """Make a `Measured` of this file from samples, as `Measured.from_samples` does.
 
-        A note in `info` says how many rows were masked.
+        Its name is by default the file's. Values that are not finite are masked, and a note in
+        `info` counts them.
         """
         values = np.array(values, float)
         finite = np.isfinite(values).all(axis=1)
@@ -159,7 +165,7 @@ class Source:
             finite &= np.isfinite(standard_error).all(axis=1)
             details["standard_error"] = standard_error
         notes, name = dict(info or {}), name or self.name
-        if (masked := ~finite & valid).any():  # the reader did not mask these, and wrote no note
+        if (masked := ~finite & valid).any():  # rows that the reader has not noted as masked
             notes["not finite"] = f"{masked.sum():,} of {len(finite):,} rows, masked"
         try:
             return Measured.from_samples(
@@ -181,12 +187,12 @@ class Source:
     def require_radians(
         self, lines: Sequence[int], angles: FloatArray, limits: Sequence[float]
     ) -> None:
-        """Raise `BrdfkitError` where `angles` (n, k) [rad], of either sign, exceed `limits` (k,).
+        """Raise `BrdfkitError` for `angles` (n, k) [rad] whose absolute values exceed `limits` (k,).
 
-        `lines` (n,) are the numbers of their lines.
+        They are then probably in degrees. `lines` (n,) are the numbers of their lines.
         """
         limit = np.array(limits) + ANGLE_TOLERANCE
-        wrong = ~(np.abs(angles) <= limit)  # NaN is wrong, too
+        wrong = ~(np.abs(angles) <= limit)  # True for NaN, too
         if wrong.any():
             row, column = np.argwhere(wrong)[0]
             raise self.error(
@@ -196,7 +202,7 @@ class Source:
 
 
 def format_suffix(path: Path) -> str:
-    """Return the suffix of the format in lower case, without .gz or .xz.
+    """Return the suffix of a path that names its format: in lower case, without .gz or .xz.
 
     >>> format_suffix(Path("copper.astm.xz"))
     '.astm'
@@ -209,6 +215,6 @@ def _strip_compression(path: Path) -> Path:
 
 
 def _parse_number(text: str) -> float:
-    if "_" in text:  # Python reads 1_0 as ten, but in a file it is damage
+    if "_" in text:  # Python would read 1_0 as ten, but in a file it is an error
         raise ValueError
     return float(text)

@@ -1,4 +1,4 @@
-"""Functions that the writers of formats share, and notes on files of Cornell's instrument."""
+"""Functions that several file formats share: for writing, and for notes on Cornell's files."""
 
 from collections.abc import Iterable, Sequence
 from typing import IO
@@ -11,14 +11,13 @@ from brdfkit.core.geometry.directions import to_angles
 from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Samples
 
-LARGEST_RATIO = 5  # of the brightest sample to the next one; above it, the sample is suspicious
+LARGEST_RATIO = 5  # the brightest sample is suspicious if it exceeds the next by a larger factor
 
 
 def require_measured(obj: object, name: str, anisotropic: bool = False) -> Measured:
-    """Return `obj` if it is a `Measured` that the format `name` can hold.
+    """Return `obj` if it is a `Measured` that the format `name` can hold, else raise `BrdfkitError`.
 
-    `anisotropic`: whether the format can hold an anisotropic material. Raises `BrdfkitError` for
-    any other object.
+    `anisotropic` says whether the format can hold an anisotropic material.
     """
     if not isinstance(obj, Measured):
         raise BrdfkitError(
@@ -34,9 +33,9 @@ def require_measured(obj: object, name: str, anisotropic: bool = False) -> Measu
 
 
 def wrong_channels(obj: Measured, name: str, holds: str, suffix: str = ".npz") -> BrdfkitError:
-    """Return the error for a `Measured` whose channels the format `name` cannot hold.
+    """Return the error on a `Measured` whose channels the format `name` cannot hold.
 
-    `holds` says which channels the format holds; the error proposes another format by its `suffix`.
+    `holds` says which channels it can hold. The error proposes another format by its `suffix`.
     """
     return BrdfkitError(
         f"the format {name} holds {holds}, and {obj.name} has the channels "
@@ -45,7 +44,7 @@ def wrong_channels(obj: Measured, name: str, holds: str, suffix: str = ".npz") -
 
 
 def compute_angles(samples: Samples) -> FloatArray:
-    """Return theta_i, phi_i, theta_o, phi_o (4, n) [rad] of `Samples`."""
+    """Return the angles theta_i, phi_i, theta_o, phi_o (4, n) [rad] of the samples' directions."""
     return np.stack([*to_angles(samples.wi), *to_angles(samples.wo)])
 
 
@@ -55,21 +54,18 @@ def write_rows(
     columns: Sequence[FloatArray],
     delimiter: str = " ",
 ) -> None:
-    """Write the lines of `header`, then the numbers in `columns` (n,) as rows, with all digits.
-
-    The text is UTF-8. Python reads a byte of a file's name that is no UTF-8 as a surrogate; such a
-    byte is written as "?".
-    """
+    """Write the lines of `header`, then the numbers in `columns` (n,) as rows, with all digits."""
     lines = "".join(f"{line}\n" for line in header)
+    # A name of a file that is no UTF-8 has surrogates in Python, which become "?"
     stream.write(lines.encode(errors="replace"))
     np.savetxt(stream, np.stack(columns, axis=1), "%.17g", delimiter)
 
 
 def note_lone_point(samples: Samples) -> dict[str, str]:
-    """Return a note, by its key, if one sample at grazing mirror reflection stands out; else none.
+    """Return a note on a sample that is suspiciously bright, or an empty dictionary.
 
-    Such a sample is more than 5 times as bright as any other. Every file of Cornell's instrument
-    has one.
+    Such a sample lies at grazing mirror reflection, and is more than 5 times as bright as any
+    other. Every file of Cornell's instrument has one.
     """
     samples = samples.at(samples.valid)
     brightest = samples.values.max(axis=1)
@@ -86,10 +82,10 @@ def note_lone_point(samples: Samples) -> dict[str, str]:
 
 
 def note_short_rings(samples: Samples) -> dict[str, str]:
-    """Return a note, by its key, if rings of views leave out the mirror's azimuth; else none.
+    """Return a note on views that are missing in a file of Cornell's, or an empty dictionary.
 
-    A ring is the samples with one theta_i and one theta_s. Cornell's instrument measured every ring
-    up to Δφ = 180°. Its files are sorted so that a file that is cut short ends within a ring.
+    The instrument measured rings of views: for each theta_i and theta_s, all azimuths up to that of
+    the mirror direction. A file that is cut short ends within a ring.
     """
     theta_i, phi_i, theta_s, phi_s = np.round(np.degrees(compute_angles(samples)), 1)
     mirror = np.abs(np.mod(phi_s - phi_i, 360) - 180) < 0.5

@@ -1,13 +1,13 @@
-"""ALTA's text, `.dat`: a header of lines ``#KEY value``, then a row of numbers per sample.
+"""The text format of ALTA, `.dat`: a header of lines ``#KEY value``, then one row per sample.
 
 [Belcour et al. 2014] published ALTA. Its files `sources/core/data_storage.cpp` and `params.cpp`
 (github.com/belcour/alta) read these keys:
 
-- ``DIM``: how many coordinates and how many values a row has;
-- ``PARAM_IN``: which coordinates these are, with L for the light and V for the view;
-- ``PARAM_OUT``: which values these are; INV_STERADIAN_COSINE_FACTOR is the BRDF times cos theta_v
-  (divided by it, the real files are reciprocal; divided by cos theta_l, they are not);
-- ``VS``: for each value the kind of its confidence interval: 0 for none, 1 for one column behind
+- ``DIM``: the numbers of coordinates and of values in a row;
+- ``PARAM_IN``: the kind of coordinates, in whose names L is the light and V the view;
+- ``PARAM_OUT``: the kind of values. INV_STERADIAN_COSINE_FACTOR is the BRDF times cos theta_v:
+  divided by it, the real files are reciprocal, but not if they are divided by cos theta_l;
+- ``VS``: the kind of confidence interval of each value. 0 stands for none, 1 for one column behind
   the values with half the width, 2 for two columns with the ends. A single number belongs to the
   first value; the others have 0. Half the width is read as the standard error, because files do not
   state the confidence level.
@@ -40,9 +40,7 @@ UNSTATED = "UNKNOWN_OUTPUT"
 
 
 QUARTER, FULL = np.pi / 2, 2 * np.pi
-Directions = tuple[FloatArray, FloatArray]  # of the light and of the view, both (n, 3)
-
-# Functions from coordinates [rad] to directions
+Directions = tuple[FloatArray, FloatArray]  # unit vectors to light and view, both (n, 3)
 
 
 def _from_projection(theta_l: FloatArray, x: FloatArray, y: FloatArray) -> Directions:
@@ -62,7 +60,7 @@ def _from_half_difference(
     return light, view
 
 
-# By name: the limits of the coordinates [rad], and the function
+# Limits of the coordinates [rad] by the name of their kind, and the function that converts them
 PARAM_IN: dict[str, tuple[tuple[float, ...], Callable[..., Directions]]] = {
     "SPHERICAL_TL_PL_TV_PV": (SPHERICAL, _from_spherical),
     "ISOTROPIC_TL_TV_PROJ_DPHI": ((QUARTER,) * 3, _from_projection),
@@ -79,15 +77,15 @@ PARAM_IN: dict[str, tuple[tuple[float, ...], Callable[..., Directions]]] = {
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a line of `head` gives the dimensions, as ``#DIM 3 1``."""
+    """Return whether a line of `head` states the dimensions, such as ``#DIM 3 1``."""
     return re.search(rb"^#DIM\s+\d", head, re.MULTILINE) is not None
 
 
 def read(source: Source) -> Measured:
-    """Read the samples as a `Measured` with one channel Y, or with R, G, B.
+    """Read an ALTA file as a `Measured` with one channel Y, or with R, G, B.
 
     Raises `BrdfkitError` for a binary file, a missing key, coordinates that do not give both
-    directions, values that are no BRDF, or a row with other columns.
+    directions, values that are no BRDF, or a row with another number of columns.
     """
     header: dict[str, str] = {}
     for comment in source.comments:
@@ -97,11 +95,11 @@ def read(source: Source) -> Measured:
     intervals = _read_intervals(source, header.get("VS", "0"), len(channels))
     limits, to_directions = PARAM_IN[header["PARAM_IN"]]
 
-    # The rows: coordinates, values, intervals
+    # A row consists of coordinates, values and confidence intervals
     data = source.parse_rows(source.lines, coordinates + len(channels) + sum(intervals))
     where, values, ends = np.split(data, [coordinates, coordinates + len(channels)], axis=1)
     source.require_radians([n for n, _ in source.lines], where, limits)
-    # The BRDF and its standard errors
+    # Convert to directions, BRDF values and standard errors
     wi, wo = to_directions(*where.T)
     factor, valid, notes = _find_factor(source, header, wo)
     with np.errstate(over="ignore", invalid="ignore"):  # values that are not finite are masked
@@ -147,7 +145,7 @@ def write(obj: object, stream: IO[bytes]) -> None:
 
 
 def _read_dimensions(source: Source, header: dict[str, str]) -> tuple[int, tuple[str, ...]]:
-    """Return the number of coordinates, and the channels."""
+    """Return the number of coordinates, and the names of the channels, that a header states."""
     if header.get("FORMAT") == "binary":
         raise source.error("is ALTA's binary form; save it as text with ALTA's data2data")
     dimensions = header.get("DIM", "").split()
@@ -170,7 +168,10 @@ def _read_dimensions(source: Source, header: dict[str, str]) -> tuple[int, tuple
 
 
 def _read_intervals(source: Source, text: str, channels: int) -> list[int]:
-    """Return how many columns each channel has behind the values: 0, 1 or 2."""
+    """Return how many columns of confidence interval each channel has: 0, 1 or 2.
+
+    `text` is the value of the key VS.
+    """
     kinds = text.split()
     if len(kinds) > channels or not all(kind in ("0", "1", "2") for kind in kinds):
         raise source.error(f"VS is {text[:40]!r} where 0, 1 or 2 per value belong; mend the line")
@@ -178,9 +179,10 @@ def _read_intervals(source: Source, text: str, channels: int) -> list[int]:
 
 
 def _halve_intervals(columns: FloatArray, intervals: Sequence[int]) -> FloatArray | None:
-    """Return half the width (n, channels) of each interval; None unless every channel has one.
+    """Return half the width (n, channels) of each confidence interval, or None if any is missing.
 
-    `intervals`: the number of `columns` of each channel, 1 for half the width or 2 for the ends.
+    `intervals` has the number of `columns` of each channel: 1 with half the width, or 2 with the
+    ends.
     """
     if not all(intervals):
         return None
@@ -192,9 +194,9 @@ def _halve_intervals(columns: FloatArray, intervals: Sequence[int]) -> FloatArra
 def _find_factor(
     source: Source, header: dict[str, str], wo: FloatArray
 ) -> tuple[FloatArray | float, BoolArray | bool, dict[str, str]]:
-    """Return the factor (n, 1) between the values and the BRDF, a mask (n,), and notes.
+    """Return the factor (n, 1) by which to divide the values to get the BRDF, as PARAM_OUT states.
 
-    The mask is True for the rows where the factor can be divided out.
+    The second result is a mask (n,) of the rows where that is possible; the third are notes.
     """
     stated = header.get("PARAM_OUT")
     if stated == COSINE:

@@ -1,7 +1,8 @@
-"""ASTM E1392-like text, `.astm`: a header of keys up to VARS, then comma-separated rows.
+"""Text files in the style of ASTM E1392, `.astm`: a header of keys, then comma-separated rows.
 
-VARS names the columns: theta_i, phi_i, theta_s, phi_s [rad] and the channels [sr⁻¹], which are
-R, G, B, or wavelengths such as 465nm, or a single channel. The files of two instruments are known:
+The last key, VARS, names the columns: theta_i, phi_i, theta_s, phi_s [rad] and the channels [sr⁻¹],
+which are R, G, B, or wavelengths such as 465nm, or a single channel. Files of two instruments are
+known:
 
 - Cornell/Kodak: phi_i is 0; values may be negative and are kept.
 - Light Tec Mini-Diff V2: phi_i is 180°; VARS leaves out phi_s, though the rows have it; the
@@ -34,7 +35,7 @@ SUFFIXES = (".astm",)
 ANGLES = ("theta_i", "phi_i", "theta_s", "phi_s")
 KNOWN_CHANNELS = "R,G,B or wavelengths such as 550nm, or a single channel"
 MINI_DIFF = "Mini-Diff"
-MINI_DIFF_CHANNELS = ("630nm", "525nm", "465nm")  # as R, G, B
+MINI_DIFF_CHANNELS = ("630nm", "525nm", "465nm")  # read as R, G, B
 MINI_DIFF_LIMIT = np.radians(75) + 1e-6
 Lines = list[tuple[int, str]]  # (number of the line, text)
 
@@ -45,10 +46,10 @@ def sniff(head: bytes) -> bool:
 
 
 def read(source: Source) -> Measured:
-    """Read the samples as a `Measured`, with the channels R, G, B, or those that VARS names.
+    """Read an ASTM file as a `Measured`, with the channels R, G, B, or those that VARS names.
 
-    Raises `BrdfkitError` when VARS is missing, the columns do not add up, NUM_POINTS does not
-    match the rows, or text stands among numbers.
+    Raises `BrdfkitError` when VARS is missing, when a row has another number of columns, when
+    NUM_POINTS differs from the number of rows, or when text stands among numbers.
     """
     header, vars_line, rows = _read_header(source)
     names, notes = _read_names(source, header["VARS"], vars_line, rows)
@@ -63,7 +64,7 @@ def read(source: Source) -> Measured:
     channels, columns, note = known
     notes.update(note)
 
-    # The columns in our order
+    # Put the columns in the order of `ANGLES` and of the channels
     column = dict(zip(names, data.T, strict=True))
     angles = np.stack([column[name] for name in ANGLES], axis=1)
     values = np.stack([column[name] for name in columns], axis=1)
@@ -94,7 +95,7 @@ def write(obj: object, stream: IO[bytes]) -> None:
 
 
 def _read_header(source: Source) -> tuple[dict[str, str], int, Lines]:
-    """Return the values by key, the number of the line VARS, and the lines of the rows."""
+    """Return the header's values by key, the number of the line VARS, and the lines of the rows."""
     header: dict[str, str] = {}
     for at, (n, line) in enumerate(source.lines):
         key, *value = line.split(maxsplit=1)
@@ -116,7 +117,10 @@ def _read_header(source: Source) -> tuple[dict[str, str], int, Lines]:
 def _read_names(
     source: Source, text: str, vars_line: int, rows: Lines
 ) -> tuple[list[str], dict[str, str]]:
-    """Return the names of the columns, and a note if phi_s had to be inserted."""
+    """Return the names of the columns in `text`, the value of VARS; add phi_s if it is left out.
+
+    The second result is a note on the addition. `vars_line` is the number of the line VARS.
+    """
     names = [name.strip() for name in text.split(",")]
     notes = {}
     more = len(rows[0][1].split(",")) - len(names) if rows else 0
@@ -134,9 +138,9 @@ def _read_names(
 def _find_channels(
     columns: Sequence[str],
 ) -> tuple[Sequence[str], Sequence[str], dict[str, str]] | None:
-    """Return the names of the channels, of their columns, and a note if these differ.
+    """Return the names of the channels, of their columns in the file, and a note if these differ.
 
-    None stands for columns that hold no channels.
+    The result is None where the names of `columns` are no channels.
     """
     if set(columns) == set(RGB):
         return RGB, RGB, {}
@@ -151,7 +155,7 @@ def _find_channels(
 
 
 def _are_writable(channels: Sequence[str]) -> bool:
-    """Return whether VARS can name `channels` so that `read` finds them."""
+    """Return whether a file can hold these `channels`: whether `read` would understand VARS."""
     words = all(re.fullmatch(r"[^\s,]+", name) for name in channels)
     distinct = len({*ANGLES, *channels}) == len(ANGLES) + len(channels)
     return words and distinct and _find_channels(channels) is not None

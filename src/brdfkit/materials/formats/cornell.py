@@ -1,6 +1,6 @@
-"""Cornell Program of Computer Graphics: `.brdf` text with spectral samples.
+"""The text format of spectral samples of the Cornell Program of Computer Graphics, `.brdf`.
 
-'#' comments, the number of wavelengths, the wavelengths [nm], then a row per sample:
+A file has '#' comments, the number of wavelengths, the wavelengths [nm], then a row per sample:
 theta_i phi_i theta_s phi_s [rad] and one value [sr⁻¹] per wavelength. The mirror direction is
 at Δφ = 180°. https://www.graphics.cornell.edu/online/measurements/reflectance
 """
@@ -30,7 +30,7 @@ MOST_WAVELENGTHS = 4096
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a whole number and a plausible wavelength follow the comments of `head`."""
+    """Return whether the comments of `head` are followed by a whole number and a wavelength."""
     lines = [line for line in head.split(b"\n") if line.strip() and not line.startswith(b"#")]
     tokens = b" ".join(lines[:3]).split()
     try:
@@ -40,7 +40,7 @@ def sniff(head: bytes) -> bool:
 
 
 def read(source: Source) -> Measured:
-    """Read the samples as a `Measured`, with the wavelengths as channels: ``("400nm", ...)``.
+    """Read a Cornell file as a `Measured`, with the wavelengths as channels: ``("400nm", ...)``.
 
     Raises `BrdfkitError` for a row with too few or too many columns, text among numbers, a wrong
     number of wavelengths, or angles that are not in radians.
@@ -81,7 +81,10 @@ def write(obj: object, stream: IO[bytes]) -> None:
 
 
 def _read_wavelengths(source: Source) -> tuple[list[float], list[tuple[int, str]]]:
-    """Return the wavelengths [nm], which may stand on several lines, and the lines behind them."""
+    """Return the file's wavelengths [nm] and the lines behind them, which are the samples.
+
+    The wavelengths may stand on several lines.
+    """
     if not source.lines:
         raise source.error("has comments only, no wavelengths; fetch the file again")
     first, text = source.lines[0]
@@ -110,7 +113,7 @@ def _read_wavelengths(source: Source) -> tuple[list[float], list[tuple[int, str]
 
 
 def _are_possible(nanometres: Sequence[float] | FloatArray) -> bool:
-    """Return whether a file may list these wavelengths: not too many, each once, all plausible."""
+    """Return whether a file may have these wavelengths: all distinct, plausible, not too many."""
     distinct = len({f"{w:.10g}" for w in nanometres}) == len(nanometres) <= MOST_WAVELENGTHS
     return distinct and all(map(_is_plausible, nanometres))
 
@@ -120,14 +123,17 @@ def _is_plausible(wavelength: float) -> bool:
 
 
 def _read_description(source: Source) -> dict[str, str]:
-    """Return the comments that describe the sample, as a note."""
+    """Return a note with the comments that describe the material, or an empty dictionary."""
     titles = ("num wls", "wls", "theta i")
     comments = [c for c in source.comments if c and not c.startswith(titles)]
     return {"description": "; ".join(comments)} if comments else {}
 
 
 def _note_clipping(values: FloatArray) -> dict[str, str]:
-    """Return a note if some values are 0 and none is negative; otherwise none."""
+    """Return a note that negative values were set to 0, or an empty dictionary.
+
+    Some values are then 0 and none is negative, though noise makes values near 0 negative.
+    """
     zeros = (values == 0).mean()
     if not zeros or (values < 0).any():
         return {}

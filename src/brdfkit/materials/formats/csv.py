@@ -1,7 +1,8 @@
-"""Tables of named columns, `.csv`: what spreadsheets, pandas and goniometers write.
+"""Tables of text with named columns, `.csv`, as spreadsheets, pandas and goniometers write them.
 
-A line names the columns, in any order; every line behind it is a sample. Lines of text before it
-are left out, and the units may stand in a line of their own below it. Directions:
+One line names the columns, in any order, and every line below it is a sample. Lines of text above
+it are ignored, and a line below it may state the units. Directions are given by
+one of these sets of columns:
 
 - ``theta_i, phi_i, theta_o, phi_o``: angles to the normal and azimuths of the light (i) and of the
   viewer (o); the mirror direction is at phi_o - phi_i = 180°, and a theta below 0 is on the other
@@ -10,30 +11,30 @@ are left out, and the units may stand in a line of their own below it. Direction
 - ``theta_h, [phi_h,] theta_d, phi_d``: the half and difference angles of [Rusinkiewicz 1998];
 - ``wi_x, wi_y, wi_z, wo_x, wo_y, wo_z``: unit vectors, z along the normal.
 
-Angles are in degrees, or in the unit behind the name: ``theta_i [rad]``. Where all thetas are so
-small that they might be in radians, the unit has to stand there.
+Angles are in degrees, or in the unit behind the name: ``theta_i [rad]``. The unit must be stated
+where all thetas are so small that they might be in radians.
 
-Values: ``R, G, B`` (linear sRGB), or wavelengths such as ``550nm`` or ``550``, or one column
-``BRDF``, in sr⁻¹. Columns ``CCBRDF``, ``CCBRDF_R`` or ``CCBRDF_550nm`` hold the cosine-corrected
-BRDF of ASTM E2387, the BRDF times cos theta_o: the cosine is divided out. It is never guessed;
-`brdfkit info` says where values of another name seem to have it, and ``--divide-by-cos`` divides it
-out. Standard errors: ``R_error``, ``550nm_error``, ``BRDF_error``, ``CCBRDF_error`` or
-``standard_error``. An empty field, NA, #N/A or - is a value that was not measured; a column without
-a name is left out.
+Values [sr⁻¹] are columns ``R, G, B`` in linear sRGB, or wavelengths such as ``550nm`` or ``550``,
+or one column ``BRDF``. Columns ``CCBRDF``, ``CCBRDF_R`` or ``CCBRDF_550nm`` contain the
+cosine-corrected BRDF of ASTM E2387, the BRDF times cos theta_o, and are divided by this cosine.
+Columns with other names are not: `brdfkit info` says where such values seem to contain the cosine,
+and ``--divide-by-cos`` divides by it. Standard errors are columns ``R_error``, ``550nm_error``,
+``BRDF_error``, ``CCBRDF_error`` or ``standard_error``. An empty field, NA, #N/A or - is a value
+that was not measured. A column without a name is ignored.
 
-Wavelengths may stand in rows: beside one column ``BRDF`` or ``CCBRDF``, a column ``wavelength`` or
-``lambda`` [nm], or ``channel`` with R, G or B. Rows with directions that are equal to 0.006° are
-one sample.
+Each row may also contain the value of a single channel. Beside one column ``BRDF`` or ``CCBRDF``
+there is then a column ``wavelength`` or ``lambda`` [nm], or a column ``channel`` with R, G or B.
+Rows whose directions differ by less than 0.006° are one sample.
 
 Semicolons, commas, tabs or blanks separate the columns. Numbers may have decimal commas where the
 separator is no comma, or in quotes. Lines that begin with # are comments: ``# key: text`` becomes a
 note, and ``# anisotropic: yes`` or ``no`` says whether the BRDF changes as the surface turns.
 Without this comment it does where the azimuth of the light, or of the half vector, varies. The
-names of the columns may stand in the last comment, too.
+names of the columns may also stand in the last comment.
 
 A written file has the valid samples, or the cells of a table, with all digits of values and
-standard errors; directions come back to 3e-15. It does not hold the values between the samples that
-a format defines by its own interpolation.
+standard errors; directions are accurate to 3e-15. Values that the format of the original file
+interpolates between its samples are lost.
 """
 
 import re
@@ -65,15 +66,16 @@ CONVENTION = (
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a line of `head`, without tabs, names columns that give both directions."""
+    """Return whether `head` has a line of column names of BRDF samples, not separated by tabs."""
     return find_delimiter(head) not in (None, "\t")
 
 
 def read(source: Source, name: str = NAME) -> Measured:
-    """Read the samples as a `Measured`; `name` is the name of the format.
+    """Read a table of named columns as a `Measured`; `name` is the name of the format.
 
-    Raises `BrdfkitError` for columns that are unknown, twice or missing, a row with other columns,
-    text among numbers, angles that are impossible, and where their unit is not certain.
+    Raises `BrdfkitError` for columns that are unknown, repeated or missing, for a row with another
+    number of columns or with text among numbers, and for angles that are impossible or whose unit
+    is uncertain.
     """
     names, lines, columns = read_columns(source)
     details = to_sample_arguments(names, columns, None, Origin(str(source.path), lines))
@@ -89,9 +91,9 @@ def read(source: Source, name: str = NAME) -> Measured:
 
 
 def write(obj: object, stream: IO[bytes], name: str = NAME, delimiter: str = ",") -> None:
-    """Write the valid samples of a `Measured`, in its own channels.
+    """Write the valid samples of a `Measured` as a table of named columns, in its own channels.
 
-    `name` is the name of the format.
+    `name` is the name of the format, and `delimiter` separates the columns.
     """
     data = require_measured(obj, name, anisotropic=True)
     headings = _name_values(data, name)
@@ -112,7 +114,7 @@ def write(obj: object, stream: IO[bytes], name: str = NAME, delimiter: str = ","
 
 
 def _read_notes(source: Source) -> dict[str, str]:
-    """Return the comments by their keys; comments without a key become the note "comment"."""
+    """Return the file's comments as notes by their keys; those without a key become "comment"."""
     notes, others = {}, []
     for comment in source.comments:
         note = NOTE.fullmatch(comment)
@@ -124,22 +126,25 @@ def _read_notes(source: Source) -> dict[str, str]:
 
 
 def _name_values(data: Measured, name: str) -> list[str]:
-    """Return names of columns that `read` understands as the channels of a `Measured`."""
+    """Return column names for the channels of a `Measured` that `read` understands.
+
+    Raises `BrdfkitError` where the format `name` has none.
+    """
     one = len(data.channels) == 1 and not has_wavelengths(data)
     names = ["BRDF"] if one else list(data.channels)
     try:
         if len(parse_layout([*ANGLES, *names], Origin(data.name)).values) == len(names):
             return names
     except BrdfkitError:
-        pass  # its sentence would speak of columns, where there are channels
+        pass  # that error is about columns, but the user has channels
     holds = "R, G, B, or wavelengths of 100 to 100,000 nm, each once, or one channel"
     raise wrong_channels(data, name, holds)
 
 
 def _round(degrees: FloatArray) -> FloatArray:
-    """Round angles to 12 decimals where this changes them by less than 1e-13.
+    """Round angles to 12 decimals if this changes them by less than 1e-13.
 
-    A file then has 30, not 30.000000000000004.
+    The file then has 30 in place of 30.000000000000004.
     """
     rounded = np.round(degrees, 12)
     return np.where(np.abs(rounded - degrees) < 1e-13, rounded, degrees)

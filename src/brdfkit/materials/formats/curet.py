@@ -1,8 +1,9 @@
-"""CUReT: `abrdf.dat`, 61 samples × 205 geometries, averaged over the channels.
+"""The CUReT database in one file, `abrdf.dat`: 61 materials at 205 pairs of directions.
 
-[Dana et al. 1999] measured them. A row of `abrdf.dat` has a sample's number and its values [sr⁻¹].
-A row of `table.txt`, in the same folder, has a geometry's number and its angles theta_v, phi_v,
-theta_i, phi_i [rad], the view (v) before the light (i).
+[Dana et al. 1999] measured them, and averaged the values over R, G and B. A row of `abrdf.dat` has
+the number of a material and its values [sr⁻¹]. The file `table.txt` in the same folder has the
+pairs of directions: their number and the angles theta_v, phi_v, theta_i, phi_i [rad], first of the
+view (v), then of the light (i).
 """
 
 from brdfkit.materials.formats._source import Source
@@ -18,7 +19,7 @@ TABLE = "table.txt"
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether the first line of `head` has a sample's number and 205 values."""
+    """Return whether the first line of `head` has the number of a material and 205 values."""
     fields = head.lstrip().split(b"\n", 1)[0].split()
     try:
         return len(list(map(float, fields))) == 1 + GEOMETRIES and fields[0].isdigit()
@@ -27,10 +28,10 @@ def sniff(head: bytes) -> bool:
 
 
 def read(source: Source) -> Measured:
-    """Read one sample, such as ``abrdf.dat#1``, as a `Measured` with the one channel Y.
+    """Read one material, named as in ``abrdf.dat#1``, as a `Measured` with the one channel Y.
 
-    Raises `BrdfkitError` when no sample is named, `table.txt` is missing, or either file is not
-    61 × 205.
+    Raises `BrdfkitError` when none is named, `table.txt` is missing, or a file has another number
+    of rows or columns.
     """
     rows = _read_rows(source, SAMPLES, GEOMETRIES)
     sample = _parse_sample_number(source)
@@ -50,7 +51,7 @@ def read(source: Source) -> Measured:
 
 
 def _parse_sample_number(source: Source) -> int:
-    """Return the number behind '#' in the path; raise `BrdfkitError` for any other text."""
+    """Return the material's number behind '#' in the path; raise `BrdfkitError` if it is none."""
     number = source.sample or ""
     if number.isascii() and number.isdecimal() and 1 <= int(number[:9]) <= SAMPLES:
         return int(number[:9])
@@ -61,7 +62,7 @@ def _parse_sample_number(source: Source) -> int:
 
 
 def _read_rows(source: Source, count: int, columns: int) -> list[list[float]]:
-    """Return the numbers of each line, without the first, which counts the lines from 1."""
+    """Return the numbers of each of `count` rows, without the first one, the row's number."""
     rows = [source.parse_numbers(n, line.split(), 1 + columns) for n, line in source.lines]
     if [row[0] for row in rows] != list(range(1, count + 1)):
         raise source.error(

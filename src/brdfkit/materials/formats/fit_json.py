@@ -1,4 +1,4 @@
-"""Fits, as brdfkit saves them: JSON with the model, its values and how they were found."""
+"""The format of saved fits, `.json`: the model, its values, and how they were found."""
 
 import json
 from dataclasses import fields
@@ -17,19 +17,23 @@ SUFFIXES = (".json",)
 VERSION_KEY = "brdfkit"
 TYPES = get_type_hints(Fit)
 FIELDS = [f.name for f in fields(Fit) if f.name not in ("model", "certainty", "albedo")]
-# Fields that fits of earlier versions lack
+# Attributes of a `Fit` that files of earlier versions do not have
 LATER_FIELDS = ("checksum", "versions", "effective_samples", "unrepresented")
-# Errors for an entry of another kind, for a missing one, and for a number too large for a float
+# Errors that a damaged file causes: by an entry of another type, a missing one, or a huge number
 DAMAGED = ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` begins as JSON with brdfkit's version."""
+    """Return whether `head` begins as JSON with an entry for brdfkit's version."""
     return head.lstrip().startswith(b"{") and f'"{VERSION_KEY}"'.encode() in head[:200]
 
 
 def read(source: Source) -> Fit:
-    """Read the `Fit` that `write` wrote."""
+    """Read a `Fit` from a file that `write` wrote.
+
+    Raises `BrdfkitError` for any other or a damaged file, for a file of a later version, and for a
+    fit of a model that is not loaded.
+    """
     try:
         record = json.loads(source.data)
         version = _to_type(str, record[VERSION_KEY])
@@ -61,7 +65,7 @@ def read(source: Source) -> Fit:
 
 
 def write(fit: object, stream: IO[bytes]) -> None:
-    """Write a `Fit` into a binary stream."""
+    """Write a `Fit` to a binary stream as JSON."""
     if not isinstance(fit, Fit):
         raise BrdfkitError(
             f"the format {NAME} holds a fit, not a {type(fit).__name__}; choose another suffix."
@@ -79,9 +83,9 @@ def write(fit: object, stream: IO[bytes]) -> None:
 
 
 def _from_certainty(certainty: Certainty | None) -> dict[str, Any] | None:
-    """Return a `Certainty` for JSON.
+    """Convert a `Certainty`, the uncertainty of a fit, to a dictionary for JSON.
 
-    Each row of its symmetric covariance is a text, up to the diagonal.
+    Each row of the symmetric covariance becomes a text with its numbers up to the diagonal.
     """
     if certainty is None:
         return None
@@ -91,7 +95,10 @@ def _from_certainty(certainty: Certainty | None) -> dict[str, Any] | None:
 
 
 def _to_certainty(record: dict[str, Any] | None) -> Certainty | None:
-    """Return the `Certainty` that `_from_certainty` wrote; fits of earlier versions have none."""
+    """Convert a dictionary from JSON back to a `Certainty`, the uncertainty of a fit.
+
+    It is None in fits of earlier versions. Raises `ValueError` and others for a damaged one.
+    """
     if record is None:
         return None
     names = _to_type(tuple[str, ...], record["names"])
@@ -109,7 +116,10 @@ def _to_certainty(record: dict[str, Any] | None) -> Certainty | None:
 
 
 def _to_albedo(record: dict[str, Any] | None) -> Albedo | None:
-    """Return the `Albedo` with the attributes in `record`; fits of earlier versions have none."""
+    """Convert a dictionary from JSON to an `Albedo`, the albedos of a fit and its measurement.
+
+    It is None in fits of earlier versions. Raises `ValueError` and others for a damaged one.
+    """
     if record is None:
         return None
     angles, fit, measured = (_to_type(tuple, record[n]) for n in ("theta_i", "fit", "measured"))
@@ -128,25 +138,27 @@ def _to_albedo(record: dict[str, Any] | None) -> Albedo | None:
 
 
 def _to_settings(settings: dict[str, Any]) -> dict[str, Any]:
-    """Return the settings of a fit, with the bounds as pairs of numbers."""
+    """Convert the bounds in a fit's settings from JSON lists to pairs of floats."""
     if bounds := settings.get("bounds"):
         settings |= {"bounds": {n: tuple(map(float, pair)) for n, pair in bounds.items()}}
     return settings
 
 
 def _is_newer(version: str) -> bool:
-    """Return whether a version, such as 1.2.3, is later than this one."""
+    """Return whether a version of brdfkit, such as 1.2.3, is later than the one that runs."""
     numbers = ([int(part) for part in v.split(".")[:2]] for v in (version, __version__))
     try:
         theirs, ours = numbers
-    except ValueError:  # a version between two releases
+    except ValueError:  # a development version between two releases has parts that are no numbers
         return False
     return theirs > ours
 
 
 def _to_type(kind: Any, value: Any) -> Any:
-    """Return a value from JSON as the type `kind`, which `Fit` declares; raise TypeError if it is
-    another."""
+    """Convert a value from JSON to the type `kind` of a `Fit`'s attribute.
+
+    Lists become tuples, and whole numbers floats. Raises `TypeError` for a value of another type.
+    """
     origin, parts = get_origin(kind) or kind, get_args(kind)
     if isinstance(value, list) and origin is tuple:
         if parts[1:] == (...,) and not all(isinstance(part, parts[0]) for part in value):

@@ -1,9 +1,10 @@
-"""MERL BRDF database: `.binary` tables over half/difference angles.
+"""The format of the MERL BRDF database, `.binary`: tables over half and difference angles.
 
-[Matusik et al. 2003] measured them. A file is little-endian and has three int32 (n_theta_h,
-n_theta_d, n_phi_d), then the planes R, G, B of float64. A negative value marks a cell that was not
-measured. The phi_d cells span half the circle, which suffices for a reciprocal BRDF; where there
-are four times as many phi_d cells as theta_d cells, they span the full circle.
+[Matusik et al. 2003] measured the database. A file is little-endian. It has three int32, the
+numbers of cells n_theta_h, n_theta_d, n_phi_d, then the tables of R, G and B as float64. A negative
+value marks a cell that was not measured. The phi_d cells span half the circle, which suffices for a
+reciprocal BRDF. If there are four times as many phi_d cells as theta_d cells, they span the full
+circle.
 """
 
 import functools
@@ -22,22 +23,23 @@ from brdfkit.materials.measured import Measured
 NAME = "MERL"
 SUFFIXES = (".binary",)
 
-HEADER = 12  # bytes
-SCALE = np.array([1.0, 1.15, 1.66]) / 1500  # sr⁻¹ per stored unit of R, G, B
-SHAPE = (90, 90, 180)  # of the database's tables
-MOST_CELLS = 4096  # along one axis
+HEADER = 12  # size of the header in bytes
+SCALE = np.array([1.0, 1.15, 1.66]) / 1500  # BRDF [sr⁻¹] per stored unit of R, G, B
+SHAPE = (90, 90, 180)  # numbers of cells of the database's tables
+MOST_CELLS = 4096  # largest number of cells along an axis that is accepted
 NOT_MEASURED = -1.0
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` begins with the dimensions of a table, in either byte order."""
+    """Return whether `head` begins with plausible numbers of cells, in either byte order."""
     return len(head) >= HEADER and any(map(_is_plausible, _read_dimensions(head)))
 
 
 def read(source: Source) -> Measured:
-    """Read the table as a `Measured` with the channels R, G, B; NaN where a value is negative.
+    """Read a MERL file as a `Measured` with the channels R, G, B, and NaN in unmeasured cells.
 
-    Raises `BrdfkitError` if header and size disagree, a value is not finite, or no cell is valid.
+    Raises `BrdfkitError` if header and size disagree, if a value is not finite, and if no cell was
+    measured.
     """
     shape = _read_shape(source)
     raw = np.frombuffer(source.data, "<f8", offset=HEADER).reshape(3, *shape)
@@ -49,7 +51,7 @@ def read(source: Source) -> Measured:
             f"{len(wrong):,} values are not finite, the first at byte {HEADER + 8 * wrong[0]:,}; "
             "a MERL table holds none, so fetch the file again"
         )
-    # Before scaling, because the stored sign decides
+    # The stored sign marks unmeasured cells, so it is tested before scaling
     unknown = functools.reduce(np.logical_or, (plane < 0 for plane in raw))
     if unknown.all():
         raise source.error("every cell is marked as not measured; fetch the file again")
@@ -62,10 +64,10 @@ def read(source: Source) -> Measured:
 
 
 def write(obj: object, stream: IO[bytes]) -> None:
-    """Write the table of a `Measured`, in linear sRGB; achromatic values are written to each plane.
+    """Write a `Measured` as a table in linear sRGB; an achromatic one has equal R, G and B.
 
     Samples are interpolated to the database's 90×90×180 cells, which other programs require.
-    Negative values would mean "not measured" and are written as 0.
+    Negative values are written as 0, because they would mark cells that were not measured.
     """
     data = require_measured(obj, NAME).rgb
     table = data.table if data.is_table else data.resampled(SHAPE)
@@ -83,7 +85,7 @@ def write(obj: object, stream: IO[bytes]) -> None:
 
 
 def _read_shape(source: Source) -> tuple[int, ...]:
-    """Return the shape of the table; raise `BrdfkitError` if the size of the file is another."""
+    """Return the numbers of cells in the header; raise `BrdfkitError` if the file's size differs."""
     size = len(source.data)
     if size < HEADER:
         raise source.error(f"has {size} bytes, fewer than a MERL header; fetch the file again")
@@ -117,7 +119,7 @@ def _is_plausible(dimensions: Sequence[int]) -> bool:
 
 
 def _compute_phi_d_period(shape: Sequence[int]) -> float:
-    """Return the range [rad] that the phi_d cells of a table span."""
+    """Return the range [rad] that the phi_d cells of a table with this shape span: π or 2π."""
     return 2 * np.pi if shape[2] == 4 * shape[1] else np.pi
 
 

@@ -1,17 +1,17 @@
-"""brdfkit's own `.npz`: everything a `Measured` holds, to the last bit; `numpy.load` opens it.
+"""brdfkit's own format, `.npz`: all data of a `Measured`, to the last bit, as NumPy arrays.
 
-The first member is ``about``: JSON in UTF-8 with brdfkit's version, name, channels, info,
-anisotropic and phi_d_period. A table is the member ``table`` ([n_phi_h,] n_theta_h, n_theta_d,
-n_phi_d, channels); samples are the members ``wi``, ``wo`` (n, 3), ``values`` (n, channels) [sr⁻¹]
-and ``valid`` (n,). ``standard_error`` (n, channels) is there where it is known; for a table, n is
-the number of its cells.
+`numpy.load` opens such files. The first member is ``about``: JSON in UTF-8 with brdfkit's version,
+name, channels, info, anisotropic and phi_d_period. A table is the member ``table`` ([n_phi_h,]
+n_theta_h, n_theta_d, n_phi_d, channels). Samples are the members ``wi``, ``wo`` (n, 3), ``values``
+(n, channels) [sr⁻¹] and ``valid`` (n,). Known standard errors are ``standard_error``
+(n, channels), where n is the number of samples or of the table's cells.
 
-A format that interpolates between its samples in its own way does so by a function, which no file
-can hold. The function's values at the centres of a table's cells are stored with the samples, as
-``table``, and replace the function when the file is read: the samples keep their values, but the
-values between them are as fine as the table, and reciprocal.
+Some formats define their own interpolation function, which no file can store. Its values at the
+cells of a table are stored beside the samples, as ``table``, and replace the function when the file
+is read. The samples keep their values, but the values between them are then interpolated in the
+table, and reciprocal.
 
-The members are not compressed, so that no small file can ask for much memory; ``.npz.xz`` is
+The members are not compressed, so that no small file can demand much memory; ``.npz.xz`` is
 compressed as a whole.
 """
 
@@ -40,10 +40,11 @@ SUFFIXES = (".npz",)
 FIRST = "about"
 SAMPLES = ("wi", "wo", "values", "valid")
 MEMBERS = tuple(f"{name}.npy" for name in (FIRST, "table", *SAMPLES, "standard_error"))
-EPOCH = (1980, 1, 1, 0, 0, 0)  # a fixed date, so that equal content gives equal bytes
+EPOCH = (1980, 1, 1, 0, 0, 0)  # a fixed date for all members, so that equal data give equal bytes
 REMEDY = "save it again or fetch it again"
-# The header that numpy.save writes for such arrays. We avoid numpy.load, because it evaluates a
-# header as Python, and allocates the memory that the header claims before it checks the data.
+# The header that numpy.save writes for arrays of the types used here. numpy.load is avoided,
+# because it evaluates a header as Python, and allocates the memory that the header claims before it
+# checks the data.
 HEADER = re.compile(
     rb"\x93NUMPY\x01\x00..\{'descr': '(<f4|<f8|\|b1|\|u1)', 'fortran_order': False, "
     rb"'shape': \(((?:[0-9]{1,18}, ?){1,4}(?:[0-9]{1,18})?)\), \} *\n",
@@ -52,14 +53,14 @@ HEADER = re.compile(
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` begins a zip archive whose first member is called about."""
+    """Return whether `head` begins a zip archive whose first member is ``about.npy``."""
     return head.startswith(b"PK\x03\x04") and head[30:39] == b"about.npy"
 
 
 def read(source: Source) -> Measured:
-    """Read the `Measured` that `write` wrote; the arrays may also be float32.
+    """Read a `Measured` from a file that `write` wrote; its arrays may also be float32.
 
-    Raises `BrdfkitError` for an archive that is damaged or compressed inside, and for a member
+    Raises `BrdfkitError` for an archive that is damaged or has compressed members, and for a member
     that is missing or does not fit the others.
     """
     arrays = {
@@ -76,7 +77,7 @@ def read(source: Source) -> Measured:
 
 
 def write(obj: object, stream: IO[bytes]) -> None:
-    """Write a `Measured`."""
+    """Write a `Measured` with all its data; the format's own interpolation becomes a table."""
     data = require_measured(obj, NAME, anisotropic=True)
     about: dict[str, Any] = {
         "brdfkit": __version__,
@@ -98,7 +99,10 @@ def write(obj: object, stream: IO[bytes]) -> None:
 
 
 def _build(about: dict[str, Any], arrays: Mapping[str, AnyArray]) -> Measured:
-    """Return the `Measured`; raise a `ValueError` or the like for missing or unfit members."""
+    """Make a `Measured` from the notes `about` and the `arrays` of a file, by their names.
+
+    Raises `ValueError`, `KeyError` and others for missing or wrong entries.
+    """
     details = {key: about[key] for key in ("name", "channels", "info")}
     words = [about["name"], *about["channels"], *about["info"], *about["info"].values()]
     if not all(isinstance(word, str) for word in words):
@@ -119,9 +123,9 @@ def _build_from_samples(
     details: dict[str, Any],
     errors: FloatArray | None,
 ) -> Measured:
-    """Return the `Measured` from the members of samples, with directions equal to the last bit.
+    """Make a `Measured` from samples in a file, with exactly the stored directions.
 
-    `details` are the arguments that samples and tables share; `errors` the standard errors.
+    `details` are the arguments that samples and tables share, and `errors` the standard errors.
     """
     wi, wo, values, valid = (arrays[name] for name in SAMPLES)
     if not all(((np.abs(w) < 1 + 1e-6) | np.isnan(w)).all() for w in (wi, wo)):
@@ -149,7 +153,7 @@ def _build_from_samples(
 
 
 def _read_members(source: Source) -> dict[str, bytes]:
-    """Return the bytes of the members by name."""
+    """Return the content of each array file in the zip archive, as bytes by the array's name."""
     try:
         with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
             infos = [i for i in archive.infolist() if i.filename in MEMBERS]
@@ -160,13 +164,13 @@ def _read_members(source: Source) -> dict[str, bytes]:
             return {i.filename.removesuffix(".npy"): archive.read(i) for i in infos}
     except BrdfkitError:
         raise
-    # zipfile raises these for passwords, versions, names and numbers that it cannot read
+    # A damaged archive makes zipfile raise any of these
     except (zipfile.BadZipFile, RuntimeError, ValueError, EOFError, OSError, struct.error) as error:
         raise source.error(f"is no whole zip archive ({str(error)[:100]}); {REMEDY}") from error
 
 
 def _parse_array(source: Source, name: str, data: bytes) -> AnyArray:
-    """Return the array in the bytes of the member `name`."""
+    """Return the array in `data`, the bytes of the member `name` as `numpy.save` writes them."""
     header = HEADER.match(data)
     shape = [int(n) for n in header[2].split(b",") if n.strip()] if header else []
     dtype = np.dtype(header[1].decode()) if header else np.dtype(float)
@@ -175,18 +179,21 @@ def _parse_array(source: Source, name: str, data: bytes) -> AnyArray:
     array = np.frombuffer(data, dtype, offset=header.end()).reshape(shape)
     if dtype.kind == "b":
         return array.view(np.uint8) != 0
-    with np.errstate(invalid="ignore"):  # converting a signalling NaN warns
+    with np.errstate(invalid="ignore"):  # NumPy warns when it converts a signalling NaN
         return array if dtype.kind == "u" else array.astype(float)
 
 
 def _pack(arrays: Mapping[str, AnyArray]) -> bytes:
-    """Return the bytes of a zip archive with the arrays; equal arrays give equal bytes."""
+    """Return the bytes of an uncompressed zip archive with the `arrays`, by their names.
+
+    Equal arrays give equal bytes.
+    """
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
         for name, array in arrays.items():
             member = io.BytesIO()
             np.lib.format.write_array(member, np.ascontiguousarray(array), version=(1, 0))
             info = zipfile.ZipInfo(f"{name}.npy", EPOCH)
-            info.create_system = 3  # Unix, on every system
+            info.create_system = 3  # Unix, even on other systems, so that bytes are equal
             archive.writestr(info, member.getvalue())
     return packed.getvalue()

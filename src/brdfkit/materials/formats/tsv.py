@@ -1,4 +1,4 @@
-"""Tables of named columns separated by tabs, `.tsv`: as `.csv` in all else (see there)."""
+"""Tables of text with named columns that tabs separate, `.tsv`; `csv.py` describes the columns."""
 
 from typing import IO
 
@@ -12,15 +12,15 @@ SUFFIXES = (".tsv",)
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a line of `head`, with tabs, names columns that give both directions."""
+    """Return whether `head` has a line of column names of BRDF samples, separated by tabs."""
     return find_delimiter(head) == "\t"
 
 
 def read(source: Source) -> Measured:
-    """Read the samples as a `Measured`."""
+    """Read a table with tabs as a `Measured`."""
     return csv.read(source, NAME)
 
 
 def write(obj: object, stream: IO[bytes]) -> None:
-    """Write the valid samples of a `Measured`, in its own channels."""
+    """Write the valid samples of a `Measured` as a table with tabs, in its own channels."""
     csv.write(obj, stream, NAME, "\t")

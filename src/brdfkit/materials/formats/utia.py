@@ -1,14 +1,14 @@
-"""UTIA BRDF database: `.bin`, anisotropic, over the angles of light and view.
+"""The format of the UTIA BRDF database, `.bin`: anisotropic, over the angles of light and view.
 
-[Filip & Vávra 2014] measured them. The file has little-endian float64 only: the planes R, G, B,
-each 288 × 288. A row is a direction of light (theta_i, phi_i), a column a direction of view
-(theta_v, phi_v). theta takes 0°, 15°, ..., 75°, and phi, which runs faster, 0°, 7.5°, ..., 352.5°.
-The values are interpolated linearly in the four angles, and extrapolated linearly above 75°. Order
-and lookup follow J. Filip's own program, as published in github.com/belcour/alta
+[Filip & Vávra 2014] measured the database. A file has three tables of 288 × 288 little-endian
+float64, for R, G and B. A row is a direction of light (theta_i, phi_i), a column a direction of
+view (theta_v, phi_v). theta takes 0°, 15°, ..., 75°, and phi, which runs faster, 0°, 7.5°, ...,
+352.5°. The values are interpolated linearly in the four angles, and extrapolated linearly above
+75°. Order and interpolation follow J. Filip's own program, as published in github.com/belcour/alta
 (sources/plugins/data_io/utia.cpp) and github.com/asztr/UTIA-brdf.
 
-The unit is not documented. These programs take the stored numbers as they are, and so does this
-reader. Other programs convert them: github.com/jdupuy/dj_brdf clamps negative numbers, divides by
+The unit is not documented. These programs use the stored numbers unchanged, and so does this
+module. Other programs convert them: github.com/jdupuy/dj_brdf clamps negative numbers, divides by
 140, undoes sRGB's gamma and multiplies by 100; A. Fichet's utia.py only undoes the gamma.
 """
 
@@ -27,18 +27,18 @@ from brdfkit.materials.measured import Measured
 NAME = "UTIA"
 SUFFIXES = (".bin",)
 
-SHAPE = (6, 48, 6, 48)  # theta_i, phi_i, theta_v, phi_v
+SHAPE = (6, 48, 6, 48)  # numbers of theta_i, phi_i, theta_v, phi_v
 THETA, PHI = np.radians(15) * np.arange(6), np.radians(7.5) * np.arange(48)
-SIZE = 3 * 8 * 288 * 288  # bytes
+SIZE = 3 * 8 * 288 * 288  # size of a file in bytes
 
 
 def sniff(head: bytes) -> bool:
-    """Return False: the file has no header; its suffix and its size decide."""
+    """Return False: a file has no header, so it is recognised by its suffix alone."""
     return False
 
 
 def read(source: Source) -> Measured:
-    """Read the 82,944 samples as a `Measured`, with R, G, B as they are stored, also negative ones.
+    """Read a UTIA file as a `Measured` of 82,944 samples, with R, G, B as they are stored.
 
     Raises `BrdfkitError` for a file of another size or with values that are not finite.
     """
@@ -60,9 +60,9 @@ def read(source: Source) -> Measured:
 
 
 def write(obj: object, stream: IO[bytes]) -> None:
-    """Write a `Measured`, in linear sRGB; achromatic values are written to each plane.
+    """Write a `Measured` in linear sRGB; an achromatic one has equal R, G and B.
 
-    Unless it was measured in exactly the format's directions, it is interpolated.
+    It is interpolated, unless it was measured in exactly the directions of the format.
     """
     data = require_measured(obj, NAME, anisotropic=True).rgb
     wi, wo = list_directions()
@@ -76,7 +76,7 @@ def write(obj: object, stream: IO[bytes]) -> None:
 
 
 def list_directions() -> tuple[FloatArray, FloatArray]:
-    """Return wi and wo of the samples, each (82944, 3), in the order of the file."""
+    """Return wi and wo of the format's directions, each (82944, 3), in the order of a file."""
     theta_i, phi_i, theta_v, phi_v = np.meshgrid(THETA, PHI, THETA, PHI, indexing="ij")
     wi, wo = from_angles(theta_i, phi_i), from_angles(theta_v, phi_v)
     return wi.reshape(-1, 3), wo.reshape(-1, 3)
@@ -84,7 +84,10 @@ def list_directions() -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True, eq=False)
 class Lookup:
-    """The lookup in `values` (theta_i, phi_i, theta_v, phi_v, channels), linear in each angle."""
+    """A BRDF function that interpolates the stored values linearly in each of the four angles.
+
+    `values`: BRDF at the format's directions, (theta_i, phi_i, theta_v, phi_v, channels).
+    """
 
     values: FloatArray
 
@@ -97,7 +100,10 @@ class Lookup:
 
 
 def _find_brackets(theta: FloatArray, phi: FloatArray) -> tuple[Any, Any]:
-    """Return the brackets (`geometry.multilinear`) of theta and of phi among the stored angles."""
+    """Return the stored angles between which theta and phi [rad] lie, and the weights of both.
+
+    They are brackets as `brdfkit.core.geometry.multilinear` defines them.
+    """
     theta = theta / THETA[1]
     i = np.minimum(theta.astype(int), len(THETA) - 2)
     # Beyond 75° the share exceeds 1: linear extrapolation

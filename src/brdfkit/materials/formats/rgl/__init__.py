@@ -1,7 +1,8 @@
-"""RGL material database: `.bsdf` files in the adaptive parameterisation of [Dupuy & Jakob 2018].
+"""The format of the RGL material database, `.bsdf`, which Mitsuba's plugin `measured` renders.
 
-The files are at https://rgl.epfl.ch/materials. Mitsuba's plugin `measured` renders files with the
-field `rgb` in RGB variants, and files with `spectra` in spectral variants.
+The BRDFs are stored in the adaptive parameterisation of [Dupuy & Jakob 2018]. The files are at
+https://rgl.epfl.ch/materials. The plugin renders files with the field `rgb` in RGB variants, and
+files with `spectra` in spectral variants.
 
 Negative values are colours out of gamut, and are kept. A point whose luminance is 0 was not
 measured. The field `valid` is not read, because its bits mean the opposite in some of the files.
@@ -28,24 +29,25 @@ from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 NAME = "RGL"
 SUFFIXES = (".bsdf",)
 
-LONGEST_DESCRIPTION = 1000  # bytes that are read
+LONGEST_DESCRIPTION = 1000  # number of bytes of the field `description` that are read
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` begins as a tensor file."""
+    """Return whether `head` begins as a tensor file of Mitsuba's, the container of RGL's files."""
     return head.startswith(tensor_file.MAGIC)
 
 
 def read(source: Source) -> Measured:
-    """Read a `Measured` whose samples are the file's grid, and whose lookup is the file's own.
+    """Read an RGL file as a `Measured`, with R, G, B or wavelengths such as "400nm" as channels.
 
-    The channels are R, G, B, or wavelengths such as "400nm". Raises `BrdfkitError` if a field is
-    missing, or its type, shape or values are impossible.
+    Its samples are the points of the file's grid, between which values are interpolated as the
+    format defines it. Raises `BrdfkitError` for a field that is missing, or whose type, shape or
+    values are impossible.
     """
     arrays = tensor_file.read(source)
     spectral = "wavelengths" in arrays
     checked = check_fields(source, arrays, spectral)
-    # The BRDF that the fields define
+    # Make the BRDF function that the fields define
     parameterisation = Parameterisation(*(checked[f.name] for f in fields(Parameterisation)))
     values = np.moveaxis(checked["spectra" if spectral else "rgb"], 2, -1)
     density = _to_density(checked["luminance"])
@@ -70,11 +72,11 @@ def read(source: Source) -> Measured:
 
 
 def write(obj: Any, stream: IO[bytes]) -> None:
-    """Write a `Measured`, or any other object with `eval(wi, wo)`: a model, a fit.
+    """Write a `Measured`, or any other object with `eval(wi, wo)`, such as a model or a fit.
 
-    Wavelengths are written to the field `spectra`, other channels to `rgb`; an achromatic material
-    is grey there. For Mitsuba's RGB variants save `Measured.rgb`. Negative values are lost, because
-    `eval` gives none.
+    Wavelengths are written to the field `spectra`, which Mitsuba's RGB variants do not read, and
+    other channels to `rgb`, where an achromatic material is grey. Negative values become 0, as
+    `eval` returns them.
     """
     if not callable(getattr(obj, "eval", None)):
         raise BrdfkitError(
@@ -90,9 +92,9 @@ def write(obj: Any, stream: IO[bytes]) -> None:
 
 
 def _choose_fields(obj: Any, values: FloatArray) -> dict[str, FloatArray]:
-    """Return the fields `rgb`, or `wavelengths` and `spectra`, for the BRDF of `obj`.
+    """Return the field `rgb`, or the fields `wavelengths` and `spectra`, for the BRDF of `obj`.
 
-    `values` (a, b, channels, y, x) are its table.
+    `values` (a, b, channels, y, x) is the table of its BRDF.
     """
     spectral: Sequence[float] = getattr(obj, "wavelengths", ())
     channels = obj.channels if isinstance(obj, Measured) else spectral or RGB
@@ -115,7 +117,7 @@ def _choose_fields(obj: Any, values: FloatArray) -> dict[str, FloatArray]:
 
 
 def _describe(obj: Any) -> str:
-    """Return the description that the file gets."""
+    """Return the text for the field `description` of a file."""
     if isinstance(obj, Measured):
         what = obj.info.get("description") or obj.name
     else:
@@ -124,9 +126,9 @@ def _describe(obj: Any) -> str:
 
 
 def _to_density(luminance: FloatArray) -> FloatArray:
-    """Return the luminance (a, b, y, x) as a density, which is never negative.
+    """Convert the file's luminance (a, b, y, x) to a density from which directions can be drawn.
 
-    It is uniform for an incidence where the luminance is 0 everywhere.
+    Negative values become 0. At an incidence where all are 0, the density is uniform.
     """
     density = np.maximum(luminance, 0)
     density[~density.any(axis=(2, 3))] = 1

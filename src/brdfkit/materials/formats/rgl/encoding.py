@@ -1,8 +1,7 @@
-"""Encodes any BRDF in the adaptive parameterisation, for `save` to write as `.bsdf`.
+"""Tabulates any BRDF in the adaptive parameterisation of [Dupuy & Jakob 2018], for `.bsdf` files.
 
-[Dupuy & Jakob 2018] describe the parameterisation. A BRDF is here a function f(wi, wo) of
-directions (n, 3) that returns values (n, channels). The mean of its channels determines the
-parameterisation.
+A BRDF is here a function f(wi, wo) of directions (n, 3) that returns values (n, channels). The mean
+of its channels determines the parameterisation, which `parameterisation.py` explains.
 """
 
 from dataclasses import dataclass
@@ -22,23 +21,25 @@ from brdfkit.materials.formats.rgl.parameterisation import (
 from brdfkit.materials.formats.rgl.warp import even_grid, interpolate
 from brdfkit.materials.measured.measured_data import Lookup
 
-GRAZING = np.radians(89.5)  # the last incidence: at 90° no surface is visible
-# This share of the normals is uniform, so that M is finite where there is no retro-reflection
+GRAZING = np.radians(89.5)  # largest incidence of a table: at 90° no surface is visible
+# This share of the distribution of normals is uniform, so that no stored value is divided by 0
+# where the BRDF has no retro-reflection
 EVEN_SHARE = 0.01
-INNERMOST = 0.003  # dm/dx dy [sr] at 0.2° from the surface's normal
+INNERMOST = 0.003  # solid angle per area of the square of directions [sr] at 0.2° from the normal
 # Added to wi·m in the density of the nodes: otherwise few nodes lie near wi·m = 0, where a BRDF is
 # steepest
 GRAZING_DENSITY = 0.2
-# Below the surface the nodes become fewer, down to this depth -cosθ_o
+# The density of nodes that reflect light below the surface falls to a minimum at this -cosθ_o
 LARGEST_DEPTH = 0.2
 
 
 @dataclass(frozen=True)
 class Resolution:
-    """The numbers of nodes of an adaptive table.
+    """The numbers of nodes of a table in the adaptive parameterisation.
 
-    The incidences have `phi_i` azimuths in a quarter of the circle and `theta_i` polar angles, the
-    normals `phi_m` in the full circle and `theta_m`; the grid over u has `grid` along an edge.
+    `phi_i`: azimuths of incidence in a quarter of the circle; `theta_i`: polar angles of incidence;
+    `phi_m`, `theta_m`: azimuths, in the full circle, and polar angles of the distribution of
+    normals; `grid`: points along an edge of the grid of stored values.
     """
 
     phi_i: int
@@ -48,50 +49,55 @@ class Resolution:
     grid: int
 
 
-# The files have 16 and 45 MB. With fewer nodes, the noise of a measured table's cells is lost
+# These make files of 16 and 45 MB. With fewer nodes, the noise of a measured table would be lost
 ISOTROPIC = Resolution(phi_i=0, theta_i=64, phi_m=1, theta_m=256, grid=112)
 ANISOTROPIC = Resolution(phi_i=12, theta_i=20, phi_m=64, theta_m=128, grid=48)
 
 
 def encode(f: Lookup) -> AdaptiveTable:
-    """Return the `AdaptiveTable` of the BRDF f; raise `BrdfkitError` if f is not finite."""
-    # The directions at which f is tabulated
+    """Tabulate the BRDF f in the adaptive parameterisation; raise `BrdfkitError` if f is not finite.
+
+    The table's directions are dense where f is large.
+    """
+    # Choose the directions at which f is tabulated
     quarters = detect_symmetry(f)
     grid = build_parameterisation(f, quarters, ANISOTROPIC if quarters else ISOTROPIC)
     n = grid.vndf.shape[-1]
     wi, wo, m, factor = grid.reflect_grid(n)
-    # The values M there
+    # Compute the stored values M there
     above = wo[..., 2] > 0
     f_cos = _evaluate(f, wi[above], wo[above]) * wo[above][:, 2:]
     M = np.zeros((*above.shape, f_cos.shape[1]))
     M[above] = f_cos / factor[above][:, None]
 
-    # Directions are drawn by a density over u, then by the warp. The warp's density is D wi·m times
-    # two factors, for which the density over u makes up
+    # Directions are drawn by a density over the grid's points u, which are then warped to normals.
+    # The warp's own density is D wi·m times two factors, by which the density over u is divided
     m = m.reshape(-1, 2)
     D = interpolate(grid.ndf[None], m)
     cosines = np.linalg.norm(wi + wo, axis=-1) / 2
     excess = (1 + _even_density(m) / D).reshape(above.shape) * (1 + GRAZING_DENSITY / cosines)
     density = np.maximum(M.mean(axis=-1), 0) / excess
-    density[~density.any(axis=(2, 3))] = 1  # a black incidence
+    density[~density.any(axis=(2, 3))] = 1  # uniform for an incidence at which the BRDF is 0
     return AdaptiveTable(grid, M, density)
 
 
 def build_parameterisation(f: Lookup, quarters: int, size: Resolution) -> Parameterisation:
-    """Return the `Parameterisation` of the BRDF f with the `Resolution` `size`.
+    """Choose the directions at which the BRDF f is tabulated, as a `Parameterisation`.
 
-    f repeats after `quarters` of the circle, as `detect_symmetry` gives them.
+    f repeats after this number of `quarters` of the circle, as `detect_symmetry` finds. `size` is
+    the number of directions.
     """
-    # The incidences
+    # Place the incidences
     phi_i = np.linspace(0, quarters * np.pi / 2, quarters * size.phi_i + 1)
     if quarters:
         phi_i -= np.pi
     theta_i = GRAZING * (1 - np.linspace(1, 0, size.theta_i) ** 1.5)  # denser towards grazing
-    # The normals: D, in part even over the square
+    # Place the normals by their distribution D, to which a density is added
     ndf, sigma = _compute_microfacets(f, size)
     m = even_grid(size.grid)
     density = (interpolate(ndf[None], m) + _even_density(m)) * solid_angle(m)
-    # The normals visible from each incidence; few of the normals that reflect it below the surface
+    # Weight the normals by their visibility from each incidence, and reduce the number of those
+    # that reflect light below the surface
     wi, normals = from_angles(theta_i, phi_i[:, None]), from_angles(*from_square(m))
     cosines = wi @ normals.T
     height = 2 * cosines * normals[:, 2] - wi[..., 2:]  # cosθ_o
@@ -102,14 +108,14 @@ def build_parameterisation(f: Lookup, quarters: int, size: Resolution) -> Parame
 
 
 def detect_symmetry(f: Lookup) -> int:
-    """Return the number of quarters of the circle after which the BRDF f repeats.
+    """Return after how many quarters of a turn about the normal the BRDF f repeats.
 
-    It is 0 if f is isotropic, 1 if f has the planes of symmetry x = 0 and y = 0, 2 if a half turn
-    does not change f, otherwise 4. Values at 1,000 direction pairs, rotated and mirrored, are
-    compared.
+    The result is 0 if f is isotropic, 1 if f has the planes of symmetry x = 0 and y = 0, 2 if a
+    half turn leaves f equal, otherwise 4. It is found by comparing f at 1,000 random pairs of
+    directions that are rotated and mirrored.
     """
     theta_h, theta_d, phi_d, phi_h = np.random.default_rng(0).random((4, 1000))
-    # Many half vectors near the normal, where narrow lobes are, but none so near that rounding
+    # Draw many half vectors near the normal, where lobes are narrow, but none so near that rounding
     # changes its azimuth
     theta_h = np.pi / 2 * (0.01 + 0.99 * theta_h) ** 3
     pairs = from_half_difference(theta_h, np.pi / 2 * theta_d, 2 * np.pi * phi_d, 2 * np.pi * phi_h)
@@ -118,7 +124,7 @@ def detect_symmetry(f: Lookup) -> int:
 
     def is_symmetric(matrix: FloatArray) -> bool:
         turned = _evaluate(f, wi @ matrix, wo @ matrix)
-        # 90 % suffice: between scattered samples at equal distances, rounding chooses the nearest
+        # 90 % suffice: of scattered samples at equal distances, rounding decides which is nearest
         return bool(np.isclose(turned, values, rtol=1e-4).all(axis=1).mean() > 0.9)
 
     if is_symmetric(np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]])):
@@ -129,7 +135,10 @@ def detect_symmetry(f: Lookup) -> int:
 
 
 def _compute_microfacets(f: Lookup, size: Resolution) -> list[FloatArray]:
-    """Return the distribution of normals D and their projected area σ on the square, (y, x)."""
+    """Return the distribution of normals D and the projected area σ, on the square of directions.
+
+    Both are (y, x), computed from the retro-reflection f(w, w).
+    """
     theta = np.linspace(0, 1, size.theta_m) ** 2 * np.pi / 2
     hemisphere = Hemisphere(theta, size.phi_m)
     w = Hemisphere(np.minimum(theta, GRAZING), size.phi_m).directions.reshape(-1, 3)
@@ -141,16 +150,16 @@ def _compute_microfacets(f: Lookup, size: Resolution) -> list[FloatArray]:
 
 
 def _even_density(m: FloatArray) -> FloatArray:
-    """Return a density [sr⁻¹] at `m`, even over the square of directions except near the normal.
+    """Return a density [sr⁻¹] at points `m` (n, 2) of the square of directions.
 
-    It is added to the density of the normals. So half of the grid is left to the slopes of a
-    highlight, where D is small and M changes most, and narrow cells to a peak of retro-reflection.
+    It is uniform over the square except near the surface's normal. Added to the density D of the
+    normals, it gives half of the grid's points to the slopes of a highlight, where D is small.
     """
     return 1 / (solid_angle(m) + INNERMOST)
 
 
 def _evaluate(f: Lookup, wi: FloatArray, wo: FloatArray) -> FloatArray:
-    """Return f(wi, wo); raise `BrdfkitError` where it is not finite."""
+    """Evaluate the BRDF f for directions (n, 3); raise `BrdfkitError` where it is not finite."""
     values = f(wi, wo)
     if not np.isfinite(values).all():
         row = np.argmin(np.isfinite(values).all(axis=1))

@@ -1,4 +1,4 @@
-"""Checks the fields of an RGL file: their dimensions, their types and their values."""
+"""Checks that the fields of an RGL file have the right dimensions, types and values."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -9,8 +9,8 @@ from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats.rgl.tensor_file import REMEDY, format_shape
 
-# The dimensions of each field: equal letters are equal numbers in all fields, and a capital letter
-# is at least 2
+# The dimensions of each field, a letter each: equal letters stand for equal numbers in all fields,
+# and capital letters for numbers of at least 2
 LAYOUT = {
     "phi_i": "a",
     "theta_i": "b",
@@ -22,8 +22,8 @@ LAYOUT = {
 }
 COLOURS = {"rgb": "abcNN"}
 SPECTRA = {"wavelengths": "c", "spectra": "abcNN"}
-RIGHT_ANGLE = np.pi / 2 + 1e-3  # rad: files round 90°
-# A condition on the values of a field, in words and as a function
+RIGHT_ANGLE = np.pi / 2 + 1e-3  # rad; a little more than 90°, which files round
+# Conditions on the values of a field, in words for errors and as a function
 RULES: dict[str, tuple[str, Callable[[FloatArray], Any]]] = {
     "phi_i": (
         "increase within the circle",
@@ -46,7 +46,7 @@ RULES: dict[str, tuple[str, Callable[[FloatArray], Any]]] = {
 def check_fields(
     source: Source, arrays: Mapping[str, AnyArray], spectral: bool
 ) -> dict[str, FloatArray]:
-    """Return the arrays of the fields of a `spectral` file, or of an RGB file, as float64.
+    """Return the fields of a `spectral` file, or else of an RGB file, as float64 arrays by name.
 
     Raises `BrdfkitError` if a field is missing, or its type, shape or values are impossible.
     """
@@ -66,11 +66,10 @@ def _check_field(
     letters: str,
     sizes: dict[str, int],
 ) -> FloatArray:
-    """Return the array of a field as float64.
+    """Return the field `name` as float64; raise `BrdfkitError` for a wrong type, shape or value.
 
-    `letters` are the field's dimensions; `sizes` has their numbers by letter, and gets new letters.
-    Raises `BrdfkitError` unless the array is finite and has the type and the dimensions of
-    the field.
+    `letters` are the field's dimensions. `sizes` has the number for each letter, to which letters
+    that occur for the first time are added.
     """
     if name not in arrays:
         raise source.error(f"has no field {name!r}, which an RGL file needs; {REMEDY}")
@@ -85,7 +84,7 @@ def _check_field(
             f"field {name!r} is {format_shape(array.shape)}, where {format_shape(belong)} "
             f"belong; {REMEDY}"
         )
-    finite = np.isfinite(array)  # before the conversion, in which a signalling NaN warns
+    finite = np.isfinite(array)  # tested first, because NumPy warns on converting signalling NaN
     if not finite.all():
         raise source.error(
             f"field {name!r} has {(~finite).sum():,} values that are not finite; {REMEDY}"

@@ -1,4 +1,4 @@
-"""Computes the distribution of microfacet normals of a BRDF from its retro-reflection.
+"""Computes a BRDF's distribution of microfacet normals from its retro-reflection.
 
 For wi = wo = w, the BRDF of a surface of microfacets with normals m is
 
@@ -26,8 +26,8 @@ TOLERANCE = 1e-6
 class Hemisphere:
     """A grid of directions on the hemisphere, and integrals over it.
 
-    `theta` (n_theta,) [rad] runs from 0 to π/2; `n_phi` azimuths are evenly spaced from -π on, one
-    alone if nothing depends on the azimuth.
+    `theta`: polar angles from 0 to π/2 [rad], (n_theta,); `n_phi`: number of azimuths, which are
+    evenly spaced from -π on, or 1 if nothing depends on the azimuth.
     """
 
     theta: FloatArray
@@ -35,7 +35,7 @@ class Hemisphere:
 
     @property
     def directions(self) -> FloatArray:
-        """Unit vectors (n_phi, n_theta, 3)."""
+        """The grid's directions as unit vectors (n_phi, n_theta, 3)."""
         phi = -np.pi + 2 * np.pi * np.arange(self.n_phi) / self.n_phi
         return from_angles(self.theta, phi[:, None])
 
@@ -46,12 +46,18 @@ class Hemisphere:
         return 2 * np.pi * np.sin(self.theta) * (steps[1:] + steps[:-1]) / 2
 
     def area(self, D: FloatArray) -> float:
-        """Return the integral ∫ D cosθ dm of a distribution D (n_phi, n_theta) of normals."""
+        """Integrate ∫ D cosθ dm: the area of facets with normals distributed by D, seen from above.
+
+        D is (n_phi, n_theta); for a distribution of normals the result should be 1.
+        """
         return D.mean(axis=0) @ (self.solid_angles * np.cos(self.theta))
 
     def projected_area(self, D: FloatArray) -> FloatArray:
-        """Return σ (n_phi, n_theta) for a distribution D (n_phi, n_theta) of normals."""
-        # A convolution over the azimuth is a product of Fourier coefficients
+        """Return σ(w) = ∫ D(m) max(0, w·m) dm for all directions w of the grid, (n_phi, n_theta).
+
+        It is the facets' area projected along w; D (n_phi, n_theta) is the distribution of normals.
+        """
+        # The integral over the azimuth is a convolution, a product of Fourier coefficients
         coefficients = np.fft.rfft(D * self.solid_angles, axis=0)
         projected = np.einsum("ijk,kj->ki", self._kernel, coefficients)
         return np.fft.irfft(projected, self.n_phi, axis=0)
@@ -72,9 +78,10 @@ class Hemisphere:
 
 
 def find_normals(retro: FloatArray, hemisphere: Hemisphere) -> FloatArray:
-    """Return D (n_phi, n_theta) [sr⁻¹] with ∫ D cosθ dm = 1, by power iteration.
+    """Return the distribution of normals D (n_phi, n_theta) [sr⁻¹] that explains `retro`.
 
-    `retro` (n_phi, n_theta) are the values f(w, w), which must not be negative.
+    `retro` (n_phi, n_theta) are the values f(w, w) of the BRDF, which must not be negative. D is
+    found by power iteration, and scaled to ∫ D cosθ dm = 1.
     """
     gain = retro * np.cos(hemisphere.theta)
     D = np.ones_like(gain)

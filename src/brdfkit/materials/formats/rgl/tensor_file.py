@@ -1,8 +1,9 @@
-"""Reads and writes the container of RGL's files: named arrays, little-endian.
+"""Reads and writes tensor files: the container of RGL's files, which holds named arrays.
 
-Mitsuba's `TensorFile` defines it. A file has ``tensor_file\\0``, the version (two uint8) and the
-number of fields (uint32); for each field the length of its name (uint16), its name, number of
-dimensions (uint16), type (uint8), offset (uint64) and dimensions (uint64 each); then the data.
+Mitsuba's `TensorFile` defines it. A file is little-endian and has ``tensor_file\\0``, the version
+(two uint8) and the number of fields (uint32). For each field follow the length of its name
+(uint16), its name, number of dimensions (uint16), type (uint8), offset (uint64) and dimensions
+(uint64 each). Then come the data.
 """
 
 import math
@@ -19,17 +20,17 @@ MAGIC = b"tensor_file\0"
 VERSION = 1, 0
 ALIGNMENT = 8
 MOST_DIMENSIONS = 8
-# The types in the order of their numbers in the file, which begin with 1
+# The types of arrays in the order of their numbers in a file, which begin with 1
 TYPES = [np.dtype(f"<{kind}{size}") for size in (1, 2, 4, 8) for kind in "ui"]
 TYPES += [np.dtype(f"<f{size}") for size in (2, 4, 8)]
 REMEDY = "fetch the file again"
 
 
 def read(source: Source) -> dict[str, AnyArray]:
-    """Return the arrays of a `Source` by name.
+    """Return the arrays of a tensor file by name.
 
-    They are views of its bytes, so that no header can ask for memory. Raises `BrdfkitError` if a
-    field is not wholly in the file, comes twice, or has an unknown type.
+    They are views of the file's bytes, so that no header can demand memory. Raises `BrdfkitError`
+    if a field is cut off, is repeated, or has an unknown type.
     """
     header = _Cursor(source)
     if header.read_bytes(len(MAGIC)) != MAGIC or header.read_numbers("<BB") != VERSION:
@@ -51,7 +52,7 @@ def read(source: Source) -> dict[str, AnyArray]:
 
 
 def write(stream: IO[bytes], fields: Mapping[str, AnyArray]) -> None:
-    """Write the arrays `fields`, by name, to a binary stream, in their order."""
+    """Write a tensor file with the named arrays `fields` to a binary stream, in their order."""
     arrays = {name.encode(): np.ascontiguousarray(array) for name, array in fields.items()}
     sizes = (2 + len(name) + 2 + 1 + 8 + 8 * array.ndim for name, array in arrays.items())
     end = len(MAGIC) + 2 + 4 + sum(sizes)
@@ -69,14 +70,14 @@ def write(stream: IO[bytes], fields: Mapping[str, AnyArray]) -> None:
 
 
 def format_shape(shape: Sequence[int]) -> str:
-    """Return the dimensions of an array as text, such as 3×4."""
+    """Return the shape of an array as text, such as 3×4."""
     return "×".join(map(str, shape))
 
 
 def _view_array(
     source: Source, name: str, number: int, offset: int, shape: Sequence[int]
 ) -> AnyArray:
-    """Return the array at byte `offset`; `number` stands for its type in the file."""
+    """Return the array `name` at byte `offset`; `number` stands for its type in the file."""
     if not 1 <= number <= len(TYPES):
         raise source.error(f"field {name!r} has the unknown type {number}; {REMEDY}")
     dtype, size = TYPES[number - 1], math.prod(shape)
@@ -91,13 +92,13 @@ def _view_array(
 
 
 class _Cursor:
-    """A position in the bytes of a `Source`, from which its header is read."""
+    """Reads the header of a file step by step, and keeps the position in its bytes."""
 
     def __init__(self, source: Source) -> None:
         self.source, self.position = source, 0
 
     def read_bytes(self, count: int) -> bytes:
-        """Read the next `count` bytes."""
+        """Read the next `count` bytes; raise `BrdfkitError` at the end of the file."""
         start, self.position = self.position, self.position + count
         if self.position > len(self.source.data):
             raise self.source.error(
@@ -106,5 +107,5 @@ class _Cursor:
         return self.source.data[start : self.position]
 
     def read_numbers(self, layout: str) -> tuple[Any, ...]:
-        """Read the next numbers, of the types that `layout` gives in the words of `struct`."""
+        """Read the next numbers, whose types `layout` gives in the notation of `struct`."""
         return struct.unpack(layout, self.read_bytes(struct.calcsize(layout)))

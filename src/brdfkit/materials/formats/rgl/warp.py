@@ -1,9 +1,10 @@
-"""Warps the unit square to a tabulated density, and interpolates tables over the unit square.
+"""Draws points of the unit square by a tabulated density, and interpolates such tables.
 
-A table has its values on an even grid over the unit square, with y as the first axis, and is
-bilinear between them. If it depends on parameters, it has a slice for each combination of their
-nodes, and is linear between the slices. The warp first inverts the marginal distribution of y, then
-the distribution of x for this y.
+A table has values on an even grid over the unit square, with y as the first axis, and is bilinear
+between them. If it depends on parameters, such as the incidence, it has a slice for each
+combination of their nodes, and is linear between the slices. A warp maps uniform points to points
+with the density of the table: it inverts the marginal distribution of y, then the distribution of x
+for this y.
 
 This is Mitsuba's `MarginalContinuous2D` (W. Jakob et al., Mitsuba 3, `distr_2d.h`) in double
 precision.
@@ -19,7 +20,8 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.multilinear import find_bracket, list_corners, to_flat_index
 
-# Slices of a table with their weights, arrays (n,) for n points, or one slice for all points
+# The slices of a table to interpolate between, with their weights: pairs of arrays (n,) for n
+# points, or of single numbers for all points
 Slices = Sequence[tuple[Any, Any]]
 
 
@@ -33,10 +35,10 @@ def even_grid(n: int) -> FloatArray:
 
 
 def find_slices(nodes: Sequence[FloatArray], values: Sequence[FloatArray]) -> Slices:
-    """Return the slices of a table to interpolate between, as pairs of slices and weights (n,).
+    """Return which slices of a table to interpolate between, with their weights (n,), in pairs.
 
-    `nodes` has one increasing array per parameter, and `values` an array (n,) per parameter, which
-    is clamped to the nodes. The slices are numbered with the last parameter running fastest.
+    `nodes` has the increasing nodes of each parameter, and `values` n values of each parameter,
+    which are clamped to the nodes. Slices are numbered with the last parameter running fastest.
     """
     brackets, shape = [], []
     for axis, x in zip(nodes, values, strict=True):
@@ -50,9 +52,10 @@ def find_slices(nodes: Sequence[FloatArray], values: Sequence[FloatArray]) -> Sl
 
 
 def interpolate(table: FloatArray, u: FloatArray, slices: Slices = ((0, 1.0),)) -> FloatArray:
-    """Return the values (n, ...) of a `table` (slices, ny, nx, ...) at points `u` (n, 2), (x, y).
+    """Interpolate a `table` (slices, ny, nx, ...) at points `u` (n, 2), given as (x, y).
 
-    `slices`: as `find_slices` gives them.
+    `slices`, as `find_slices` returns them, are the ones to interpolate between. The result is
+    (n, ...).
     """
     _, ny, nx, *rest = table.shape
     cells = [_find_bracket(u[:, 0], nx), _find_bracket(u[:, 1], ny)]
@@ -65,9 +68,9 @@ def interpolate(table: FloatArray, u: FloatArray, slices: Slices = ((0, 1.0),)) 
 
 @dataclass(frozen=True, eq=False)
 class Warp:
-    """A warp of the unit square to each slice of `density` (slices, ny, nx).
+    """A map of uniform points of the unit square to points with a tabulated density.
 
-    The density need not be normalised.
+    `density`: table of one density per slice, which need not be normalised, (slices, ny, nx).
 
     >>> Warp(np.ones((1, 2, 2))).sample(0, np.array([[0.25, 0.5]]))
     array([[0.25, 0.5 ]])
@@ -77,9 +80,9 @@ class Warp:
 
     @cached_property
     def _tables(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The density, the cumulative distribution along each row, and the one over the rows.
+        """Three tables: the density, its integral along each row, and the integral over the rows.
 
-        All are normalised so that the last is 1 at its end, for cells of unit area.
+        All are scaled so that the last one ends with 1, if cells of the grid have unit area.
         """
         along = _cumulate(self.density)
         rows = _cumulate(along[..., -1])
@@ -91,13 +94,13 @@ class Warp:
         )
 
     def sample(self, at: int, u: FloatArray) -> FloatArray:
-        """Warp uniform points `u` (n, 2), (x, y), to the density of slice `at`."""
+        """Map uniform points `u` (n, 2), given as (x, y), to points with the density of slice `at`."""
         density, along, rows = (table[at] for table in self._tables)
-        # y from the marginal distribution
+        # Find y by the marginal distribution
         y = np.clip(np.searchsorted(rows, u[:, 1]) - 1, 0, len(rows) - 2)
         ty = _invert_mass(u[:, 1] - rows[y], along[y, -1], along[y + 1, -1])
 
-        # x from the distribution along the row at this y
+        # Find x by the distribution along the row at this y
         row = _lerp(along[y], along[y + 1], ty[:, None])
         share = u[:, 0] * row[:, -1]
         x = np.clip((row < share[:, None]).sum(axis=1) - 1, 0, row.shape[1] - 2)
@@ -108,28 +111,28 @@ class Warp:
         return np.stack([(x + tx) / (row.shape[1] - 1), (y + ty) / (len(rows) - 1)], axis=1)
 
     def pdf(self, points: FloatArray, slices: Slices) -> FloatArray:
-        """Return the density (n,) of `sample` at points (n, 2).
+        """Return the normalised density (n,) with which `sample` draws the `points` (n, 2).
 
-        `slices`: as `find_slices` gives them.
+        `slices`, as `find_slices` returns them, are the ones to interpolate between.
         """
         density, _, _ = self._tables
         _, ny, nx = density.shape
         return (ny - 1) * (nx - 1) * interpolate(density, points, slices)
 
     def invert(self, u: FloatArray, slices: Slices) -> FloatArray:
-        """Return the uniform points (n, 2) that `sample` warps to the points `u` (n, 2).
+        """Return the uniform points (n, 2) that `sample` maps to the points `u` (n, 2).
 
-        `slices`: as `find_slices` gives them.
+        `slices`, as `find_slices` returns them, are the ones to interpolate between.
         """
         density, along, rows = self._tables
         x, _, tx = _find_bracket(u[:, 0], density.shape[2])
         y, _, ty = _find_bracket(u[:, 1], density.shape[1])
 
         def at(table: FloatArray, *index: Any) -> Any:
-            """Interpolate a table between the slices, at an index within each."""
+            """Interpolate between the slices of a table, at one `index` within each slice."""
             return sum(weight * table[(slice_, *index)] for slice_, weight in slices)
 
-        # The distribution along the row at y, up to x
+        # Integrate along the row at y, up to x
         left = _lerp(at(density, y, x), at(density, y + 1, x), ty)
         right = _lerp(at(density, y, x + 1), at(density, y + 1, x + 1), ty)
         before = _lerp(at(along, y, x), at(along, y + 1, x), ty)
@@ -137,20 +140,21 @@ class Warp:
         row = _lerp(lower, upper, ty)
         share = before + _mass(left, right, tx)
         x = np.divide(share, row, out=np.zeros_like(share), where=row > 0)
-        # The marginal distribution up to y
+        # Integrate the marginal distribution up to y
         return np.stack([x, at(rows, y) + _mass(lower, upper, ty)], axis=1)
 
 
 def _find_bracket(u: FloatArray, n: int) -> Any:
-    """Return the bracket (`geometry.multilinear`) of coordinates `u` (m,) among `n` nodes.
+    """Return the nodes between which coordinates `u` (m,) in the unit square lie, and the weights.
 
-    The nodes span the unit square from edge to edge.
+    The `n` nodes span the unit square from edge to edge. The result is a bracket, as
+    `brdfkit.core.geometry.multilinear` defines it.
     """
     return find_bracket(u * (n - 1), n)
 
 
 def _cumulate(values: FloatArray) -> FloatArray:
-    """Integrate the linear interpolant of `values` along the last axis, from the first node on."""
+    """Integrate `values`, linearly interpolated, along the last axis, up to each node."""
     steps = (values[..., 1:] + values[..., :-1]) / 2
     return np.concatenate([np.zeros_like(values[..., :1]), np.cumsum(steps, axis=-1)], axis=-1)
 
@@ -161,11 +165,14 @@ def _lerp(a: Any, b: Any, t: FloatArray) -> Any:
 
 
 def _mass(a: FloatArray, b: FloatArray, t: FloatArray) -> FloatArray:
-    """Return the integral from 0 to t of the line that is a at 0 and b at 1."""
+    """Integrate the line that is a at 0 and b at 1 from 0 to t."""
     return t * (a + t / 2 * (b - a))
 
 
 def _invert_mass(mass: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the t at which `_mass` is `mass`, by a formula without cancellation."""
+    """Return the t up to which the line that is a at 0 and b at 1 has the integral `mass`.
+
+    The formula avoids cancellation.
+    """
     divisor = a + np.sqrt(np.maximum(a * a + 2 * mass * (b - a), 0))
     return np.divide(2 * mass, divisor, out=np.zeros_like(mass), where=divisor > 0)
