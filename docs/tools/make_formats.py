@@ -15,7 +15,7 @@ from make_models import paragraphs, table
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
 from brdfkit.core.references import find_cited_works
-from brdfkit.materials.formats import formats
+from brdfkit.materials.formats import list_formats
 
 FOLDER = Path(__file__).parents[1] / "formats"
 FORMULA = {"alpha_u": 0.3, "diffuse_reflectance": 0.3}
@@ -99,7 +99,7 @@ def page(module, found):
 def pages():
     """File name → text of all pages."""
     given = materials()
-    found = {m: {name: outcome(m, thing) for name, thing in given.items()} for m in formats()}
+    found = {m: {name: outcome(m, thing) for name, thing in given.items()} for m in list_formats()}
     rows = [
         (f"[{m.NAME}]({file_name(m)})", suffixes(m), *(verdict for verdict, _ in cells.values()))
         for m, cells in found.items()

@@ -14,7 +14,7 @@ import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.core import catalogue
 from brdfkit.core.references import find_citations, read_references
-from brdfkit.materials.formats import formats
+from brdfkit.materials.formats import list_formats
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [
@@ -81,7 +81,7 @@ def test_the_gallery_of_distance_fields_shows_its_scenes_and_their_code():
 def test_the_pages_of_formats_are_what_their_docstrings_say():
     """Otherwise: make docs"""
     make = import_module("make_formats")
-    for module in formats():
+    for module in list_formats():
         text = (make.FOLDER / make.file_name(module)).read_text(encoding="utf-8")
         assert all(part in text for part in make.prose(module)), module.NAME
 

@@ -13,7 +13,7 @@ import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.core import catalogue
 from brdfkit.core.discovery import plugin_files
-from brdfkit.materials.formats import formats
+from brdfkit.materials.formats import list_formats
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 # The list of all pages beside each page takes a third of the time, and is the same on all
@@ -74,7 +74,7 @@ def test_there_is_a_page_of_everything(site):
     wanted = {
         "models": {n for n, m in bk.models().items() if m.__module__.startswith(plugin_files.OWN)},
         "materials": set(catalogue.list_materials()),
-        "formats": {module.__name__.rpartition(".")[2] for module in formats()},
+        "formats": {module.__name__.rpartition(".")[2] for module in list_formats()},
         "plugins": {page.removesuffix(".md") for page in own_plugins()},
         "commands": set(main.commands),
         "api": {name for name in bk.__all__ if not name.startswith("_")},

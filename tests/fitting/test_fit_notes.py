@@ -13,7 +13,7 @@ from brdfkit.cli import main
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.fitting.lobe_notes import list_lobe_notes
 from brdfkit.fitting.lobe_widths import compute_half_widths, find_half_angle_spacing
-from brdfkit.materials.extrapolation import describe_extrapolation, note_extrapolation
+from brdfkit.materials.extrapolation import describe_file_extrapolation, note_fit_extrapolation
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.reporting.parameters import describe_fit
@@ -243,27 +243,27 @@ def test_the_note_on_azimuths_comes_with_pictures_too():
 
 
 def test_a_fit_extrapolates_where_little_was_measured():
-    (note,) = note_extrapolation(measure(PAINT, largest=45.0), 80.0)
+    (note,) = note_fit_extrapolation(measure(PAINT, largest=45.0), 80.0)
     assert "% of the direction pairs below 80° lie beyond the measured angles, " in note
     assert "which reach 45°: there the fit extrapolates, and nothing tests it" in note
     # (1 - cos 45°)² of (1 - cos 80°)² within the angles, and a rim of up to 5° near samples
     assert 1 - (1 - np.cos(np.radians(50))) ** 2 / (1 - np.cos(np.radians(80))) ** 2 < 0.87
     assert 0.80 < float(note.partition("%")[0]) / 100 < 0.875
-    assert note_extrapolation(measure(PAINT, largest=80.0), 80.0) == []
-    assert note_extrapolation(measure(PAINT, largest=45.0), 45.0) == []
+    assert note_fit_extrapolation(measure(PAINT, largest=80.0), 80.0) == []
+    assert note_fit_extrapolation(measure(PAINT, largest=45.0), 45.0) == []
 
 
 def test_a_table_of_few_samples_is_extrapolated():
     few = measure(PAINT, step=15.0, largest=45.0)
     table = few.tabulated
-    (told,) = describe_extrapolation(few, table)
+    (told,) = describe_file_extrapolation(few, table)
     share = bk.audit(few).coverage
     start = f"{share.beyond:.0%} of the table is extrapolated and {share.between:.0%} interpolated"
     assert told.startswith(start)
     most, now = few.values.max(), np.nanmax(table.table.values)
     assert told.endswith(f"; the maximum rises from {most:.4g} to {now:.4g} sr⁻¹")
-    assert describe_extrapolation(few, few) == []
-    assert describe_extrapolation(table, few) == []
+    assert describe_file_extrapolation(few, few) == []
+    assert describe_file_extrapolation(table, few) == []
 
 
 # The page
@@ -275,7 +275,7 @@ NOTES = {  # the files that make notes, and in which of their functions or names
     "fitting/lobe_notes.py": None,
     "fitting/lobe_widths.py": None,
     "fitting/lobe_colours.py": None,
-    "materials/extrapolation.py": ("note_extrapolation",),
+    "materials/extrapolation.py": ("note_fit_extrapolation",),
     "regression/albedo.py": ("warnings",),
     "regression/search/albedo_search.py": ("_describe_correction",),
     "materials/auditing/data_findings.py": (

@@ -10,7 +10,7 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.materials.formats import Source, formats, rgl
+from brdfkit.materials.formats import Source, list_formats, rgl
 from brdfkit.materials.formats.rgl import encoding
 from brdfkit.materials.measured import Measured
 from brdfkit.model import labels
@@ -140,7 +140,7 @@ MATERIALS = {"table": table, "spectrum": spectrum, "brushed": brushed, "fit": fi
 def written():
     """What each format that writes makes of the first of `MATERIALS` that it can hold, by name."""
     found = {}
-    for module in filter(lambda m: hasattr(m, "write"), formats()):
+    for module in filter(lambda m: hasattr(m, "write"), list_formats()):
         name = module.__name__.rpartition(".")[2]
         for make in MATERIALS.values():
             stream = io.BytesIO()

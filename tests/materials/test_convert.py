@@ -27,13 +27,13 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.converting import convert
 from brdfkit.materials.evaluating import albedo
-from brdfkit.materials.formats import HEAD, formats
+from brdfkit.materials.formats import HEAD, list_formats
 from brdfkit.materials.formats.rgl import encoding
 from brdfkit.materials.loading import load, save
 from brdfkit.materials.measured import Measured
 
 pytestmark = pytest.mark.usefixtures("small_tables")
-WRITERS = {m.__name__.rpartition(".")[2]: m for m in formats() if hasattr(m, "write")}
+WRITERS = {m.__name__.rpartition(".")[2]: m for m in list_formats() if hasattr(m, "write")}
 
 
 @pytest.fixture
@@ -53,15 +53,15 @@ def run(*words):
 def test_every_format_has_a_small_file():
     """Else nothing would fuzz it: add it to FILES in small_files.py."""
     recognised = [kind.partition(",")[0] for kind in {**FILES, **written()}]
-    missing = {m.__name__.rpartition(".")[2] for m in formats()} - set(recognised)
+    missing = {m.__name__.rpartition(".")[2] for m in list_formats()} - set(recognised)
     assert not missing
 
 
 @pytest.mark.parametrize("kind", {**FILES, **written()})
 def test_one_format_recognises_a_file_or_its_suffix_decides(kind):
     name, data = {**FILES, **written()}[kind]
-    sniffed = [module for module in formats() if module.sniff(data[:HEAD])]
-    named = [m for m in formats() if any(name.endswith(s) for s in m.SUFFIXES)]
+    sniffed = [module for module in list_formats() if module.sniff(data[:HEAD])]
+    named = [m for m in list_formats() if any(name.endswith(s) for s in m.SUFFIXES)]
     assert len(sniffed or named) == 1
     assert (sniffed or named)[0] in named
 

@@ -75,7 +75,7 @@ def server():
 @pytest.fixture
 def cache(tmp_path, monkeypatch):
     """An empty cache folder, not yet made."""
-    monkeypatch.setattr(public, "cache_folder", lambda: tmp_path / "cache")
+    monkeypatch.setattr(public, "find_cache_folder", lambda: tmp_path / "cache")
     return tmp_path / "cache"
 
 
@@ -149,8 +149,8 @@ def test_interrupted_then_resumed(server, lab):
     assert "the connection to 127.0.0.1 failed" in fails()
     part = place.with_name("grey.binary.part")
     assert files(place.parent) == [part.name]
-    assert "is not here" in fails(call=load)
-    assert not public.find_collection("lab").files_on_disk()
+    assert "is not downloaded yet" in fails(call=load)
+    assert not public.find_collection("lab").list_files_on_disk()
     have = part.stat().st_size
     assert 0 < have <= server.breaks
     server.breaks = None
@@ -298,8 +298,8 @@ def test_by_hand_the_sentence_says_which_file_from_where_to_where(server, lab):
     place = lab(url="", note="unpacked from all.zip")
     for call in (load, download):
         assert fails(call=call) == (
-            "lab/grey: is not here; fetch grey.binary from https://lab.example/greys and put it "
-            f"into {place.parent}, unpacked from all.zip."
+            "lab/grey: is not downloaded yet; fetch grey.binary from https://lab.example/greys and "
+            f"put it into {place.parent}, unpacked from all.zip."
         )
     place.parent.mkdir(parents=True)
     place.write_bytes(TABLE)
@@ -312,13 +312,13 @@ def test_by_hand_the_sentence_says_which_file_from_where_to_where(server, lab):
 
 def test_files_that_the_index_does_not_know(lab, cache):
     lab(files=[])
-    assert "lab/mine: is not here; fetch its file from" in fails("lab/mine", load)
+    assert "lab/mine: is not known; fetch its file from" in fails("lab/mine", load)
     (cache / "lab").mkdir(parents=True)
     (cache / "lab" / "mine.binary").write_bytes(TABLE)
     for name in (".DS_Store", "notes.txt", "SHA256SUMS", "._mine.binary", "half.binary.part"):
         (cache / "lab" / name).write_bytes(TABLE)
     assert load("lab/mine").name == "mine"
-    assert list(public.find_collection("lab").files_on_disk()) == ["lab/mine"]
+    assert list(public.find_collection("lab").list_files_on_disk()) == ["lab/mine"]
 
 
 def test_a_sample_of_a_file_with_many(lab, cache):

@@ -30,7 +30,7 @@ from brdfkit.core import files
 from brdfkit.core.colours import RGB, import_colour_package
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.materials.formats import formats
+from brdfkit.materials.formats import list_formats
 from brdfkit.materials.loading import load, save
 from brdfkit.materials.measured import Measured
 
@@ -396,8 +396,8 @@ def test_unknown_formats_are_told_the_known_ones(tmp_path):
 
 
 def test_every_format_module_offers_the_protocol():
-    assert {"MERL", "Cornell", "ASTM", "CUReT"} <= {module.NAME for module in formats()}
-    for module in formats():
+    assert {"MERL", "Cornell", "ASTM", "CUReT"} <= {module.NAME for module in list_formats()}
+    for module in list_formats():
         assert all(s.startswith(".") and s == s.lower() for s in module.SUFFIXES)
         assert not module.sniff(b"")
         assert callable(module.read)
@@ -517,7 +517,7 @@ def test_protected_files(tmp_path):
 @pytest.mark.parametrize("valid", [np.ones(2, bool), np.ones((3, 1), bool), True])
 def test_valid_is_one_for_each_sample(valid):
     w = from_angles(np.array([0.1, 0.2, 0.3]), 0.0)
-    with pytest.raises(BrdfkitError, match=r"grey: valid \(.*\) should be \(3,\)"):
+    with pytest.raises(BrdfkitError, match=r"grey: the shape of valid, .* should be \(3,\)"):
         Measured.from_samples(w, w, np.ones((3, 3)), valid=valid, name="grey")
 
 

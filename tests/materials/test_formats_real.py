@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from brdfkit.core.colours import RGB
 from brdfkit.core.files import read_bytes
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.materials.formats import HEAD, formats
+from brdfkit.materials.formats import HEAD, list_formats
 from brdfkit.materials.loading import load, save
 
 DATA = Path(os.environ.get("BRDFKIT_DATA", "unset"))
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.skipif(not DATA.is_dir(), reason="BRDFKIT_DATA names no
 CORNELL = sorted(DATA.glob("cornell/*.brdf")) + sorted(DATA.glob("cornell/*.astm"))
 MINI_DIFF = sorted(DATA.glob("minidiff_paints/*.astm*"))
 ALTA = sorted(DATA.glob("alta_retro/*.dat.xz"))
-SUFFIXES = {suffix for module in formats() for suffix in module.SUFFIXES}
+SUFFIXES = {suffix for module in list_formats() for suffix in module.SUFFIXES}
 EVERY = [p for p in sorted(DATA.rglob("*.*")) if SUFFIXES & set(p.suffixes) and "npz" not in p.name]
 EVERY = [p for p in EVERY if p.stem != "CHECKSUMS"]  # a table, but of no samples
 
@@ -27,7 +27,7 @@ EVERY = [p for p in EVERY if p.stem != "CHECKSUMS"]  # a table, but of no sample
 @pytest.mark.parametrize("path", EVERY, ids=lambda path: path.name)
 def test_every_file_is_read_by_one_format(path):
     head = read_bytes(path)[:HEAD]
-    assert sum(module.sniff(head) for module in formats()) == 1
+    assert sum(module.sniff(head) for module in list_formats()) == 1
     material = load(f"{path}#1" if path.name == "abrdf.dat" else path)
     valid = material.samples.at(material.samples.valid)
     assert np.isfinite(valid.values).all()

@@ -16,7 +16,7 @@ from mutations import EVERY, NUMBERS, WORDS
 from small_files import FILES, curet_table, place, written
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.materials.formats import formats
+from brdfkit.materials.formats import list_formats
 from brdfkit.materials.loading import load
 from brdfkit.materials.measured import Measured
 from brdfkit.regression.result import Fit
@@ -142,7 +142,7 @@ def test_edited_files(tmp_path, kind, edits):
     load_or_sentence(put(tmp_path, kind, reduce(edited, edits, CORPUS[kind][1])))
 
 
-SUFFIXES = sorted({suffix for module in formats() for suffix in module.SUFFIXES})
+SUFFIXES = sorted({suffix for module in list_formats() for suffix in module.SUFFIXES})
 
 
 @given(data=st.binary(max_size=64), suffix=st.sampled_from(SUFFIXES))

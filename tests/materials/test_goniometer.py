@@ -16,7 +16,13 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.goniometer import measure, measuring, microgeometry
 from brdfkit.materials.goniometer.measuring import Tally
-from brdfkit.materials.goniometer.microgeometry import HeightField, brushed, gaussian, make, woven
+from brdfkit.materials.goniometer.microgeometry import (
+    HeightField,
+    brushed,
+    gaussian,
+    make_height_field,
+    woven,
+)
 from brdfkit.materials.goniometer.specimen import Specimen
 
 pytestmark = pytest.mark.usefixtures("llvm_variant")
@@ -34,7 +40,7 @@ def tile(name, size=64, **parameters):
     """A microgeometry on a small tile."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(microgeometry, "SIZE", size)
-        return make(name, **parameters)
+        return make_height_field(name, **parameters)
 
 
 def fixed(surface):
@@ -460,7 +466,7 @@ def test_what_cannot_be_measured(said, options):
 )
 def test_surfaces_that_cannot_be(said, name, parameters):
     with pytest.raises(BrdfkitError, match=said):
-        make(name, **parameters)
+        make_height_field(name, **parameters)
 
 
 @pytest.mark.quick

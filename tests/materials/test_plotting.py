@@ -208,7 +208,7 @@ def test_angles_out_of_range(theta_i):
 @pytest.mark.parametrize(
     ("things", "named"),
     [
-        ([], "There is no material here"),
+        ([], "No material was given"),
         (3, r"3 \(int\) is no material"),
         (None, "None"),
         ([Constant(1), 3], "3"),

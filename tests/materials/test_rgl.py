@@ -16,8 +16,8 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.formats.rgl import encoding, tensor_file
 from brdfkit.materials.formats.rgl.encoding import Resolution
-from brdfkit.materials.formats.rgl.normals import Hemisphere, find_normals
-from brdfkit.materials.formats.rgl.warp import Warp, even_grid, find_slices
+from brdfkit.materials.formats.rgl.normals import Hemisphere, find_normal_distribution
+from brdfkit.materials.formats.rgl.warp import Warp, find_slices, make_even_grid
 from brdfkit.materials.loading import load, save
 from brdfkit.materials.measured import Measured
 from brdfkit.regression import Fit
@@ -137,7 +137,7 @@ def test_warp_inverts_itself_and_follows_its_density():
     u = rng.random((100_000, 2))
     points = warp.sample(0, u)
     np.testing.assert_allclose(warp.invert(points, [(0, 1.0)]), u, atol=1e-9)
-    edges = even_grid(9)
+    edges = make_even_grid(9)
     np.testing.assert_allclose(warp.sample(0, edges).min(axis=0), 0, atol=1e-12)
     np.testing.assert_allclose(warp.sample(0, edges).max(axis=0), 1, atol=1e-12)
     # the share of the points in each cell is the mean of its corners
@@ -158,7 +158,7 @@ def test_find_normals_finds_the_microfacets(alpha_x, alpha_y, n_phi):
     x, y, z = np.moveaxis(hemisphere.directions, -1, 0)
     D = 1 / (np.pi * alpha_x * alpha_y * ((x / alpha_x) ** 2 + (y / alpha_y) ** 2 + z**2) ** 2)
     sigma = (z + np.sqrt(z**2 + (alpha_x * x) ** 2 + (alpha_y * y) ** 2)) / 2
-    found = find_normals(0.3 * D / (4 * np.maximum(z, 1e-9) * sigma), hemisphere)
+    found = find_normal_distribution(0.3 * D / (4 * np.maximum(z, 1e-9) * sigma), hemisphere)
     near = hemisphere.theta < np.radians(80)
     np.testing.assert_allclose(found[:, near], D[:, near], rtol=5e-3)
     np.testing.assert_allclose(hemisphere.projected_area(found), sigma, atol=1e-3)

@@ -76,9 +76,10 @@ def record_writing(target: Path) -> None:
 
 def _is_in_cache(target: Path) -> bool:
     """Return whether a file lies in brdfkit's cache folder."""
-    from brdfkit.materials.collections.public import cache_folder  # here, because it loads slowly
+    # Imported only here, because the module loads slowly
+    from brdfkit.materials.collections.public import find_cache_folder
 
-    return target.is_relative_to(cache_folder().resolve())
+    return target.is_relative_to(find_cache_folder().resolve())
 
 
 def _was_written_by(target: Path, context: click.Context) -> bool:
@@ -95,10 +96,11 @@ def _was_written_by(target: Path, context: click.Context) -> bool:
 
 def _find_record_path(target: Path) -> Path:
     """Return the path in the cache folder of the record on the file `target`."""
-    from brdfkit.materials.collections.public import cache_folder  # here, because it loads slowly
+    # Imported only here, because the module loads slowly
+    from brdfkit.materials.collections.public import find_cache_folder
 
     name = hashlib.sha256(os.fsencode(target)).hexdigest()[:32]
-    return cache_folder() / "written" / f"{name}.json"
+    return find_cache_folder() / "written" / f"{name}.json"
 
 
 def _describe_command(context: click.Context) -> str:

@@ -26,7 +26,7 @@ from brdfkit.fitting.settings import (
 )
 from brdfkit.fitting.target_albedo import find_target_albedo
 from brdfkit.images.ball import draw_pixels
-from brdfkit.materials.extrapolation import note_extrapolation
+from brdfkit.materials.extrapolation import note_fit_extrapolation
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 from brdfkit.materials.resolve import MaterialLike, to_measured
@@ -181,7 +181,7 @@ def fit(
                 *solution.notes,
                 *warnings,
                 *list_fit_notes(data, samples, error, solution, fitted, weights is not None),
-                *note_extrapolation(data, float(max_angle)),
+                *note_fit_extrapolation(data, float(max_angle)),
             ),
             albedo=albedo,
             **measure_sample_coverage(error, samples, max_angle),

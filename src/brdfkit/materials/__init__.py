@@ -1,1 +1,5 @@
-"""A measured material, and the verbs around it: files, collections, a goniometer, audits, plots."""
+"""Measured BRDFs: their file formats, downloads, interpolation, audits and plots.
+
+`measured/` holds the class `Measured`, and `goniometer/` simulates the measurement of a rough
+surface.
+"""

@@ -1,4 +1,4 @@
-"""`convert`: writes a material in another file format, and says what that changed."""
+"""`convert`: writes a material in another file format, and reports what the file has lost."""
 
 from __future__ import annotations
 
@@ -9,28 +9,29 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.materials.extrapolation import describe_extrapolation
+from brdfkit.materials.extrapolation import describe_file_extrapolation
 from brdfkit.materials.loading import save_and_read
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.spectrum_to_rgb import format_channels
 from brdfkit.materials.measured.tabulation import choose_table_shape, tabulate
 from brdfkit.materials.resolve import Material, MaterialLike, to_material
 
-# Two materials are compared at this many direction pairs, up to this angle from the normal
+# A material and its file are compared at this many random pairs of directions, none of them farther
+# than this angle from the normal
 PAIRS, LARGEST_ANGLE = 4000, np.radians(80)
-LEAST_DIFFERENCE = 5e-4  # relative: a smaller one would be printed as 0.0 %
+LEAST_DIFFERENCE = 5e-4  # a smaller relative difference would be printed as 0.0 %
 
 
 @dataclass(frozen=True)
 class Conversion:
-    """The file that `convert` wrote, and what changed; prints as one line.
+    """The result of `convert`, which prints as one line: the file, and how it differs.
 
     Attributes
     ----------
     path : Path
-        The file.
+        Path of the file that was written.
     changes : tuple of str
-        The differences between the material and the file, in words.
+        Differences between the material and the file, each in words; empty where nothing was lost.
     """
 
     path: Path
@@ -41,10 +42,11 @@ class Conversion:
 
 
 def convert(material: MaterialLike, path: str | Path) -> Conversion:
-    """Write a material in another file format, and find out what that changed.
+    """Write a material to a file of another format, and report how the file differs from it.
 
     The file is read again and compared with the material, so that no loss goes unnoticed. A model
-    or a fit is evaluated at the cells of a table.
+    or a fit is first tabulated over half and difference angles, because most formats hold numbers
+    alone.
 
     Parameters
     ----------
@@ -56,13 +58,13 @@ def convert(material: MaterialLike, path: str | Path) -> Conversion:
     Returns
     -------
     Conversion
-        The file's path, and its `changes` in words.
+        The path of the file, and the `changes` in words.
 
     Raises
     ------
     BrdfkitError
-        For an object that is no material, and where the format cannot hold the material; then
-        nothing is written.
+        For an object that is no material, and for a format that cannot hold the material. Nothing
+        is written then.
 
     Examples
     --------
@@ -72,7 +74,7 @@ def convert(material: MaterialLike, path: str | Path) -> Conversion:
     thing = to_material(material)
     if isinstance(thing, Measured):
         back = save_and_read(thing, path)
-        changes = (*describe_extrapolation(thing, back), *list_changes(thing, back))
+        changes = (*describe_file_extrapolation(thing, back), *list_changes(thing, back))
         return Conversion(Path(path), changes)
     data = evaluate_on_grid(thing)
     note = f"{thing.name} evaluated at {len(data.values):,} direction pairs"
@@ -80,9 +82,9 @@ def convert(material: MaterialLike, path: str | Path) -> Conversion:
 
 
 def evaluate_on_grid(thing: Material) -> Measured:
-    """Return a fit or a model as a `Measured` with samples at the cells of a table.
+    """Return a fit or a model as a `Measured`, sampled at the cell centres of a table.
 
-    Its lookup between the samples is `thing` itself.
+    Between the samples the `Measured` evaluates `thing` itself, so nothing is interpolated.
     """
     model: Any = getattr(thing, "model", thing)
     free = getattr(model, "free_values", {})
@@ -108,20 +110,26 @@ def evaluate_on_grid(thing: Material) -> Measured:
 
 
 def list_changes(before: Measured, after: Measured) -> tuple[str, ...]:
-    """Return the differences of `after` from `before`, and the notes that it lacks, in words."""
-    old, new = describe(before), describe(after)
+    """Return in words how a converted file, read as `after`, differs from the material `before`.
+
+    The list names changed contents, changed BRDF values, and notes that the file lacks.
+    """
+    old, new = describe_contents(before), describe_contents(after)
     changes = [f"{what} {old[what]} → {new[what]}" for what in old if old[what] != new[what]]
-    if difference := compare_lookups(before, after):
+    if difference := compare_interpolations(before, after):
         changes.append(f"between the samples: {difference}")
     if missing := [key for key in before.info if key not in after.info]:
         changes.append(f"without {', '.join(missing)}")
     return tuple(changes)
 
 
-def compare_lookups(before: Measured, after: Measured) -> str:
-    """Return how far the values of two materials' `eval` differ, in words; "" if they are equal."""
+def compare_interpolations(before: Measured, after: Measured) -> str:
+    """Return in words how far the interpolated BRDFs of two materials differ, "" if hardly at all.
+
+    The relative difference is given in the median and for 95 of 100 random pairs of directions.
+    """
     if not any(data.is_table or data.has_lookup for data in (before, after)):
-        return ""  # equal samples are interpolated equally
+        return ""  # two sets of samples are interpolated alike; their contents are compared already
     if before.channels != after.channels:
         before, after = before.rgb, after.rgb
     random = np.random.default_rng(0)
@@ -136,8 +144,8 @@ def compare_lookups(before: Measured, after: Measured) -> str:
     return f"{median:.1%} in the median, 95 of 100 within {most:.1%}"
 
 
-def describe(data: Measured) -> dict[str, str]:
-    """Return the contents of a measured material, without its notes, in words by topic."""
+def describe_contents(data: Measured) -> dict[str, str]:
+    """Return texts by topic on a measured material: its size, angles, values and errors."""
     samples, valid, errors = data.samples, data.samples.valid, data.standard_error
     values = samples.values[valid]
     cosine = min(w[valid, 2].min() for w in (samples.wi, samples.wo))

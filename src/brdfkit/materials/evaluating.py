@@ -1,4 +1,4 @@
-"""`evaluate` and `albedo`: the BRDF of a material, and the share of light that it reflects."""
+"""`evaluate` computes a material's BRDF, and `albedo` the share of light that it reflects."""
 
 from __future__ import annotations
 
@@ -20,18 +20,20 @@ def evaluate(material: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np
     material : Measured, Fit, Model, str, Path or dict
         The material, its name or path, or a BSDF's dictionary.
     wi, wo : array_like, shape (n, 3)
-        Unit vectors in the local frame, z along the normal; below the surface the BRDF is 0.
+        Directions to the light and to the viewer: unit vectors in the local frame, z along the
+        normal. Where one of them is below the surface, the BRDF is 0.
 
     Returns
     -------
     ndarray, shape (n, channels)
-        BRDF [sr⁻¹]: one channel, linear R, G, B, or the material's wavelengths.
+        BRDF [sr⁻¹]. The channels are a single one, or linear R, G, B, or the material's
+        wavelengths.
 
     Raises
     ------
     BrdfkitError
-        For an object that is no material, for other shapes, and for vectors whose length is not 1
-        (to 1e-4).
+        For an object that is no material, for directions of another shape, and for vectors whose
+        length differs from 1 by more than 1e-4.
 
     Examples
     --------
@@ -46,7 +48,7 @@ def evaluate(material: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np
         )
     if not np.allclose(np.linalg.norm([wi, wo], axis=-1), 1, atol=1e-4):
         raise BrdfkitError("evaluate: wi and wo should be unit vectors.")
-    if len(wi) == 0:  # an empty array, with the channels of the material
+    if len(wi) == 0:  # evaluate one pair nevertheless, to find out the number of channels
         return brdf.eval(*[np.array([[0.0, 0.0, 1.0]])] * 2)[:0]
     return brdf.eval(wi, wo)
 
@@ -54,8 +56,9 @@ def evaluate(material: MaterialLike, wi: ArrayLike, wo: ArrayLike) -> NDArray[np
 def albedo(material: MaterialLike, wi: ArrayLike) -> NDArray[np.float64]:
     """Compute the directional albedo ∫ f cosθ_o dω_o: the share of light that a material reflects.
 
-    The integral of the BRDF f over the views is refined until it changes by less than 2e-4 of
-    itself, also for the narrowest lobes.
+    The integral is over the directions ω_o to the viewer, f is the BRDF and θ_o the angle of ω_o to
+    the normal. The quadrature is refined until the result changes by less than 2e-4 of itself, even
+    for the narrowest lobes.
 
     Parameters
     ----------
@@ -67,7 +70,7 @@ def albedo(material: MaterialLike, wi: ArrayLike) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (channels,)
-        Reflected over incident light; at most 1 for a material that conserves energy.
+        Reflected light over incident light; at most 1 for a material that conserves energy.
 
     Raises
     ------
@@ -83,12 +86,12 @@ def albedo(material: MaterialLike, wi: ArrayLike) -> NDArray[np.float64]:
 
 
 def _check_incidence(wi: ArrayLike) -> NDArray[np.float64]:
-    """Return `wi` as a unit vector (3,) above the surface; raise `BrdfkitError` if it is none."""
+    """Return `wi` (3,) normalised; raise `BrdfkitError` unless it is a unit vector with z > 0."""
     try:
         direction = np.array(wi, float)
     except (TypeError, ValueError):
         direction = np.empty(0)
-    # "not (a <= b)" in place of "a > b", so that NaN is refused, too
+    # NaN fails every comparison, so the condition accepts unit vectors instead of refusing others
     is_unit = direction.shape == (3,) and abs(np.linalg.norm(direction) - 1) <= 1e-4
     if not (is_unit and direction[2] > 0):
         raise BrdfkitError(

@@ -1,4 +1,4 @@
-"""Notes on values that were not measured, for a fit and for a file that `convert` writes."""
+"""Warns in words where a fit, or a file that `convert` writes, goes beyond what was measured."""
 
 import numpy as np
 
@@ -11,21 +11,25 @@ from brdfkit.materials.measured.coverage import (
     find_largest_angles,
 )
 
-LARGEST_FIT_SHARE = 0.1  # of the direction pairs: a fit with more gets a note
-# A converted file gets a note for more than this share, and for a maximum that rises by more
+# A fit gets a note where more than this share of all pairs of directions was not measured
+LARGEST_FIT_SHARE = 0.1
+# A converted file gets a note where more than this share of its values was not measured, and the
+# note tells the largest value where it exceeds the largest measured one by more than this factor
 LARGEST_FILE_SHARE, LARGEST_RISE = 0.005, 1.05
 
 
-def note_extrapolation(data: Measured, max_angle: float) -> list[str]:
-    """Return a note on a fit to a `Measured` that extrapolates much, or no note.
+def note_fit_extrapolation(data: Measured, max_angle: float) -> list[str]:
+    """Return a sentence that warns of a fit which extrapolates much, or an empty list.
 
-    The share of direction pairs below `max_angle` [degrees] and beyond the measured angles counts.
+    A fit extrapolates where both angles to the normal are below its `max_angle` [degrees], but
+    beyond the angles at which `data` was measured.
     """
     if data.is_table:
         return []  # a table does not say which cells were measured
     smaller, larger = find_largest_angles(data)
     inside = [1 - np.cos(np.radians(min(a, max_angle))) for a in (smaller, larger, max_angle)]
-    # An upper limit first, which costs nothing: pairs within both angles, by solid angle
+    # Most measurements pass a cheap test: an upper bound of the share, by the solid angle of the
+    # pairs with one direction within the smaller and the other within the larger measured angle
     if 1 - (inside[1] ** 2 - (inside[1] - inside[0]) ** 2) / inside[2] ** 2 <= LARGEST_FIT_SHARE:
         return []
     beyond = compute_coverage(data, max_angle).beyond
@@ -38,17 +42,18 @@ def note_extrapolation(data: Measured, max_angle: float) -> list[str]:
     ]
 
 
-def describe_extrapolation(before: Measured, after: Measured) -> list[str]:
-    """Return a sentence on how much of `after`, a file of `before`, was not measured, or none.
+def describe_file_extrapolation(before: Measured, after: Measured) -> list[str]:
+    """Return a sentence on how much of a converted file was not measured, or an empty list.
 
-    For a table it is a share of the direction pairs, and for samples a share of the samples.
+    `before` is the measurement, `after` the content of the file. The share is one of all pairs of
+    directions for a table, and one of the samples for scattered samples.
     """
     if before.is_table or len(after.values) == len(before.values):
         return []
-    pairs = () if after.is_table else _pick_pairs(after)
+    pairs = () if after.is_table else _pick_direction_pairs(after)
     at = compute_coverage_at(before, *pairs) if pairs else compute_coverage(before)
     shares = {"extrapolated": at.beyond}
-    if not before.has_lookup:  # else the format itself defines the values between
+    if not before.has_lookup:  # a format with its own interpolation has no gaps between samples
         shares["interpolated across gaps"] = at.between
     phrases = [
         f"{share:.0%} {what}" for what, share in shares.items() if share > LARGEST_FILE_SHARE
@@ -65,8 +70,8 @@ def describe_extrapolation(before: Measured, after: Measured) -> list[str]:
     return [f"{share} of {unit} {what}{rise}"]
 
 
-def _pick_pairs(data: Measured) -> tuple[FloatArray, FloatArray]:
-    """Return at most `PAIRS` direction pairs (n, 3) of a `Measured` with scattered samples."""
+def _pick_direction_pairs(data: Measured) -> tuple[FloatArray, FloatArray]:
+    """Return wi and wo (n, 3) of at most `PAIRS` samples of a `Measured` with scattered samples."""
     (rows,) = np.nonzero(data.samples.valid)
     rows = rows[np.linspace(0, len(rows) - 1, min(len(rows), PAIRS)).astype(int)]
     return data.samples.wi[rows], data.samples.wo[rows]

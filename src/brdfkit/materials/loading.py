@@ -1,4 +1,4 @@
-"""`load` and `save`: materials and fits in files of any format, or known by name."""
+"""`load` and `save`: read materials and fits from files or by name, and write them to files."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ def load(
 ) -> Measured | Fit:
     """Load a measured material, or a saved fit, from a file of any known format.
 
-    The content decides the format; the suffix decides where several formats, or none, recognise the
-    content. ``.gz`` and ``.xz`` are unpacked.
+    The content of the file decides its format. Where several formats recognise the content, or none
+    does, the suffix decides. Files that end in ``.gz`` or ``.xz`` are decompressed.
 
     Parameters
     ----------
     path : str or Path
-        The file. ``abrdf.dat#1`` names one sample of a file that holds many. Where there is no such
-        file, the name of a material that comes with brdfkit, ``car_paint``, or of a material in a
-        public collection, ``merl/alum-bronze``, once ``brdfkit data get`` has downloaded it.
+        The file; ``abrdf.dat#1`` names one sample of a file that holds many. It may also be the
+        name of a material that comes with brdfkit, ``car_paint``, or of a material of a public
+        collection that ``brdfkit data get`` has downloaded, ``merl/alum-bronze``.
     mirror_azimuth : bool, default False
-        Whether 180° is added to every phi_o of samples, for a file with the mirror direction at
-        phi_o = phi_i.
+        Whether to add 180° to the azimuth phi_o of every view, for a file in which the mirror
+        direction is at phi_o = phi_i.
     divide_by_cos : bool, default False
-        Whether the values of samples are divided by cos theta_o, for a file that has the BRDF times
-        this cosine and does not say so.
+        Whether to divide the values by cos theta_o, for a file that stores the BRDF times this
+        cosine without saying so.
 
     Returns
     -------
@@ -45,29 +45,34 @@ def load(
     Raises
     ------
     BrdfkitError
-        For a file that cannot be read, with the reason and the remedy; and where one of the last
-        two arguments is True for a fit, a table or a format that states its own convention.
+        For a file that cannot be read, with the reason and the remedy. Also where one of the last
+        two arguments is True, but the file holds a fit or a table, or its format fixes the
+        convention.
 
     Examples
     --------
     >>> print(load("gold-metallic-paint.binary.xz"))    # doctest: +SKIP
     gold-metallic-paint: 90×90×180 table, 1,048,000 of 1,458,000 valid, channels R G B
     """
-    content = read(*locate(path))
+    file, sample = locate_material(path)
+    content: Measured | Fit = formats.read(formats.Source(file, sample, read_bytes(file)))
     if not (mirror_azimuth or divide_by_cos):
         return content
     if not isinstance(content, Measured):
-        raise BrdfkitError(f"{path}: is a saved fit, which needs no mending; leave the option out.")
+        raise BrdfkitError(
+            f"{path}: is a saved fit, but mirror_azimuth and divide_by_cos convert measured "
+            "samples; leave the option out."
+        )
     return content.mend(mirror_azimuth, divide_by_cos)
 
 
-def locate(path: str | Path) -> tuple[Path, str | None]:
-    """Return the file that `load` reads for a path or a name, and the sample named behind '#'.
+def locate_material(path: str | Path) -> tuple[Path, str | None]:
+    """Return the path of the file that `load` reads for a path or a material's name.
 
-    The sample is None where none is named. Raises `BrdfkitError` where there is neither a file nor
-    a material of that name.
+    The second result is the text behind '#' in `path`, which names one of several samples in the
+    file, or None. Raises `BrdfkitError` where there is neither a file nor a material of that name.
 
-    >>> locate("dusty_gold")[0].name
+    >>> locate_material("dusty_gold")[0].name
     'dusty_gold.binary.xz'
     """
     if not str(path):
@@ -80,28 +85,24 @@ def locate(path: str | Path) -> tuple[Path, str | None]:
     return (catalogue.find_material_file(place) if isinstance(place, str) else place), sample
 
 
-def read(path: Path, sample: str | None = None) -> Measured | Fit:
-    """Return the content of the file at `path`; `sample` names one in a file that holds many."""
-    content: Measured | Fit = formats.read(formats.Source(path, sample, read_bytes(path)))
-    return content
-
-
 def save(material: Measured | Fit | Model, path: str | Path) -> None:
-    """Write a material to a file in the format of its suffix, whole or not at all.
+    """Write a material to a file, in the format that the file's suffix names.
+
+    Where an error or Ctrl-C ends the writing, no incomplete file is left.
 
     Parameters
     ----------
     material : Measured, Fit or Model
-        The material: a measured one in any format that can hold it, a fit as ``.json``, and each
-        of them, or a model with values, as ``.bsdf`` for Mitsuba's own plugin `measured`.
+        The material. A measured one can be written in most formats, a fit as ``.json``. Measured
+        materials, fits and models can all be written as ``.bsdf``, for Mitsuba's plugin `measured`.
     path : str or Path
-        The file; the suffix chooses the format, and ``.gz`` or ``.xz`` after it compress.
+        The file; its suffix chooses the format, and ``.gz`` or ``.xz`` behind that compresses it.
 
     Raises
     ------
     BrdfkitError
-        Where no format has that suffix, or it cannot hold `material`, and where the file cannot be
-        written.
+        For a suffix of no known format, for a format that cannot hold `material`, and for a file
+        that cannot be written.
 
     Examples
     --------
@@ -109,14 +110,17 @@ def save(material: Measured | Fit | Model, path: str | Path) -> None:
     """
     if not isinstance(path, str | Path):
         raise BrdfkitError(
-            f"{path!r:.60} is no path of a file to write; the order is save(material, path)."
+            f"{path!r:.60} is not the path of a file to write; give the material first: "
+            "save(material, path)."
         )
     with write_safely(path) as beside:
         formats.write(material, Path(path), beside)
 
 
 def save_and_read(obj: Measured, path: str | Path) -> Measured:
-    """Save a material, and return it as `load` reads it again; if it cannot, nothing is written.
+    """Save a measured material, and return what `load` reads from the file.
+
+    Raises `BrdfkitError`, and leaves no file, where the file cannot be read again.
 
     >>> save_and_read(load("copper.astm"), "copper.npz").name  # doctest: +SKIP
     'copper'

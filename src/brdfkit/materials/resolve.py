@@ -1,9 +1,9 @@
 """Finds the material that a user means by an object, a name, a path or a dictionary.
 
-A material is a measured one, a fit, or a model with values: all have a `name`, `eval(wi, wo)` and
-`scene_dict()`. In its place every verb accepts a name or a path, in Python as on the command line:
-the label of a model, which then has its defaults; a file that `load` reads; or the name of a
-material that brdfkit knows. The dictionary of one of Mitsuba's BSDFs is a material, too.
+A material is a `Measured`, a `Fit`, or a `Model` with parameter values. Public functions and
+commands also accept other descriptions of one: the label of a model, such as "ward", which stands
+for the model with its default values; the path of a file that `load` reads; the name of a material
+that brdfkit knows; or the dictionary of a Mitsuba BSDF.
 """
 
 import os
@@ -26,17 +26,17 @@ from brdfkit.model import labels
 
 @runtime_checkable
 class Material(Protocol):
-    """The attributes that a `Measured`, a `Fit` and a `Model` with values have in common."""
+    """The interface of every material: of `Measured`, `Fit`, and `Model` with parameter values."""
 
     @property
     def name(self) -> str:
-        """The name in pictures and tables."""
+        """The material's name in pictures and tables."""
 
     def eval(self, wi: FloatArray, wo: FloatArray) -> NDArray[np.float64]:
-        """Return the BRDF [sr⁻¹] (n, channels) of direction pairs (n, 3)."""
+        """Return the BRDF [sr⁻¹] (n, channels) for directions to light and viewer, (n, 3) each."""
 
     def scene_dict(self) -> dict[str, Any]:
-        """Return the dictionary for `mitsuba.load_dict`."""
+        """Return the dictionary from which `mitsuba.load_dict` makes the material's BSDF."""
 
 
 MaterialLike: TypeAlias = Material | str | Path | dict[str, Any]
@@ -44,16 +44,16 @@ ATTRIBUTES = "name", "eval", "scene_dict"
 
 
 def to_material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Material:
-    """Return the material that `thing` is, or means as a name, a path or a dictionary.
+    """Return the material that `thing` is, or that it describes by a name, path or dictionary.
 
-    An object with the `needed` attributes is returned as it is. Raises `BrdfkitError`, the same one
-    for every verb, for anything that is no material.
+    An object that has the `needed` attributes is returned unchanged. Raises `BrdfkitError` for
+    anything that neither is nor describes a material.
 
     >>> to_material("ward").alpha_u
     0.2
     """
     if isinstance(thing, str | Path):
-        return _find(str(thing))
+        return _find_material(str(thing))
     if isinstance(thing, dict):
         return BsdfMaterial.from_dictionary(thing)
     if isinstance(thing, type) and hasattr(thing, "lobes"):
@@ -61,8 +61,8 @@ def to_material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Mate
         raise BrdfkitError(f"{name} is a model without values; call it: {name}().")
     if not all(hasattr(thing, attribute) for attribute in needed):
         raise BrdfkitError(
-            f"{_describe(thing)} is no material; give a measured one, a fit, a model with values, "
-            "a BSDF's dictionary, or the name or path of one."
+            f"{_describe_object(thing)} is no material; give a measured one, a fit, a model with "
+            "values, a BSDF's dictionary, or the name or path of one."
         )
     return thing
 
@@ -70,20 +70,20 @@ def to_material(thing: MaterialLike, needed: Iterable[str] = ATTRIBUTES) -> Mate
 def to_materials(
     things: MaterialLike | Iterable[MaterialLike], needed: Iterable[str] = ATTRIBUTES
 ) -> list[Material]:
-    """Return the material of each of `things`, as a list; one thing alone gives a list of one.
+    """Return a list with the material that each of `things` is or describes, by `to_material`.
 
-    Raises `BrdfkitError` where there is none.
+    A single thing gives a list of one material. Raises `BrdfkitError` for an empty iterable.
     """
     if isinstance(things, str | dict) or not isinstance(things, Iterable):
         things = [things]
     materials = [to_material(thing, needed) for thing in things]
     if not materials:
-        raise BrdfkitError("There is no material here; give at least one.")
+        raise BrdfkitError("No material was given; give at least one.")
     return materials
 
 
 def to_measured(thing: MaterialLike) -> Measured:
-    """Return the `Measured` that `thing` is or stands for; raise `BrdfkitError` for any other."""
+    """Return the `Measured` that `thing` is or names; raise `BrdfkitError` for a fit or a model."""
     material = to_material(thing)
     if not isinstance(material, Measured):
         raise BrdfkitError(
@@ -92,11 +92,10 @@ def to_measured(thing: MaterialLike) -> Measured:
     return material
 
 
-def _find(name: str) -> Material:
-    """Return the material of a name.
+def _find_material(name: str) -> Material:
+    """Return the material that a model's label, a file's path or a material's name stands for.
 
-    It is a model with this label, unless a file has the same name; otherwise the file's content or
-    the known material.
+    Where a label is also the name of a file, the file is meant.
     """
     label = labels.load_files(name)
     if labels.is_label(label) and (label != name or not os.path.isfile(name)):
@@ -110,7 +109,7 @@ def _find(name: str) -> Material:
     raise no_such_error("file, model or material", name, known)
 
 
-def _describe(thing: object) -> str:
-    """Return any object in one line: the beginning of its `repr`, and its type."""
+def _describe_object(thing: object) -> str:
+    """Return one line that shows any object in an error: the start of its `repr`, and its type."""
     kind, words = type(thing).__name__, " ".join(repr(thing).split())
     return f"{words[:40]}{'…' if len(words) > 40 else ''} ({kind})"

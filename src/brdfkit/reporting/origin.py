@@ -8,7 +8,7 @@ from typing import Any
 from brdfkit.core.files import compute_sha256
 from brdfkit.core.version import find_versions
 from brdfkit.fitting.settings import FitSettings
-from brdfkit.materials.loading import locate
+from brdfkit.materials.loading import locate_material
 from brdfkit.materials.measured import Measured
 from brdfkit.regression import Fit
 from brdfkit.regression.solvers import AlbedoAtMost
@@ -31,7 +31,7 @@ def describe_provenance(
     """
     provenance = {"file": str(file) if file else f"{material.name}, from memory"}
     if file:
-        provenance["SHA-256 of the file"] = compute_sha256(locate(file)[0])
+        provenance["SHA-256 of the file"] = compute_sha256(locate_material(file)[0])
     provenance["SHA-256 of its data"] = material.checksum
     settings = f"{size}×{size} pixels, {spp} samples per pixel, seed {seed}"
     provenance["pictures"] = f"{describe_scene(scene, environment)}; {settings}"

@@ -82,7 +82,7 @@ def _print_public_data(
     collections: Mapping[str, Collection], map_collections: Mapping[str, Any], console: Console
 ) -> None:
     """Print the materials and maps that come with brdfkit, and the public collections."""
-    from brdfkit.materials.collections.public import cache_folder
+    from brdfkit.materials.collections.public import find_cache_folder
 
     if console.as_json:
         maps = {name: asdict(c) for name, c in map_collections.items()}
@@ -91,7 +91,7 @@ def _print_public_data(
         return
     _print_collections(collections, console)
     console.output.print("The materials of a collection: brdfkit data list NAME")
-    console.output.print(f"Downloaded files lie in {cache_folder()}")
+    console.output.print(f"Downloaded files lie in {find_cache_folder()}")
     _print_map_collections(map_collections, console)
     console.output.print("Download a map from its page, and look at it: brdfkit info MAP.hdr")
 
@@ -104,7 +104,7 @@ def _print_collections(collections: Mapping[str, Collection], console: Console) 
     licence = next(iter(list_materials().values())).licence
     rows = [("brdfkit's own", ", ".join(list_materials()), str(len(list_materials())), "", licence)]
     for name, c in collections.items():
-        here, download = len(c.files_on_disk()), sum(bool(f.url) for f in c.files.values())
+        here, download = len(c.list_files_on_disk()), sum(bool(f.url) for f in c.files.values())
         rows.append((name, c.title, str(here), str(download or "by hand"), c.licence))
     console.print_table(columns, rows)
 
@@ -124,7 +124,7 @@ def _print_collection(collection: Collection, console: Console) -> None:
     if console.as_json:
         console.print_json(_make_collection_record(collection))
         return
-    files, here = collection.files, collection.files_on_disk()
+    files, here = collection.files, collection.list_files_on_disk()
     rows = []
     for name in sorted({*files, *here}):
         size = files[name].bytes if name in files else here[name].stat().st_size
@@ -134,7 +134,7 @@ def _print_collection(collection: Collection, console: Console) -> None:
         console.print_table(["material", ">size [MB]", ""], rows)
     console.output.print(str(collection))
     if not any(listed.url for listed in files.values()):
-        console.output.print(f"To use one, {collection.explain_by_hand()}.")
+        console.output.print(f"To use one, {collection.explain_manual_download()}.")
 
 
 def _print_files(
@@ -152,7 +152,7 @@ def _print_files(
 
 def _make_collection_record(collection: Collection) -> dict[str, Any]:
     """Return the record of a collection for JSON, with the path or the address of each file."""
-    here = collection.files_on_disk()
+    here = collection.list_files_on_disk()
     files: dict[str, dict[str, Any]] = {
         name: {"file": listed.file, "bytes": listed.bytes or None, "url": listed.url or None}
         for name, listed in collection.files.items()

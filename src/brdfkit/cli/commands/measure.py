@@ -85,7 +85,7 @@ def measure(
 
     path = _check_table_path(output or Path(f"{geometry}.npz"))
     given = {name: value for name, value in relief.items() if value is not None}
-    surface = microgeometry.make(geometry, **given, seed=specimen)
+    surface = microgeometry.make_height_field(geometry, **given, seed=specimen)
     bsdfs, cells = _make_bsdfs(facets, facet_alpha), _parse_shape(shape)
     context = click.get_current_context()
     with console.progress(f"measure {geometry}") as progress:

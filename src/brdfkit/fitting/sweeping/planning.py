@@ -14,7 +14,7 @@ from brdfkit.core.names import make_unique, to_file_stem
 from brdfkit.fitting.settings import FitSettings
 from brdfkit.fitting.sweeping.tasks import Task
 from brdfkit.materials.formats import Source
-from brdfkit.materials.loading import locate
+from brdfkit.materials.loading import locate_material
 from brdfkit.model import Model, labels
 
 PARTS = 4  # least number of tasks for each worker: with fewer, some would finish much earlier
@@ -61,7 +61,7 @@ def _plan_file(file: Any, models: dict[str, dict[str, str]], settings: FitSettin
         )
     file = str(file)
     try:
-        path, sample = locate(file)
+        path, sample = locate_material(file)
         checksum = compute_sha256(path)
     except BrdfkitError as error:
         return Task(

@@ -14,7 +14,7 @@ from brdfkit.materials.auditing.report import to_percent
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import is_near_sample
 from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean
-from brdfkit.materials.plotting.lobe_plots import draw_panels
+from brdfkit.materials.plotting.lobe_plots import draw_lobe_panels
 from brdfkit.materials.plotting.plane_of_incidence import choose_angles
 from brdfkit.model.samples import Table
 
@@ -40,7 +40,7 @@ def draw_audit(audit: Any) -> Figure:
     things: list[Any] = [data]
     if not data.is_table:
         things.append(SimpleNamespace(name="interpolated", eval=data.eval))
-    draw_panels(below, things, choose_angles(things))
+    draw_lobe_panels(below, things, choose_angles(things))
     return figure
 
 

@@ -1,5 +1,5 @@
-"""Materials of public collections, known by name, and their download.
+"""Public collections of measured materials: which there are, and how to download their files.
 
-`public.py` lists the collections, which `data/measured/index.toml` describes; `downloading.py`
-fetches a file and checks it; `remote_file.py` reads parts of a file on a server.
+`public.py` lists the collections that `data/measured/index.toml` describes. `downloading.py`
+downloads a file and verifies its checksum. `remote_file.py` reads parts of a file on a server.
 """

@@ -1,7 +1,7 @@
 """Downloads files of public collections into the user's cache folder.
 
-`pooch` verifies the checksum and moves the file to its place. This file adds two things: an
-interrupted download resumes, and a single file of a zip archive is fetched without the others.
+The package `pooch` verifies the checksum and moves the file to its place. This module makes an
+interrupted download resume, and downloads one file of a zip archive without the rest of it.
 """
 
 import io
@@ -23,20 +23,20 @@ from brdfkit.materials.collections import public
 from brdfkit.materials.collections.public import PART, Collection, ListedFile
 from brdfkit.materials.collections.remote_file import BLOCK, PARTIAL, PLAIN, TIMEOUT, RemoteFile
 
-CHUNK = 2**18  # bytes
+CHUNK = 2**18  # bytes that are written at once
 RANGE_NOT_SATISFIABLE = 416  # HTTP status where the requested part begins at the file's end
 
-
-Report = Callable[[int, int | None], object]  # called with bytes done, and in all where known
+# A function that is called with the number of bytes done, and of all bytes if that is known
+Report = Callable[[int, int | None], object]
 
 
 def download(name: str, progress: Report | None = None) -> Path:
     """Download a material of a public collection, and return the path of its file.
 
-    `progress` is called with the numbers of bytes done and in all; the second is None where the
-    server does not state it. A file that is in its place with the right checksum is not downloaded
-    again. Raises `BrdfkitError`, which says what to do, where no address is known, the connection
-    fails, or the server sends another file.
+    `progress` is called with the number of bytes done and the number of all bytes, which is None
+    where the server does not state it. A file with the right checksum is not downloaded again.
+    Raises `BrdfkitError`, which says what to do, where no address is known, the connection fails,
+    or the server sends another file.
 
     >>> download("merl/alum-bronze").name    # doctest: +SKIP
     'alum-bronze.binary'
@@ -44,7 +44,7 @@ def download(name: str, progress: Report | None = None) -> Path:
     owner = public.find_collection(name)
     listed = owner.files.get(name)
     if listed is None or not listed.url:
-        return public.find_file(name)  # put there by hand; else the error says how
+        return public.find_file(name)  # the user has put it there, or an error explains how to
     pooch.get_logger().setLevel("WARNING")
     with _explain_errors(listed, owner):
         pooch.retrieve(
@@ -60,7 +60,7 @@ def download(name: str, progress: Report | None = None) -> Path:
 @contextmanager
 def _explain_errors(listed: ListedFile, owner: Collection) -> Iterator[None]:
     """Turn the errors of a download into a `BrdfkitError` that says what to do."""
-    by_hand = owner.explain_by_hand(listed.file)
+    by_hand = owner.explain_manual_download(listed.file)
     host = urlsplit(listed.url).hostname
     try:
         yield
@@ -94,7 +94,10 @@ def _explain_errors(listed: ListedFile, owner: Collection) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class _Download:
-    """The `downloader` that pooch calls with the URL and the file to write."""
+    """Fetches one file; pooch calls it as its `downloader`, with a URL and the file to write.
+
+    `listed`: the file's entry in the index; `progress`: as for `download`.
+    """
 
     listed: ListedFile
     progress: Report
@@ -107,19 +110,19 @@ class _Download:
             self._fetch_file(url, Path(target))
 
     def _fetch_file(self, url: str, target: Path) -> None:
-        """Write the file at `url` to `target`; an interrupted download resumes."""
+        """Download the file at `url` to `target`, resuming an interrupted download."""
         part = self.listed.path.with_name(self.listed.file + PART)
-        # Without a checksum, nothing would show that the two parts belong to the same file
+        # Resume only if a checksum can prove that both parts belong to the same file
         have = part.stat().st_size if self.listed.sha256 and part.is_file() else 0
         headers = PLAIN | ({"Range": f"bytes={have}-"} if have else {})
         with requests.get(url, headers=headers, stream=True, timeout=TIMEOUT) as answer:
             if answer.status_code != RANGE_NOT_SATISFIABLE:
                 answer.raise_for_status()
-                self._write(answer, part, have if answer.status_code == PARTIAL else 0)
+                self._append_answer(answer, part, have if answer.status_code == PARTIAL else 0)
         os.replace(part, target)
 
-    def _write(self, answer: requests.Response, part: Path, have: int) -> None:
-        """Append the server's `answer` to the file `part`, which holds `have` bytes already."""
+    def _append_answer(self, answer: requests.Response, part: Path, have: int) -> None:
+        """Append the server's `answer` to the incomplete file `part`, which has `have` bytes."""
         length = answer.headers.get("Content-Length")
         total = have + int(length) if length else None
         with part.open("ab" if have else "wb") as stream:
@@ -129,7 +132,7 @@ class _Download:
                 self.progress(have, total)
 
     def _fetch_member(self, url: str, member: str, target: str) -> None:
-        """Write the file `member` of the zip archive at `url` to `target`."""
+        """Download the file `member` of the zip archive at `url` to `target`."""
         with ZipFile(io.BufferedReader(RemoteFile(url), BLOCK)) as archive:
             total = archive.getinfo(member).file_size
             with archive.open(member) as source, open(target, "wb") as stream:

@@ -1,7 +1,7 @@
-"""Public collections of measurements: who published them, where, and their files.
+"""Lists the public collections of measured materials, and finds their files in the cache folder.
 
-brdfkit ships none of these files. The index has their names, checksums and addresses; the files lie
-in the user's cache folder, where `downloading.py` or the user put them.
+brdfkit ships none of these files. An index lists their names, checksums and addresses;
+`downloading.py` or the user puts the files into the user's cache folder.
 """
 
 import csv
@@ -14,16 +14,17 @@ from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import compute_sha256
 from brdfkit.materials import formats
 
-PART = ".part"  # suffix of a file whose download is not complete
+PART = ".part"  # suffix of a file that is not downloaded completely
 
 
 @dataclass(frozen=True)
 class ListedFile:
-    """A file of a collection, as the index lists it.
+    """A file of a public collection, as the index lists it.
 
-    `name`: for `brdfkit.load`, such as ``merl/alum-bronze``; `file`: its name in the collection's
-    folder; `bytes`, `sha256` and `url`: 0 or "" where the index does not have them. After # in the
-    URL stands the file's name in a zip archive.
+    `name`: name of the material for `brdfkit.load`, such as ``merl/alum-bronze``; `file`: name of
+    the file in the collection's folder; `bytes`: size, or 0 where it is unknown; `sha256`:
+    checksum, or "" where it is unknown; `url`: address, or "" where it is unknown. In an address
+    with #, the file's name within a zip archive follows.
     """
 
     name: str
@@ -34,17 +35,18 @@ class ListedFile:
 
     @property
     def path(self) -> Path:
-        """The place of the file in the cache folder."""
-        return cache_folder() / self.name.partition("/")[0] / self.file
+        """The path of the file in the user's cache folder, where it may not exist yet."""
+        return find_cache_folder() / self.name.partition("/")[0] / self.file
 
 
 @dataclass(frozen=True)
 class Collection:
-    """An entry of the index.
+    """A public collection of measured materials, as the index describes it.
 
-    `licence` (a word) and `terms` (a sentence): the conditions of the owners; `page`: the web page
-    of the files; `note`: what to fetch together with a file; `files`: the listed files by name,
-    empty where the index lists none.
+    `name`: word before the slash in its materials' names; `title`: name for people; `citation`:
+    work to cite; `licence`: the owners' conditions in a word; `terms`: the conditions in a
+    sentence; `page`: address of the web page of the files; `note`: hint on what to fetch together
+    with a file; `files`: listed files by the names of their materials, empty where none is listed.
     """
 
     name: str
@@ -58,21 +60,23 @@ class Collection:
 
     @property
     def folder(self) -> Path:
-        """The folder of its files in the user's cache folder."""
-        return cache_folder() / self.name
+        """The folder of the collection's files in the user's cache folder."""
+        return find_cache_folder() / self.name
 
-    def files_on_disk(self) -> dict[str, Path]:
-        """Return the paths of the files in `folder` by the names of their materials.
+    def list_files_on_disk(self) -> dict[str, Path]:
+        """Return the paths of the collection's files on this disk, by their materials' names.
 
-        Files that the user put there count, too, but no files with an unknown suffix.
+        Files that the user has put there are included, except those with an unknown suffix.
         """
         files = sorted(self.folder.iterdir()) if self.folder.is_dir() else []
         return {
-            _name_material(self.name, f.name): f for f in files if f.is_file() and _is_material(f)
+            _name_material(self.name, f.name): f
+            for f in files
+            if f.is_file() and _is_material_file(f)
         }
 
-    def explain_by_hand(self, file: str = "") -> str:
-        """Return the end of an error: which file to fetch by hand, from where, and its place."""
+    def explain_manual_download(self, file: str = "") -> str:
+        """Return words for an error: which file to fetch, from which page, and where to put it."""
         note = f", {self.note}" if self.note else ""
         return f"fetch {file or 'its file'} from {self.page} and put it into {self.folder}{note}"
 
@@ -81,7 +85,7 @@ class Collection:
 
 
 def list_collections() -> dict[str, Collection]:
-    """Return the public collections by name.
+    """Return the public collections of the index by their names.
 
     >>> list_collections()["merl"].files["merl/alum-bronze"].file
     'alum-bronze.binary'
@@ -91,7 +95,10 @@ def list_collections() -> dict[str, Collection]:
 
 
 def find_collection(name: str) -> Collection:
-    """Return the collection with a name, ``merl``, or with a material, ``merl/alum-bronze``."""
+    """Return the collection of this name, as in ``merl`` or ``merl/alum-bronze``.
+
+    Raises `BrdfkitError`, which proposes the closest name, where there is none.
+    """
     collections, first = list_collections(), name.partition("/")[0]
     if first not in collections:
         raise no_such_error("collection", first, collections, where=name)
@@ -99,20 +106,25 @@ def find_collection(name: str) -> Collection:
 
 
 def find_file(name: str) -> Path:
-    """Return the path of a material's file in a collection, after verifying its checksum.
+    """Return the path of a collection's material, such as ``merl/alum-bronze``, on this disk.
 
-    Raises `BrdfkitError`, which says how to get the file, where it is missing or was changed.
+    Its checksum is verified. Raises `BrdfkitError`, which says how to get the file, where it is
+    missing or was changed.
     """
     owner = find_collection(name)
     listed = owner.files.get(name)
     if listed is None:
-        if name in owner.files_on_disk():
-            return owner.files_on_disk()[name]
+        if name in owner.list_files_on_disk():
+            return owner.list_files_on_disk()[name]
         known = f"'brdfkit data list {owner.name}' names what is known, or " if owner.files else ""
-        raise BrdfkitError(f"{name}: is not here; {known}{owner.explain_by_hand()}.")
-    remedy = f"run 'brdfkit data get {name}'" if listed.url else owner.explain_by_hand(listed.file)
+        raise BrdfkitError(f"{name}: is not known; {known}{owner.explain_manual_download()}.")
+    remedy = (
+        f"run 'brdfkit data get {name}'"
+        if listed.url
+        else owner.explain_manual_download(listed.file)
+    )
     if not listed.path.is_file():
-        raise BrdfkitError(f"{name}: is not here; {remedy}.")
+        raise BrdfkitError(f"{name}: is not downloaded yet; {remedy}.")
     if listed.sha256 and compute_sha256(listed.path) != listed.sha256:
         raise BrdfkitError(
             f"{listed.path}: is not the {name} that was published (its checksum differs); "
@@ -121,14 +133,14 @@ def find_file(name: str) -> Path:
     return listed.path
 
 
-def cache_folder() -> Path:
-    """Return the user's cache folder, which has a folder for each collection."""
+def find_cache_folder() -> Path:
+    """Return the user's cache folder for brdfkit, which has a folder for each collection."""
     import pooch
 
     return Path(pooch.os_cache("brdfkit"))
 
 
-def _is_material(file: Path) -> bool:
+def _is_material_file(file: Path) -> bool:
     return formats.has_format(file) and not file.name.startswith(".")
 
 
@@ -137,17 +149,23 @@ def _name_material(collection: str, file: str) -> str:
 
 
 def _make_collection(name: str, entry: dict[str, Any]) -> Collection:
-    """Make the `Collection` of an `entry` of the index; its files are there or in a table."""
+    """Make a `Collection` from its `entry` in the index.
+
+    The entry lists the files itself, or names a table of them beside the index.
+    """
     rows, url = entry.pop("files"), entry.pop("url", "")
     if isinstance(rows, str):
         with (catalogue.find_data_folder() / rows).open(encoding="utf-8", newline="") as stream:
             rows = list(csv.DictReader(stream, delimiter="\t"))
-    listed = [_make_listed(name, url=row.get("url", url), row=row) for row in rows]
+    listed = [_make_listed_file(name, url=row.get("url", url), row=row) for row in rows]
     return Collection(name, **entry, files={file.name: file for file in listed})
 
 
-def _make_listed(collection: str, url: str, row: dict[str, Any]) -> ListedFile:
-    """Make the `ListedFile` of a `row`; `url` is a pattern with the row's columns in braces."""
+def _make_listed_file(collection: str, url: str, row: dict[str, Any]) -> ListedFile:
+    """Make a `ListedFile` from a row of the index.
+
+    `url` is a pattern of the address, with names of the row's columns in braces.
+    """
     file = row["file"]
     return ListedFile(
         name=_name_material(collection, file),

@@ -1,4 +1,4 @@
-"""`RemoteFile`: a file on a server, read in parts, for one member of a large zip archive."""
+"""`RemoteFile` reads parts of a file on a server, to get one member of a large zip archive."""
 
 import io
 from typing import Any
@@ -6,16 +6,18 @@ from zipfile import BadZipFile
 
 import requests
 
-BLOCK = 2**22  # bytes per request: servers limit their number
-TIMEOUT = 30  # seconds without an answer
+BLOCK = 2**22  # bytes per request; small blocks need many requests, whose number servers limit
+TIMEOUT = 30  # seconds to wait for an answer
 PARTIAL = 206  # HTTP status of an answer with a part of the file
-PLAIN = {"Accept-Encoding": "identity"}  # uncompressed, so that positions agree with the file
+# Ask for bytes without compression, because positions count the bytes of the file
+PLAIN = {"Accept-Encoding": "identity"}
 
 
 class RemoteFile(io.RawIOBase):
-    """The seekable file at `url`, which `zipfile` reads through an `io.BufferedReader`.
+    """A binary stream of the file at `url`, which requests only the parts that are read.
 
-    Raises the errors of `requests`, and `BadZipFile` where the server sends whole files only.
+    `zipfile` reads it through an `io.BufferedReader`. Raises the errors of `requests`, and
+    `BadZipFile` where the server sends whole files only.
     """
 
     def __init__(self, url: str) -> None:
@@ -24,7 +26,10 @@ class RemoteFile(io.RawIOBase):
         self.size = int(content_range.rpartition("/")[2])
 
     def _read_range(self, first: int, last: int) -> tuple[bytes, str]:
-        """Return the bytes from `first` to `last` included, and the header Content-Range."""
+        """Request the bytes `first` to `last`, both included, from the server.
+
+        The second result is the answer's header Content-Range, which states the file's size.
+        """
         headers = PLAIN | {"Range": f"bytes={first}-{last}"}
         with requests.get(self.url, headers=headers, stream=True, timeout=TIMEOUT) as answer:
             answer.raise_for_status()

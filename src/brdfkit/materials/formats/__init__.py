@@ -25,20 +25,20 @@ from brdfkit.core.discovery.plugin_files import import_modules
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import COMPRESSED, GZIP
 from brdfkit.materials.formats._source import Source as Source
-from brdfkit.materials.formats._source import format_suffix
+from brdfkit.materials.formats._source import find_format_suffix
 
 HEAD = 4096  # number of bytes that are passed to the function `sniff` of a format
 
 
 @cache
-def formats() -> tuple[ModuleType, ...]:
+def list_formats() -> tuple[ModuleType, ...]:
     """Import the modules of all file formats, and return them in alphabetical order."""
     return import_modules(__name__, __path__)
 
 
 def has_format(path: Path) -> bool:
     """Return whether a path has the suffix of a known file format."""
-    return any(format_suffix(path) in module.SUFFIXES for module in formats())
+    return any(find_format_suffix(path) in module.SUFFIXES for module in list_formats())
 
 
 def write(obj: Any, path: Path, beside: Path) -> None:
@@ -46,8 +46,8 @@ def write(obj: Any, path: Path, beside: Path) -> None:
 
     `beside` is a temporary file, which the caller moves to `path` when it is complete.
     """
-    writers = [module for module in formats() if hasattr(module, "write")]
-    suitable = [module for module in writers if format_suffix(path) in module.SUFFIXES]
+    writers = [module for module in list_formats() if hasattr(module, "write")]
+    suitable = [module for module in writers if find_format_suffix(path) in module.SUFFIXES]
     if not suitable:
         raise BrdfkitError(
             f"{path}: no format with this suffix; written are {_list_names(writers)}."
@@ -61,19 +61,19 @@ def write(obj: Any, path: Path, beside: Path) -> None:
 
 def read(source: Source) -> Any:
     """Return the material or fit in a file, read in the format that recognises the file."""
-    module = _recognise(source)
+    module = _recognise_format(source)
     if source.sample is not None and not getattr(module, "MANY", False):
         raise source.error(f"holds one material; leave '#{source.sample}' off the path")
     return module.read(source)
 
 
-def _recognise(source: Source) -> ModuleType:
+def _recognise_format(source: Source) -> ModuleType:
     """Return the module of a file's format.
 
     The content decides; where several formats recognise it, or none does, the suffix decides.
     """
-    sniffed = [module for module in formats() if module.sniff(source.data[:HEAD])]
-    named = [m for m in sniffed or formats() if source.suffix in m.SUFFIXES]
+    sniffed = [module for module in list_formats() if module.sniff(source.data[:HEAD])]
+    named = [m for m in sniffed or list_formats() if source.suffix in m.SUFFIXES]
     # Two formats have the suffix .dat: choose the one that holds many materials if one is named
     named.sort(key=lambda m: getattr(m, "MANY", False) != (source.sample is not None))
     if len(sniffed) == 1:
@@ -83,8 +83,8 @@ def _recognise(source: Source) -> ModuleType:
     if sniffed:
         raise source.error(f"could be {_list_names(sniffed)}; rename it to one of these suffixes")
     raise source.error(
-        f"is in no known format of materials; read are {_list_names(formats())}, each also as .gz "
-        "or .xz"
+        f"is in no known format of materials; read are {_list_names(list_formats())}, each also "
+        "as .gz or .xz"
     )
 
 

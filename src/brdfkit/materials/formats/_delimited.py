@@ -31,7 +31,7 @@ NUMERIC = re.compile(r"[-+0-9.,;eE\s]+")
 Lines = list[tuple[int, str]]  # (number of the line, text)
 
 
-def find_delimiter(head: bytes) -> str | None:
+def detect_delimiter(head: bytes) -> str | None:
     """Return the separator of the columns in a text file that begins with the bytes `head`.
 
     It is one of `DELIMITERS` or " ". The result is None unless a line of `head` has the column
@@ -57,7 +57,7 @@ def read_columns(source: Source) -> tuple[list[str], list[int], list[FloatArray]
             "'theta_i,phi_i,theta_o,phi_o,BRDF'"
         )
     delimiter = _choose_delimiter(header)
-    names, rows = _take_units(split_fields(header), rows, delimiter)
+    names, rows = _attach_units(split_fields(header), rows, delimiter)
     named = [k for k, name in enumerate(names) if name]  # skip the index column of pandas
     texts = [k for k in named if match_channel_column(names[k]) == "channel"]
     lines: list[int] = []
@@ -68,8 +68,8 @@ def read_columns(source: Source) -> tuple[list[str], list[int], list[FloatArray]
         if not any(fields):  # a row of delimiters alone, as spreadsheets write at the end
             continue
         _refuse_split_numbers(source, n, fields, names, delimiter)
-        source.require_count(n, fields, len(names))
-        _require_one_mark(source, n, " ".join(fields), marks)
+        source.require_column_count(n, fields, len(names))
+        _require_one_decimal_mark(source, n, " ".join(fields), marks)
         for k in texts:
             fields[k] = str(parse_colour_name(fields[k]))
         lines.append(n)
@@ -114,7 +114,7 @@ def _choose_delimiter(header: str) -> str:
     return next((mark for mark in DELIMITERS if mark in header), " ")
 
 
-def _take_units(names: list[str], rows: Lines, delimiter: str) -> tuple[list[str], Lines]:
+def _attach_units(names: list[str], rows: Lines, delimiter: str) -> tuple[list[str], Lines]:
     """Append units to the columns' names if the first row states them, and remove that row."""
     units = split_fields(rows[0][1], delimiter) if rows else []
     if len(units) != len(names) or not any(units) or not UNITS.issuperset(map(str.lower, units)):
@@ -137,7 +137,7 @@ def _refuse_split_numbers(
         )
 
 
-def _require_one_mark(source: Source, line: int, text: str, marks: dict[str, int]) -> None:
+def _require_one_decimal_mark(source: Source, line: int, text: str, marks: dict[str, int]) -> None:
     """Raise `BrdfkitError` if numbers of the file contain both points and commas.
 
     One of them would then separate thousands. `text` are the fields of line number `line`. `marks`,

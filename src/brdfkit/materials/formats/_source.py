@@ -39,7 +39,7 @@ class Source:
     @property
     def suffix(self) -> str:
         """The suffix that names the format, in lower case, without .gz or .xz."""
-        return format_suffix(self.path)
+        return find_format_suffix(self.path)
 
     @property
     def name(self) -> str:
@@ -57,18 +57,18 @@ class Source:
 
     @cached_property
     def whole_lines(self) -> list[tuple[int, str]]:
-        """The same lines as `lines`, but with blanks and tabs at their ends, which may be columns."""
-        numbered = enumerate(self._text, 1)
+        """The lines with data, as in `lines`, but not stripped, because tabs may be columns."""
+        numbered = enumerate(self._all_lines, 1)
         return [(n, line) for n, line in numbered if line.strip()[:1] not in ("", "#")]
 
     @cached_property
     def comments(self) -> list[str]:
         """The comments: the texts of all lines that begin with '#', without the '#'."""
-        stripped = (line.strip() for line in self._text)
+        stripped = (line.strip() for line in self._all_lines)
         return [line.strip("# ") for line in stripped if line.startswith("#")]
 
     @property
-    def _text(self) -> list[str]:
+    def _all_lines(self) -> list[str]:
         """All lines of the file as text, decoded from UTF-8, or from UTF-16 with a mark."""
         # Spreadsheets write UTF-16 when they are asked to save "Unicode text"
         wide = self.data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
@@ -111,7 +111,7 @@ class Source:
         not `count` of them.
         """
         if count is not None:
-            self.require_count(line, fields, count)
+            self.require_column_count(line, fields, count)
         numbers = []
         for text in fields:
             try:
@@ -122,27 +122,27 @@ class Source:
                 ) from None
         return numbers
 
-    def require_count(self, line: int, fields: Sequence[str], count: int) -> None:
+    def require_column_count(self, line: int, fields: Sequence[str], count: int) -> None:
         """Raise `BrdfkitError` unless there are `count` `fields` in line number `line`."""
         if len(fields) != count:
             raise self.error(
                 f"line {line} has {len(fields)} columns where {count} belong (cut short?); {REMEDY}"
             )
 
-    def build_from_angles(
+    def make_measured_from_angles(
         self, lines: Sequence[int], angles: ArrayLike, values: ArrayLike, **details: Any
     ) -> Measured:
         """Make a `Measured` of this file from `values` (n, channels) at `angles` (n, 4) [rad].
 
         The angles are theta_i, phi_i, theta_o, phi_o. Errors about them name their `lines` (n,).
-        `details` are further arguments of `build_from_directions`.
+        `details` are further arguments of `make_measured_from_directions`.
         """
         angles = np.array(angles, float)
         self.require_radians(lines, angles, SPHERICAL)
         wi, wo = from_angles(*angles[:, :2].T), from_angles(*angles[:, 2:].T)
-        return self.build_from_directions(wi, wo, values, **details)
+        return self.make_measured_from_directions(wi, wo, values, **details)
 
-    def build_from_directions(
+    def make_measured_from_directions(
         self,
         wi: FloatArray,
         wo: FloatArray,
@@ -187,7 +187,7 @@ class Source:
     def require_radians(
         self, lines: Sequence[int], angles: FloatArray, limits: Sequence[float]
     ) -> None:
-        """Raise `BrdfkitError` for `angles` (n, k) [rad] whose absolute values exceed `limits` (k,).
+        """Raise `BrdfkitError` where absolute `angles` (n, k) [rad] exceed their `limits` (k,).
 
         They are then probably in degrees. `lines` (n,) are the numbers of their lines.
         """
@@ -201,10 +201,10 @@ class Source:
             )
 
 
-def format_suffix(path: Path) -> str:
+def find_format_suffix(path: Path) -> str:
     """Return the suffix of a path that names its format: in lower case, without .gz or .xz.
 
-    >>> format_suffix(Path("copper.astm.xz"))
+    >>> find_format_suffix(Path("copper.astm.xz"))
     '.astm'
     """
     return _strip_compression(path).suffix.lower()

@@ -15,7 +15,7 @@ LARGEST_RATIO = 5  # the brightest sample is suspicious if it exceeds the next b
 
 
 def require_measured(obj: object, name: str, anisotropic: bool = False) -> Measured:
-    """Return `obj` if it is a `Measured` that the format `name` can hold, else raise `BrdfkitError`.
+    """Return `obj`; raise `BrdfkitError` unless it is a `Measured` that the format `name` can hold.
 
     `anisotropic` says whether the format can hold an anisotropic material.
     """
@@ -32,7 +32,7 @@ def require_measured(obj: object, name: str, anisotropic: bool = False) -> Measu
     return obj
 
 
-def wrong_channels(obj: Measured, name: str, holds: str, suffix: str = ".npz") -> BrdfkitError:
+def make_channel_error(obj: Measured, name: str, holds: str, suffix: str = ".npz") -> BrdfkitError:
     """Return the error on a `Measured` whose channels the format `name` cannot hold.
 
     `holds` says which channels it can hold. The error proposes another format by its `suffix`.
@@ -61,7 +61,7 @@ def write_rows(
     np.savetxt(stream, np.stack(columns, axis=1), "%.17g", delimiter)
 
 
-def note_lone_point(samples: Samples) -> dict[str, str]:
+def note_suspicious_sample(samples: Samples) -> dict[str, str]:
     """Return a note on a sample that is suspiciously bright, or an empty dictionary.
 
     Such a sample lies at grazing mirror reflection, and is more than 5 times as bright as any
@@ -81,7 +81,7 @@ def note_lone_point(samples: Samples) -> dict[str, str]:
     }
 
 
-def note_short_rings(samples: Samples) -> dict[str, str]:
+def note_missing_views(samples: Samples) -> dict[str, str]:
     """Return a note on views that are missing in a file of Cornell's, or an empty dictionary.
 
     The instrument measured rings of views: for each theta_i and theta_s, all azimuths up to that of

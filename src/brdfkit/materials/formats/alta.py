@@ -101,11 +101,11 @@ def read(source: Source) -> Measured:
     source.require_radians([n for n, _ in source.lines], where, limits)
     # Convert to directions, BRDF values and standard errors
     wi, wo = to_directions(*where.T)
-    factor, valid, notes = _find_factor(source, header, wo)
+    factor, valid, notes = _find_value_factor(source, header, wo)
     with np.errstate(over="ignore", invalid="ignore"):  # values that are not finite are masked
         values = values / factor
         errors = _halve_intervals(ends / factor, intervals)
-    return source.build_from_directions(
+    return source.make_measured_from_directions(
         wi,
         wo,
         values,
@@ -191,7 +191,7 @@ def _halve_intervals(columns: FloatArray, intervals: Sequence[int]) -> FloatArra
     return np.abs(np.stack(halves, axis=1))
 
 
-def _find_factor(
+def _find_value_factor(
     source: Source, header: dict[str, str], wo: FloatArray
 ) -> tuple[FloatArray | float, BoolArray | bool, dict[str, str]]:
     """Return the factor (n, 1) by which to divide the values to get the BRDF, as PARAM_OUT states.

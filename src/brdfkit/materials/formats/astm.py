@@ -22,10 +22,10 @@ from brdfkit.core.colours import RGB
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats._writing import (
     compute_angles,
-    note_lone_point,
+    make_channel_error,
+    note_suspicious_sample,
     require_measured,
     write_rows,
-    wrong_channels,
 )
 from brdfkit.materials.measured import Measured
 
@@ -73,18 +73,18 @@ def read(source: Source) -> Measured:
         valid = angles[:, 2] <= MINI_DIFF_LIMIT
         notes["masked"] = f"{(~valid).sum():,} rows beyond theta_s = 75°, not measured"
     info, lines = {"format": NAME, **header, **notes}, [n for n, _ in rows]
-    measured = source.build_from_angles(
+    measured = source.make_measured_from_angles(
         lines, angles, values, valid=valid, channels=channels, info=info
     )
-    measured.info.update(note_lone_point(measured.samples))
+    measured.info.update(note_suspicious_sample(measured.samples))
     return measured
 
 
 def write(obj: object, stream: IO[bytes]) -> None:
     """Write the valid samples of a `Measured`, in its own channels, with all digits."""
     data = require_measured(obj, NAME)
-    if not _are_writable(data.channels):
-        raise wrong_channels(data, NAME, KNOWN_CHANNELS)
+    if not _are_writable_channels(data.channels):
+        raise make_channel_error(data, NAME, KNOWN_CHANNELS)
     samples = data.samples.at(data.samples.valid)
     header = [
         f"SAMPLE_NAME {' '.join(data.name.split())}",
@@ -154,7 +154,7 @@ def _find_channels(
     return None
 
 
-def _are_writable(channels: Sequence[str]) -> bool:
+def _are_writable_channels(channels: Sequence[str]) -> bool:
     """Return whether a file can hold these `channels`: whether `read` would understand VARS."""
     words = all(re.fullmatch(r"[^\s,]+", name) for name in channels)
     distinct = len({*ANGLES, *channels}) == len(ANGLES) + len(channels)

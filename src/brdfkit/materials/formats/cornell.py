@@ -13,11 +13,11 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats._writing import (
     compute_angles,
-    note_lone_point,
-    note_short_rings,
+    make_channel_error,
+    note_missing_views,
+    note_suspicious_sample,
     require_measured,
     write_rows,
-    wrong_channels,
 )
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.long_form import NANOMETRES
@@ -34,7 +34,7 @@ def sniff(head: bytes) -> bool:
     lines = [line for line in head.split(b"\n") if line.strip() and not line.startswith(b"#")]
     tokens = b" ".join(lines[:3]).split()
     try:
-        return int(tokens[0]) > 0 and _is_plausible(float(tokens[1]))
+        return int(tokens[0]) > 0 and _is_plausible_wavelength(float(tokens[1]))
     except (ValueError, IndexError):
         return False
 
@@ -51,8 +51,10 @@ def read(source: Source) -> Measured:
     lines = [n for n, _ in rows]
     channels = tuple(f"{w:.10g}nm" for w in nanometres)
     info = {"format": NAME, **_read_description(source), **_note_clipping(values)}
-    measured = source.build_from_angles(lines, angles, values, channels=channels, info=info)
-    measured.info.update(note_lone_point(measured.samples) | note_short_rings(measured.samples))
+    measured = source.make_measured_from_angles(lines, angles, values, channels=channels, info=info)
+    measured.info.update(
+        note_suspicious_sample(measured.samples) | note_missing_views(measured.samples)
+    )
     return measured
 
 
@@ -62,8 +64,8 @@ def write(obj: object, stream: IO[bytes]) -> None:
     try:
         nanometres = wavelengths(data)
     except BrdfkitError:
-        raise wrong_channels(data, NAME, "wavelengths", ".astm") from None
-    if not _are_possible(nanometres):
+        raise make_channel_error(data, NAME, "wavelengths", ".astm") from None
+    if not _are_possible_wavelengths(nanometres):
         raise BrdfkitError(
             f"the format {NAME} holds up to {MOST_WAVELENGTHS} wavelengths of {NANOMETRES[0]} to "
             f"{NANOMETRES[1]:,} nm, each once, not those of {data.name}; choose another suffix."
@@ -105,20 +107,20 @@ def _read_wavelengths(source: Source) -> tuple[list[float], list[tuple[int, str]
             f"line {first} announces {count} wavelengths, but the next lines list "
             f"{len(nanometres)}; mend the number or fetch the file again"
         )
-    if not _are_possible(nanometres):
+    if not _are_possible_wavelengths(nanometres):
         raise source.error(
             f"the wavelengths behind line {first} repeat or are not in nm; mend them"
         )
     return nanometres, source.lines[used:]
 
 
-def _are_possible(nanometres: Sequence[float] | FloatArray) -> bool:
+def _are_possible_wavelengths(nanometres: Sequence[float] | FloatArray) -> bool:
     """Return whether a file may have these wavelengths: all distinct, plausible, not too many."""
     distinct = len({f"{w:.10g}" for w in nanometres}) == len(nanometres) <= MOST_WAVELENGTHS
-    return distinct and all(map(_is_plausible, nanometres))
+    return distinct and all(map(_is_plausible_wavelength, nanometres))
 
 
-def _is_plausible(wavelength: float) -> bool:
+def _is_plausible_wavelength(wavelength: float) -> bool:
     return NANOMETRES[0] <= wavelength <= NANOMETRES[1]
 
 

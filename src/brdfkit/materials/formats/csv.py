@@ -44,9 +44,9 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.materials.formats._delimited import find_delimiter, read_columns, split_fields
+from brdfkit.materials.formats._delimited import detect_delimiter, read_columns, split_fields
 from brdfkit.materials.formats._source import Source
-from brdfkit.materials.formats._writing import compute_angles, require_measured, wrong_channels
+from brdfkit.materials.formats._writing import compute_angles, make_channel_error, require_measured
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.column_names import are_sample_columns, parse_layout
 from brdfkit.materials.measured.columns import to_sample_arguments
@@ -67,7 +67,7 @@ CONVENTION = (
 
 def sniff(head: bytes) -> bool:
     """Return whether `head` has a line of column names of BRDF samples, not separated by tabs."""
-    return find_delimiter(head) not in (None, "\t")
+    return detect_delimiter(head) not in (None, "\t")
 
 
 def read(source: Source, name: str = NAME) -> Measured:
@@ -87,7 +87,7 @@ def read(source: Source, name: str = NAME) -> Measured:
         details["anisotropic"] = ANISOTROPIC[stated]
     notes.pop("format", None)  # replaced by the name of this format
     details["info"] = {"format": name, **notes, **details["info"]}
-    return source.build_from_directions(**details)
+    return source.make_measured_from_directions(**details)
 
 
 def write(obj: object, stream: IO[bytes], name: str = NAME, delimiter: str = ",") -> None:
@@ -96,9 +96,9 @@ def write(obj: object, stream: IO[bytes], name: str = NAME, delimiter: str = ","
     `name` is the name of the format, and `delimiter` separates the columns.
     """
     data = require_measured(obj, name, anisotropic=True)
-    headings = _name_values(data, name)
+    headings = _name_value_columns(data, name)
     samples, errors = data.samples.at(data.samples.valid), data.standard_error
-    columns = [*_round(np.degrees(compute_angles(samples))), *samples.values.T]
+    columns = [*_round_angles(np.degrees(compute_angles(samples))), *samples.values.T]
     names = [*(f"{angle} [deg]" for angle in ANGLES), *headings]
     if errors is not None:
         columns += [*errors[data.samples.valid].T]
@@ -125,7 +125,7 @@ def _read_notes(source: Source) -> dict[str, str]:
     return notes | ({"comment": "; ".join(others)} if others else {})
 
 
-def _name_values(data: Measured, name: str) -> list[str]:
+def _name_value_columns(data: Measured, name: str) -> list[str]:
     """Return column names for the channels of a `Measured` that `read` understands.
 
     Raises `BrdfkitError` where the format `name` has none.
@@ -138,10 +138,10 @@ def _name_values(data: Measured, name: str) -> list[str]:
     except BrdfkitError:
         pass  # that error is about columns, but the user has channels
     holds = "R, G, B, or wavelengths of 100 to 100,000 nm, each once, or one channel"
-    raise wrong_channels(data, name, holds)
+    raise make_channel_error(data, name, holds)
 
 
-def _round(degrees: FloatArray) -> FloatArray:
+def _round_angles(degrees: FloatArray) -> FloatArray:
     """Round angles to 12 decimals if this changes them by less than 1e-13.
 
     The file then has 30 in place of 30.000000000000004.

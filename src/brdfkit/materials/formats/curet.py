@@ -47,7 +47,9 @@ def read(source: Source) -> Measured:
     }
     values = [[value] for value in rows[sample - 1]]
     name = f"CUReT {sample}"
-    return table.build_from_angles(lines, angles, values, channels=("Y",), name=name, info=info)
+    return table.make_measured_from_angles(
+        lines, angles, values, channels=("Y",), name=name, info=info
+    )
 
 
 def _parse_sample_number(source: Source) -> int:

@@ -36,19 +36,19 @@ def read(source: Source) -> Fit:
     """
     try:
         record = json.loads(source.data)
-        version = _to_type(str, record[VERSION_KEY])
-        label, values = _to_type(str, record["model"]), dict(record["parameters"])
+        version = _convert_to_type(str, record[VERSION_KEY])
+        label, values = _convert_to_type(str, record["model"]), dict(record["parameters"])
         entries = record["fit"]
         stored = [name for name in FIELDS if name in entries or name not in LATER_FIELDS]
-        details = {name: _to_type(TYPES[name], entries[name]) for name in stored}
-        details["settings"] = _to_settings(details["settings"])
-        details["certainty"] = _to_certainty(entries.get("certainty"))
-        details["albedo"] = _to_albedo(entries.get("albedo"))
+        details = {name: _convert_to_type(TYPES[name], entries[name]) for name in stored}
+        details["settings"] = _parse_settings(details["settings"])
+        details["certainty"] = _parse_certainty(entries.get("certainty"))
+        details["albedo"] = _parse_albedo(entries.get("albedo"))
     except DAMAGED:
         if source.data.lstrip().startswith(b'{"kind"'):
             raise source.error("is a distance field; load it by brdfkit.distance_fields") from None
         raise source.error("is no fit that brdfkit saved, or is damaged; fit it again") from None
-    if _is_newer(version):
+    if _is_newer_version(version):
         raise source.error(
             f"was saved by brdfkit {version[:20]}, and this is {__version__}: update brdfkit"
         )
@@ -76,13 +76,13 @@ def write(fit: object, stream: IO[bytes]) -> None:
         "model": fit.model.label(),
         "parameters": fit.model.arguments,
         "fit": values
-        | {"certainty": _from_certainty(fit.certainty)}
+        | {"certainty": _certainty_to_record(fit.certainty)}
         | {"albedo": fit.albedo and vars(fit.albedo)},
     }
     stream.write(json.dumps(record, indent=2).encode() + b"\n")
 
 
-def _from_certainty(certainty: Certainty | None) -> dict[str, Any] | None:
+def _certainty_to_record(certainty: Certainty | None) -> dict[str, Any] | None:
     """Convert a `Certainty`, the uncertainty of a fit, to a dictionary for JSON.
 
     Each row of the symmetric covariance becomes a text with its numbers up to the diagonal.
@@ -94,14 +94,14 @@ def _from_certainty(certainty: Certainty | None) -> dict[str, Any] | None:
     return {**vars(certainty), "covariance": lower}
 
 
-def _to_certainty(record: dict[str, Any] | None) -> Certainty | None:
+def _parse_certainty(record: dict[str, Any] | None) -> Certainty | None:
     """Convert a dictionary from JSON back to a `Certainty`, the uncertainty of a fit.
 
     It is None in fits of earlier versions. Raises `ValueError` and others for a damaged one.
     """
     if record is None:
         return None
-    names = _to_type(tuple[str, ...], record["names"])
+    names = _convert_to_type(tuple[str, ...], record["names"])
     lower = [tuple(map(float, row.split())) for row in record["covariance"]]
     if [len(row) for row in lower] != [*range(1, len(names) + 1)]:
         raise ValueError
@@ -110,19 +110,23 @@ def _to_certainty(record: dict[str, Any] | None) -> Certainty | None:
     freedom = tuple(map(float, record["freedom"]))
     if len(freedom) != len(names):
         raise ValueError
-    sentences = (_to_type(tuple[str, ...], record[name]) for name in ("undetermined", "trades"))
-    counts = (_to_type(int, record[name]) for name in ("numbers", "parameters"))
+    sentences = (
+        _convert_to_type(tuple[str, ...], record[name]) for name in ("undetermined", "trades")
+    )
+    counts = (_convert_to_type(int, record[name]) for name in ("numbers", "parameters"))
     return Certainty(names, rows, freedom, *sentences, *counts)
 
 
-def _to_albedo(record: dict[str, Any] | None) -> Albedo | None:
+def _parse_albedo(record: dict[str, Any] | None) -> Albedo | None:
     """Convert a dictionary from JSON to an `Albedo`, the albedos of a fit and its measurement.
 
     It is None in fits of earlier versions. Raises `ValueError` and others for a damaged one.
     """
     if record is None:
         return None
-    angles, fit, measured = (_to_type(tuple, record[n]) for n in ("theta_i", "fit", "measured"))
+    angles, fit, measured = (
+        _convert_to_type(tuple, record[n]) for n in ("theta_i", "fit", "measured")
+    )
     rows: list[Any] = [None if row is None else tuple(map(float, row)) for row in (*fit, *measured)]
     lengths = {len(row) for row in rows if row is not None}
     if not len(angles) == len(fit) == len(measured) or len(lengths) != 1:
@@ -131,20 +135,20 @@ def _to_albedo(record: dict[str, Any] | None) -> Albedo | None:
         raise ValueError
     peak = record.get("peak")
     if peak is not None:
-        peak = tuple(map(float, _to_type(tuple, peak)))
+        peak = tuple(map(float, _convert_to_type(tuple, peak)))
         if len(peak) != 2:
             raise ValueError
     return Albedo(tuple(map(float, angles)), tuple(rows[: len(fit)]), tuple(rows[len(fit) :]), peak)
 
 
-def _to_settings(settings: dict[str, Any]) -> dict[str, Any]:
+def _parse_settings(settings: dict[str, Any]) -> dict[str, Any]:
     """Convert the bounds in a fit's settings from JSON lists to pairs of floats."""
     if bounds := settings.get("bounds"):
         settings |= {"bounds": {n: tuple(map(float, pair)) for n, pair in bounds.items()}}
     return settings
 
 
-def _is_newer(version: str) -> bool:
+def _is_newer_version(version: str) -> bool:
     """Return whether a version of brdfkit, such as 1.2.3, is later than the one that runs."""
     numbers = ([int(part) for part in v.split(".")[:2]] for v in (version, __version__))
     try:
@@ -154,7 +158,7 @@ def _is_newer(version: str) -> bool:
     return theirs > ours
 
 
-def _to_type(kind: Any, value: Any) -> Any:
+def _convert_to_type(kind: Any, value: Any) -> Any:
     """Convert a value from JSON to the type `kind` of a `Fit`'s attribute.
 
     Lists become tuples, and whole numbers floats. Raises `TypeError` for a value of another type.

@@ -32,7 +32,7 @@ NOT_MEASURED = -1.0
 
 def sniff(head: bytes) -> bool:
     """Return whether `head` begins with plausible numbers of cells, in either byte order."""
-    return len(head) >= HEADER and any(map(_is_plausible, _read_dimensions(head)))
+    return len(head) >= HEADER and any(map(_is_plausible_shape, _read_dimensions(head)))
 
 
 def read(source: Source) -> Measured:
@@ -71,7 +71,7 @@ def write(obj: object, stream: IO[bytes]) -> None:
     """
     data = require_measured(obj, NAME).rgb
     table = data.table if data.is_table else data.resampled(SHAPE)
-    if not _is_plausible(table.shape) or not np.isclose(
+    if not _is_plausible_shape(table.shape) or not np.isclose(
         table.phi_d_period, _compute_phi_d_period(table.shape)
     ):
         raise BrdfkitError(
@@ -85,13 +85,13 @@ def write(obj: object, stream: IO[bytes]) -> None:
 
 
 def _read_shape(source: Source) -> tuple[int, ...]:
-    """Return the numbers of cells in the header; raise `BrdfkitError` if the file's size differs."""
+    """Return the header's numbers of cells; raise `BrdfkitError` if the file's size differs."""
     size = len(source.data)
     if size < HEADER:
         raise source.error(f"has {size} bytes, fewer than a MERL header; fetch the file again")
     little, big = _read_dimensions(source.data)
-    if not _is_plausible(little):
-        if _is_plausible(big):
+    if not _is_plausible_shape(little):
+        if _is_plausible_shape(big):
             raise source.error(
                 f"is big-endian (its header reads {_format_shape(big)} so); swap the byte order to "
                 "little-endian"
@@ -114,7 +114,7 @@ def _read_dimensions(data: bytes) -> tuple[tuple[int, ...], tuple[int, ...]]:
     return struct.unpack_from("<3i", data), struct.unpack_from(">3i", data)
 
 
-def _is_plausible(dimensions: Sequence[int]) -> bool:
+def _is_plausible_shape(dimensions: Sequence[int]) -> bool:
     return all(1 <= n <= MOST_CELLS for n in dimensions)
 
 

@@ -68,7 +68,7 @@ def read(source: Source) -> Measured:
     }
     try:
         about = json.loads(arrays.pop(FIRST, np.empty(0)).tobytes())
-        return _build(about, arrays)
+        return _make_measured(about, arrays)
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         problem = f"lacks {error}" if isinstance(error, KeyError) else str(error)
         raise source.error(
@@ -95,10 +95,10 @@ def write(obj: object, stream: IO[bytes]) -> None:
     if data.standard_error is not None:
         arrays["standard_error"] = data.standard_error
     text = np.frombuffer(json.dumps(about).encode(), np.uint8)
-    stream.write(_pack({FIRST: text, **arrays}))
+    stream.write(_pack_zip({FIRST: text, **arrays}))
 
 
-def _build(about: dict[str, Any], arrays: Mapping[str, AnyArray]) -> Measured:
+def _make_measured(about: dict[str, Any], arrays: Mapping[str, AnyArray]) -> Measured:
     """Make a `Measured` from the notes `about` and the `arrays` of a file, by their names.
 
     Raises `ValueError`, `KeyError` and others for missing or wrong entries.
@@ -109,7 +109,7 @@ def _build(about: dict[str, Any], arrays: Mapping[str, AnyArray]) -> Measured:
         raise ValueError("a name, a channel or a note is no text")
     errors = arrays.get("standard_error")
     if "values" in arrays:
-        return _build_from_samples(about, arrays, details, errors)
+        return _make_measured_from_samples(about, arrays, details, errors)
     if errors is not None:
         errors = errors.reshape(arrays["table"].shape)
     return Measured.from_table(
@@ -117,7 +117,7 @@ def _build(about: dict[str, Any], arrays: Mapping[str, AnyArray]) -> Measured:
     )
 
 
-def _build_from_samples(
+def _make_measured_from_samples(
     about: dict[str, Any],
     arrays: Mapping[str, AnyArray],
     details: dict[str, Any],
@@ -183,7 +183,7 @@ def _parse_array(source: Source, name: str, data: bytes) -> AnyArray:
         return array if dtype.kind == "u" else array.astype(float)
 
 
-def _pack(arrays: Mapping[str, AnyArray]) -> bytes:
+def _pack_zip(arrays: Mapping[str, AnyArray]) -> bytes:
     """Return the bytes of an uncompressed zip archive with the `arrays`, by their names.
 
     Equal arrays give equal bytes.

@@ -3,7 +3,7 @@
 from typing import IO
 
 from brdfkit.materials.formats import csv
-from brdfkit.materials.formats._delimited import find_delimiter
+from brdfkit.materials.formats._delimited import detect_delimiter
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.measured import Measured
 
@@ -13,7 +13,7 @@ SUFFIXES = (".tsv",)
 
 def sniff(head: bytes) -> bool:
     """Return whether `head` has a line of column names of BRDF samples, separated by tabs."""
-    return find_delimiter(head) == "\t"
+    return detect_delimiter(head) == "\t"
 
 
 def read(source: Source) -> Measured:

@@ -56,7 +56,9 @@ def read(source: Source) -> Measured:
     info = {"format": NAME, "unit": "as stored, which UTIA does not document as sr⁻¹"}
     wi, wo = list_directions()
     lookup = Lookup(raw.reshape(*SHAPE, 3))
-    return source.build_from_directions(wi, wo, raw, info=info, anisotropic=True, lookup=lookup)
+    return source.make_measured_from_directions(
+        wi, wo, raw, info=info, anisotropic=True, lookup=lookup
+    )
 
 
 def write(obj: object, stream: IO[bytes]) -> None:
@@ -92,14 +94,14 @@ class Lookup:
     values: FloatArray
 
     def __call__(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        axes = [part for w in (wi, wo) for part in _find_brackets(*to_angles(w))]
+        axes = [part for w in (wi, wo) for part in _find_angle_brackets(*to_angles(w))]
         result: Any = 0.0
         for cells, share in list_corners(axes):
             result = result + share[..., None] * self.values[cells]
         return result
 
 
-def _find_brackets(theta: FloatArray, phi: FloatArray) -> tuple[Any, Any]:
+def _find_angle_brackets(theta: FloatArray, phi: FloatArray) -> tuple[Any, Any]:
     """Return the stored angles between which theta and phi [rad] lie, and the weights of both.
 
     They are brackets as `brdfkit.core.geometry.multilinear` defines them.

@@ -1,8 +1,8 @@
-"""`measure`: a virtual goniometer, which path-traces light through microgeometry.
+"""`measure`: a virtual goniometer, which finds a rough surface's BRDF by tracing paths.
 
-`microgeometry.py` has the shapes of surfaces; `specimen.py` a surface with the BSDFs of its facets,
-and paths through it; `measuring.py` plans how many paths each cell of the table needs, and collects
-their means and standard errors.
+`microgeometry.py` makes height fields. `specimen.py` gives their facets Mitsuba BSDFs, and traces
+paths between the facets. `measuring.py` plans how many paths each cell of the BRDF's table needs,
+and computes means and standard errors.
 """
 
 from brdfkit.materials.goniometer.measuring import measure as measure

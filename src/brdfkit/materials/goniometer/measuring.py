@@ -1,12 +1,12 @@
-"""A virtual goniometer: measures the BRDF of microgeometry by tracing paths.
+"""Measures the BRDF of microgeometry with a virtual goniometer, which traces paths.
 
-A cell of the table holds the mean of the samples at the directions of its centre, and the standard
-error of this mean, from the samples' variance. `specimen.py` explains one sample. A pilot run
-estimates how many samples each cell needs. Its samples are thrown away, because a mean is biased
-where its own samples decide how many of them there are.
+The result is a table. Each cell holds the mean of BRDF samples for the pair of directions at its
+centre, and the standard error of this mean. A sample is the light along one path (`specimen.py`).
+A pilot run estimates how many samples each cell needs. The samples of the pilot are thrown away,
+because a mean is biased where its own samples decide how many of them are drawn.
 
-By reciprocity the light may come from either direction of a pair. It comes from the steeper one,
-so that more of the visible surface is lit, and fewer samples are 0.
+By reciprocity the light may come from either direction of a pair. It comes from the one nearer to
+the normal, so that more of the visible surface is lit, and fewer samples are 0.
 """
 
 from __future__ import annotations
@@ -28,25 +28,32 @@ from brdfkit.materials.goniometer.specimen import Specimen
 from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Table
 
+# Default cells of the table along [phi_h,] theta_h, theta_d and phi_d
 ISOTROPIC = (30, 30, 60)
 ANISOTROPIC = (16, 20, 12, 24)
-PILOT_SAMPLES = 64  # for each cell
-FEWEST_SAMPLES = 256  # for each cell: the standard error of fewer is itself too uncertain
-PASSES = 8  # over all cells: after Ctrl-C each cell has the same part of its samples
-BATCH = 2**20  # paths at once, to bound the memory
-MOST_CELLS = 2**22  # to bound the memory to 1 GB; three times the cells of a MERL table
-MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # with these, a cell takes weeks
+PILOT_SAMPLES = 64  # number of samples per cell in the pilot run
+FEWEST_SAMPLES = 256  # per cell; with fewer, the standard error is itself too uncertain
+# The samples are drawn in this many passes over all cells: if Ctrl-C ends the measurement, each
+# cell has the same share of its samples
+PASSES = 8
+BATCH = 2**20  # number of paths that are traced at once, which bounds the memory
+MOST_CELLS = 2**22  # bounds the memory to 1 GB; three times the cells of a MERL table
+MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # limits of the arguments; with these, a cell takes weeks
 
 
 class Tally:
-    """The samples of m pairs of directions: their number (m,), sum and sum of squares (m, 3)."""
+    """Collects BRDF samples of m pairs of directions, for their means and standard errors.
+
+    `n`: number of samples of each pair (m,); `sums` and `squares`: sums of the samples, and of
+    their squares, in R, G and B (m, 3).
+    """
 
     def __init__(self, pairs: int) -> None:
         self.n = np.zeros(pairs, int)
         self.sums, self.squares = np.zeros((2, pairs, 3))
 
     def add(self, pair: IntArray, samples: FloatArray) -> None:
-        """Add `samples` (n, 3); `pair` (n,) is the index of each sample's pair, ascending."""
+        """Add `samples` (n, 3); `pair` (n,), ascending, is the index of each sample's pair."""
         first = np.flatnonzero(np.diff(pair, prepend=-1))
         rows = pair[first]
         self.n[rows] += np.diff(first, append=len(pair))
@@ -55,19 +62,22 @@ class Tally:
 
     @property
     def mean(self) -> FloatArray:
-        """The mean of the samples, (m, 3)."""
+        """The mean of the samples of each pair, (m, 3)."""
         return self.sums / self.n[:, None]
 
     @property
     def standard_error(self) -> FloatArray:
-        """The standard error of the mean, (m, 3)."""
+        """The standard error of the mean of each pair, (m, 3)."""
         n = self.n[:, None]
         variance = np.maximum(self.squares / n - self.mean**2, 0) * n / (n - 1)
         return np.sqrt(variance / n)
 
     @property
     def relative_error(self) -> FloatArray:
-        """The relative error of the sum of the channels, (m,); infinite where the sum is 0."""
+        """The relative standard error of R + G + B for each pair, (m,); infinite for a mean of 0.
+
+        The errors of R, G and B are added, not their squares, because they rise and fall together.
+        """
         errors, means = self.standard_error.sum(axis=1), self.mean.sum(axis=1)
         return np.divide(errors, means, out=np.full(len(means), np.inf), where=means > 0)
 
@@ -86,10 +96,10 @@ def measure(
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Measured:
-    """Measure a table of a surface's BRDF, with the standard error of every cell.
+    """Measure the BRDF of a rough surface as a table, with the standard error of every cell.
 
-    A virtual goniometer path-traces the surface's microgeometry. Ctrl-C ends it early, with larger
-    errors; before every cell has some samples, Ctrl-C raises `KeyboardInterrupt`.
+    A virtual goniometer traces paths between the surface's facets. Ctrl-C ends the measurement
+    early, with larger errors; before every cell has samples, it raises `KeyboardInterrupt`.
 
     Parameters
     ----------
@@ -97,11 +107,11 @@ def measure(
         The surface, made by ``gaussian``, ``brushed`` or ``woven`` of
         `brdfkit.materials.goniometer.microgeometry`.
     facets : dict, or several
-        The dictionary of one of Mitsuba's BSDFs, or one for each part of the surface. The BSDFs
-        must be reciprocal, opaque and no mirrors.
+        The dictionary of the Mitsuba BSDF of the facets, or one for each part of the surface. The
+        BSDFs must be reciprocal, opaque and no mirrors.
     shape : (int, int, int) or (int, int, int, int), optional
-        Cells of the table: 30×30×60 (theta_h, theta_d, phi_d) where the surface is isotropic, else
-        16×20×12×24 (phi_h before them).
+        Numbers of cells of the table along theta_h, theta_d and phi_d, by default 30×30×60. For an
+        anisotropic surface the cells along phi_h come first, by default 16×20×12×24.
     error : float, default 0.05
         The relative standard error that a cell is to reach, in the sum of its channels.
     spp : int, default 16384
@@ -111,21 +121,22 @@ def measure(
     name : str, default "specimen"
         Name of the material.
     info : dict of str to str, optional
-        Notes to add to the notes of the measurement.
+        Notes to add to `Measured.info`, beside those on the samples and their errors.
     seed : int, default 0
-        Seed of the samples; equal seeds give equal values on one machine.
+        Seed of the random numbers; equal seeds give equal values on one machine.
     progress : callable, optional
-        Called with (paths done, paths in all).
+        A function that is called with the number of paths done and the number of all paths.
 
     Returns
     -------
     Measured
-        A table with the channels R, G, B; cells with a direction below the plane are NaN.
+        A table with the channels R, G, B. Cells with a direction below the surface's mean plane are
+        NaN.
 
     Raises
     ------
     BrdfkitError
-        For arguments out of bounds, and for facets that cannot be measured.
+        For arguments out of bounds, and for facets that are mirrors or let light through.
 
     Examples
     --------
@@ -144,31 +155,32 @@ def measure(
     above, light, eye = _place_light_and_eye(shape)
     rng = np.random.default_rng(seed)
 
-    # The pilot run, and the samples that each cell gets in a pass
+    # Estimate from a pilot run how many samples each cell gets in one pass
     pilot = Tally(len(light))
-    _trace(specimen, light, eye, np.full(len(light), PILOT_SAMPLES), rng, pilot)
+    _add_samples(specimen, light, eye, np.full(len(light), PILOT_SAMPLES), rng, pilot)
     share = -(-_plan_samples(pilot, above, error, spp) // PASSES)
 
-    # The measurement
+    # Measure; after Ctrl-C, keep what there is if every cell has the samples of at least one pass
     tally, total = Tally(len(light)), PASSES * int(share.sum())
     try:
         for _ in range(PASSES):
-            _trace(specimen, light, eye, share, rng, tally, progress, total)
+            _add_samples(specimen, light, eye, share, rng, tally, progress, total)
     except KeyboardInterrupt:
         if (tally.n < share).any():
             raise
 
-    # The table, NaN below the plane
+    # Cells with a direction below the surface's mean plane stay NaN
     values, errors = np.full((2, *shape, 3), np.nan)
     values[above], errors[above] = tally.mean, tally.standard_error
-    notes = _describe(tally, total) | dict(info or {})
+    notes = _describe_measurement(tally, total) | dict(info or {})
     return Measured.from_table(values, name=name, info=notes, standard_error=errors)
 
 
 def _place_light_and_eye(shape: tuple[int, ...]) -> tuple[BoolArray, FloatArray, FloatArray]:
-    """Return a mask of the cells of a table above the plane, and the light and the eye of each.
+    """Return which cells of a table can be measured, and the directions to light and eye for each.
 
-    The light and the eye are directions (m, 3).
+    The first result is a mask of the table's `shape`, False where a direction lies below the
+    surface's mean plane. The others are unit vectors (m, 3) for the m cells where it is True.
     """
     wi, wo = Table(np.empty((*shape, 0))).directions()
     above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
@@ -180,30 +192,30 @@ def _place_light_and_eye(shape: tuple[int, ...]) -> tuple[BoolArray, FloatArray,
 def _plan_samples(pilot: Tally, above: BoolArray, error: float, spp: int) -> IntArray:
     """Return the number of samples (m,) that each cell needs for the relative standard `error`.
 
-    Where a sample is rarely large, the few samples of the pilot in one cell often miss the large
-    ones, so that the cells around it are pooled with it.
+    The estimate pools each cell with its neighbours: where few samples are large, the pilot's
+    samples of one cell often miss the large ones. `above` is the mask of the m cells in the table.
     """
     from scipy.ndimage import uniform_filter
 
-    def pool(values: FloatArray | float) -> FloatArray:
-        """Average over 3 × 3 × ... cells; cells below the plane count as 0."""
+    def average_neighbours(values: FloatArray | float) -> FloatArray:
+        """Average values (m,) over each cell and its neighbours; unmeasured cells count as 0."""
         grid = np.zeros(above.shape)
         grid[above] = values
         return uniform_filter(grid, 3)[above]
 
-    # Squared relative error of the pilot in the pooled cells; a `share` of them is above the plane
-    share, mean = pool(1.0), pool(pilot.mean.sum(axis=1))
-    # The errors of the channels rise and fall together, so that they add up, not their squares
-    variance = share * pool(pilot.standard_error.sum(axis=1) ** 2)
+    # The squared relative error of the pilot in the pooled cells, of which a `share` is measured
+    share, mean = average_neighbours(1.0), average_neighbours(pilot.mean.sum(axis=1))
+    variance = share * average_neighbours(pilot.standard_error.sum(axis=1) ** 2)
     around = np.divide(variance, mean**2, out=np.ones_like(mean), where=mean > 0)
 
-    # The larger of it and the cell's own error falls as 1 / number of samples
+    # The squared error falls as 1 / number of samples: take the larger of the pooled one and the
+    # cell's own
     squares = np.maximum(around, np.minimum(pilot.relative_error, 1) ** 2)
     samples = PILOT_SAMPLES * squares / error**2
     return np.ceil(np.clip(samples, min(FEWEST_SAMPLES, spp), spp)).astype(int)
 
 
-def _trace(
+def _add_samples(
     specimen: Specimen,
     light: FloatArray,
     eye: FloatArray,
@@ -213,9 +225,10 @@ def _trace(
     progress: Progress | None = None,
     total: int = 0,
 ) -> None:
-    """Add `counts` (m,) samples of each pair of directions, light and eye (m, 3), to the tally.
+    """Trace paths for each pair of directions, `light` and `eye` (m, 3), and add them to the tally.
 
-    `progress` is called with the number of samples in the tally, and with the `total`.
+    `counts` (m,) are the numbers of paths. `progress` is called with the number of samples in the
+    tally and with the number that is planned, `total`.
     """
     ends = np.cumsum(counts)
     for first in range(0, ends[-1], BATCH):
@@ -226,12 +239,12 @@ def _trace(
             progress(tally.n.sum(), total)
 
 
-def _describe(tally: Tally, total: int) -> dict[str, str]:
-    """Return notes on a measurement for which `total` samples were planned."""
+def _describe_measurement(tally: Tally, total: int) -> dict[str, str]:
+    """Return notes on how a table was measured; `total` samples were planned."""
     median, most = np.percentile(tally.relative_error, (50, 95))
     notes = {
         "made by": f"brdfkit {__version__}, virtual goniometer",
-        "samples a cell": f"{tally.n.min():,} to {tally.n.max():,}",
+        "samples per cell": f"{tally.n.min():,} to {tally.n.max():,}",
         "relative error": f"{median:.1%} in the median, {most:.1%} or less in 95 of 100 cells",
     }
     if tally.n.sum() < total:
@@ -240,11 +253,14 @@ def _describe(tally: Tally, total: int) -> dict[str, str]:
 
 
 def _check_shape(shape: Sequence[int] | None, isotropic: bool) -> tuple[int, ...]:
-    """Return the shape of the table, by default the usual one; raise `BrdfkitError` if unfit."""
+    """Return the numbers of cells of the table, by default those for its kind of surface.
+
+    Raises `BrdfkitError` for another number of axes, and for too many cells.
+    """
     shape = tuple(shape or (ISOTROPIC if isotropic else ANISOTROPIC))
     dimensions = 3 if isotropic else 4
     if len(shape) != dimensions or min(shape) < 1:
         raise BrdfkitError(f"The table's shape {shape} should be {dimensions} numbers above 0.")
     if math.prod(shape) > MOST_CELLS:
-        raise BrdfkitError(f"The table's shape {shape} is above {MOST_CELLS:,} cells; give fewer.")
+        raise BrdfkitError(f"The table's shape {shape} has over {MOST_CELLS:,} cells; give fewer.")
     return shape

@@ -1,7 +1,7 @@
-"""Makes microgeometry: small periodic height fields, which the virtual goniometer measures.
+"""Makes microgeometry: small periodic height fields, whose BRDF the virtual goniometer measures.
 
-Lengths are in grid cells; x and y are the axes of the patch, z is up, the mean height is 0. A
-surface consists of the triangles between its grid points, two per cell.
+Lengths are in cells of the grid of heights. The mean height is 0, and z points up. Each cell
+consists of two triangles.
 
 [Beckmann & Spizzichino 1963] describe the Gaussian surface. Its slopes have the distribution of
 Beckmann's microfacets with alpha = √2·slope.
@@ -17,16 +17,17 @@ from brdfkit.core.arguments import to_number, to_whole_number
 from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.errors import no_such_error
 
-SIZE = 512  # grid cells along a side of the tile
+SIZE = 512  # number of grid cells along a side of a height field
 
 
 @dataclass(frozen=True, eq=False)
 class HeightField:
-    """A square tile that repeats in x and y.
+    """A square tile of heights, which repeats without end in x and y.
 
-    `heights`: (n, n), with [i, j] at x = i, y = j; `isotropic`: whether a measurement averages over
-    the azimuth of the tile; `parts`: names of the materials that the surface is made of; `part`:
-    the index in `parts` of each cell (n, n), or None where there is one part.
+    `heights`: height of the point x = i, y = j at [i, j], (n, n); `isotropic`: whether a
+    measurement averages over the azimuth of the tile; `parts`: names of the materials that the
+    surface is made of; `part`: index in `parts` of each cell's material, (n, n), or None where
+    there is only one.
 
     >>> HeightField(np.zeros((8, 8))).heights.shape
     (8, 8)
@@ -38,16 +39,16 @@ class HeightField:
     part: IntArray | None = field(default=None, repr=False)
 
     def vertices(self) -> FloatArray:
-        """Return the points ((n + 3)², 3) of the tile, centred, with one cell more on each side."""
+        """Return the points ((n + 3)², 3) of the tile, whose centre is x = y = 0.
+
+        They include one more cell of its repetition on each side.
+        """
         n = len(self.heights)
         i, j = np.mgrid[-1 : n + 2, -1 : n + 2]
         return np.stack([i - n / 2, j - n / 2, self.heights[i % n, j % n]], axis=-1).reshape(-1, 3)
 
     def faces(self, part: int) -> IntArray:
-        """Return the triangles (m, 3) of a part, as indices of `vertices`.
-
-        `part` is an index of `parts`.
-        """
+        """Return the triangles (m, 3) of the material number `part`, as indices of `vertices`."""
         n = len(self.heights)
         i, j = np.mgrid[: n + 2, : n + 2]
         if self.part is not None:
@@ -71,10 +72,10 @@ def gaussian(slope: float = 0.3, seed: int = 0) -> HeightField:
 
 
 def brushed(slope: float = 0.3, stretch: float = 8, seed: int = 0) -> HeightField:
-    """Make a Gaussian surface with grooves along x, like brushed metal.
+    """Make an anisotropic Gaussian surface with grooves along x, like brushed metal.
 
-    `slope` is the root-mean-square slope across the grooves, above 0, at most 2, and `stretch` the
-    length of a groove over its width, 1 to 32. Along the grooves the slope is slope / stretch.
+    `slope` is the root-mean-square slope across the grooves, above 0, at most 2. `stretch` is the
+    length of a groove over its width, 1 to 32: along the grooves the slope is slope / stretch.
 
     >>> brushed(stretch=4).isotropic
     False
@@ -84,37 +85,41 @@ def brushed(slope: float = 0.3, stretch: float = 8, seed: int = 0) -> HeightFiel
 
 
 def woven(slope: float = 0.3, thickness: float = 0.5, seed: int = 0) -> HeightField:
-    """Make a plain weave of warp (along y) and weft (along x): yarns with a grain of fibres.
+    """Make a woven cloth in plain weave: warp yarns along y and weft yarns along x.
 
-    `slope` is the root-mean-square slope across the fibres, above 0, at most 2, and `thickness` the
-    thickness of a yarn over its width, 0.1 to 1.
+    A Gaussian surface roughens the yarns like fibres along them. `slope` is its root-mean-square
+    slope across the fibres, above 0, at most 2. `thickness` is the thickness of a yarn over its
+    width, 0.1 to 1.
 
     >>> woven().parts
     ('warp', 'weft')
     """
     to_number("thickness", thickness, 0.1, 1)
-    yarns = 8  # along a side of the tile; even, or the weave would not repeat
+    yarns = 8  # yarns side by side in the tile; with an odd number the weave would not repeat
     width = SIZE / yarns
     half = thickness * width / 2
-    # Position across the yarns [widths] at the grid points, equal along x and y
+    # Positions of the grid points in units of a yarn's width, equal along x and y
     s = (np.arange(SIZE) + 0.5) / width
-    # A yarn's round upper side, and its way over and under the yarns that it crosses
+    # The round upper side of a yarn, and its way over and under the yarns that it crosses
     crown = half * np.sqrt(1 - (2 * (s % 1) - 1) ** 2)
     over_under = half * np.outer((-1) ** s.astype(int), np.cos(np.pi * (s - 0.5)))
-    # The upper yarn is visible at each place; both have fibres along their length
+    # The higher yarn is visible at each point; fibres along their length roughen all yarns
     warp = crown[:, None] + over_under + _make_gaussian(slope, 4, 24, seed)
     weft = crown[None, :] - over_under.T + _make_gaussian(slope, 24, 4, seed + 1)
     heights = np.maximum(warp, weft)
     return HeightField(heights - heights.mean(), False, ("warp", "weft"), (weft > warp).astype(int))
 
 
-GEOMETRIES = {make.__name__: make for make in (gaussian, brushed, woven)}
+GEOMETRIES = {function.__name__: function for function in (gaussian, brushed, woven)}
 
 
-def make(name: str, **parameters: float) -> HeightField:
-    """Make the microgeometry of this name with these parameters.
+def make_height_field(name: str, **parameters: float) -> HeightField:
+    """Make the height field of a kind of surface, "gaussian", "brushed" or "woven".
 
-    >>> make("gaussian", slope=0.2).heights.std() > 0
+    `parameters` are the arguments of the function of that name. Raises `BrdfkitError` for an
+    unknown name or parameter.
+
+    >>> make_height_field("gaussian", slope=0.2).heights.std() > 0
     True
     """
     if name not in GEOMETRIES:
@@ -127,20 +132,21 @@ def make(name: str, **parameters: float) -> HeightField:
 
 
 def _make_gaussian(slope: float, length_x: float, length_y: float, seed: int) -> FloatArray:
-    """Make periodic heights (n, n) with the autocorrelation exp(-(x/length_x)² - (y/length_y)²).
+    """Make the heights (n, n) of a periodic Gaussian surface.
 
-    The triangles have exactly the root-mean-square `slope` along the axis of the shorter length.
+    Their autocorrelation is exp(-(x/length_x)² - (y/length_y)²). The triangles have exactly the
+    root-mean-square `slope` along the axis of the shorter length.
     """
     to_number("slope", slope, above=0, most=2)
     to_whole_number("seed", seed, 0)
-    # White noise, filtered in the frequency domain
+    # Filter white noise in the frequency domain
     noise = np.fft.fft2(np.random.default_rng(seed).standard_normal((SIZE, SIZE)))
     k = 2 * np.pi * np.fft.fftfreq(SIZE)
     x, y = np.meshgrid(length_x * k, length_y * k, indexing="ij")
     heights = np.fft.ifft2(noise * np.exp(-(x * x + y * y) / 8)).real
     heights -= heights.mean()
 
-    # Mean squared slope of the triangles along each axis, scaled to that along the shorter length
+    # Measure the mean squared slope along each axis, in units of the slope along the shorter length
     shorter = min(length_x, length_y)
     squares = [
         np.mean((length / shorter * (np.roll(heights, -1, axis) - heights)) ** 2)

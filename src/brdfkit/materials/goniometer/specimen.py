@@ -1,18 +1,18 @@
-"""A specimen of the goniometer: microgeometry whose facets have BSDFs, and paths through it.
+"""A specimen of the virtual goniometer: a height field whose facets have BSDFs, and paths on it.
 
 A directional light from wi, of irradiance E across its beam, falls on the plane of the mean height
 with the irradiance E cosθ_i. The plane's radiance towards wo is the mean ⟨L⟩ over lines along wo
-that are spread evenly over one tile of the plane. Hence
+that are spread evenly over one tile of the height field. Hence the BRDF is
 
     f(wi, wo) = ⟨L⟩ / (E cosθ_i)
               = 1 / (A cosθ_i cosθ_o) ∫ f_facet (n·wi)⁺ (n·wo)⁺ V(wi) V(wo) dS + more bounces,
 
 with A the area of the tile in the plane, S the surface, n its normal, and the visibility V = 1
-where nothing is in the way, else 0. One sample is one such line. A path follows the line from above
-down to the surface, and goes on by sampling the facets' BSDF; at every bounce a shadow ray tests
-whether the light is visible.
+where nothing is in the way, else 0. One BRDF sample takes one such line. A path follows the line
+down to the surface, and continues by sampling the BSDF of the facets. At every bounce a shadow ray
+tests whether the light is visible.
 
-The tile repeats without end: a ray that leaves it sideways enters again on the other side.
+The tile repeats without end: a ray that leaves it sideways enters it again on the other side.
 """
 
 from collections.abc import Sequence
@@ -37,17 +37,18 @@ from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.padding import pad
 from brdfkit.materials.goniometer.microgeometry import HeightField
 
-# Offset, along the normal, of rays that leave a point [grid cells]. With Mitsuba's own offset, 20
-# times larger, grazing light reaches 1 % too far; single precision needs about 1e-4 here.
+# Rays that leave the surface start at this distance above it [grid cells], lest they hit the facet
+# that they leave. Single precision needs about 1e-4; with Mitsuba's own offset, 20 times larger
+# than ours, grazing light reaches 1 % too far.
 RAY_OFFSET = 1e-3
-MOST_TILES = 1000  # tiles that a ray may cross; after them it misses the surface
+MOST_TILES = 1000  # a ray that crosses more repetitions of the tile counts as having missed
 
 
 class Specimen:
-    """The triangles of a `HeightField` with Mitsuba BSDFs, in the current variant.
+    """A Mitsuba scene of a `HeightField` with BSDFs, from which BRDF samples are drawn.
 
-    `facets` is one BSDF's dictionary, or one for each of the surface's parts; the light of paths
-    with more than `max_bounces` bounces is lost.
+    `facets` is the dictionary of one Mitsuba BSDF, or of one for each part of the surface. Light
+    that needs more than `max_bounces` reflections between facets is lost.
     """
 
     def __init__(
@@ -67,22 +68,25 @@ class Specimen:
             )
         self.max_bounces = to_whole_number("max_bounces", max_bounces, 1)
         meshes = {
-            name: _make_mesh(name, surface.vertices(), surface.faces(part), _load(facets[part]))
+            name: _make_mesh(
+                name, surface.vertices(), surface.faces(part), _load_facets(facets[part])
+            )
             for part, name in enumerate(surface.parts)
         }
         self.scene = mi.load_dict({"type": "scene", **meshes}, parallel=False)
         self.isotropic = surface.isotropic
-        # Opaque to Dr.Jit: with literals in the kernel, every specimen would compile its own
+        # Opaque to Dr.Jit: numbers that are literals in the code would make it compile a new kernel
+        # for every specimen
         self.side = dr.opaque(mi.Float, len(surface.heights))
         self.bottom = dr.opaque(mi.Float, surface.heights.min())
         self.top = dr.opaque(mi.Float, surface.heights.max())
 
     def draw_samples(self, wi: FloatArray, wo: FloatArray, pair: IntArray, seed: int) -> FloatArray:
-        """Draw one sample (n, 3) of the BRDF [sr⁻¹] for each entry of `pair` (n,).
+        """Draw n samples of the BRDF [sr⁻¹] in R, G and B, (n, 3), whose mean is the BRDF.
 
-        `wi` and `wo` are unit vectors (m, 3) above the plane, `pair` the row of both for each
-        sample, and `seed` is from 0 to 2³² - 1. An isotropic surface is rotated to a random azimuth
-        for every sample, and mirrored for half of them.
+        `wi` and `wo` are m pairs of unit vectors (m, 3) above the plane, and `pair` (n,) is the row
+        of the pair for each sample. `seed` is from 0 to 2³² - 1. An isotropic surface is turned to
+        a random azimuth for every sample, and mirrored for half of them.
         """
         import mitsuba as mi
 
@@ -94,17 +98,20 @@ class Specimen:
         )
         if self.isotropic:
             light, eye = _rotate_at_random(sampler, light, eye)
-        radiance = self._trace(light, eye, sampler, dr.opaque(mi.UInt32, self.max_bounces))
+        radiance = self._trace_paths(light, eye, sampler, dr.opaque(mi.UInt32, self.max_bounces))
         return np.array(radiance / light.z, np.float64).T
 
     @dr.syntax
-    def _trace(
+    def _trace_paths(
         self, wi: JitVector, wo: JitVector, sampler: MitsubaObject, bounces: JitInt
     ) -> JitColour:
-        """Return the radiance towards wo along one random line, for a light from wi with E = 1."""
+        """Trace a path from a random line towards wo, and return its radiance.
+
+        The light from wi has the irradiance E = 1 across its beam.
+        """
         import mitsuba as mi
 
-        # A line through a random point of the tile, from above the surface
+        # The path begins above the surface, over a random point of the tile
         context = mi.BSDFContext()
         xy = (sampler.next_2d() - 0.5) * self.side
         ray = mi.Ray3f(mi.Point3f(xy.x, xy.y, self.top + 1), -wo)
@@ -114,7 +121,7 @@ class Specimen:
             si = self._find_first_hit(mi.Ray3f(ray), mi.Bool(active))
             active &= si.is_valid()
 
-            # The light, where nothing is in its way
+            # Add the light that the facet reflects, unless another facet is in its way
             bsdf = si.bsdf()
             scattered = bsdf.eval(context, si, si.to_local(wi), active)
             lit = active & dr.any(scattered != 0)
@@ -122,7 +129,7 @@ class Specimen:
             shadow = self._find_first_hit(mi.Ray3f(start, wi), mi.Bool(lit)).is_valid()
             radiance += dr.select(lit & ~shadow, throughput * scattered, 0)
 
-            # The path goes on
+            # Continue the path in a direction that the BSDF draws
             sample, weight = bsdf.sample(
                 context, si, sampler.next_1d(active), sampler.next_2d(active), active
             )
@@ -134,7 +141,10 @@ class Specimen:
 
     @dr.syntax
     def _find_first_hit(self, ray: MitsubaObject, active: JitMask) -> MitsubaObject:
-        """Return the interaction where a ray first meets the surface, in the central tile."""
+        """Return the surface interaction at a ray's first hit on the endless surface.
+
+        Its point lies in the central tile, to which the whole path is translated.
+        """
         import mitsuba as mi
 
         hit: Any = dr.zeros(mi.PreliminaryIntersection3f)
@@ -143,19 +153,19 @@ class Specimen:
         while active:
             hit = self.scene.ray_intersect_preliminary(ray, active=active)
 
-            # Where the ray crosses the wall of the tile; at once where it starts behind the wall
+            # Find where the ray leaves the tile sideways; at once if it starts outside
             side_x, side_y = dr.copysign(self.side, ray.d.x), dr.copysign(self.side, ray.d.y)
             to_x = (side_x / 2 - ray.o.x) / ray.d.x
             to_y = (side_y / 2 - ray.o.y) / ray.d.y
             wall = ray(dr.maximum(dr.minimum(to_x, to_y), 0))
 
-            # Done where it hits the surface, or leaves the range of its heights
+            # The ray ends where it hits the surface, or leaves the range of the surface's heights
             above = (wall.z > self.top) & (ray.d.z > 0)
             below = (wall.z < self.bottom) & (ray.d.z < 0)
             tiles += 1
             active &= ~hit.is_valid() & ~above & ~below & (tiles < MOST_TILES)
 
-            # Elsewhere it enters the tile again through the opposite wall
+            # Every other ray enters the tile again on the opposite side
             wall.x -= dr.select(to_x <= to_y, side_x, 0)
             wall.y -= dr.select(to_y < to_x, side_y, 0)
             ray.o = dr.select(active, wall, ray.o)
@@ -163,7 +173,7 @@ class Specimen:
 
 
 def _import_mitsuba() -> MitsubaModule:
-    """Return the module `mitsuba`, in an RGB variant that traces many paths at once."""
+    """Import Mitsuba, and return it; raise `BrdfkitError` in a scalar or spectral variant."""
     import mitsuba as mi
 
     variant = use_variant()
@@ -175,8 +185,11 @@ def _import_mitsuba() -> MitsubaModule:
     return mi
 
 
-def _load(facets: dict[str, Any]) -> MitsubaObject:
-    """Load a BSDF; raise `BrdfkitError` if a directional light cannot measure it."""
+def _load_facets(facets: dict[str, Any]) -> MitsubaObject:
+    """Load the BSDF of the facets; raise `BrdfkitError` for a mirror, or if it lets light through.
+
+    The shadow rays towards a directional light would miss both.
+    """
     import mitsuba as mi
 
     try:
@@ -195,7 +208,7 @@ def _load(facets: dict[str, Any]) -> MitsubaObject:
 def _make_mesh(
     name: str, vertices: FloatArray, faces: IntArray, bsdf: MitsubaObject
 ) -> MitsubaObject:
-    """Make a Mitsuba mesh of flat triangles."""
+    """Make a Mitsuba mesh of flat triangles from `vertices` (n, 3) and `faces` (m, 3)."""
     import mitsuba as mi
 
     properties = mi.Properties()
@@ -209,7 +222,10 @@ def _make_mesh(
 
 
 def _rotate_at_random(sampler: MitsubaObject, wi: JitVector, wo: JitVector) -> list[JitVector]:
-    """Return both directions in the frame of a randomly turned, or also mirrored, tile."""
+    """Return both directions in the frame of a tile that is randomly turned, and perhaps mirrored.
+
+    Samples of an isotropic surface are thus averaged over its azimuth.
+    """
     import mitsuba as mi
 
     s, c = dr.sincos(2 * dr.pi * sampler.next_1d())

@@ -74,8 +74,8 @@ def _find_sample_extents(
     """
     if max_angle not in data.extents_by_angle:
         lookup: Any = data._lookup
-        if hasattr(lookup, "stored_extents"):
-            extents = lookup.stored_extents(max_angle, rows)[rows]
+        if hasattr(lookup, "compute_stored_extents"):
+            extents = lookup.compute_stored_extents(max_angle, rows)[rows]
         else:
             extents = estimate_extents(samples.wi, samples.wo, data.anisotropic, max_angle)
         data.extents_by_angle[max_angle] = extents

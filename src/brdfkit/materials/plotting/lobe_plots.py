@@ -1,4 +1,7 @@
-"""`plot`: the lobes of BRDFs in the plane of incidence, measured and modelled."""
+"""`plot`: draws measured and modelled BRDFs in the plane of incidence as polar plots.
+
+A lobe here is the curve of a BRDF over the angle of view, for one angle of incidence.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ from brdfkit.materials.resolve import MaterialLike, to_materials
 
 SMALL_TEXT = {"size": 8, "color": "0.35"}
 BLACK, GREY = "black", "0.45"
-# Okabe and Ito's colours, which the colour-blind tell apart
+# Okabe and Ito's colours, which colour-blind readers can distinguish
 COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 DASHES = ("-", "--", "-.", ":")
 MOST_COLUMNS = 3
@@ -32,10 +35,10 @@ def plot(
 ) -> Figure:
     """Draw BRDFs in the plane of incidence as polar plots, one panel per angle of incidence.
 
-    The radius is logarithmic in the BRDF [sr⁻¹], or in its luminance where it has colour; values
-    too dark for the scale lie in the centre. Light comes from the left, along the arrow. The first
-    measured material is black. A table is a line where it was measured, and scattered samples are
-    dots, within 3° of theta_i and 5° of the plane.
+    The radius is logarithmic in the luminance of the BRDF [sr⁻¹]; values too dark for the scale lie
+    in the centre. Light comes from the left, along the arrow. The first measured material is black.
+    Tables are drawn as lines where they were measured. Scattered samples are drawn as dots if they
+    lie within 3° of theta_i and 5° of the plane.
 
     Parameters
     ----------
@@ -48,13 +51,14 @@ def plot(
     Returns
     -------
     matplotlib.figure.Figure
-        The figure, which is not pyplot's: a notebook shows it, ``savefig`` writes it.
+        The figure. A notebook shows it and ``savefig`` writes it, but ``pyplot.show`` does not know
+        it.
 
     Raises
     ------
     BrdfkitError
-        For angles out of range, for values that are neither achromatic nor RGB, and for an object
-        that is no material.
+        For angles out of range, for channels of which no luminance can be computed, and for an
+        object that is no material.
 
     Examples
     --------
@@ -69,20 +73,20 @@ def plot(
     figure = Plot(figsize=(max(4.2 * columns, 6), 2.75 * rows + 0.35), layout="constrained")
     layout: Any = figure.get_layout_engine()
     layout.set(h_pad=0.08)
-    draw_panels(figure, drawn, angles)
+    draw_lobe_panels(figure, drawn, angles)
     return figure
 
 
 def _count_panels(angles: FloatArray) -> tuple[int, int]:
-    """Return the numbers of rows and columns of the panels, one panel per angle."""
+    """Return how many rows and columns of panels are needed for one panel per angle."""
     rows = math.ceil(len(angles) / MOST_COLUMNS)
     return rows, math.ceil(len(angles) / rows)
 
 
-def draw_panels(figure: Any, things: list[Any], angles: FloatArray) -> None:
-    """Draw the panels and their legend into a matplotlib `Figure` or `SubFigure`.
+def draw_lobe_panels(figure: Any, things: list[Any], angles: FloatArray) -> None:
+    """Draw a polar plot for each angle of incidence, and a legend, into a `Figure` or `SubFigure`.
 
-    `things` are achromatic or RGB materials, `angles` the angles of incidence [degrees].
+    `things` are the materials, achromatic or RGB, and `angles` the angles of incidence [degrees].
     """
     rows, columns = _count_panels(angles)
     styles = _choose_styles(things)
@@ -94,7 +98,7 @@ def draw_panels(figure: Any, things: list[Any], angles: FloatArray) -> None:
 
 
 def _choose_styles(things: list[Any]) -> list[dict[str, Any]]:
-    """Return keywords of matplotlib's `plot` for each material, with distinct looks and labels."""
+    """Return each material's keyword arguments for `Axes.plot`, with a distinct style and label."""
     colours = [{"color": c, "linestyle": dash} for dash in DASHES for c in COLOURS]
     palette, taken = cycle(colours), set[str]()
     styles: list[dict[str, Any]] = []
@@ -102,54 +106,56 @@ def _choose_styles(things: list[Any]) -> list[dict[str, Any]]:
     for thing in things:
         style: dict[str, Any] = {"color": BLACK, "linestyle": "-"}
         style = {**(style if thing is black else next(palette)), "linewidth": 1.4}
-        if isinstance(thing, Measured):  # thick, and under the models' lines
+        if isinstance(thing, Measured):  # a thick line, over which the models' thin lines show
             style |= {"linewidth": 2.4, "zorder": 1.9}
         if is_scattered(thing):
             style |= {"linestyle": "", "marker": "o", "markersize": 3}
-        style["label"] = make_unique(thing.name.replace("$", r"\$"), taken)  # $ begins a formula
+        # Escape the dollar sign, which begins a formula in matplotlib's texts
+        style["label"] = make_unique(thing.name.replace("$", r"\$"), taken)
         taken.add(style["label"])
         styles.append(style)
     return styles
 
 
 def _draw_panel(axes: Any, theta_i: float, things: list[Any], styles: list[dict[str, Any]]) -> None:
-    """Draw the half disc of one angle of incidence, with the light's arrow and the lobes."""
+    """Draw the polar plot for one angle of incidence: the grid, the light's arrow, the BRDFs."""
     lobes = [compute_lobe(thing, theta_i) for thing in things]
     radius = Radius([values for _, values in lobes])
     _draw_half_disc(axes, radius)
     axes.set_title(rf"$\theta_i$ = {theta_i:g}°", size=11)
     arrow = {"arrowstyle": "-|>", "color": GREY, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (0, 0), _to_xy(-theta_i, 1), arrowprops=arrow, zorder=1.5)
+    axes.annotate("", (0, 0), _polar_to_xy(-theta_i, 1), arrowprops=arrow, zorder=1.5)
     for (theta_o, values), style in zip(lobes, styles, strict=True):
-        axes.plot(*_to_xy(theta_o, radius(values)), **style)
+        axes.plot(*_polar_to_xy(theta_o, radius(values)), **style)
 
 
 def _draw_half_disc(axes: Any, radius: Radius) -> None:
-    """Draw rim, grid and labels of a half disc; `radius` maps BRDF values to radii.
+    """Draw the rim, grid and labels of a polar plot over the upper half plane.
 
-    Matplotlib's own polar axes would leave half of the page blank.
+    `radius` maps BRDF values to radii. Matplotlib's own polar axes would leave the lower half of
+    the panel blank.
     """
     axes.set(aspect="equal", xlim=(-1.2, 1.2), ylim=(-0.27, 1.13))
     axes.set_axis_off()
     half = np.arange(-90, 91)
     rim = {"color": "0.3", "linewidth": 0.8, "zorder": 1.2}
     grid = {"color": "0.87", "linewidth": 0.7, "zorder": 1}
-    axes.plot(*_to_xy(half, 1), **rim)
+    axes.plot(*_polar_to_xy(half, 1), **rim)
     axes.plot([-1, 1], [0, 0], **rim)
     for theta in range(-90, 91, 30):
-        axes.plot(*_to_xy(theta, np.array([0, 1])), **grid)
+        axes.plot(*_polar_to_xy(theta, np.array([0, 1])), **grid)
         text = f"{theta}°".replace("-", "−")
-        va = "bottom" if abs(theta) == 90 else "center"  # above the numbers along the radius
-        axes.text(*_to_xy(theta, 1.1), text, ha="center", va=va, **SMALL_TEXT)
+        va = "bottom" if abs(theta) == 90 else "center"  # keep clear of the numbers of the radius
+        axes.text(*_polar_to_xy(theta, 1.1), text, ha="center", va=va, **SMALL_TEXT)
     for tick in radius.ticks():
-        axes.plot(*_to_xy(half, radius(tick)), **grid)
+        axes.plot(*_polar_to_xy(half, radius(tick)), **grid)
         axes.text(radius(tick), -0.03, f"{tick:g}", ha="center", va="top", **SMALL_TEXT)
     axes.text(
         0, -0.17, "luminance of the BRDF [sr⁻¹], logarithmic", ha="center", va="top", **SMALL_TEXT
     )
 
 
-def _to_xy(theta: Any, radius: Any) -> tuple[Any, Any]:
-    """Return the place (x, y) of a radius at an angle to the normal [degrees], positive to the
-    right."""
+def _polar_to_xy(theta: Any, radius: Any) -> tuple[Any, Any]:
+    """Convert polar coordinates to x, y; `theta` is the angle to the normal [degrees], from which
+    positive angles turn to the right."""
     return radius * np.sin(np.radians(theta)), radius * np.cos(np.radians(theta))

@@ -6,7 +6,7 @@ from typing import Any
 
 from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.materials.loading import locate
+from brdfkit.materials.loading import locate_material
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.resolve import Material, to_material
 from brdfkit.rendering.scene_input.material import load_material
@@ -25,7 +25,7 @@ def load_through_cache(renderable: Any) -> Any:
     if not isinstance(renderable, str | Path):
         return renderable
     try:
-        path, _ = locate(renderable)
+        path, _ = locate_material(renderable)
         status = path.stat()
     except (BrdfkitError, OSError, ValueError):
         return renderable  # a model's name, or a wrong path, which the reader reports better

@@ -20,7 +20,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.version import __version__
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats.rgl import tensor_file
-from brdfkit.materials.formats.rgl.encoding import encode
+from brdfkit.materials.formats.rgl.encoding import encode_brdf
 from brdfkit.materials.formats.rgl.layout import check_fields
 from brdfkit.materials.formats.rgl.parameterisation import AdaptiveTable, Parameterisation
 from brdfkit.materials.measured import Measured
@@ -52,9 +52,9 @@ def read(source: Source) -> Measured:
     values = np.moveaxis(checked["spectra" if spectral else "rgb"], 2, -1)
     density = _to_density(checked["luminance"])
     brdf = AdaptiveTable(parameterisation, values, density, bool(checked["jacobian"]))
-    channels = tuple(map(_name_channel, checked["wavelengths"])) if spectral else RGB
+    channels = tuple(map(_name_wavelength, checked["wavelengths"])) if spectral else RGB
     text = bytes(arrays.get("description", b""))[:LONGEST_DESCRIPTION]
-    wi, wo, brdf_values = brdf.stored_samples()
+    wi, wo, brdf_values = brdf.compute_stored_samples()
     try:
         return Measured.from_samples(
             wi,
@@ -82,16 +82,21 @@ def write(obj: Any, stream: IO[bytes]) -> None:
         raise BrdfkitError(
             f"a {type(obj).__name__} has no BRDF; save a measured material, a model or a fit."
         )
-    brdf = encode(obj.eval)
+    brdf = encode_brdf(obj.eval)
     tables = {f.name: getattr(brdf.parameterisation, f.name) for f in fields(Parameterisation)}
-    tables |= {"luminance": brdf.density, **_choose_fields(obj, np.moveaxis(brdf.values, -1, 2))}
+    tables |= {
+        "luminance": brdf.density,
+        **_choose_colour_fields(obj, np.moveaxis(brdf.values, -1, 2)),
+    }
     arrays: dict[str, AnyArray] = {name: a.astype(np.float32) for name, a in tables.items()}
     arrays["jacobian"] = np.ones(1, np.uint8)
-    arrays["description"] = np.frombuffer(_describe(obj).encode(errors="replace"), np.uint8)
+    arrays["description"] = np.frombuffer(
+        _describe_material(obj).encode(errors="replace"), np.uint8
+    )
     tensor_file.write(stream, arrays)
 
 
-def _choose_fields(obj: Any, values: FloatArray) -> dict[str, FloatArray]:
+def _choose_colour_fields(obj: Any, values: FloatArray) -> dict[str, FloatArray]:
     """Return the field `rgb`, or the fields `wavelengths` and `spectra`, for the BRDF of `obj`.
 
     `values` (a, b, channels, y, x) is the table of its BRDF.
@@ -116,7 +121,7 @@ def _choose_fields(obj: Any, values: FloatArray) -> dict[str, FloatArray]:
     return {"wavelengths": nanometres[order], "spectra": values[:, :, order]}
 
 
-def _describe(obj: Any) -> str:
+def _describe_material(obj: Any) -> str:
     """Return the text for the field `description` of a file."""
     if isinstance(obj, Measured):
         what = obj.info.get("description") or obj.name
@@ -135,5 +140,5 @@ def _to_density(luminance: FloatArray) -> FloatArray:
     return density
 
 
-def _name_channel(wavelength: float) -> str:
+def _name_wavelength(wavelength: float) -> str:
     return np.format_float_positional(np.float32(wavelength), trim="-") + "nm"

@@ -11,14 +11,14 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles, from_half_difference
-from brdfkit.materials.formats.rgl.normals import Hemisphere, find_normals
+from brdfkit.materials.formats.rgl.normals import Hemisphere, find_normal_distribution
 from brdfkit.materials.formats.rgl.parameterisation import (
     AdaptiveTable,
     Parameterisation,
-    from_square,
-    solid_angle,
+    map_from_square,
+    solid_angle_per_area,
 )
-from brdfkit.materials.formats.rgl.warp import even_grid, interpolate
+from brdfkit.materials.formats.rgl.warp import interpolate, make_even_grid
 from brdfkit.materials.measured.measured_data import Lookup
 
 GRAZING = np.radians(89.5)  # largest incidence of a table: at 90° no surface is visible
@@ -54,19 +54,19 @@ ISOTROPIC = Resolution(phi_i=0, theta_i=64, phi_m=1, theta_m=256, grid=112)
 ANISOTROPIC = Resolution(phi_i=12, theta_i=20, phi_m=64, theta_m=128, grid=48)
 
 
-def encode(f: Lookup) -> AdaptiveTable:
-    """Tabulate the BRDF f in the adaptive parameterisation; raise `BrdfkitError` if f is not finite.
+def encode_brdf(f: Lookup) -> AdaptiveTable:
+    """Tabulate the BRDF f in the adaptive parameterisation, densely where f is large.
 
-    The table's directions are dense where f is large.
+    Raises `BrdfkitError` where f is not finite.
     """
     # Choose the directions at which f is tabulated
     quarters = detect_symmetry(f)
     grid = build_parameterisation(f, quarters, ANISOTROPIC if quarters else ISOTROPIC)
     n = grid.vndf.shape[-1]
-    wi, wo, m, factor = grid.reflect_grid(n)
+    wi, wo, m, factor = grid.reflect_light_on_grid(n)
     # Compute the stored values M there
     above = wo[..., 2] > 0
-    f_cos = _evaluate(f, wi[above], wo[above]) * wo[above][:, 2:]
+    f_cos = _evaluate_finite(f, wi[above], wo[above]) * wo[above][:, 2:]
     M = np.zeros((*above.shape, f_cos.shape[1]))
     M[above] = f_cos / factor[above][:, None]
 
@@ -75,7 +75,9 @@ def encode(f: Lookup) -> AdaptiveTable:
     m = m.reshape(-1, 2)
     D = interpolate(grid.ndf[None], m)
     cosines = np.linalg.norm(wi + wo, axis=-1) / 2
-    excess = (1 + _even_density(m) / D).reshape(above.shape) * (1 + GRAZING_DENSITY / cosines)
+    excess = (1 + _compute_even_density(m) / D).reshape(above.shape) * (
+        1 + GRAZING_DENSITY / cosines
+    )
     density = np.maximum(M.mean(axis=-1), 0) / excess
     density[~density.any(axis=(2, 3))] = 1  # uniform for an incidence at which the BRDF is 0
     return AdaptiveTable(grid, M, density)
@@ -94,11 +96,11 @@ def build_parameterisation(f: Lookup, quarters: int, size: Resolution) -> Parame
     theta_i = GRAZING * (1 - np.linspace(1, 0, size.theta_i) ** 1.5)  # denser towards grazing
     # Place the normals by their distribution D, to which a density is added
     ndf, sigma = _compute_microfacets(f, size)
-    m = even_grid(size.grid)
-    density = (interpolate(ndf[None], m) + _even_density(m)) * solid_angle(m)
+    m = make_even_grid(size.grid)
+    density = (interpolate(ndf[None], m) + _compute_even_density(m)) * solid_angle_per_area(m)
     # Weight the normals by their visibility from each incidence, and reduce the number of those
     # that reflect light below the surface
-    wi, normals = from_angles(theta_i, phi_i[:, None]), from_angles(*from_square(m))
+    wi, normals = from_angles(theta_i, phi_i[:, None]), from_angles(*map_from_square(m))
     cosines = wi @ normals.T
     height = 2 * cosines * normals[:, 2] - wi[..., 2:]  # cosθ_o
     visible = np.where(cosines > 0, cosines + GRAZING_DENSITY, 0)
@@ -120,10 +122,10 @@ def detect_symmetry(f: Lookup) -> int:
     theta_h = np.pi / 2 * (0.01 + 0.99 * theta_h) ** 3
     pairs = from_half_difference(theta_h, np.pi / 2 * theta_d, 2 * np.pi * phi_d, 2 * np.pi * phi_h)
     wi, wo = (w[(pairs[0][:, 2] > 0) & (pairs[1][:, 2] > 0)] for w in pairs)
-    values = _evaluate(f, wi, wo)
+    values = _evaluate_finite(f, wi, wo)
 
     def is_symmetric(matrix: FloatArray) -> bool:
-        turned = _evaluate(f, wi @ matrix, wo @ matrix)
+        turned = _evaluate_finite(f, wi @ matrix, wo @ matrix)
         # 90 % suffice: of scattered samples at equal distances, rounding decides which is nearest
         return bool(np.isclose(turned, values, rtol=1e-4).all(axis=1).mean() > 0.9)
 
@@ -142,23 +144,23 @@ def _compute_microfacets(f: Lookup, size: Resolution) -> list[FloatArray]:
     theta = np.linspace(0, 1, size.theta_m) ** 2 * np.pi / 2
     hemisphere = Hemisphere(theta, size.phi_m)
     w = Hemisphere(np.minimum(theta, GRAZING), size.phi_m).directions.reshape(-1, 3)
-    retro = np.maximum(_evaluate(f, w, w).mean(axis=1).reshape(size.phi_m, -1), 0)
+    retro = np.maximum(_evaluate_finite(f, w, w).mean(axis=1).reshape(size.phi_m, -1), 0)
     even = np.full_like(retro, 1 / np.pi)
-    D = find_normals(retro, hemisphere) if retro.any() else even
+    D = find_normal_distribution(retro, hemisphere) if retro.any() else even
     D = (1 - EVEN_SHARE) * D + EVEN_SHARE * even
     return [np.concatenate([x, x[:1]]) for x in (D, hemisphere.projected_area(D))]
 
 
-def _even_density(m: FloatArray) -> FloatArray:
+def _compute_even_density(m: FloatArray) -> FloatArray:
     """Return a density [sr⁻¹] at points `m` (n, 2) of the square of directions.
 
     It is uniform over the square except near the surface's normal. Added to the density D of the
     normals, it gives half of the grid's points to the slopes of a highlight, where D is small.
     """
-    return 1 / (solid_angle(m) + INNERMOST)
+    return 1 / (solid_angle_per_area(m) + INNERMOST)
 
 
-def _evaluate(f: Lookup, wi: FloatArray, wo: FloatArray) -> FloatArray:
+def _evaluate_finite(f: Lookup, wi: FloatArray, wo: FloatArray) -> FloatArray:
     """Evaluate the BRDF f for directions (n, 3); raise `BrdfkitError` where it is not finite."""
     values = f(wi, wo)
     if not np.isfinite(values).all():

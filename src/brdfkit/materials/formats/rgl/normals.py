@@ -45,7 +45,7 @@ class Hemisphere:
         steps = np.diff(self.theta, prepend=self.theta[0], append=self.theta[-1])
         return 2 * np.pi * np.sin(self.theta) * (steps[1:] + steps[:-1]) / 2
 
-    def area(self, D: FloatArray) -> float:
+    def integrate_over_plane(self, D: FloatArray) -> float:
         """Integrate ∫ D cosθ dm: the area of facets with normals distributed by D, seen from above.
 
         D is (n_phi, n_theta); for a distribution of normals the result should be 1.
@@ -77,7 +77,7 @@ class Hemisphere:
         return phi_0 / np.pi * (a * here + b * (before + after) / 2)
 
 
-def find_normals(retro: FloatArray, hemisphere: Hemisphere) -> FloatArray:
+def find_normal_distribution(retro: FloatArray, hemisphere: Hemisphere) -> FloatArray:
     """Return the distribution of normals D (n_phi, n_theta) [sr⁻¹] that explains `retro`.
 
     `retro` (n_phi, n_theta) are the values f(w, w) of the BRDF, which must not be negative. D is
@@ -87,7 +87,7 @@ def find_normals(retro: FloatArray, hemisphere: Hemisphere) -> FloatArray:
     D = np.ones_like(gain)
     for _ in range(MOST_ITERATIONS):
         previous, D = D, gain * hemisphere.projected_area(D)
-        D = D / hemisphere.area(D)
+        D = D / hemisphere.integrate_over_plane(D)
         if np.abs(D - previous).max() < TOLERANCE * D.max():
             break
     return D

@@ -22,7 +22,13 @@ import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.geometry.directions import from_angles, normalize, to_angles
-from brdfkit.materials.formats.rgl.warp import Slices, Warp, even_grid, find_slices, interpolate
+from brdfkit.materials.formats.rgl.warp import (
+    Slices,
+    Warp,
+    find_slices,
+    interpolate,
+    make_even_grid,
+)
 
 UP = np.array([0.0, 0.0, 1.0])
 # 256 points (x, y) of a Fibonacci lattice, which are spread evenly over the unit square
@@ -37,8 +43,9 @@ class Parameterisation:
     """The directions at which a BRDF is tabulated: incidences, and normals visible from each.
 
     `phi_i`, `theta_i`: azimuths (a,) and polar angles (b,) of incidence [rad]; `ndf`, `sigma`:
-    distribution of normals D, and projected area σ, over the square of directions (`to_square`),
-    (y, x); `vndf`: density of the visible normals over this square, up to a factor, (a, b, y, x).
+    distribution of normals D, and projected area σ, over the square of directions, (y, x), which
+    `map_to_square` defines; `vndf`: density of the visible normals over this square, up to a
+    factor, (a, b, y, x).
 
     With one or two `phi_i` the surface is isotropic, and the azimuth on the square is φ_m - φ_i.
     More of them may span half or a quarter of the circle, whose other parts are symmetric.
@@ -65,57 +72,64 @@ class Parameterisation:
         """The warp of points u of the unit square to the visible normals m, for each incidence."""
         return Warp(self.vndf.reshape(-1, *self.vndf.shape[2:]))
 
-    def facet_factor(self, theta_i: FloatArray, phi_i: FloatArray, m: FloatArray) -> FloatArray:
+    def compute_facet_factor(
+        self, theta_i: FloatArray, phi_i: FloatArray, m: FloatArray
+    ) -> FloatArray:
         """Return D(m) / 4σ(wi) (n,), the factor between a stored value M and f cosθ_o.
 
         `theta_i` and `phi_i` [rad] are the angles of wi, and `m` (n, 2) points of the normals on
         the square of directions.
         """
-        wi = to_square(theta_i, phi_i)
+        wi = map_to_square(theta_i, phi_i)
         return interpolate(self.ndf[None], m) / (4 * interpolate(self.sigma[None], wi))
 
-    def locate(self, wi: FloatArray, wo: FloatArray) -> tuple[FloatArray, Slices, FloatArray]:
+    def find_grid_points(
+        self, wi: FloatArray, wo: FloatArray
+    ) -> tuple[FloatArray, Slices, FloatArray]:
         """Return the points u (n, 2) of the grid at which to look up pairs of directions (n, 3).
 
-        The other results are the slices of the table to interpolate, by `warp.find_slices` for the
-        incidences, and the `facet_factor` (n,). The directions must be above the surface.
+        The directions must be above the surface. The other results are the slices of the table to
+        interpolate, by `warp.find_slices` for the incidences, and the factors (n,) of
+        `compute_facet_factor`.
         """
-        wi, wo = self._fold(wi, wo)
+        wi, wo = self._fold_into_stored_part(wi, wo)
         theta_i, phi_i = to_angles(wi)
         theta_m, phi_m = to_angles(normalize(wi + wo))
-        m = to_square(theta_m, phi_m - phi_i if self.isotropic else phi_m)
+        m = map_to_square(theta_m, phi_m - phi_i if self.isotropic else phi_m)
         m[:, 1] %= 1
         slices = find_slices((self.phi_i, self.theta_i), (phi_i, theta_i))
-        return self.normals.invert(m, slices), slices, self.facet_factor(theta_i, phi_i, m)
+        return self.normals.invert(m, slices), slices, self.compute_facet_factor(theta_i, phi_i, m)
 
-    def reflect_grid(self, n: int) -> list[FloatArray]:
-        """Return the results of `reflect` for all incidences and an even grid of n × n points u.
+    def reflect_light_on_grid(self, n: int) -> list[FloatArray]:
+        """Return the results of `reflect_light` for all incidences, at a grid of n × n points u.
 
         The arrays have the shape (a, b, n, n, ...).
         """
         a, b = self.vndf.shape[:2]
-        arrays = self.reflect(np.broadcast_to(even_grid(n), (a * b, n * n, 2)))
+        arrays = self.reflect_light(np.broadcast_to(make_even_grid(n), (a * b, n * n, 2)))
         return [x.reshape(a, b, n, n, *x.shape[1:]) for x in arrays]
 
-    def reflect(self, u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    def reflect_light(self, u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Reflect the light of each incidence about the normals to which points `u` are warped.
 
         `u` (a b, k, 2) has k points for each incidence; n is a b k. The results are wi and wo
-        (n, 3), the normals' points on the square of directions (n, 2), and the `facet_factor` (n,).
-        wo may lie below the surface.
+        (n, 3), the normals' points on the square of directions (n, 2), and the factors of
+        `compute_facet_factor` (n,). wo may lie below the surface.
         """
         incidences = np.meshgrid(self.phi_i, self.theta_i, indexing="ij")
         phi_i, theta_i = (angle.ravel().repeat(u.shape[1]) for angle in incidences)
         m = np.concatenate([self.normals.sample(at, points) for at, points in enumerate(u)])
 
-        theta_m, phi_m = from_square(m)
+        theta_m, phi_m = map_from_square(m)
         normal = from_angles(theta_m, phi_m + phi_i if self.isotropic else phi_m)
         wi = from_angles(theta_i, phi_i)
         wo = 2 * np.sum(wi * normal, axis=1, keepdims=True) * normal - wi
-        return wi, wo, m, self.facet_factor(theta_i, phi_i, m)
+        return wi, wo, m, self.compute_facet_factor(theta_i, phi_i, m)
 
-    def _fold(self, wi: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Rotate or mirror pairs of directions (n, 3) into the part of the circle that is stored."""
+    def _fold_into_stored_part(
+        self, wi: FloatArray, wo: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Rotate or mirror wi and wo (n, 3) so that wi lies in the stored part of the circle."""
         if self.parts < 2:
             return wi, wo
         sign_y = np.where(np.signbit(wi[:, 1]), 1, -1)
@@ -145,14 +159,14 @@ class AdaptiveTable:
         """
         above = (wi[:, 2:] > 0) & (wo[:, 2:] > 0)
         wi, wo = (np.where(above, w, UP) for w in (wi, wo))
-        u, slices, factor = self.parameterisation.locate(wi, wo)
+        u, slices, factor = self.parameterisation.find_grid_points(wi, wo)
         f_cos = interpolate(self.values.reshape(-1, *self.values.shape[2:]), u, slices)
         if self.divided:
             f_cos *= factor[:, None]
         return np.where(above, f_cos / wo[:, 2:], 0.0)
 
     def mix_channels(self, weights: FloatArray) -> "AdaptiveTable":
-        """Return the BRDF in new channels, linear combinations with coefficients `weights` (old, new)."""
+        """Return the BRDF in new channels, mixed from the old ones by `weights` (old, new)."""
         return replace(self, values=self.values @ weights)
 
     def albedo(self) -> FloatArray:
@@ -164,7 +178,7 @@ class AdaptiveTable:
         a, b, n, _ = self.density.shape
         warp = Warp(self.density.reshape(-1, n, n))
         u = np.stack([warp.sample(at, LATTICE) for at in range(a * b)])
-        wi, wo, m, factor = self.parameterisation.reflect(u)
+        wi, wo, m, factor = self.parameterisation.reflect_light(u)
         # Evaluate f cosθ_o for them
         u, slices = u.reshape(-1, 2), [(np.arange(a * b).repeat(len(LATTICE)), 1.0)]
         f_cos = interpolate(self.values.reshape(-1, n, n, self.values.shape[-1]), u, slices)
@@ -172,7 +186,7 @@ class AdaptiveTable:
             f_cos *= factor[:, None]
         # Divide by their density: that of both warps, converted from the square to solid angle dω_o
         pdf = warp.pdf(u, slices) * self.parameterisation.normals.pdf(m, slices)
-        area = solid_angle(m) * 2 * np.linalg.norm(wi + wo, axis=1)
+        area = solid_angle_per_area(m) * 2 * np.linalg.norm(wi + wo, axis=1)
         lit = (wo[:, 2] > 0) & (pdf > 0)
         weight = np.divide(area, pdf, out=np.zeros_like(pdf), where=lit)
         light = np.maximum(f_cos, 0) * weight[:, None]
@@ -192,20 +206,20 @@ class AdaptiveTable:
         flags = {"isotropic": grid.isotropic, "divided": self.divided}
         return {"type": "measured_adaptive", **tensors, **flags, "parts": grid.parts}
 
-    def stored_extents(self, max_angle: float, usable: BoolArray) -> FloatArray:
-        """Return the extents (n, 2) of the stored points: how much of all directions each stands for.
+    def compute_stored_extents(self, max_angle: float, usable: BoolArray) -> FloatArray:
+        """Return the extents (n, 2) of the stored points: the share of directions each stands for.
 
         `model/samples/measures.py` defines the two measures. Only directions with both angles to
         the normal below `max_angle` [degrees] count, and only points where the mask `usable` (n,)
-        is True, in the order of `stored_samples`.
+        is True, in the order of `compute_stored_samples`.
 
         Each cell of the grid over u is split among its usable corners. At its middle m, dω_h = dm
         and dω_d = dω_i, so that dθ_h dθ_d dφ_d = dθ_m dφ_m · sinθ_i dθ_i / sinθ_d.
         """
         grid, n = self.parameterisation, self.values.shape[2]
         a, b = grid.vndf.shape[:2]
-        middles = (even_grid(n - 1) * (n - 2) + 0.5) / (n - 1)
-        wi, wo, m, _ = grid.reflect(np.broadcast_to(middles, (a * b, *middles.shape)))
+        middles = (make_even_grid(n - 1) * (n - 2) + 0.5) / (n - 1)
+        wi, wo, m, _ = grid.reflect_light(np.broadcast_to(middles, (a * b, *middles.shape)))
         slices = [(np.arange(a * b).repeat(len(middles)), 1.0)]
         pdf = grid.normals.pdf(m, slices) * (n - 1) ** 2
         # The cells' areas dθ_m dφ_m = 2π² x dx dy on the square of directions
@@ -221,7 +235,7 @@ class AdaptiveTable:
         sin_d = np.sqrt(np.maximum(1 - cos_d**2, 0))
         # Avoid a division by 0 at the retro-reflection, sinθ_d = 0: bound sinθ_d by the cell's size
         least = np.tile(np.diff(edges), a).repeat(len(middles)) / 4
-        theta_m, _ = from_square(m)
+        theta_m, _ = map_from_square(m)
         cells = np.stack([area / np.maximum(sin_d, least), area * np.sin(theta_m) * cos_d], axis=1)
         usable = usable.reshape(a * b, n, n, 1)
         ends = slice(None, -1), slice(1, None)
@@ -233,12 +247,12 @@ class AdaptiveTable:
             corners[place] += cells
         return (corners * usable).reshape(-1, 2)
 
-    def stored_samples(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def compute_stored_samples(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the directions wi, wo (n, 3) of the stored points, and the BRDF [sr⁻¹] there.
 
         The BRDF (n, channels) is NaN below the surface, at the horizon, and where D is 0.
         """
-        wi, wo, _, factor = self.parameterisation.reflect_grid(self.values.shape[2])
+        wi, wo, _, factor = self.parameterisation.reflect_light_on_grid(self.values.shape[2])
         known = (np.minimum(wi, wo)[..., 2] > LEAST_COSINE) & (factor > 0)
         scale = (factor[known] if self.divided else 1.0) / wo[known][:, 2]
         values: FloatArray = np.full(self.values.shape, np.nan)
@@ -246,7 +260,7 @@ class AdaptiveTable:
         return wi.reshape(-1, 3), wo.reshape(-1, 3), values.reshape(-1, values.shape[-1])
 
 
-def to_square(theta: FloatArray, phi: FloatArray) -> FloatArray:
+def map_to_square(theta: FloatArray, phi: FloatArray) -> FloatArray:
     """Map directions, given by angles [rad], to points (x, y) of the square of directions, (n, 2).
 
     On this unit square θ = x² π/2 and φ = (2y - 1) π.
@@ -254,12 +268,12 @@ def to_square(theta: FloatArray, phi: FloatArray) -> FloatArray:
     return np.stack([np.sqrt(theta * 2 / np.pi), (phi + np.pi) / (2 * np.pi)], axis=-1)
 
 
-def from_square(points: FloatArray) -> tuple[FloatArray, FloatArray]:
+def map_from_square(points: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the angles θ and φ [rad] of points (n, 2) of the square of directions."""
     return points[:, 0] ** 2 * np.pi / 2, (2 * points[:, 1] - 1) * np.pi
 
 
-def solid_angle(points: FloatArray) -> FloatArray:
-    """Return the solid angle per area of the square of directions, dm/dx dy [sr], at points (n, 2)."""
-    theta, _ = from_square(points)
+def solid_angle_per_area(points: FloatArray) -> FloatArray:
+    """Return the solid angle per area of the square of directions [sr] at points (n, 2)."""
+    theta, _ = map_from_square(points)
     return 2 * np.pi**2 * points[:, 0] * np.sin(theta)

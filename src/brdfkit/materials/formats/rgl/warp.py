@@ -25,7 +25,7 @@ from brdfkit.core.geometry.multilinear import find_bracket, list_corners, to_fla
 Slices = Sequence[tuple[Any, Any]]
 
 
-def even_grid(n: int) -> FloatArray:
+def make_even_grid(n: int) -> FloatArray:
     """Return the n × n points (x, y) of an even grid over the unit square, as (n², 2).
 
     The grid includes the edges, and x runs fastest.
@@ -58,7 +58,7 @@ def interpolate(table: FloatArray, u: FloatArray, slices: Slices = ((0, 1.0),)) 
     (n, ...).
     """
     _, ny, nx, *rest = table.shape
-    cells = [_find_bracket(u[:, 0], nx), _find_bracket(u[:, 1], ny)]
+    cells = [_find_grid_bracket(u[:, 0], nx), _find_grid_bracket(u[:, 1], ny)]
     result: Any = 0.0
     for at, weight in slices:
         for (x, y), share in list_corners(cells):
@@ -79,7 +79,7 @@ class Warp:
     density: FloatArray
 
     @cached_property
-    def _tables(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def _cumulative_tables(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Three tables: the density, its integral along each row, and the integral over the rows.
 
         All are scaled so that the last one ends with 1, if cells of the grid have unit area.
@@ -94,20 +94,20 @@ class Warp:
         )
 
     def sample(self, at: int, u: FloatArray) -> FloatArray:
-        """Map uniform points `u` (n, 2), given as (x, y), to points with the density of slice `at`."""
-        density, along, rows = (table[at] for table in self._tables)
+        """Map uniform points (x, y), `u` (n, 2), to points with the density of the slice `at`."""
+        density, along, rows = (table[at] for table in self._cumulative_tables)
         # Find y by the marginal distribution
         y = np.clip(np.searchsorted(rows, u[:, 1]) - 1, 0, len(rows) - 2)
-        ty = _invert_mass(u[:, 1] - rows[y], along[y, -1], along[y + 1, -1])
+        ty = _invert_line_integral(u[:, 1] - rows[y], along[y, -1], along[y + 1, -1])
 
         # Find x by the distribution along the row at this y
-        row = _lerp(along[y], along[y + 1], ty[:, None])
+        row = _interpolate_linearly(along[y], along[y + 1], ty[:, None])
         share = u[:, 0] * row[:, -1]
         x = np.clip((row < share[:, None]).sum(axis=1) - 1, 0, row.shape[1] - 2)
         before = np.take_along_axis(row, x[:, None], axis=1)[:, 0]
-        left = _lerp(density[y, x], density[y + 1, x], ty)
-        right = _lerp(density[y, x + 1], density[y + 1, x + 1], ty)
-        tx = _invert_mass(share - before, left, right)
+        left = _interpolate_linearly(density[y, x], density[y + 1, x], ty)
+        right = _interpolate_linearly(density[y, x + 1], density[y + 1, x + 1], ty)
+        tx = _invert_line_integral(share - before, left, right)
         return np.stack([(x + tx) / (row.shape[1] - 1), (y + ty) / (len(rows) - 1)], axis=1)
 
     def pdf(self, points: FloatArray, slices: Slices) -> FloatArray:
@@ -115,7 +115,7 @@ class Warp:
 
         `slices`, as `find_slices` returns them, are the ones to interpolate between.
         """
-        density, _, _ = self._tables
+        density, _, _ = self._cumulative_tables
         _, ny, nx = density.shape
         return (ny - 1) * (nx - 1) * interpolate(density, points, slices)
 
@@ -124,27 +124,27 @@ class Warp:
 
         `slices`, as `find_slices` returns them, are the ones to interpolate between.
         """
-        density, along, rows = self._tables
-        x, _, tx = _find_bracket(u[:, 0], density.shape[2])
-        y, _, ty = _find_bracket(u[:, 1], density.shape[1])
+        density, along, rows = self._cumulative_tables
+        x, _, tx = _find_grid_bracket(u[:, 0], density.shape[2])
+        y, _, ty = _find_grid_bracket(u[:, 1], density.shape[1])
 
         def at(table: FloatArray, *index: Any) -> Any:
             """Interpolate between the slices of a table, at one `index` within each slice."""
             return sum(weight * table[(slice_, *index)] for slice_, weight in slices)
 
         # Integrate along the row at y, up to x
-        left = _lerp(at(density, y, x), at(density, y + 1, x), ty)
-        right = _lerp(at(density, y, x + 1), at(density, y + 1, x + 1), ty)
-        before = _lerp(at(along, y, x), at(along, y + 1, x), ty)
+        left = _interpolate_linearly(at(density, y, x), at(density, y + 1, x), ty)
+        right = _interpolate_linearly(at(density, y, x + 1), at(density, y + 1, x + 1), ty)
+        before = _interpolate_linearly(at(along, y, x), at(along, y + 1, x), ty)
         lower, upper = at(along, y, -1), at(along, y + 1, -1)
-        row = _lerp(lower, upper, ty)
-        share = before + _mass(left, right, tx)
+        row = _interpolate_linearly(lower, upper, ty)
+        share = before + _integrate_line(left, right, tx)
         x = np.divide(share, row, out=np.zeros_like(share), where=row > 0)
         # Integrate the marginal distribution up to y
-        return np.stack([x, at(rows, y) + _mass(lower, upper, ty)], axis=1)
+        return np.stack([x, at(rows, y) + _integrate_line(lower, upper, ty)], axis=1)
 
 
-def _find_bracket(u: FloatArray, n: int) -> Any:
+def _find_grid_bracket(u: FloatArray, n: int) -> Any:
     """Return the nodes between which coordinates `u` (m,) in the unit square lie, and the weights.
 
     The `n` nodes span the unit square from edge to edge. The result is a bracket, as
@@ -159,17 +159,17 @@ def _cumulate(values: FloatArray) -> FloatArray:
     return np.concatenate([np.zeros_like(values[..., :1]), np.cumsum(steps, axis=-1)], axis=-1)
 
 
-def _lerp(a: Any, b: Any, t: FloatArray) -> Any:
+def _interpolate_linearly(a: Any, b: Any, t: FloatArray) -> Any:
     """Interpolate linearly from a, at t = 0, to b, at t = 1."""
     return (1 - t) * a + t * b
 
 
-def _mass(a: FloatArray, b: FloatArray, t: FloatArray) -> FloatArray:
+def _integrate_line(a: FloatArray, b: FloatArray, t: FloatArray) -> FloatArray:
     """Integrate the line that is a at 0 and b at 1 from 0 to t."""
     return t * (a + t / 2 * (b - a))
 
 
-def _invert_mass(mass: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
+def _invert_line_integral(mass: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the t up to which the line that is a at 0 and b at 1 has the integral `mass`.
 
     The formula avoids cancellation.
