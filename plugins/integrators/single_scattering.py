@@ -49,7 +49,6 @@ from brdfkit.core.array_types import (
     JitFloat,
     JitInt,
     JitMask,
-    JitVector,
     MitsubaModule,
     MitsubaObject,
 )
@@ -65,11 +64,8 @@ from brdfkit.mitsuba_bridge.properties.declarations import (
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 from brdfkit.volumes.light import emitters
 from brdfkit.volumes.light.medium import Medium
+from brdfkit.volumes.light.path_sampling import apply_roulette, scatter_direct_light
 from brdfkit.volumes.light.vertex import Vertex, make_medium_interaction
-
-ROULETTE_DEPTH = 5  # number of scatterings after which dark paths end at random
-# The least probability that a path survives, and that a sample is chosen from two
-SMALLEST_CHANCE = 0.05
 
 PARAMETERS = {
     "extinction": declare_volume(1.0, "σ: collisions per unit of length", coloured=False),
@@ -126,7 +122,7 @@ def define(mi: MitsubaModule) -> type:
                 light, vertex, weight = self.follow_segment(scene, ray, density, sampler, going)
                 radiance += throughput * light
                 throughput *= weight
-                radiance += throughput * self.scatter_direct_light(scene, vertex, sampler)
+                radiance += throughput * scatter_direct_light(scene, self.medium, vertex, sampler)
                 wo, weight, density = vertex.sample(sampler)
                 ray = dr.select(vertex.active, vertex.interaction.spawn_ray(wo), ray)
                 throughput = apply_roulette(depth, throughput * weight, sampler)
@@ -183,44 +179,6 @@ def define(mi: MitsubaModule) -> type:
             vertex = Vertex(self.phase, mei, in_medium, si, on_surface)
             return light, vertex, weight * dr.select(in_medium, albedo, 1)
 
-        def scatter_direct_light(
-            self, scene: MitsubaObject, vertex: Vertex, sampler: MitsubaObject
-        ) -> JitColour:
-            """Return the light that a vertex scatters directly from the emitters into the path.
-
-            With several emitters, two of them are sampled, one from each half of the list, and the
-            shadow ray to one of these samples is followed.
-            """
-            u = sampler.next_2d(vertex.active)
-            if len(scene.emitters()) > 1:
-                halves = [mi.Point2f((u.x + k) / 2, u.y) for k in range(2)]
-                first, second = (
-                    self.sample_unshadowed_light(scene, vertex, half) for half in halves
-                )
-                ray, light, lit = choose_brighter_sample(
-                    first, second, sampler.next_1d(vertex.active)
-                )
-            else:
-                ray, light, lit = self.sample_unshadowed_light(scene, vertex, u)
-            with dr.suspend_grad():
-                lit = lit & ~scene.ray_test(ray, lit)
-            share = self.medium.estimate_transmittance(ray, ray.maxt, sampler, lit)
-            return dr.select(lit, light * share, 0)
-
-        def sample_unshadowed_light(
-            self, scene: MitsubaObject, vertex: Vertex, u: JitVector
-        ) -> tuple[MitsubaObject, JitColour, JitMask]:
-            """Sample the emitters, and return a shadow ray, the scattered light and a mask.
-
-            The light is the one that arrives if nothing blocks the ray; the mask is False where the
-            emitters have no sample.
-            """
-            it = vertex.interaction
-            ds, light, there = emitters.sample_emitters(scene, it, u, vertex.active)
-            value, pdf = vertex.eval_pdf(ds.d)
-            weight = dr.select(ds.delta, 1, emitters.power_heuristic(ds.pdf, dr.detach(pdf)))
-            return emitters.spawn_ray_to_emitter(it, ds), value * light * weight, there
-
         def add_last_segment(
             self,
             scene: MitsubaObject,
@@ -240,36 +198,6 @@ def define(mi: MitsubaModule) -> type:
             return light
 
     return SingleScattering
-
-
-def choose_brighter_sample(
-    first: tuple[MitsubaObject, JitColour, JitMask],
-    second: tuple[MitsubaObject, JitColour, JitMask],
-    u: JitFloat,
-) -> tuple[MitsubaObject, JitColour, JitMask]:
-    """Choose one of two samples (ray, light, mask) at random, mostly the brighter one.
-
-    The light is divided by the probability of the choice, which keeps the mean of both samples
-    unbiased. `u` is a uniform random number.
-    """
-    brightness = [dr.detach(dr.max(light)) for _, light, _ in (first, second)]
-    both = brightness[0] + brightness[1]
-    chance = dr.select(both > 0, brightness[0] / both, 0.5)
-    chance = dr.clip(chance, SMALLEST_CHANCE, 1 - SMALLEST_CHANCE)
-    is_first = u < chance
-    ray, light, mask = (dr.select(is_first, a, b) for a, b in zip(first, second, strict=True))
-    return ray, light / (2 * dr.select(is_first, chance, 1 - chance)), mask
-
-
-def apply_roulette(depth: JitInt, throughput: JitColour, sampler: MitsubaObject) -> JitColour:
-    """Return the throughput of paths after Russian roulette, which ends dark paths at random.
-
-    Paths whose throughput is still 1 always continue. If they could end, too, pictures of white
-    clouds, where paths are long, would depend on a few very bright samples.
-    """
-    chance = dr.clip(dr.max(dr.detach(throughput)), SMALLEST_CHANCE, 1)
-    chance = dr.select(depth < ROULETTE_DEPTH, 1, chance)
-    return dr.select(sampler.next_1d() < chance, throughput / chance, 0)
 
 
 def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:

@@ -2,6 +2,6 @@
 
 `majorants.py` bounds the extinction, `tracking.py` draws the distances at which light collides, and
 `medium.py` combines both with albedo and emission. `vertex.py` is a point at which a path turns,
-`emitters.py` computes the light that arrives there, and `surface_light.py` the direct light on a
-surface that is not a shape of the scene.
+`emitters.py` computes the light that arrives there, `path_sampling.py` the light that is scattered
+there, and `surface_light.py` the direct light on a surface that is not a shape of the scene.
 """
