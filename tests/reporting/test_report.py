@@ -421,8 +421,8 @@ def test_in_python_models_and_the_file_have_defaults(here):
 
 
 def test_lines_that_lie_on_each_other_are_all_seen():
-    assert len({svg.choose_class(number) for number in range(18)}) == 18
-    chart = svg.Chart("", *[svg.linear_axis("", 0, 1, ())] * 2)
+    assert len({svg.choose_css_class(number) for number in range(18)}) == 18
+    chart = svg.Chart("", *[svg.make_linear_axis("", 0, 1, ())] * 2)
     chart.add_fits([([0, 1], [0, 1])] * 5)
     drawn = [line.split() for line in re.findall(r'class="line (fit-[^"]*)"', chart.svg)]
     solid, broken = ([k[0] for k in drawn if len(k) == n] for n in (1, 2))
@@ -778,10 +778,10 @@ def test_what_cannot_be_compared_is_refused_in_a_sentence(here):
 
 def test_unknown_errors_are_not_taken_for_figures():
     broken = psnr_and_delta((np.nan,), 30.0, np.nan, 1.0)
-    assert broken["psnr"].first is None
+    assert broken["psnr"].best_index is None
     assert "not finite" in describe_visibility(broken)
     half_known = PictureError(METRICS["psnr"], (np.nan, 20.0), 30.0)
-    assert half_known.first == 1
+    assert half_known.best_index == 1
     # after Ctrl-C in the second pass the noise is not known
     assert "noise" not in describe_visibility(psnr_and_delta((30.0,), np.nan, 0.5, np.nan))
     assert describe_visibility(psnr_and_delta((30.0,), np.nan, 0.5, np.nan)).startswith(

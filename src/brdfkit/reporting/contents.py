@@ -24,7 +24,7 @@ from brdfkit.reporting.charts.slices import draw_slices
 from brdfkit.reporting.origin import describe_provenance, describe_scene, make_command
 from brdfkit.reporting.parameters import describe_fit
 from brdfkit.reporting.pictures.picture_errors import PictureError, compute_picture_errors
-from brdfkit.reporting.pictures.pixels import pack_for_script
+from brdfkit.reporting.pictures.pixels import pack_pictures
 from brdfkit.reporting.verdict.fit_errors import (
     choose_ranking_loss,
     compute_fit_errors,
@@ -67,7 +67,7 @@ class Contents:
     @property
     def picture_texts(self) -> list[str]:
         """The errors of the first fit's picture as text."""
-        return [error.text(error.values[0]) for error in self.picture_errors]
+        return [error.format_value(error.values[0]) for error in self.picture_errors]
 
 
 def collect_contents(
@@ -124,7 +124,7 @@ def collect_contents(
         "scene": describe_scene(scene, environment),
         "captions": [_make_caption(picture_errors, k) for k in range(len(names))],
         "picture_errors": [*picture_errors.values()],
-        "pixels": pack_for_script([material.name, *names], pictures, differences),
+        "pixels": pack_pictures([material.name, *names], pictures, differences),
         "errors": make_errors_table(errors, loss, material.rgb.albedo.means),
         "warnings": warnings,
         "meanings": {n: losses.named[n].meaning.replace("θ_", "θ") for n in errors[0].by_loss},
@@ -172,6 +172,7 @@ def _describe_ranking(ranking: Ranking) -> dict[str, Any]:
 def _make_caption(errors: Mapping[str, PictureError], number: int) -> str:
     """Return the line below the picture of a fit."""
     psnr, difference = (
-        error.text(error.values[number]) for error in (errors["psnr"], errors["delta_e_2000"])
+        error.format_value(error.values[number])
+        for error in (errors["psnr"], errors["delta_e_2000"])
     )
     return f"PSNR {psnr} dB · ΔE {difference}"

@@ -16,7 +16,7 @@ from brdfkit.regression import Fit
 ShowProgress = Callable[[str], AbstractContextManager[Progress | None]]
 
 
-def to_list(models: Any) -> list[Any]:
+def to_model_list(models: Any) -> list[Any]:
     """Return one model or fit or several as a list of at least one."""
     single = isinstance(models, str | Path | type | Fit)
     several = [models] if single else list(models)
@@ -25,7 +25,7 @@ def to_list(models: Any) -> list[Any]:
     return several
 
 
-def fit_each(
+def fit_models(
     models: Sequence[Any],
     material: Measured,
     settings: FitSettings,
@@ -40,7 +40,7 @@ def fit_each(
     for number, model in enumerate(models, 1):
         try:
             with show(f"fit {model} ({number} of {len(models)})") as progress:
-                fits.append(to_fit(model, material, settings, progress))
+                fits.append(make_fit(model, material, settings, progress))
         except BrdfkitError as error:
             errors.append(error)
     if not fits:
@@ -48,7 +48,7 @@ def fit_each(
     return fits, errors
 
 
-def to_fit(
+def make_fit(
     thing: Any, material: Measured, settings: FitSettings, progress: Progress | None = None
 ) -> Fit:
     """Return a finished fit, the one that is saved in a .json file, or the fit of a model.

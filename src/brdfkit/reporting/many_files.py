@@ -15,7 +15,7 @@ from brdfkit.fitting.compare import format_error
 from brdfkit.fitting.settings import FitSettings
 from brdfkit.materials.resolve import to_measured
 from brdfkit.reporting.contents import Contents
-from brdfkit.reporting.fits import fit_each
+from brdfkit.reporting.fits import fit_models
 from brdfkit.reporting.report import write_report
 
 PAGE = "index.html"
@@ -44,17 +44,17 @@ class Reports:
     interrupted: bool
 
     @property
-    def finished(self) -> int:
+    def finished_count(self) -> int:
         """The number of reports whose pictures have all requested samples."""
         return sum(entry.contents.spp >= entry.contents.requested for entry in self.entries)
 
     @property
-    def written(self) -> list[Path]:
+    def written_files(self) -> list[Path]:
         """The files that were written, the page first."""
         files = [self.folder / f"{entry.name}.html" for entry in self.entries]
         return [self.folder / PAGE, *files] if files else []
 
-    def table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    def make_table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
         """Return the names of columns, with ">" before those of numbers, and rows of texts."""
         if not self.entries:
             return (), []
@@ -67,7 +67,7 @@ class Reports:
         return columns, rows
 
 
-def report_many(
+def write_reports(
     files: Sequence[str],
     models: Sequence[Any],
     folder: str | Path,
@@ -97,7 +97,7 @@ def report_many(
                 name = make_unique(to_file_stem(material.name), taken)
                 path = folder / f"{name}.html"
                 require_writable(path)
-                fits, errors = fit_each(models, material, settings)
+                fits, errors = fit_models(models, material, settings)
                 problems += [f"{material.name}: {error}" for error in errors]
                 contents = write_report(material, fits, path, file, **pictures)
             except BrdfkitError as error:
@@ -119,7 +119,7 @@ def report_many(
 
 def _write_page(reports: Reports) -> None:
     """Write the page with links to the reports."""
-    columns, rows = reports.table()
+    columns, rows = reports.make_table()
     page.write_page(
         "gallery.html",
         reports.folder / PAGE,

@@ -17,11 +17,11 @@ from brdfkit.fitting.settings import FitSettings, ModelLike, require_material_fi
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.regression import Fit
-from brdfkit.reporting.charts.svg import choose_class
+from brdfkit.reporting.charts.svg import choose_css_class
 from brdfkit.reporting.contents import Contents, collect_contents
-from brdfkit.reporting.fits import to_fit, to_list
+from brdfkit.reporting.fits import make_fit, to_model_list
 from brdfkit.reporting.pictures.defaults import MODELS, SCENE, SIZE
-from brdfkit.reporting.pictures.pictures import check_pictures, render_pictures
+from brdfkit.reporting.pictures.pictures import render_pictures, require_possible_pictures
 
 Fitted: TypeAlias = ModelLike | Fit
 Fits: TypeAlias = Fitted | Iterable[Fitted]
@@ -90,10 +90,10 @@ def report(
     """
     require_material_first("report(material, models)", material)
     chosen = FitSettings.from_dictionary(to_dictionary("settings", settings))
-    check_pictures(size, scene, environment)
+    require_possible_pictures(size, scene, environment)
     data, file = to_measured(material), material if isinstance(material, str | Path) else None
-    path = check_page(choose_file_name(data) if path is None else path)
-    fits = [to_fit(thing, data, chosen, progress) for thing in to_list(models)]
+    path = require_html_path(choose_file_name(data) if path is None else path)
+    fits = [make_fit(thing, data, chosen, progress) for thing in to_model_list(models)]
     pictures: dict[str, Any] = {"spp": spp, "noise_floor": noise_floor, "size": size, "seed": seed}
     write_report(
         data, fits, path, file, **pictures, scene=scene, environment=environment, progress=progress
@@ -118,7 +118,7 @@ def write_report(
     """
     rendering = render_pictures(material, fits, scene=scene, environment=environment, **pictures)
     contents = collect_contents(material, fits, rendering, file, path, scene, environment, ranking)
-    page.write_page("report.html", path, choose_class=choose_class, **contents.page)
+    page.write_page("report.html", path, choose_css_class=choose_css_class, **contents.page)
     return contents
 
 
@@ -127,7 +127,7 @@ def choose_file_name(material: Measured) -> str:
     return f"{to_file_stem(material.name)}-report.html"
 
 
-def check_page(path: str | Path) -> Path:
+def require_html_path(path: str | Path) -> Path:
     """Return the path of a page to write; raise `BrdfkitError` if it cannot be an .html file."""
     path = Path(path)
     if path.suffix.lower() not in (".html", ".htm"):

@@ -57,7 +57,7 @@ def report(
 
     Of several FILEs, each gets a report in a folder; the page index.html lists them.
     """
-    from brdfkit.reporting.pictures.pictures import check_pictures
+    from brdfkit.reporting.pictures.pictures import require_possible_pictures
 
     for file in files:
         if file.lower().endswith(".json"):
@@ -67,7 +67,7 @@ def report(
     models = list(dict.fromkeys(names or MODELS))
     how |= {"seed": pictures["seed"]}
     pictures["size"] = SIZE if pictures["size"] is None else pictures["size"]
-    check_pictures(pictures["size"], pictures["scene"], pictures["environment"])
+    require_possible_pictures(pictures["size"], pictures["scene"], pictures["environment"])
     if len(files) > 1:
         _report_many_files(files, models, how, output or Path("reports"), pictures, console)
     else:
@@ -86,14 +86,14 @@ def _report_one_file(
     from brdfkit.cli.rank_output import recommend_model
     from brdfkit.fitting.settings import FitSettings
     from brdfkit.materials.resolve import to_measured
-    from brdfkit.reporting.fits import fit_each
-    from brdfkit.reporting.report import check_page, choose_file_name, write_report
+    from brdfkit.reporting.fits import fit_models
+    from brdfkit.reporting.report import choose_file_name, require_html_path, write_report
 
     with console.progress(f"read {file}"):
         material = to_measured(file)
-    path = check_page(output or choose_file_name(material))
+    path = require_html_path(output or choose_file_name(material))
     names, ranking = recommend_model(names, material, how, console)
-    fits, failed = fit_each(names, material, FitSettings(**how), console.progress)
+    fits, failed = fit_models(names, material, FitSettings(**how), console.progress)
     with console.progress("render") as progress:
         contents = write_report(material, fits, path, file, ranking, **pictures, progress=progress)
     if console.as_json:
@@ -145,33 +145,33 @@ def _report_many_files(
     from brdfkit.cli.arguments import use_results_folder
     from brdfkit.cli.rank_output import refuse_best
     from brdfkit.fitting.settings import FitSettings
-    from brdfkit.reporting.many_files import report_many
+    from brdfkit.reporting.many_files import write_reports
 
     refuse_best(names)
     if folder.suffix.lower() in (".html", ".htm"):
         raise BrdfkitError(f"{folder} is one page; for several FILEs, name a folder behind -o.")
     settings, what = FitSettings(**how), f"report on {len(files)} materials"
     with use_results_folder(folder), console.progress(what) as progress:
-        reports = report_many(files, names, folder, settings, **pictures, progress=progress)
+        reports = write_reports(files, names, folder, settings, **pictures, progress=progress)
     if console.as_json:
         console.print_json(
             {
                 "reports": [_make_report_record(entry.contents) for entry in reports.entries],
                 "failed": reports.problems,
-                "written": reports.written,
+                "written": reports.written_files,
             }
         )
     elif reports.entries:
         for entry in reports.entries:
             _print_verdict(entry.contents, console)
-        console.print_written(reports.written)
+        console.print_written(reports.written_files)
     for problem in reports.problems:
         print_message(problem)
     if reports.interrupted:
-        fewer = len(reports.entries) - reports.finished
+        fewer = len(reports.entries) - reports.finished_count
         noisy = ", and one with fewer samples per pixel is kept" if fewer else ""
         print_message(
-            f"interrupted; {reports.finished} of {len(files)} reports are finished{noisy}."
+            f"interrupted; {reports.finished_count} of {len(files)} reports are finished{noisy}."
         )
     if reports.interrupted or reports.problems:
         click.get_current_context().exit(find_exit_status() if reports.interrupted else 2)

@@ -10,7 +10,7 @@ from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.colours import luminance
 from brdfkit.materials.auditing.albedos import Albedo, compute_albedo
 from brdfkit.regression import Fit
-from brdfkit.reporting.charts.svg import Chart, linear_axis
+from brdfkit.reporting.charts.svg import Chart, make_linear_axis
 
 
 def draw_albedo(measured: Albedo, fits: Sequence[Fit], anisotropic: bool) -> str:
@@ -21,9 +21,9 @@ def draw_albedo(measured: Albedo, fits: Sequence[Fit], anisotropic: bool) -> str
     dots = luminance(measured.values)
     lines = [_compute_luminance(fit.rgb, anisotropic) for fit in fits]
     top = 1.1 * max(np.nanmax(values) for values in (dots, *lines))
-    x = linear_axis("θi", 0, 90, range(0, 91, 15), "°")
+    x = make_linear_axis("θi", 0, 90, range(0, 91, 15), "°")
     ticks = np.arange(0, top, _choose_tick_step(top)).round(6)
-    chart = Chart("albedo", x, linear_axis("reflected / incident light", 0, top, ticks))
+    chart = Chart("albedo", x, make_linear_axis("reflected / incident light", 0, top, ticks))
     if top > 1:
         chart.add_horizontal_line(1, "mirror")
     chart.add_fits([(measured.theta_i, values) for values in lines])

@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.images.thumbnails import Radius
 from brdfkit.materials.plotting.plane_of_incidence import choose_angles, compute_lobe, is_scattered
-from brdfkit.reporting.charts.svg import BOTTOM, HEIGHT, TOP, Axis, Chart, linear_axis
+from brdfkit.reporting.charts.svg import BOTTOM, HEIGHT, TOP, Axis, Chart, make_linear_axis
 
 LINE_STEP, DOT_STEP = 0.5, 3.0  # degrees between points of a line, and between dots of a table
 SAMPLING = 0.1  # degrees between the values of a lobe
@@ -35,17 +35,17 @@ def _draw_lobe(
     )
     radius = Radius([values for _, values in (measured, *fitted)])
     ticks = [(value, f"{value:g}") for value in radius.ticks()]
-    x = linear_axis("θo, towards the light < 0", -90, 90, range(-90, 91, 30), "°")
+    x = make_linear_axis("θo, towards the light < 0", -90, 90, range(-90, 91, 30), "°")
     chart = Chart(f"θi = {theta_i:g}°", x, Axis("BRDF [sr⁻¹]", ticks, radius))
     chart.add_vertical_line(theta_i, "mirror")
     lines = []
     for theta_o, values in fitted:
-        shown = _thin_out(theta_o, values, LINE_STEP)
+        shown = _choose_points(theta_o, values, LINE_STEP)
         lines.append((theta_o[shown], values[shown]))
     chart.add_fits(lines)
     theta_o, values = measured
     if not is_scattered(material):
-        shown = _thin_out(theta_o, values, DOT_STEP)
+        shown = _choose_points(theta_o, values, DOT_STEP)
         theta_o, values = theta_o[shown], values[shown]
     has_bars = bool(np.log10(1 + noise) / radius.decades * (HEIGHT - TOP - BOTTOM) > DOT_RADIUS)
     if has_bars:
@@ -54,7 +54,7 @@ def _draw_lobe(
     return chart.svg, has_bars
 
 
-def _thin_out(theta_o: FloatArray, values: FloatArray, step: float) -> BoolArray:
+def _choose_points(theta_o: FloatArray, values: FloatArray, step: float) -> BoolArray:
     """Return which points (n,) to draw: one in each `step` [degrees], and more at the peak."""
     if not np.isfinite(values).any():
         return np.ones(len(values), bool)

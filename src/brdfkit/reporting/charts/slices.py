@@ -15,7 +15,7 @@ from brdfkit.core.pages import images
 from brdfkit.materials.auditing.picture import is_measured, make_scale
 from brdfkit.materials.measured import Measured
 from brdfkit.regression import Fit
-from brdfkit.reporting.charts.svg import Axis, Chart, linear_axis
+from brdfkit.reporting.charts.svg import Axis, Chart, make_linear_axis
 
 VALUE_SCALE, RATIO_SCALE = "viridis", "RdBu_r"
 LARGEST_RATIO = 4.0  # too bright or too dark, at the ends of the scale of ratios
@@ -39,7 +39,7 @@ def draw_slices(material: Measured, fits: Sequence[Fit]) -> dict[str, Any]:
         """Return the chart of numbers (θh, θd) from 0 to 1 in the colours of a map."""
         colours = images.apply_colour_map(colour_map, shares)
         colours[..., 3] = np.where(known, 1, FAINT)
-        theta_d = linear_axis("θd", 0, 90, range(0, 91, 30), "°")
+        theta_d = make_linear_axis("θd", 0, 90, range(0, 91, 30), "°")
         chart = Chart(title, _make_theta_h_axis(), theta_d, WIDTH, HEIGHT)
         chart.add_image(images.encode_png(np.swapaxes(colours, 0, 1)[::-1]))  # θd upwards
         return chart.svg

@@ -31,7 +31,7 @@ class Axis:
     share: Callable[[Any], Any]
 
 
-def linear_axis(
+def make_linear_axis(
     label: str, low: float, high: float, ticks: Iterable[float], unit: str = ""
 ) -> Axis:
     """Return a linear `Axis` from `low` to `high`, with ticks at the given values."""
@@ -39,7 +39,7 @@ def linear_axis(
     return Axis(label, texts, lambda value: (np.asarray(value, float) - low) / (high - low))
 
 
-def choose_class(number: int) -> str:
+def choose_css_class(number: int) -> str:
     """Return the CSS class for the colour and stroke of a fit; the first fit is solid.
 
     Each of 18 fits has another one.
@@ -92,7 +92,7 @@ class Chart:
         solid ones.
         """
         for number in sorted(range(len(lines)), key=lambda k: (_choose_stroke(k), -k)):
-            self.add_line(*lines[number], choose_class(number))
+            self.add_line(*lines[number], choose_css_class(number))
 
     def add_dots(self, x: ArrayLike, y: ArrayLike, kind: str) -> None:
         """Add round dots at points (n,)."""

@@ -29,16 +29,16 @@ class PictureError:
         return self.metric.title
 
     @property
-    def first(self) -> int | None:
+    def best_index(self) -> int | None:
         """The index of the fit with the best picture; None where no error is known."""
         known = [value for value in self.values if not isnan(value)]
         return self.values.index((max if self.metric.more else min)(known)) if known else None
 
-    def text(self, value: float) -> str:
+    def format_value(self, value: float) -> str:
         """Return a value as text."""
         return str(self.metric.format_value(value))
 
-    def exceeds(self, value: float) -> bool:
+    def exceeds_noise(self, value: float) -> bool:
         """Return whether a value is a larger difference than noise makes."""
         return bool(self.metric.exceeds(value, self.floor))
 

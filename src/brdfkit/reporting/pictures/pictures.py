@@ -45,7 +45,7 @@ def render_pictures(
     `spp` is rounded up to whole passes; if it is None, the default applies, or with a `noise_floor`
     [dB] that of `render`.
     """
-    check_pictures(size, scene, environment)
+    require_possible_pictures(size, scene, environment)
     if spp is not None or noise_floor is None:
         spp = SPP if spp is None else spp
         spp = ceil(to_whole_number("spp", spp, least=1) / PASS) * PASS
@@ -60,10 +60,10 @@ def render_pictures(
         seed=seed,
         progress=progress,
     )
-    return replace(rendering, mask=_find_material(build, size))
+    return replace(rendering, mask=_find_material_pixels(build, size))
 
 
-def check_pictures(size: object, scene: Any, environment: Any) -> None:
+def require_possible_pictures(size: object, scene: Any, environment: Any) -> None:
     """Raise `BrdfkitError` for pictures that a report cannot have, before anything is fitted."""
     if to_whole_number("size", size, least=SMALLEST_SIZE) > LARGEST_SIZE:
         raise BrdfkitError(f"size = {size}: pictures of a page have at most {LARGEST_SIZE} pixels.")
@@ -93,7 +93,7 @@ def _build_with_box_filter(scene: str | Path) -> BuildScene:
 
 
 @in_turn
-def _find_material(build: BuildScene, size: int) -> BoolArray:
+def _find_material_pixels(build: BuildScene, size: int) -> BoolArray:
     """Return which pixels (size, size) show the material."""
     import mitsuba as mi
 

@@ -22,7 +22,7 @@ BRIGHT_DIFFERENCE = 10  # ΔE at the bright end of the colour map
 LARGEST_DIFFERENCE = 100  # ΔE that a byte can hold
 
 
-def pack_for_script(
+def pack_pictures(
     names: list[str], pictures: list[AnyArray], differences: list[AnyArray]
 ) -> dict[str, Any]:
     """Return the data for the script of the page.
@@ -41,8 +41,8 @@ def pack_for_script(
         "highest": LARGEST_DIFFERENCE,
         "palette": b64encode(np.round(palette * 255).astype(np.uint8).tobytes()).decode(),
         "names": names,
-        "pictures": [_compress(encode_light(picture)) for picture in pictures],
-        "differences": [_compress(encode_difference(d)) for d in differences],
+        "pictures": [_compress_codes(encode_light(picture)) for picture in pictures],
+        "differences": [_compress_codes(encode_difference(d)) for d in differences],
     }
 
 
@@ -67,7 +67,7 @@ def encode_difference(difference: AnyArray) -> AnyArray:
     return codes
 
 
-def _compress(codes: AnyArray) -> str:
+def _compress_codes(codes: AnyArray) -> str:
     """Return codes as compressed text: their differences, all low bytes, then all high bytes."""
     steps = np.diff(codes.ravel(), prepend=np.uint16(0))
     split = np.stack([steps & 255, steps >> 8]).astype(np.uint8)

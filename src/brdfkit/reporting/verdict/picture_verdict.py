@@ -36,30 +36,30 @@ def describe_visibility(errors: Mapping[str, PictureError]) -> str:
     return f"its picture is plainly another one ({figures})"
 
 
-def leads_in_picture(psnr: PictureError) -> bool:
+def has_nearest_picture(psnr: PictureError) -> bool:
     """Return whether the first fit's picture is nearer than all others, by more than noise."""
-    return all(_is_nearer(psnr, 0, other) for other in range(1, len(psnr.values)))
+    return all(_has_nearer_picture(psnr, 0, other) for other in range(1, len(psnr.values)))
 
 
 def describe_nearest_picture(names: Sequence[str], psnr: PictureError) -> list[str]:
     """Return a sentence if another fit's picture is nearer than the first's, by more than noise."""
-    nearest = psnr.first
-    if nearest is None or not _is_nearer(psnr, nearest, 0):
+    nearest = psnr.best_index
+    if nearest is None or not _has_nearer_picture(psnr, nearest, 0):
         return []
-    near, own = (psnr.text(psnr.values[k]) for k in (nearest, 0))
+    near, own = (psnr.format_value(psnr.values[k]) for k in (nearest, 0))
     return [
         f"In the picture {names[nearest]} comes nearest: PSNR {near} dB, against {own} dB of "
         f"{names[0]}."
     ]
 
 
-def _is_nearer(psnr: PictureError, one: int, other: int) -> bool:
+def _has_nearer_picture(psnr: PictureError, one: int, other: int) -> bool:
     """Return whether fit `one` has a nearer picture than fit `other`.
 
     The difference of their squared errors has to exceed that of noise.
     """
     squares = [10 ** (-value / 10) for value in (psnr.values[one], psnr.values[other], psnr.floor)]
-    differs = psnr.text(psnr.values[one]) != psnr.text(psnr.values[other])
+    differs = psnr.format_value(psnr.values[one]) != psnr.format_value(psnr.values[other])
     return differs and squares[1] - squares[0] > squares[2]
 
 

@@ -9,7 +9,7 @@ from brdfkit.reporting.verdict.fit_errors import FitErrors, format_factor
 from brdfkit.reporting.verdict.picture_verdict import (
     describe_nearest_picture,
     describe_visibility,
-    leads_in_picture,
+    has_nearest_picture,
 )
 
 MARKED_RATIO = 1.5  # log(worst factor) / log(typical factor) above it is worth a sentence
@@ -36,7 +36,7 @@ def write_verdict(
     elif leaders[loss]:
         why = _explain_tie(names[leaders[loss]], errors[leaders[loss]], taken)
     else:
-        why = _explain_lead(loss, leaders, leads_in_picture(picture_errors["psnr"]))
+        why = _explain_lead(loss, leaders, has_nearest_picture(picture_errors["psnr"]))
     head = (
         f"{names[0]} {why}. Half of the measured values are met within a factor of "
         f"{format_factor(taken.typical_factor)}, 95\xa0% within "
