@@ -532,7 +532,7 @@ def test_mistakes_are_said_and_nothing_is_written(here, words, said):
 
 
 def test_a_fit_of_other_data_is_refused(fits, tmp_path):
-    with pytest.raises(bk.BrdfkitError, match="lambert was fitted to other data"):
+    with pytest.raises(bk.BrdfkitError, match="not to the data of other"):
         bk.report(measured("other", seed=3), fits, path=tmp_path / "no.html", **SMALL)
 
 

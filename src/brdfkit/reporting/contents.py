@@ -1,4 +1,4 @@
-"""Collects what a report shows, as plain data for its template."""
+"""Collects all contents of a report as plain data for the template of its page."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -36,19 +36,19 @@ from brdfkit.reporting.verdict.verdict import write_verdict
 
 @dataclass(frozen=True, eq=False)
 class Contents:
-    """The contents of a report.
+    """The contents of a report, as the template of the page and a page of many reports need them.
 
-    page : the variables of its template.
+    page : the variables of the template.
     material : the name of the material.
-    verdict : the sentences at the head.
-    names : the names of the fits, the one to take first.
+    verdict : the sentences at the head of the report.
+    names : the names of the fits, the recommended fit first.
     loss : the name of the loss that ranks the fits.
-    error : the first fit's error by it.
-    picture_errors : the errors of the pictures.
-    findings : the findings of the audit.
-    warnings : sentences about fits that reflect too much or too little light.
-    thumbnails : small pictures of the measurement and of the first fit.
-    spp, requested : samples per pixel that the pictures have, and that were requested.
+    error : the error of the recommended fit by this loss.
+    picture_errors : the errors of the fits' pictures, by several metrics.
+    findings : the findings of the audit of the material.
+    warnings : sentences on fits that reflect too much or too little light.
+    thumbnails : small pictures of the measurement and of the recommended fit, as data addresses.
+    spp, requested : the number of samples per pixel in the pictures, and the requested number.
     """
 
     page: dict[str, Any]
@@ -66,7 +66,7 @@ class Contents:
 
     @property
     def picture_texts(self) -> list[str]:
-        """The errors of the first fit's picture as text."""
+        """The errors of the recommended fit's picture as texts, one for each metric."""
         return [error.format_value(error.values[0]) for error in self.picture_errors]
 
 
@@ -82,8 +82,9 @@ def collect_contents(
 ) -> Contents:
     """Return the `Contents` of a report on a material and its fits.
 
-    `rendering` has the pictures of both, `file` is the material's file, and `path` that of the
-    report. `scene` and `environment` are those of the pictures; `ranking` chose the model, if any.
+    `rendering`: the pictures of material and fits; `file`: the material's file, if it has one;
+    `path`: the file of the report; `scene`, `environment`: scene and environment map of the
+    pictures; `ranking`: the ranking of models from which the fit was chosen, if there was one.
     """
     loss = choose_ranking_loss(fits)
     errors = compute_fit_errors(material, fits, loss)
@@ -91,7 +92,7 @@ def collect_contents(
     differences = [*compute_colour_differences(rendering).values()]
     pictures = [*rendering.pictures.values()]
 
-    # The fits are sorted from here on: the first is the recommended one
+    # From here on the fits are sorted, with the recommended one first
     order = order_fits(errors, loss)
     fits, errors = [fits[k] for k in order], [errors[k] for k in order]
     picture_errors = {metric: error.reorder(order) for metric, error in picture_errors.items()}
@@ -158,10 +159,10 @@ def collect_contents(
 
 
 def _describe_ranking(ranking: Ranking) -> dict[str, Any]:
-    """Return what the template shows of a ranking.
+    """Return the table of a ranking for the template: columns, rows and the reason of the choice.
 
-    The times are left out, as they differ each time, and the verdict comes second, for narrow
-    screens.
+    Times are left out, because they would make each report a different file. The verdict is the
+    second column, so that narrow screens show it.
     """
     *_, time, verdict = range(len(COLUMNS))
     shown = [0, verdict, *range(1, time)]
@@ -170,7 +171,7 @@ def _describe_ranking(ranking: Ranking) -> dict[str, Any]:
 
 
 def _make_caption(errors: Mapping[str, PictureError], number: int) -> str:
-    """Return the line below the picture of a fit."""
+    """Return the caption of a fit's picture, with its errors; `number`: index of the fit."""
     psnr, difference = (
         error.format_value(error.values[number])
         for error in (errors["psnr"], errors["delta_e_2000"])

@@ -1,4 +1,4 @@
-"""Collects the fits of a report: fits models, and accepts finished and saved fits."""
+"""Makes the fits of a report: fits models, and accepts finished or saved fits in their place."""
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
@@ -17,7 +17,7 @@ ShowProgress = Callable[[str], AbstractContextManager[Progress | None]]
 
 
 def to_model_list(models: Any) -> list[Any]:
-    """Return one model or fit or several as a list of at least one."""
+    """Return a list of the models or fits of a report, from one of them or several."""
     single = isinstance(models, str | Path | type | Fit)
     several = [models] if single else list(models)
     if not several:
@@ -31,10 +31,10 @@ def fit_models(
     settings: FitSettings,
     show: ShowProgress = lambda what: nullcontext(),
 ) -> tuple[list[Fit], list[BrdfkitError]]:
-    """Return the fits of the `models` that can be fitted, and the errors of the others.
+    """Return the fits of those `models` that can be fitted, and the errors of the other models.
 
-    `show` returns a context for the text of a step; entering it gives a progress function, or
-    None. Raises the first `BrdfkitError` if no model can be fitted.
+    Raises the first error if no model can be fitted. `settings`: arguments of the fits; `show`: a
+    function from the name of a step to a context that shows its progress.
     """
     fits, errors = [], []
     for number, model in enumerate(models, 1):
@@ -51,9 +51,10 @@ def fit_models(
 def make_fit(
     thing: Any, material: Measured, settings: FitSettings, progress: Progress | None = None
 ) -> Fit:
-    """Return a finished fit, the one that is saved in a .json file, or the fit of a model.
+    """Return the fit for one entry of a report's models.
 
-    Raises `BrdfkitError` as `fit` does, and for a fit of other data.
+    `thing`: a finished fit, the path of a fit saved as .json, or a model, which is fitted. Raises
+    `BrdfkitError` as `fit` does, and for a fit of other data.
     """
     is_saved = isinstance(thing, str | Path) and str(thing).lower().endswith(".json")
     finished = load(thing) if is_saved else thing
@@ -63,7 +64,7 @@ def make_fit(
         return fit(material, thing, **vars(settings), progress=progress)
     if finished.checksum and finished.checksum != material.checksum:
         raise BrdfkitError(
-            f"{finished.name} was fitted to other data, {finished.data}, than {material.name} has; "
+            f"{finished.name} was fitted to {finished.data}, not to the data of {material.name}; "
             "give fits of this material, or names of models."
         )
     return finished

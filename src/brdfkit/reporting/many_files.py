@@ -23,7 +23,7 @@ PAGE = "index.html"
 
 @dataclass(frozen=True)
 class Entry:
-    """A finished report: the `name` of its file without suffix, and its `contents`."""
+    """A finished report of one material; `name`: name of its file, without the suffix."""
 
     name: str
     contents: Contents
@@ -31,11 +31,12 @@ class Entry:
 
 @dataclass(frozen=True)
 class Reports:
-    """The reports in a `folder`.
+    """The reports of many materials, in one folder.
 
+    folder : the folder of the reports.
     entries : the finished reports.
-    problems : sentences on what failed.
-    interrupted : whether Ctrl-C ended the work.
+    problems : sentences on files and models that failed.
+    interrupted : whether Ctrl-C ended the work early.
     """
 
     folder: Path
@@ -45,17 +46,20 @@ class Reports:
 
     @property
     def finished_count(self) -> int:
-        """The number of reports whose pictures have all requested samples."""
+        """The number of reports whose pictures have all requested samples per pixel."""
         return sum(entry.contents.spp >= entry.contents.requested for entry in self.entries)
 
     @property
     def written_files(self) -> list[Path]:
-        """The files that were written, the page first."""
+        """The files that were written, the page with links first."""
         files = [self.folder / f"{entry.name}.html" for entry in self.entries]
         return [self.folder / PAGE, *files] if files else []
 
     def make_table(self) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-        """Return the names of columns, with ">" before those of numbers, and rows of texts."""
+        """Return a table of the reports: names of columns, and a row of texts for each report.
+
+        The names of columns with numbers, which are aligned right, start with ">".
+        """
         if not self.entries:
             return (), []
         errors = self.entries[0].contents.picture_errors
@@ -75,11 +79,11 @@ def write_reports(
     progress: Progress | None = None,
     **pictures: Any,
 ) -> Reports:
-    """Write a report of each file, with fits of the `models`, and the page of links.
+    """Write a report of each file, with fits of the `models`, and a page with links to them.
 
-    `settings` are arguments of `fit`, `pictures` those of `render_pictures`; `progress` is called
-    with (done, total) before each file. Files that cannot be read and models that cannot be fitted
-    do not stop the others. After Ctrl-C the page shows the finished reports.
+    Files that cannot be read and models that cannot be fitted do not stop the work; after Ctrl-C
+    the page shows the finished reports. `settings`: arguments of the fits; `pictures`: arguments of
+    `render_pictures`; `progress`: a function that is called with (done, total) before each file.
     """
     folder = Path(folder)
     make_folder(folder)
@@ -113,12 +117,12 @@ def write_reports(
             raise
     reports = Reports(folder, [*entries.values()], problems, interrupted)
     if reports.entries:
-        _write_page(reports)
+        _write_links_page(reports)
     return reports
 
 
-def _write_page(reports: Reports) -> None:
-    """Write the page with links to the reports."""
+def _write_links_page(reports: Reports) -> None:
+    """Write the page with a table of the reports and links to them."""
     columns, rows = reports.make_table()
     page.write_page(
         "gallery.html",

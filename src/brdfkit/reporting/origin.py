@@ -1,4 +1,4 @@
-"""Describes the provenance of a report: file, checksums, versions, and a command to repeat it."""
+"""Describes the provenance of a report: its data, versions, and the command that repeats it."""
 
 import shlex
 from collections.abc import Sequence
@@ -25,9 +25,11 @@ def describe_provenance(
     scene: str | Path,
     environment: str | Path | None,
 ) -> dict[str, str]:
-    """Return what was read and how the pictures were made, by heading.
+    """Return the provenance of a report as texts by heading.
 
-    `file` is the material's file as the user named it, or None.
+    They name the measured file with checksums, the settings of the pictures, and the versions of
+    the software. `file`: the material's file as the user named it, or None; `spp`: samples per
+    pixel; `size`: side of the pictures [pixels].
     """
     provenance = {"file": str(file) if file else f"{material.name}, from memory"}
     if file:
@@ -41,7 +43,7 @@ def describe_provenance(
 
 
 def describe_scene(scene: str | Path, environment: str | Path | None) -> str:
-    """Return in words what the pictures show, and under which light."""
+    """Return a text that names the scene and the lighting of a report's pictures."""
     shown = f"the mesh {Path(scene).name}" if Path(scene).suffix else f"the scene {scene}"
     light = f"lit by {Path(environment).name}" if environment else "in its own light"
     return f"{shown}, {light}"
@@ -58,7 +60,11 @@ def make_command(
     scene: str | Path,
     environment: str | Path | None,
 ) -> tuple[str, list[str]]:
-    """Return the command that makes the report again, and names of settings that it cannot hold."""
+    """Return the shell command that makes a report again, for its page.
+
+    Return also the names of settings of the fits that have no option of the command. The arguments
+    are those of the report; `file` is None for a material from memory.
+    """
     words = ["brdfkit", "report", str(file or "FILE")]
     for fit in fits:
         words += ["-m", fit.model.label()]
@@ -82,7 +88,7 @@ def make_command(
 
 
 def _to_option(name: str, value: Any) -> list[str]:
-    """Return the words of `brdfkit report` for a setting of a fit, or [] if it has no option."""
+    """Return the option of `brdfkit report` for a setting of a fit, as words; [] if none."""
     if name == "robust":
         return ["--robust", str(value)]
     if name == "max_angle":

@@ -1,4 +1,4 @@
-"""The public function `report`, which writes an HTML file that compares models with a material."""
+"""Defines the public function `report`, which compares models with a material in an HTML file."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def report(
     Parameters
     ----------
     material : Measured, str or Path
-        The measured material, or its name or path.
+        The measured material, its name in the catalogue, or the path of its file.
     models : str, Path, class or Fit, or several, default ("ward", "ggx", "ggx+ggx")
         The models to fit, as for `fit`, or finished fits, or the paths of saved ones, ``.json``.
     path : str or Path, optional
@@ -111,10 +111,11 @@ def write_report(
     environment: str | Path | None = None,
     **pictures: Any,
 ) -> Contents:
-    """Write the report of a material and finished fits, and return what it shows.
+    """Write the report of a material and finished fits, and return its contents.
 
-    `file` is the material's file, `ranking` the one that chose the model, and `pictures` holds
-    further arguments of `render_pictures`. Raises `BrdfkitError` as `report` does.
+    `file`: the material's file, if it has one; `ranking`: the ranking of models from which a fit
+    was chosen, if there was one; `pictures`: further arguments of `render_pictures`. Raises
+    `BrdfkitError` as `report` does.
     """
     rendering = render_pictures(material, fits, scene=scene, environment=environment, **pictures)
     contents = collect_contents(material, fits, rendering, file, path, scene, environment, ranking)
@@ -123,12 +124,12 @@ def write_report(
 
 
 def choose_file_name(material: Measured) -> str:
-    """Return the default name of a report's file."""
+    """Return the default name of a report's file, made of the material's name."""
     return f"{to_file_stem(material.name)}-report.html"
 
 
 def require_html_path(path: str | Path) -> Path:
-    """Return the path of a page to write; raise `BrdfkitError` if it cannot be an .html file."""
+    """Return the path of a report; raise `BrdfkitError` if no .html file can be written there."""
     path = Path(path)
     if path.suffix.lower() not in (".html", ".htm"):
         raise BrdfkitError(f"{path}: a report is written as .html; choose this suffix.")

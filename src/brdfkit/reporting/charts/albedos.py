@@ -1,4 +1,7 @@
-"""Draws the albedo over the angle of incidence: the measurement as dots, the fits as lines."""
+"""Draws the chart of directional albedo over the angle of incidence, for a report.
+
+The measurement is drawn as dots, and each fit as a line.
+"""
 
 from collections.abc import Sequence
 from types import SimpleNamespace
@@ -14,9 +17,10 @@ from brdfkit.reporting.charts.svg import Chart, make_linear_axis
 
 
 def draw_albedo(measured: Albedo, fits: Sequence[Fit], anisotropic: bool) -> str:
-    """Return the chart of the luminance of albedos.
+    """Return the chart of albedos as SVG text, with the luminance of each albedo.
 
-    `measured` is the albedo of the measurement, which may be `anisotropic`.
+    `measured`: directional albedo of the measurement; `fits`: models to compare with it;
+    `anisotropic`: whether the measurement is, so that albedos are averaged over the azimuth.
     """
     dots = luminance(measured.values)
     lines = [_compute_luminance(fit.rgb, anisotropic) for fit in fits]
@@ -34,7 +38,7 @@ def draw_albedo(measured: Albedo, fits: Sequence[Fit], anisotropic: bool) -> str
 
 
 def is_extrapolated(measured: Albedo) -> BoolArray:
-    """Return which values (n,) of an albedo are beyond the measured angles."""
+    """Return for each angle (n,) of an albedo whether it is beyond the measured angles."""
     beyond: BoolArray = measured.theta_i > measured.measured_to + 1
     return beyond
 
@@ -50,6 +54,6 @@ def _compute_luminance(model: Any, anisotropic: bool) -> FloatArray:
 
 
 def _choose_tick_step(top: float) -> float:
-    """Return a step, 1, 2 or 5 times a power of ten, that divides `top` into two to five parts."""
+    """Return the step between ticks of an axis up to `top`: 1, 2 or 5 times a power of ten."""
     power = 10 ** np.floor(np.log10(top))
     return float(power * (1 if top > 4 * power else 0.5 if top > 2 * power else 0.2))

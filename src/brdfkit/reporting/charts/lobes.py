@@ -1,4 +1,7 @@
-"""Draws the lobes: the BRDF over the angle θo, the measurement as dots and the fits as lines."""
+"""Draws the charts of a BRDF's lobes for a report, over the outgoing angle θo.
+
+The measurement is drawn as dots, with bars for its noise, and each fit as a line.
+"""
 
 from collections.abc import Sequence
 from typing import Any
@@ -10,16 +13,21 @@ from brdfkit.images.thumbnails import Radius
 from brdfkit.materials.plotting.plane_of_incidence import choose_angles, compute_lobe, is_scattered
 from brdfkit.reporting.charts.svg import BOTTOM, HEIGHT, TOP, Axis, Chart, make_linear_axis
 
-LINE_STEP, DOT_STEP = 0.5, 3.0  # degrees between points of a line, and between dots of a table
-SAMPLING = 0.1  # degrees between the values of a lobe
-DOT_RADIUS = 2.0  # the same as in the page's style; a dot hides shorter bars
-PEAK_WIDTH = 4.0  # degrees on each side of the peak, where points are six times as dense
+# Degrees between the points of a line, and between the dots of a measured table
+LINE_STEP, DOT_STEP = 0.5, 3.0
+# Degrees between the values that `compute_lobe` returns
+SAMPLING = 0.1
+# Radius of a dot [pixels], as in the page's style sheet; a dot hides shorter bars
+DOT_RADIUS = 2.0
+# Degrees on each side of a peak within which points are six times as dense
+PEAK_WIDTH = 4.0
 
 
 def draw_lobes(material: Any, fits: Sequence[Any], noise: float) -> tuple[list[str], bool]:
-    """Return a chart for each of a few angles of incidence, and whether any has bars of the noise.
+    """Return charts as SVG texts, one for each of a few angles of incidence.
 
-    `noise` is the relative standard deviation of a measured value, or 0 if it is unknown.
+    Return also whether any chart has bars for the noise. `material`: the measurement; `noise`:
+    relative standard deviation of a measured value, or 0 if it is unknown.
     """
     material = getattr(material, "rgb", material)
     charts = [_draw_lobe(material, fits, noise, angle) for angle in choose_angles([material])]
@@ -29,7 +37,10 @@ def draw_lobes(material: Any, fits: Sequence[Any], noise: float) -> tuple[list[s
 def _draw_lobe(
     material: Any, fits: Sequence[Any], noise: float, theta_i: float
 ) -> tuple[str, bool]:
-    """Return the chart for the angle of incidence `theta_i` [degrees], and whether it has bars."""
+    """Return the chart for one angle of incidence, and whether it has bars for the noise.
+
+    `theta_i`: the angle [degrees]; the other arguments are those of `draw_lobes`.
+    """
     measured, *fitted = (
         compute_lobe(getattr(thing, "rgb", thing), theta_i) for thing in (material, *fits)
     )
@@ -55,7 +66,10 @@ def _draw_lobe(
 
 
 def _choose_points(theta_o: FloatArray, values: FloatArray, step: float) -> BoolArray:
-    """Return which points (n,) to draw: one in each `step` [degrees], and more at the peak."""
+    """Return for each point (n,) of a lobe whether to draw it: one per `step`, more at the peak.
+
+    `theta_o`: outgoing angles [degrees]; `values`: the BRDF there; `step`: degrees between points.
+    """
     if not np.isfinite(values).any():
         return np.ones(len(values), bool)
     at_peak = np.abs(theta_o - theta_o[np.nanargmax(values)]) < PEAK_WIDTH

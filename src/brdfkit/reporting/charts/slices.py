@@ -1,7 +1,8 @@
-"""Draws slices of the BRDF over θh and θd at φd = 90°: measured, fitted, and their ratio.
+"""Draws slices of the BRDF for a report: the measured one, the fitted ones, and their ratios.
 
-θh is the angle of the half vector to the normal, θd that to the light, and φd the azimuth of the
-light around the half vector.
+A slice is a picture of the BRDF over the angles θh and θd at φd = 90°. θh is the angle of the half
+vector to the normal, θd the angle between half vector and light, and φd the azimuth of the light
+around the half vector.
 """
 
 from collections.abc import Sequence
@@ -18,14 +19,15 @@ from brdfkit.regression import Fit
 from brdfkit.reporting.charts.svg import Axis, Chart, make_linear_axis
 
 VALUE_SCALE, RATIO_SCALE = "viridis", "RdBu_r"
-LARGEST_RATIO = 4.0  # too bright or too dark, at the ends of the scale of ratios
-FAINT = 0.3  # opacity of cells that were not measured
-TICKS = 0, 5, 20, 45, 90  # degrees of θh
+# The scale of ratios, fit over data, ends at this number and at its inverse
+LARGEST_RATIO = 4.0
+FAINT = 0.3  # opacity of cells of the table that were not measured but extrapolated
+TICKS = 0, 5, 20, 45, 90  # ticks of the axis of θh [degrees]
 WIDTH, HEIGHT = 250, 240
 
 
 def draw_slices(material: Measured, fits: Sequence[Fit]) -> dict[str, Any]:
-    """Return what the template shows: slices of the measurement and of each fit, and the scales."""
+    """Return the data of slices for the page's template: charts as SVG and texts of the scales."""
     data = material.rgb
     table = data.table
     across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
@@ -35,8 +37,8 @@ def draw_slices(material: Measured, fits: Sequence[Fit]) -> dict[str, Any]:
     measured = luminance(table.filled_values[cells])
     scale = make_scale(measured[known] if known.any() else measured)
 
-    def draw(title: str, shares: FloatArray, colour_map: str) -> str:
-        """Return the chart of numbers (θh, θd) from 0 to 1 in the colours of a map."""
+    def draw_slice(title: str, shares: FloatArray, colour_map: str) -> str:
+        """Return a slice as SVG text; `shares` (θh, θd): positions from 0 to 1 on a colour map."""
         colours = images.apply_colour_map(colour_map, shares)
         colours[..., 3] = np.where(known, 1, FAINT)
         theta_d = make_linear_axis("θd", 0, 90, range(0, 91, 30), "°")
@@ -44,8 +46,8 @@ def draw_slices(material: Measured, fits: Sequence[Fit]) -> dict[str, Any]:
         chart.add_image(images.encode_png(np.swapaxes(colours, 0, 1)[::-1]))  # θd upwards
         return chart.svg
 
-    def to_shares(values: FloatArray) -> FloatArray:
-        """Return values as positions on the logarithmic scale."""
+    def to_scale_positions(values: FloatArray) -> FloatArray:
+        """Return BRDF values as positions from 0 to 1 on the logarithmic scale of colours."""
         floor = np.maximum(values, scale.vmin)
         return np.log(floor / scale.vmin) / np.log(scale.vmax / scale.vmin)
 
@@ -55,13 +57,13 @@ def draw_slices(material: Measured, fits: Sequence[Fit]) -> dict[str, Any]:
         floor = 1e-3 * scale.vmin
         ratio = np.maximum(values, floor) / np.maximum(measured, floor)
         shares = np.log(ratio) / np.log(LARGEST_RATIO) / 2 + 0.5
-        fitted = draw("fit", to_shares(values), VALUE_SCALE)
-        pairs.append((fitted, draw("fit / data", shares, RATIO_SCALE)))
+        fitted = draw_slice("fit", to_scale_positions(values), VALUE_SCALE)
+        pairs.append((fitted, draw_slice("fit / data", shares, RATIO_SCALE)))
     return {
-        "measured": draw("data", to_shares(measured), VALUE_SCALE),
+        "measured": draw_slice("data", to_scale_positions(measured), VALUE_SCALE),
         "fits": pairs,
-        "lowest": _format(scale.vmin),
-        "highest": _format(scale.vmax),
+        "lowest": _format_value(scale.vmin),
+        "highest": _format_value(scale.vmax),
         "values_bar": images.draw_colour_bar(VALUE_SCALE),
         "ratios_bar": images.draw_colour_bar(RATIO_SCALE),
         "largest_ratio": f"{LARGEST_RATIO:g}",
@@ -69,12 +71,12 @@ def draw_slices(material: Measured, fits: Sequence[Fit]) -> dict[str, Any]:
     }
 
 
-def _format(value: float) -> str:
-    """Return a value as short text."""
+def _format_value(value: float) -> str:
+    """Return a BRDF value as short text, for the ends of the scale of colours."""
     return f"{value:,.0f}" if value >= 10 else f"{value:.2g}"
 
 
 def _make_theta_h_axis() -> Axis:
-    """Return the axis of θh, spaced by the square root as the cells of a table are."""
+    """Return the axis of θh, which is proportional to √θh like the cells of a table."""
     ticks = [(tick, f"{tick}°") for tick in TICKS]
     return Axis("θh", ticks, lambda value: np.sqrt(np.asarray(value, float) / 90))

@@ -1,7 +1,11 @@
-"""The defaults of `report`, apart from other modules so that `brdfkit report --help` is instant."""
+"""Defines the defaults of `report`.
+
+The file imports nothing, so that `brdfkit report --help` does not have to wait for other modules.
+"""
 
 MODELS = "ward", "ggx", "ggx+ggx"
 SPP = 256  # samples per pixel
-SIZE = 288  # side of a picture [pixels]
-SMALLEST_SIZE, LARGEST_SIZE = 16, 1024  # pixels: a page with four of the largest has about 20 MB
+SIZE = 288  # side of the square pictures [pixels]
+# Limits of the side of a picture [pixels]; a page with four of the largest has about 20 MB
+SMALLEST_SIZE, LARGEST_SIZE = 16, 1024
 SCENE = "ball"

@@ -1,4 +1,4 @@
-"""Measures how far the pictures of the fits are from the picture of the measurement."""
+"""Computes the errors of the fits' pictures, compared with the picture of the measurement."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ class PictureError:
     """The errors of all fits' pictures by one metric.
 
     metric : the metric, such as PSNR.
-    values : the error of each fit, in the order of the fits.
-    floor : the error that noise alone causes.
+    values : the errors, in the order of the fits.
+    floor : the error that noise of the rendering alone causes.
     """
 
     metric: Metric
@@ -25,7 +25,7 @@ class PictureError:
 
     @property
     def title(self) -> str:
-        """The title of the column."""
+        """The title of the metric's column in a table."""
         return self.metric.title
 
     @property
@@ -35,20 +35,20 @@ class PictureError:
         return self.values.index((max if self.metric.more else min)(known)) if known else None
 
     def format_value(self, value: float) -> str:
-        """Return a value as text."""
+        """Return a value of the metric as text, with suitable digits."""
         return str(self.metric.format_value(value))
 
     def exceeds_noise(self, value: float) -> bool:
-        """Return whether a value is a larger difference than noise makes."""
+        """Return whether a value is a larger error than noise of the rendering causes."""
         return bool(self.metric.exceeds(value, self.floor))
 
     def reorder(self, order: Sequence[int]) -> PictureError:
-        """Return the errors with the fits in another order, given by their old indices."""
+        """Return the errors with the fits in another order; `order`: their indices so far."""
         return replace(self, values=tuple(self.values[k] for k in order))
 
 
 def compute_picture_errors(rendering: Rendering) -> dict[str, PictureError]:
-    """Return the `PictureError`s of a rendering by the keys of its `errors()`."""
+    """Return the errors of the fits' pictures in a rendering, by key of the metric."""
     errors = rendering.errors()
     return {
         key: PictureError(METRICS[key], tuple(row[key] for row in errors.by_name.values()), floor)

@@ -1,8 +1,9 @@
-"""Renders the measurement and the fits in one scene, such that equal input gives equal bits.
+"""Renders the measurement and the fits of a report in one scene, with reproducible results.
 
-Sums of floats depend on their order, and threads that add samples to one pixel do so in any order.
-A box filter keeps each sample within its own pixel, and passes of 16, 8 or 4 samples keep those of
-a pixel in one block of one thread. So on a CPU the same seed gives the same report.
+Sums of floating-point numbers depend on their order, and several threads that add samples to one
+pixel do so in any order. So a box filter keeps each sample within its own pixel, and passes of 16,
+8 or 4 samples keep the samples of a pixel in one thread. Thus the same seed on a CPU gives the same
+report, bit by bit.
 """
 
 from collections.abc import Callable
@@ -40,10 +41,10 @@ def render_pictures(
     environment: str | Path | None = None,
     progress: Progress | None = None,
 ) -> Rendering:
-    """Return the `Rendering` of the measurement, first, and of its fits.
+    """Return the `Rendering` of a report, with the picture of the measurement and then the fits'.
 
-    `spp` is rounded up to whole passes; if it is None, the default applies, or with a `noise_floor`
-    [dB] that of `render`.
+    `spp`: samples per pixel, rounded up to whole passes; by default `SPP`, or the default of
+    `render` with a `noise_floor` [dB]. The other arguments are those of `report`.
     """
     require_possible_pictures(size, scene, environment)
     if spp is not None or noise_floor is None:
@@ -64,7 +65,7 @@ def render_pictures(
 
 
 def require_possible_pictures(size: object, scene: Any, environment: Any) -> None:
-    """Raise `BrdfkitError` for pictures that a report cannot have, before anything is fitted."""
+    """Raise `BrdfkitError` for a size, scene or environment that a report cannot have."""
     if to_whole_number("size", size, least=SMALLEST_SIZE) > LARGEST_SIZE:
         raise BrdfkitError(f"size = {size}: pictures of a page have at most {LARGEST_SIZE} pixels.")
     if callable(scene) or Path(str(scene).partition("#")[0]).suffix.lower() == SUFFIX:
@@ -75,26 +76,27 @@ def require_possible_pictures(size: object, scene: Any, environment: Any) -> Non
 
 
 def _build_with_box_filter(scene: str | Path) -> BuildScene:
-    """Return the function that makes a scene, by its name or of a mesh, with a box filter.
+    """Return a function that makes a Mitsuba scene with a box filter.
 
-    The function takes a BSDF and the size of the picture.
+    The function takes a BSDF and the size of the picture. `scene`: name of a scene of brdfkit, or
+    path of a mesh.
     """
     build, is_mesh = find_scene(scene), bool(Path(scene).suffix)
 
-    def build_sharp(bsdf: Any, size: Any) -> dict[str, Any]:
-        """Return the dictionary of the scene with a BSDF, for a picture of this size."""
-        if is_mesh and isinstance(bsdf, dict):  # the back of a mesh may be in view
+    def build_box_filtered(bsdf: Any, size: Any) -> dict[str, Any]:
+        """Return the dictionary of the scene with a BSDF, for a picture of the given size."""
+        if is_mesh and isinstance(bsdf, dict):  # the back side of a mesh may be visible
             bsdf = load_material(bsdf, "material", both_sides=True)
         dictionary: dict[str, Any] = build(bsdf, size)
         dictionary["sensor"]["film"]["rfilter"] = {"type": "box"}
         return dictionary
 
-    return build_sharp
+    return build_box_filtered
 
 
 @in_turn
 def _find_material_pixels(build: BuildScene, size: int) -> BoolArray:
-    """Return which pixels (size, size) show the material."""
+    """Return for each pixel (size, size) whether it shows the material, for picture errors."""
     import mitsuba as mi
 
     material = load_material({"type": "diffuse"}, "material")

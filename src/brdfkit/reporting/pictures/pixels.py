@@ -1,8 +1,9 @@
-"""Packs the pictures for the page's script, as linear light that an exposure can scale.
+"""Packs pictures as compressed text for the script of a report's page.
 
-A number takes 16 bits: its binary logarithm in steps of 1/128, which is 0.5 %. Neighbouring pixels
-are alike, so that their differences are small and compress well. PNG files would not do: browsers
-may convert what a canvas reads from them for the screen, or change it a little to prevent tracking.
+The pictures are linear light, whose exposure the script can change. A number takes 16 bits: its
+binary logarithm in steps of 1/128, which is 0.5 %. Neighbouring pixels are alike, so their
+differences are small and compress well. PNG files would not do, because a browser may change the
+colours that a script reads from them.
 """
 
 import zlib
@@ -14,21 +15,22 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.pages.images import apply_colour_map
 
-DARKEST = -12  # the binary logarithm of the smallest light above 0
-STEPS = 128  # per doubling of the light
-LAST_CODE = 4095  # for the light 2^20
-COLOUR_MAP = "magma"  # for colour differences
-BRIGHT_DIFFERENCE = 10  # ΔE at the bright end of the colour map
-LARGEST_DIFFERENCE = 100  # ΔE that a byte can hold
+DARKEST = -12  # binary logarithm of the smallest light above 0
+STEPS = 128  # number of codes for each doubling of the light
+LAST_CODE = 4095  # code of the largest light, 2^20
+COLOUR_MAP = "magma"  # colours of the picture of colour differences
+BRIGHT_DIFFERENCE = 10  # colour difference ΔE at the bright end of the colour map
+LARGEST_DIFFERENCE = 100  # largest colour difference ΔE that a code stands for
 
 
 def pack_pictures(
     names: list[str], pictures: list[AnyArray], differences: list[AnyArray]
 ) -> dict[str, Any]:
-    """Return the data for the script of the page.
+    """Return pictures and their colour differences as data for the script of a report's page.
 
-    `pictures` (height, width, 3) begin with the measurement; `differences` (height, width) are the
-    colour differences ΔE of the others from it.
+    `names`: names of the pictures; `pictures`: pictures (height, width, 3) of linear light, the
+    measurement first; `differences`: for each of the other pictures, its colour differences ΔE
+    (height, width) from the measurement.
     """
     height, width = pictures[0].shape[:2]
     palette = apply_colour_map(COLOUR_MAP, np.linspace(0, 1, 256))[:, :3]
@@ -68,8 +70,11 @@ def encode_difference(difference: AnyArray) -> AnyArray:
 
 
 def _compress_codes(codes: AnyArray) -> str:
-    """Return codes as compressed text: their differences, all low bytes, then all high bytes."""
+    """Return 16-bit codes as compressed text.
+
+    The text contains the differences of neighbouring codes: all low bytes, then all high bytes.
+    """
     steps = np.diff(codes.ravel(), prepend=np.uint16(0))
     split = np.stack([steps & 255, steps >> 8]).astype(np.uint8)
-    # Level 9 takes twenty times as long, for one percent less
+    # Compression at level 9 would take twenty times as long, and save one percent
     return b64encode(zlib.compress(split.tobytes())).decode()

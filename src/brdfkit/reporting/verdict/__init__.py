@@ -1,1 +1,1 @@
-"""Compares the fits of a report, and puts into words which one to take and why."""
+"""Compares the fits of a report, and writes its verdict: which fit to take, and why."""

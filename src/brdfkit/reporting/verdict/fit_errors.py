@@ -1,4 +1,8 @@
-"""Compares the fits: their errors by every loss, how far values are off, and which are tied."""
+"""Computes the errors of a report's fits, and chooses the fit to recommend.
+
+Errors are losses, and factors between measured and fitted values. Fits are tied if the best one is
+not better by more than noise.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,27 +26,31 @@ from brdfkit.regression.albedo_cells import format_albedo, is_wrong_albedo
 from brdfkit.regression.losses.loss import sum_squared_differences
 from brdfkit.regression.losses.named_losses import DEFAULT
 
-SAMPLE_LIMIT = 200_000  # for quantiles and ties: of more samples, so many are drawn
-BAND_WIDTH = 15.0  # degrees of θi, the angle of incidence
-FEWEST_IN_BAND = 20  # samples
-LARGEST_FACTOR = 1000  # a larger one says no more than that the fit fails
+# Quantiles and ties are computed from at most this number of samples, drawn at random
+SAMPLE_LIMIT = 200_000
+# Width of a band of angles of incidence [degrees], in which errors are compared
+BAND_WIDTH = 15.0
+# A band with fewer samples is left out, unless all bands have fewer
+FEWEST_IN_BAND = 20
+# A larger factor between measured and fitted values is not printed, because the fit has failed
+LARGEST_FACTOR = 1000
 
 
 @dataclass(frozen=True)
 class FitErrors:
-    """The distances of a fit from the measurement.
+    """The errors of one fit, compared with the measurement.
 
-    A value is met within a factor if measured / fitted and its inverse do not exceed it. Measured
-    values above 0 count, those of each channel by themselves.
+    A fit meets a measured value within a factor if measured / fitted and fitted / measured do not
+    exceed this factor. Measured values above 0 count, each channel separately.
 
-    by_loss : the error E by each loss.
-    albedos : the fit's albedos, as `compare` computes them.
-    typical_factor : half of the values are met within it.
-    large_factor : 95 % of the values are met within it.
-    worst_factor : half of the values in the worst band of incidences are met within it.
-    worst_band : that band, from and to [degrees].
-    numbers : how many numbers were searched.
-    is_tied : whether the fit is no worse than the best, up to the noise between directions.
+    by_loss : the loss E of the fit, by the name of the loss.
+    albedos : the albedos of the fit, at the angles of `compare`.
+    typical_factor : the factor within which half of the values are met.
+    large_factor : the factor within which 95 % of the values are met.
+    worst_factor : the factor within which half of the values in the worst band are met.
+    worst_band : the band of angles of incidence [degrees] in which this factor is largest.
+    numbers : the number of parameters that the fit searched.
+    is_tied : whether the fit is no worse than the best one by more than noise.
     """
 
     by_loss: dict[str, float]
@@ -56,23 +64,24 @@ class FitErrors:
 
 
 def choose_ranking_loss(fits: Sequence[Fit]) -> str:
-    """Return the loss that ranks the fits: their own if it is the same for all, else the default.
+    """Return the name of the loss that ranks the fits of a report.
 
-    The default also replaces losses of pictures.
+    It is the loss that all of them minimised, or the default loss if they minimised different ones
+    or a loss of pictures.
     """
     names = {fit.loss_name for fit in fits}
     return names.pop() if len(names) == 1 and names <= {*losses.named.by_sample} else DEFAULT
 
 
 def compute_fit_errors(material: Measured, fits: Sequence[Fit], loss: str) -> list[FitErrors]:
-    """Return the `FitErrors` of each fit, with ties by the loss of this name."""
+    """Return the `FitErrors` of each fit; `loss`: the name of the loss that decides ties."""
     max_angle = fits[0].settings.get("max_angle", 80.0)
     compared = [compare(material, fit, max_angle=max_angle) for fit in fits]
     samples = _draw_samples(select_samples(material, max_angle))
     if not (samples.values > 0).any():
         raise BrdfkitError(
-            f"{material.name}: no measured value is above 0, by which a fit could be off by a "
-            "factor; a report needs some."
+            f"{material.name}: no measured value is above 0, so a report cannot compare fits with "
+            "it; give a material with positive values."
         )
     blocks = assign_blocks(samples.wi, samples.wo, material.anisotropic)
     by_sample = losses.named.by_sample[loss]
@@ -99,9 +108,9 @@ def compute_fit_errors(material: Measured, fits: Sequence[Fit], loss: str) -> li
 
 
 def order_fits(errors: Sequence[FitErrors], loss: str) -> list[int]:
-    """Return the indices of the fits: first the one to take, then the others by their error.
+    """Return the indices of the fits, the recommended fit first, then the others by their error.
 
-    Among the fits that are tied with the best, the one with the fewest numbers is to be taken.
+    The recommended fit is the one with the fewest parameters among those tied with the best.
     """
     by_error = sorted(range(len(errors)), key=lambda k: errors[k].by_loss[loss])
     tied = [k for k in by_error if errors[k].is_tied]
@@ -110,7 +119,7 @@ def order_fits(errors: Sequence[FitErrors], loss: str) -> list[int]:
 
 
 def _draw_samples(samples: Any) -> Any:
-    """Return all samples, or `SAMPLE_LIMIT` of them drawn at random."""
+    """Return the samples, or if there are more, `SAMPLE_LIMIT` of them drawn at random."""
     count = len(samples.wi)
     if count <= SAMPLE_LIMIT:
         return samples
@@ -121,14 +130,18 @@ def _draw_samples(samples: Any) -> Any:
 def _compute_factors(
     values: AnyArray, samples: Any
 ) -> tuple[float, float, float, tuple[float, float]]:
-    """Return the factors and the worst band of `FitErrors`, for fitted values (n, channels)."""
+    """Return the factors between measured and fitted values that `FitErrors` needs.
+
+    They are (typical_factor, large_factor, worst_factor, worst_band), as explained there.
+    `values` (n, channels): the fitted BRDF at the `samples`.
+    """
     known = samples.values > 0
-    with np.errstate(divide="ignore"):  # a fitted 0 is off by any factor
+    with np.errstate(divide="ignore"):  # a fitted value of 0 has an infinite factor
         off = np.abs(np.log(np.maximum(values[known], 0) / samples.values[known]))
     theta_i = np.broadcast_to(np.degrees(to_angles(samples.wi)[0])[:, None], known.shape)[known]
     bands = np.floor(theta_i / BAND_WIDTH)
     numbers, counts = np.unique(bands, return_counts=True)
-    numbers = numbers[counts >= min(FEWEST_IN_BAND, counts.max())]  # the fullest of sparse bands
+    numbers = numbers[counts >= min(FEWEST_IN_BAND, counts.max())]
     medians = {float(band): _find_quantile(off[bands == band], 0.5) for band in numbers}
     worst = max(medians, key=medians.__getitem__)
     logarithms = _find_quantile(off, 0.5), _find_quantile(off, 0.95), medians[worst]
@@ -137,12 +150,12 @@ def _compute_factors(
 
 
 def _find_quantile(values: FloatArray, share: float) -> float:
-    """Return the value that a `share` of the values do not exceed; it is one of them."""
+    """Return the value that a `share` of the values do not exceed, without interpolation."""
     return float(np.quantile(values, share, method="inverted_cdf"))
 
 
 def _count_numbers(fit: Fit) -> int:
-    """Return how many numbers were searched for a fit."""
+    """Return the number of parameters that a fit searched."""
     if fit.certainty:
         return fit.certainty.parameters
     return sum(len(v) if isinstance(v, tuple) else 1 for v in fit.model.free_values.values())
@@ -151,11 +164,11 @@ def _count_numbers(fit: Fit) -> int:
 def make_errors_table(
     errors: Sequence[FitErrors], loss: str, measured: Sequence[float]
 ) -> dict[str, Any]:
-    """Return the table of errors for the template, a row for each fit, the one to take first.
+    """Return the table of errors for the template, with a row for each fit.
 
-    The columns are the losses, the ranking one first, and albedos. A cell of an error is its text
-    and whether it is the best of its column; a cell of an albedo is its text and whether it is
-    wrong compared with the `measured` one at the same angle.
+    The columns are losses, the loss that ranks the fits first, and albedos. A cell of a loss is a
+    text and whether the value is the best of its column. A cell of an albedo is a text and whether
+    the albedo is wrong compared with the `measured` albedo at the same angle.
     """
     by_loss = sorted(errors[0].by_loss, key=lambda name: name != loss)
     best = {name: min(one.by_loss[name] for one in errors) for name in by_loss}
@@ -183,7 +196,7 @@ def make_errors_table(
 
 
 def format_factor(factor: float) -> str:
-    """Return a factor as text.
+    """Return a factor between two values as text, with three digits or less.
 
     >>> format_factor(1.057), format_factor(23.4)
     ('1.06', '23')

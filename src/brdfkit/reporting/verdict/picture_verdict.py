@@ -1,20 +1,22 @@
-"""Puts into words whether a fit's picture can be told from the measured one."""
+"""Writes sentences on how visibly the fits' pictures differ from the picture of the measurement."""
 
 from collections.abc import Mapping, Sequence
 from math import isnan
 
 from brdfkit.reporting.pictures.picture_errors import PictureError
 
-# ΔE: the smallest difference that is visible side by side, and one that is plain
+# Colour differences ΔE: the smallest that is visible side by side, and one that is obvious
 VISIBLE, PLAIN = 1.0, 3.0
-UNKNOWN_SHARE = 0.5  # differences below this share of the noise are not known
-HIDDEN_RATIO = 2.0  # visible noise hides differences that are less than twice as large
+# An error below this share of the rendering's noise cannot be distinguished from noise
+UNKNOWN_SHARE = 0.5
+# Visible noise hides errors that are less than this many times as large
+HIDDEN_RATIO = 2.0
 
 
 def describe_visibility(errors: Mapping[str, PictureError]) -> str:
-    """Return in words whether the first fit's picture can be told from the measured one.
+    """Return a part of a sentence on how visibly the first fit's picture differs from the measured.
 
-    `errors` holds the `PictureError`s by metric.
+    `errors`: the errors of all fits' pictures, by metric.
     """
     median, upper = errors["delta_e_2000"], errors["delta_e_2000_95"]
     typical, large = (_subtract_noise(error) for error in (median, upper))
@@ -37,12 +39,18 @@ def describe_visibility(errors: Mapping[str, PictureError]) -> str:
 
 
 def has_nearest_picture(psnr: PictureError) -> bool:
-    """Return whether the first fit's picture is nearer than all others, by more than noise."""
+    """Return whether the first fit has the picture nearest to the measurement's.
+
+    The lead before all other fits has to exceed noise.
+    """
     return all(_has_nearer_picture(psnr, 0, other) for other in range(1, len(psnr.values)))
 
 
 def describe_nearest_picture(names: Sequence[str], psnr: PictureError) -> list[str]:
-    """Return a sentence if another fit's picture is nearer than the first's, by more than noise."""
+    """Return a sentence if another fit than the first has the nearest picture, else an empty list.
+
+    `names`: names of the fits; `psnr`: PSNR of their pictures. The lead has to exceed noise.
+    """
     nearest = psnr.best_index
     if nearest is None or not _has_nearer_picture(psnr, nearest, 0):
         return []
@@ -54,9 +62,10 @@ def describe_nearest_picture(names: Sequence[str], psnr: PictureError) -> list[s
 
 
 def _has_nearer_picture(psnr: PictureError, one: int, other: int) -> bool:
-    """Return whether fit `one` has a nearer picture than fit `other`.
+    """Return whether fit `one` has a picture nearer to the measurement's than fit `other`.
 
-    The difference of their squared errors has to exceed that of noise.
+    `one`, `other`: indices of the fits. The difference of the squared errors of their pictures has
+    to exceed the squared error of noise.
     """
     squares = [10 ** (-value / 10) for value in (psnr.values[one], psnr.values[other], psnr.floor)]
     differs = psnr.format_value(psnr.values[one]) != psnr.format_value(psnr.values[other])
@@ -64,6 +73,6 @@ def _has_nearer_picture(psnr: PictureError, one: int, other: int) -> bool:
 
 
 def _subtract_noise(error: PictureError) -> float:
-    """Return the first fit's error without that of noise, as squares add up."""
+    """Return the first fit's error less the error of noise, as squared errors add up."""
     noise = 0.0 if isnan(error.floor) else error.floor
     return float(max(error.values[0] ** 2 - noise**2, 0.0) ** 0.5)

@@ -1,4 +1,4 @@
-"""Puts the verdict of a report into words: which fit to take, why, and how far off it is."""
+"""Writes the verdict of a report: which fit to take, why, and how large its errors are."""
 
 from collections.abc import Mapping, Sequence
 
@@ -12,8 +12,10 @@ from brdfkit.reporting.verdict.picture_verdict import (
     has_nearest_picture,
 )
 
-MARKED_RATIO = 1.5  # log(worst factor) / log(typical factor) above it is worth a sentence
-AHEAD_RATIO = 1.01  # between errors: a smaller lead of another fit is not worth a sentence
+# The worst band of incidence is mentioned if log(worst factor) / log(typical factor) is larger
+MARKED_RATIO = 1.5
+# Another fit is mentioned as better by some loss if its error is smaller by more than this factor
+AHEAD_RATIO = 1.01
 
 
 def write_verdict(
@@ -23,13 +25,17 @@ def write_verdict(
     loss: str,
     ranking: Ranking | None = None,
 ) -> tuple[str, list[str]]:
-    """Return the sentences at the head of the report, and a list of further ones.
+    """Return the sentences at the head of a report, and a list of further sentences.
 
-    `names`, `errors` and `picture_errors` are those of the fits, the one to take first. `loss` is
-    the name of the loss that ranks them, `ranking` the one that chose the model, if any.
+    `names`, `errors`: names and errors of the fits, the recommended fit first; `picture_errors`:
+    errors of their pictures by metric; `loss`: name of the loss that ranks them; `ranking`: the
+    ranking of models from which the fit was chosen, if there was one.
     """
     taken = errors[0]
-    leaders = {name: _find_least([one.by_loss[name] for one in errors]) for name in taken.by_loss}
+    leaders = {
+        name: min(range(len(errors)), key=lambda k: errors[k].by_loss[name])
+        for name in taken.by_loss
+    }
     alone = len(names) == 1
     if alone:
         why = f"was {_explain_choice(ranking)}" if ranking else "is the only fit"
@@ -56,20 +62,28 @@ def write_verdict(
 
 
 def _explain_choice(ranking: Ranking) -> str:
-    """Return in words why the ranking recommends its model."""
+    """Return a part of a sentence on why a ranking recommends its model."""
     count = sum(not row.message for row in ranking.rows)
     return f"chosen from {count} models, because {ranking.why}"
 
 
 def _explain_tie(name: str, best: FitErrors, taken: FitErrors) -> str:
-    """Return in words that the fit to take is tied with the best one, which has more numbers."""
+    """Return a part of a sentence for a recommended fit that is tied with the best one.
+
+    `name`, `best`: name and errors of the best fit, which has more parameters; `taken`: errors of
+    the recommended fit.
+    """
     more = best.numbers - taken.numbers
     numbers = f"{more} more number{'s' * (more > 1)}"
     return f"is enough: {name}, with {numbers}, is no better by more than noise"
 
 
 def _explain_lead(loss: str, leaders: Mapping[str, int], in_picture: bool) -> str:
-    """Return in words by which losses the first fit leads; `leaders` has the best fit by each."""
+    """Return a part of a sentence that names the losses by which the first fit is best.
+
+    `loss`: the loss that ranks the fits; `leaders`: the index of the best fit by each loss;
+    `in_picture`: whether the first fit has the nearest picture, too.
+    """
     others = [name for name, index in leaders.items() if index == 0 and name != loss]
     by = f"by the loss{'es' * bool(others)} {join_words([loss, *others])}"
     if len(others) + 1 == len(leaders):
@@ -77,16 +91,11 @@ def _explain_lead(loss: str, leaders: Mapping[str, int], in_picture: bool) -> st
     return f"is best {by}" + " and by its picture" * in_picture
 
 
-def _find_least(errors: Sequence[float]) -> int:
-    """Return the index of the smallest error."""
-    return errors.index(min(errors))
-
-
 def _describe_others(
     names: Sequence[str], errors: Sequence[FitErrors], leaders: Mapping[str, int], loss: str
 ) -> list[str]:
-    """Return sentences on ties, and on other fits that lead by other losses."""
-    mentioned = leaders[loss]  # in the head
+    """Return sentences on fits that are tied with the first, or better by other losses."""
+    mentioned = leaders[loss]  # the sentence at the head mentions it
     others = [k for k in range(1, len(names)) if k != mentioned]
     tied = [names[k] for k in others if errors[k].is_tied]
     verb = "is" if len(tied) == 1 else "are"
