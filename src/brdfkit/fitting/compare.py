@@ -150,7 +150,8 @@ def compare(
     errors: dict[str, dict[str, float]] = {}
     albedos: dict[str, tuple[float, ...]] = {}
     for thing in materials:
-        name, brdf = make_unique(thing.name, errors), thing if spectral else _to_rgb_channels(thing)
+        name = make_unique(thing.name, errors)
+        brdf: Any = thing if spectral else getattr(thing, "rgb", thing)
         values = _evaluate_at_samples(brdf, data, samples)
         errors[name] = {
             loss: _compute_error(losses.named.by_sample[loss], values, samples)
@@ -162,11 +163,6 @@ def compare(
         *(thing.loss_name for thing in materials if isinstance(thing, Fit))
     )
     return Comparison(data.name, errors, albedos, light.means, tuple(shown))
-
-
-def _to_rgb_channels(brdf: Any) -> Any:
-    """Return a material with linear sRGB channels; one that has no other channels is unchanged."""
-    return getattr(brdf, "rgb", brdf)
 
 
 def _compute_albedos(brdf: Any, pixels: Pixels) -> tuple[float, ...]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from brdfkit.core.array_types import FloatArray
 from brdfkit.core.names import format_percent
 from brdfkit.fitting.lobe_notes import list_lobe_notes
 from brdfkit.fitting.uncertainty.isotropic_limit import note_on_azimuth
@@ -40,9 +39,10 @@ def list_fit_notes(
         notes.append(
             f"{known} numbers were measured for {sought} that are sought: other values fit as well"
         )
-    if len(samples.wi) > 1 and fitted.shapes() and _are_rows_equal(samples.values):
+    values = samples.values
+    if len(values) > 1 and fitted.shapes() and (values == values[0]).all():
         notes.append("all measured values are equal: they tell nothing of a highlight's shape")
-    negative = (samples.values < 0).mean()
+    negative = (values < 0).mean()
     if negative and not loss.linear:
         notes.append(f"{format_percent(100 * negative)} of the {_explain_negative_values(data)}")
     if fitted.has_signed_weights():
@@ -52,12 +52,6 @@ def list_fit_notes(
         notes.append(note)
     notes += list_lobe_notes(data, samples, fitted, solution.at_bounds)
     return (*notes, *solution.certainty.undetermined, *solution.certainty.trades)
-
-
-def _are_rows_equal(values: FloatArray) -> bool:
-    """Return whether all rows of values (n, channels) are equal."""
-    # Comparing the first two rows first is fast, because they nearly always differ
-    return bool((values[0] == values[1]).all() and (values == values[0]).all())
 
 
 def _explain_negative_values(data: Measured) -> str:

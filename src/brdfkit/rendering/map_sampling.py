@@ -32,7 +32,7 @@ SAMPLERS: dict[str, dict[str, Any]] = {
     "alias, compensated": {"type": "sampled_envmap", "sampler": "alias", "compensated": True},
 }
 SPP, SIZE, ROUNDS, FEWEST_ROUNDS = 16, 96, 10, 3
-DARK = 0.01  # relative noise is limited in pixels darker than this share of the mean brightness
+DARK = 0.01  # least brightness, over the mean, by which the noise of a pixel is divided
 
 
 def compare_samplers(
@@ -113,10 +113,7 @@ def _measure_noise_and_time(
     seed: int,
     progress: Progress | None,
 ) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
-    """Return the noise and the processor time [s] of each round, (rounds,), by sampler.
-
-    The noise is the variance of a pixel divided by its squared mean, as a mean over the picture.
-    """
+    """Return `SamplerComparison.noise` and `SamplerComparison.seconds` of the finished rounds."""
     scenes = _load_scene_for_each_sampler(environment, material, scene, size)
     names = list(scenes)
     for loaded in scenes.values():  # the first rendering compiles, which should not be timed

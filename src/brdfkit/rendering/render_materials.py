@@ -220,7 +220,7 @@ def _render_field(
 ) -> Rendering:
     """Render a distance field.
 
-    As this is a function of its own, the scene is freed before another thread renders.
+    The scene is freed when this function returns, before another thread renders.
     """
     require_memory(size, 1)
     load_mitsuba()

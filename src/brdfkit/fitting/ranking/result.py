@@ -52,12 +52,7 @@ class Ranking(Shown):
 
     @property
     def best(self) -> str:
-        """Label of the recommended model.
-
-        Of the models that no other surpasses in both error and picture, those are kept whose
-        pictures are within 0.5 dB of the best, and of these the ones whose errors are tied for the
-        least. The one with the fewest parameters is recommended.
-        """
+        """Label of the recommended model; `rank` describes how it is chosen."""
         return self._choice.row.model
 
     @property

@@ -203,5 +203,8 @@ def _load_integrator(variant: str, method: str, shadows: bool) -> MitsubaObject:
 
 @lru_cache(maxsize=4)
 def _load_shape(variant: str, scene: str | Path, changed: int | None) -> PreviewShape:
-    """Load the shape of a scene or mesh; `variant` and `changed`, a time, only key the cache."""
+    """Load the shape of a scene or a mesh.
+
+    `variant` and `changed`, the time of change of the mesh's file, only key the cache.
+    """
     return PreviewShape(scene)

@@ -72,18 +72,18 @@ def read_mesh(path: Path, up: str = "") -> tuple[FloatArray, FloatArray, FloatAr
 
     with use_absolute_indices(path) as file:
 
-        def load(**settings: Any) -> MitsubaObject:
+        def load_mesh(**settings: Any) -> MitsubaObject:
             plugin = {"type": path.suffix.lower()[1:], "filename": str(file)}
             return mi.traverse(load_by_mitsuba(mi.load_dict, plugin | settings, path))
 
         # First without normals, because Mitsuba cannot compute them for empty or very small faces
-        points, faces = _read_points_and_faces(load(face_normals=True), path)
+        points, faces = _read_points_and_faces(load_mesh(face_normals=True), path)
         middle, extent = _find_bounding_box(points, faces, path)
         to_world = mi.ScalarTransform4f().rotate(
             *TURNS[up or _guess_up_axis_with_warning(path, points, faces)]
         )
         to_world = to_world.scale([SIZE / extent] * 3).translate((-middle).tolist())
-        buffers = load(to_world=to_world)
+        buffers = load_mesh(to_world=to_world)
 
     # From here on faces share no vertices: arrays are (faces, corners, 3), in the scene's axes
     points, faces = _read_points_and_faces(buffers, path)

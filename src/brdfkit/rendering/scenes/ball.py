@@ -9,7 +9,7 @@ from brdfkit.rendering.scenes._studio import BALL, make_studio
 def ball(
     bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512), spp: int = 64
 ) -> dict[str, Any]:
-    """Return the scene's dictionary, as `brdfkit.rendering.scenes` describes it.
+    """Return the dictionary of a scene that shows the material `bsdf` on a ball.
 
     `spp` is the number of samples per pixel. The axis of the ball's parametrisation is z, so an
     anisotropic material is brushed along the ball's parallels.

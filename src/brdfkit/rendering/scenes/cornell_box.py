@@ -13,7 +13,7 @@ FRONT = -9.6  # y of the front wall [m], behind the camera: a mirror shows no bl
 def cornell_box(
     bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512)
 ) -> dict[str, Any]:
-    """Return the scene's dictionary, as `brdfkit.rendering.scenes` describes it.
+    """Return the dictionary of a scene that shows the material `bsdf` in a Cornell box.
 
     The ball and the block have the material, so the picture shows it curved and flat, lit by the
     lamp and by the walls.

@@ -16,7 +16,7 @@ ROWS, AROUND = 512, 64  # numbers of points along the tube and around it
 def knot(
     bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512)
 ) -> dict[str, Any]:
-    """Return the scene's dictionary, as `brdfkit.rendering.scenes` describes it.
+    """Return the dictionary of a scene that shows the material `bsdf` on a knotted tube.
 
     An anisotropic material is brushed around the tube, as a turned rod is.
 
@@ -37,7 +37,8 @@ def make_knot_tube() -> tuple[FloatArray, FloatArray]:
     axis: FloatArray = 0.3 * np.hstack(
         [wide * np.sin(2 * t), 1.2 * np.sin(3 * t), wide * np.cos(2 * t)]
     )
-    axis = _lean_backwards(axis)
+    cos, sin = np.cos(LEAN), np.sin(LEAN)
+    axis = axis @ np.array([[1, 0, 0], [0, cos, -sin], [0, sin, cos]])
 
     # Two directions across the tube: away from the middle of the knot, and perpendicular to this
     along = np.gradient(axis, axis=0)
@@ -51,9 +52,3 @@ def make_knot_tube() -> tuple[FloatArray, FloatArray]:
     normals = np.cos(phi) * side[:, None] + np.sin(phi) * other[:, None]
     points = axis[:, None] + TUBE * normals
     return points - (0, 0, points[..., 2].min()), normals
-
-
-def _lean_backwards(points: FloatArray) -> FloatArray:
-    """Rotate points (n, 3) about the axis x, so that the top leans away from the camera."""
-    cos, sin = np.cos(LEAN), np.sin(LEAN)
-    return points @ np.array([[1, 0, 0], [0, cos, -sin], [0, sin, cos]])

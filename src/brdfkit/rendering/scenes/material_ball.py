@@ -18,7 +18,7 @@ RING, WIRE = 0.62, 0.1  # radii of the ring and of its wire
 def material_ball(
     bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512)
 ) -> dict[str, Any]:
-    """Return the scene's dictionary, as `brdfkit.rendering.scenes` describes it.
+    """Return the dictionary of a scene that shows the material `bsdf` on a ball with an opening.
 
     An anisotropic material is brushed around the axes of the ball and of the ring.
 

@@ -44,7 +44,7 @@ PROFILE = np.array(
 def vase(
     bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512)
 ) -> dict[str, Any]:
-    """Return the scene's dictionary, as `brdfkit.rendering.scenes` describes it.
+    """Return the dictionary of a scene that shows the material `bsdf` on a vase.
 
     An anisotropic material is brushed around the vase's axis, as on a potter's wheel.
 

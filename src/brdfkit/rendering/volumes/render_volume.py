@@ -25,7 +25,7 @@ from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.transfer_function import TransferLike
 from brdfkit.volumes.transfer.windows import scale_to_values
 
-SPP, UNLIT_SPP = 64, 8  # samples per pixel by default, for renderers with and without light
+SPP, UNLIT_SPP = 64, 8  # samples per pixel by default, for renderers with light and without
 MOST_SPP = 16_384  # largest number of samples per pixel, if a noise floor or a time is requested
 PASS_SPP = 4  # samples per pixel in a pass, few so that the first picture appears soon
 BACKGROUND = 0.02  # radiance behind the volume
@@ -149,12 +149,11 @@ def render_volume(
     described = volume, function, renderer, size, view, light, settings, all_around
     limits = {"progress": progress, "noise_floor": noise_floor, "limit": limit, "most": PASS_SPP}
     traced = _load_and_trace(described, spp=spp, seed=seed, **limits)
-    plain = {name: value if _is_plain(value) else str(value) for name, value in settings.items()}
-    parameters = {
-        "renderer": renderer,
-        "transfer": getattr(function, "name", None),
-        **plain,
+    # The header of an EXR file can contain these types
+    plain = {
+        n: v if isinstance(v, bool | int | float | str) else str(v) for n, v in settings.items()
     }
+    parameters = {"renderer": renderer, "transfer": getattr(function, "name", None), **plain}
     return to_rendering(traced, seed, noise_floor, {volume.name: parameters})
 
 
@@ -170,11 +169,6 @@ def _load_and_trace(described: tuple[Any, ...], **settings: Any) -> Traced:
     volume, *_ = described
     loaded = load_by_mitsuba(mi.load_dict, describe_scene(*described), volume.name)
     return trace_scenes({volume.name: loaded}, **settings)
-
-
-def _is_plain(value: object) -> bool:
-    """Return whether a setting is a Boolean, a number or a text, which an EXR file can contain."""
-    return isinstance(value, bool | int | float | str)
 
 
 def _choose_transfer_function(
@@ -214,7 +208,7 @@ def _to_background_rgb(background: Radiance | None) -> list[float] | None:
     try:
         rgb = np.broadcast_to(np.array(background, float), 3)
     except (TypeError, ValueError):
-        rgb = np.full(3, -1.0)  # reported below
+        rgb = np.full(3, -1.0)  # an invalid value, which raises the error below
     if not (np.isfinite(rgb).all() and (rgb >= 0).all()):
         raise BrdfkitError(
             f"background = {background!r} should be one radiance, or R, G, B, at least 0."

@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import no_such_error
+from brdfkit.lighting.environments.light_distribution import pixel_directions
 from brdfkit.materials.resolve import to_material
+from brdfkit.rendering.scene_input.environment import describe_environment
 from brdfkit.rendering.scenes._studio import make_camera
 from brdfkit.rendering.volumes import defaults
 from brdfkit.rendering.volumes.camera import FOV, camera_direction, place_camera
-from brdfkit.rendering.volumes.light import make_background_light, make_environment_light
 from brdfkit.volumes import TransferFunction, Volume
 
 # Each renderer is a plugin, an integrator; the value is the name of its parameter for the volume
@@ -29,6 +30,7 @@ UNLIT = "emission_absorption", "maximum_intensity"  # renderers without light fr
 # Illuminance of level ground for each renderer. A volume that scatters once gets more light: it
 # reflects much less than a surface does, but should look as bright
 ILLUMINANCES = {"single_scattering": 10.0, "isosurface": 3.0}
+EDGE = 2.0  # margin of the background around the picture [degrees], because maps are interpolated
 LEAST_STEPS = 64  # least number of steps along a ray
 TURN_AZIMUTHS = range(0, 360, 15)  # azimuths [degrees] from which a film shows the whole volume
 
@@ -64,18 +66,14 @@ def describe_scene(
         emitter = make_environment_light(
             environment, ILLUMINANCES[renderer], background, towards, aspect
         )
+    distance = float(np.linalg.norm(origin - target))  # which may be in any unit of length
+    clipping = {"near_clip": 1e-3 * distance, "far_clip": 1e3 * distance}
     return {
         "type": "scene",
         "integrator": entries,
-        "sensor": make_camera(origin, target, FOV, size) | _find_clip_distances(origin, target),
+        "sensor": make_camera(origin, target, FOV, size) | clipping,
         "sky": emitter,
     }
-
-
-def _find_clip_distances(origin: FloatArray, target: FloatArray) -> dict[str, float]:
-    """Return the camera's near and far clipping distances, which suit any unit of length."""
-    distance = float(np.linalg.norm(origin - target))
-    return {"near_clip": 1e-3 * distance, "far_clip": 1e3 * distance}
 
 
 def describe_integrator(
@@ -108,3 +106,39 @@ def _to_plugin_value(name: str, value: Any) -> Any:
     if name == "bsdf":
         return to_material(value).scene_dict()
     return {"type": value} if name == "phase" and isinstance(value, str) else value
+
+
+def make_background_light(background: ArrayLike) -> dict[str, Any]:
+    """Return the dictionary of an emitter with one radiance, a number or R, G, B, everywhere."""
+    rgb = np.broadcast_to(background, 3).tolist()
+    return {"type": "constant", "radiance": {"type": "rgb", "value": rgb}}
+
+
+def make_environment_light(
+    environment: str | Path,
+    illuminance: float,
+    background: ArrayLike | None,
+    towards: FloatArray,
+    aspect: float,
+) -> dict[str, Any]:
+    """Return the emitter of an environment map with a uniform `background` behind the volume.
+
+    The camera sees this background, and the light from all other directions is that of the map. If
+    it is None, the camera sees the map itself. The whole map gives level ground this `illuminance`.
+    `towards` is the unit vector to the camera, and `aspect` the picture's width divided by its
+    height.
+    """
+    import mitsuba as mi
+
+    light = describe_environment(environment)
+    light["scale"] *= illuminance
+    if background is None:
+        return light
+    half = np.tan(np.radians(FOV / 2))
+    corner = np.degrees(np.arctan(half * np.hypot(max(aspect, 1), max(1 / aspect, 1))))
+    rgb = np.array(light["bitmap"])
+    x, y, z = -towards
+    cosine = pixel_directions(*rgb.shape[:2]) @ [x, z, -y]  # in the map's axes y points up
+    behind = cosine > np.cos(np.radians(corner + EDGE))
+    rgb[behind] = np.broadcast_to(background, 3) / light["scale"]
+    return light | {"bitmap": mi.Bitmap(rgb)}
