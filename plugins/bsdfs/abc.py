@@ -36,7 +36,7 @@ class PowerDistribution:
     C: JitFloat
 
     def power(self, h: JitVector) -> JitFloat:
-        return dr.exp(-self.C * self._log_base(h))
+        return dr.exp(-self.C * self._log_denominator(h))
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
         # x = log(1 + B (1 - cosθ_h)) has a density proportional to exp(q x)
@@ -48,7 +48,10 @@ class PowerDistribution:
         return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, 1 - complement)
 
     def pdf(self, wi: JitVector, h: JitVector, cos_d: JitFloat) -> JitFloat:
-        return dr.exp((self._integral_exponent() - 1) * self._log_base(h)) / self.integrate_power()
+        return (
+            dr.exp((self._integral_exponent() - 1) * self._log_denominator(h))
+            / self.integrate_power()
+        )
 
     def integrate_power(self) -> JitFloat:
         """Return the integral of `power(h)` over the hemisphere, the normalisation of `pdf`."""
@@ -64,8 +67,8 @@ class PowerDistribution:
         q = 1 - self.C
         return dr.select(abs(q) < 1e-3, 1e-3, q)
 
-    def _log_base(self, h: JitVector) -> JitFloat:
-        """Return log(1 + B (1 - cosθ_h)), accurate where h is close to the normal."""
+    def _log_denominator(self, h: JitVector) -> JitFloat:
+        """Return log(1 + B (1 - cosθ_h)), accurate where h is close to the surface normal."""
         return log1p(self.B * (h.x * h.x + h.y * h.y) / (1 + h.z))
 
 

@@ -40,7 +40,7 @@ PICTURE = {
 
 
 def isotropic_term(n: int, m: int, l: int, wi: JitVector, wo: JitVector) -> JitFloat:
-    """Return the isotropic basis function I_nml [sr⁻¹] of the module's formula at two directions.
+    """Return Koenderink's isotropic basis function I_nml [sr⁻¹] at two directions.
 
     It is smooth at the normal, where azimuths are undefined.
     """
@@ -58,7 +58,7 @@ def isotropic_term(n: int, m: int, l: int, wi: JitVector, wo: JitVector) -> JitF
 
 
 def anisotropic_term(n: int, k: int, m: int, l: int, wi: JitVector, wo: JitVector) -> JitFloat:
-    """Return the anisotropic basis function H_nkml [sr⁻¹] of the module's formula."""
+    """Return Koenderink's anisotropic basis function H_nkml [sr⁻¹] at two directions."""
     both = hemisphere_function(n, k, wi) * hemisphere_function(m, l, wo)
     both += hemisphere_function(n, k, wo) * hemisphere_function(m, l, wi)
     return both / math.sqrt(4 if (n, k) == (m, l) else 2)

@@ -69,7 +69,7 @@ def make_lobe(c_x: JitFloat, c_y: JitFloat, c_z: JitFloat, n: JitFloat) -> Lobe:
     largest = dr.maximum(dr.maximum(dr.abs(c_x), dr.abs(c_y)), c_z)
     a_x, a_y, a_z = (ratio_to_largest(c, largest) for c in (c_x, c_y, c_z))
 
-    def value(wi: JitVector, wo: JitVector) -> JitFloat:
+    def lobe_value(wi: JitVector, wo: JitVector) -> JitFloat:
         # 1 minus the bracket of the formula, accurate where the bracket is close to 1
         complement = (
             complement_term(a_x, wi.x, wo.x)
@@ -89,7 +89,7 @@ def make_lobe(c_x: JitFloat, c_y: JitFloat, c_z: JitFloat, n: JitFloat) -> Lobe:
         return cosine_power(lost, n / 2) * sampling.energy(wi)
 
     sampling = PowerLobe(lobe_axis, n)
-    return Lobe(value, sampling, energy)
+    return Lobe(lobe_value, sampling, energy)
 
 
 def ratio_to_largest(c: JitFloat, largest: JitFloat) -> JitFloat:

@@ -30,7 +30,7 @@ class Mixture(Model):
 
     @classmethod
     def list_summands(cls) -> list[tuple[str, type[Model], list[str]]]:
-        """Return for each summand: the prefix of its parameters, its model and its weights' names.
+        """Return the models of the sum: for each its parameters' prefix, class and weights' names.
 
         The weights leave out the diffuse term of every model but the first.
         """

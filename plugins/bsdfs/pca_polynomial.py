@@ -123,13 +123,13 @@ class PCAPolynomial(Model):
         angles = [getattr(self, name) for name in self.list_angle_names()]
 
         def make_power_lobe(j: int, k: int) -> Lobe:
-            def value(wi: JitVector, wo: JitVector) -> JitFloat:
+            def lobe_value(wi: JitVector, wo: JitVector) -> JitFloat:
                 return (
                     rotate_to_axes(multiply_coordinates(wi, wo, self.component_count()), angles)[j]
                     ** k
                 )
 
-            return Lobe(value, cosine, lambda wi: 0.0, diffuse=True)
+            return Lobe(lobe_value, cosine, lambda wi: 0.0, diffuse=True)
 
         constant = Lobe(lambda wi, wo: 1.0, cosine, lambda wi: math.pi, diffuse=True)
         return constant, *(make_power_lobe(j, k) for j, k in self.list_powers())

@@ -32,7 +32,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import declare_choice
 
 
 class Mip:
-    """A sampler of map points by mip levels: Mitsuba's `Hierarchical2D0` of the pixels' power."""
+    """Draws points of an environment map by mip levels of its power (`Hierarchical2D0`)."""
 
     def __init__(self, brightness: FloatArray) -> None:
         import mitsuba as mi
@@ -55,7 +55,7 @@ class Mip:
 
 
 class Cdf:
-    """A sampler of map points by cumulative sums: `DiscreteDistribution2D` of the cells' power."""
+    """Draws points of an environment map by search in cumulative sums of its cells' power."""
 
     def __init__(self, brightness: FloatArray) -> None:
         import mitsuba as mi
@@ -82,11 +82,11 @@ class Cdf:
 
 
 class Alias:
-    """A sampler of map points by alias tables: one of the rows, and one of the cells of each row.
+    """Draws points of an environment map by alias tables: of its rows, and of each row's cells.
 
-    It draws every entry of a table equally often, then keeps the entry if a second random number
-    is below its threshold, and takes its alias, another entry, if not. A single table of all cells
-    would need random numbers with more bits than single precision has.
+    It draws every entry of a table equally often, then keeps the entry if a second random number is
+    below the entry's threshold, and otherwise takes the entry's alias, which is another entry. A
+    single table of all cells would need random numbers with more bits than single precision has.
     """
 
     def __init__(self, brightness: FloatArray) -> None:

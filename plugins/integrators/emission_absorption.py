@@ -83,7 +83,8 @@ def define(mi: MitsubaModule) -> type:
         ) -> tuple[JitFloat, JitColour]:
             """Return the mean extinction σ and emission e of a part of a ray.
 
-            `front` and `back` are the integrals at its ends, `it` is its middle.
+            `front` and `back` are the transfer function's integrals at both ends of the part, `it`
+            is its middle.
             """
             e = mi.unpolarized_spectrum(self.emission.eval(it, active)) * self.white(it)
             if not self.has_colours:

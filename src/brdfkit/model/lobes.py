@@ -63,10 +63,10 @@ def make_factored_lobe(
     only once, and the fit is faster. `sampling` and `energy` are those of `Lobe`.
     """
 
-    def value(wi: JitVector, wo: JitVector) -> JitFloat:
+    def lobe_value(wi: JitVector, wo: JitVector) -> JitFloat:
         return facets(half_vector(wi, wo), cos_theta_d(wi, wo)) * geometry(wi, wo)
 
-    return Lobe(value, sampling, energy, factors=(facets, geometry))
+    return Lobe(lobe_value, sampling, energy, factors=(facets, geometry))
 
 
 def group_components(lobes: Sequence[Lobe]) -> list[list[int]]:

@@ -47,7 +47,7 @@ class Halves:
 
     @property
     def other_seed(self) -> Any:
-        """A picture that differs as much as one rendered with another seed; None for one pass.
+        """A picture as different from `picture` as one with another seed; None for one pass.
 
         If σ² is the variance of a sample, the difference of halves with m and n samples has the
         variance σ² (1/m + 1/n), and that of two seeds 2σ²/(m + n). So the picture is moved by the
@@ -94,7 +94,7 @@ class Accumulated:
 
     @property
     def other_seed(self) -> AnyArray | None:
-        """A picture that differs as much as one rendered with another seed; None for one pass."""
+        """A picture as different from `picture` as one with another seed; None for one pass."""
         other = self.halves.other_seed
         return None if other is None else other.astype(np.float32)
 
