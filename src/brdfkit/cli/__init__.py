@@ -1,4 +1,4 @@
-"""The command line `brdfkit`; each file in `commands/` holds one command."""
+"""The program `brdfkit`; each file in `commands/` holds one of its commands."""
 
 import importlib
 import pkgutil

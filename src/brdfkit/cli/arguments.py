@@ -23,7 +23,7 @@ FIGURES = ".png", ".pdf", ".svg"
 
 
 def find_material(name: str, settings: Iterable[str] = ()) -> Any:
-    """Return the material of a name or a file; `settings`, PARAMETER=VALUE, are for a model."""
+    """Return the material of a name or file; `settings`, PARAMETER=VALUE, are for a model."""
     if not settings:
         return resolve.to_material(name)
     label = labels.load_files(name)
@@ -36,13 +36,13 @@ def find_material(name: str, settings: Iterable[str] = ()) -> Any:
 
 
 def find_measured(name: str, mends: Mapping[str, bool]) -> Measured:
-    """Return the measured material of a name or a file, with the repairs `mends`."""
+    """Return the measured material of a name or file, after the repairs `mends`."""
     measured = resolve.to_measured(name)
     return measured.mend(**mends) if mends else measured
 
 
 def refuse_mends(name: str, what: str, mends: Mapping[str, bool]) -> None:
-    """Raise `BrdfkitError` where `mends` are given for `name`, which is `what`: no measurement."""
+    """Raise `BrdfkitError` for repairs of the file `name`, which is `what`, not a measurement."""
     if mends:
         raise BrdfkitError(
             f"{name} is {what}: --mirror-azimuth and --divide-by-cos are for measured samples only."

@@ -38,7 +38,7 @@ class Console:
         return out
 
     def progress(self, what: str) -> AbstractContextManager[Progress]:
-        """Show a progress bar within the block; the block gets a function (steps done, in all)."""
+        """Show a progress bar within the block, which gets its function (steps done, in all)."""
         return nullcontext(lambda done, total: None) if self.quiet else progress(what)
 
     def print_json(self, record: Any) -> None:

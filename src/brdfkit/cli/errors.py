@@ -20,7 +20,7 @@ from brdfkit.core.names import to_printable
 
 WRITE_ERRORS = errno.ENOSPC, errno.EDQUOT, errno.EIO  # no space, quota exceeded, device failed
 FIT_OPTIONS = "--fixed", "--bound", "--isotropic", "--anisotropic"
-LENGTH_LIMIT = 2000  # characters of a sentence
+LENGTH_LIMIT = 2000  # characters of a printed message
 
 
 class Group(click.Group):
@@ -61,7 +61,7 @@ def translate_errors() -> Iterator[None]:
     """Turn errors in the block that a user can cause into a `FinalMessage`.
 
     They are `BrdfkitError`, click's errors, failures to read a file or write the output, too little
-    memory, Ctrl-C and SIGTERM, and any error that native code made of one of these two signals.
+    memory, Ctrl-C and SIGTERM, and any error that native code raises after one of these signals.
     """
     try:
         with _restore_interrupts():
@@ -122,7 +122,7 @@ def _describe_misuse(error: click.UsageError) -> str:
 
 def _flush_output() -> None:
     """Flush standard output, so that an error in it is raised within `translate_errors`."""
-    if sys.stdout:  # None, where it was closed
+    if sys.stdout:  # it is None where the shell closed it
         sys.stdout.flush()
 
 

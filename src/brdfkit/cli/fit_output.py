@@ -69,7 +69,7 @@ def _find_shared_notes(fits: Sequence[Fit], findings: Sequence[str]) -> list[str
 
 
 def _make_fit_record(fit: Fit, comparison: Comparison, psnr: Mapping[str, float]) -> dict[str, Any]:
-    """Return the record of a fit for JSON, with its errors under every loss and its PSNR."""
+    """Return a fit as a dictionary, with its errors under every loss and its PSNR, for --json."""
     return {
         "model": fit.name,
         "parameters": fit.values,

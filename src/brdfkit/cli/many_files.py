@@ -75,7 +75,7 @@ def _print_sweep(sweep: Sweep, folder: Path | None, console: Console) -> None:
 
 
 def _make_sweep_record(row: Any) -> dict[str, Any]:
-    """Return the record of a row of a sweep for JSON."""
+    """Return a row of a sweep, which is one fit to one file, as a dictionary for --json."""
     return {
         "material": row.material,
         "file": row.file,

@@ -23,7 +23,7 @@ SCENE_FILES = (
 
 
 class Decibels(click.ParamType):
-    """A number above 0, with or without the unit dB."""
+    """The type of an option's value in decibels: a number above 0, with or without the unit dB."""
 
     name = "dB"
 
@@ -182,8 +182,8 @@ def tone_options(command: Command) -> Command:
         default="range",
         metavar="CURVE",
         show_default=True,
-        help="Curve that maps radiance to the PNG's brightness, before that of sRGB: range (which "
-        "shows 1 as white), reinhard, logarithmic or filmic.",
+        help="Curve that maps radiance to the PNG's brightness, before the curve of sRGB: range "
+        "(which shows 1 as white), reinhard, logarithmic or filmic.",
     )
     @click.option(
         "--exposure",
@@ -199,7 +199,7 @@ def tone_options(command: Command) -> Command:
         default="channel",
         metavar="MEANS",
         show_default=True,
-        help="Apply the curve to each channel, or to the luminance, which keeps colours.",
+        help="Whether the curve applies to each channel or to the luminance, which keeps colours.",
     )
     @functools.wraps(command)
     def call_with_tone(*args: Any, curve: str, exposure: float, by: str, **kwargs: Any) -> Any:

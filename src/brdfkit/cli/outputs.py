@@ -116,7 +116,7 @@ def _is_input(target: Path, parameters: Mapping[str, Any]) -> bool:
 
 
 def _list_inputs(words: Any) -> Iterator[Path]:
-    """Yield the files that arguments name, with files in folders and files that files refer to."""
+    """Yield the files that arguments name, files in named folders, and files named in these."""
     waiting, known = [Path(word) for word in _list_texts(words)], set()
     while waiting:
         path = _resolve_existing(waiting.pop())

@@ -32,7 +32,7 @@ def path_trace(things: Any, default_spp: int | None, console: Console, **how: An
 
 
 def write_picture(picture: Rendering, path: Path, tone: ToneMapping | str = "range") -> None:
-    """Write a rendering, and print if it was interrupted or is noisier than requested."""
+    """Write a rendering to a file; print a message if it was interrupted or is too noisy."""
     picture.tone_mapped(tone).write(path)
     if picture.spp < (picture.requested or 0):
         print_message(
@@ -43,7 +43,7 @@ def write_picture(picture: Rendering, path: Path, tone: ToneMapping | str = "ran
 
 
 def write_result(result: Rendering | Film, path: Path, tone: ToneMapping, console: Console) -> None:
-    """Write and print a picture or a film, and exit with a status if it was interrupted."""
+    """Write a picture or film to a file, print its figures, and end an interrupted command."""
     from brdfkit.rendering.film import Film
 
     if isinstance(result, Film):
@@ -57,7 +57,7 @@ def write_result(result: Rendering | Film, path: Path, tone: ToneMapping, consol
 
 
 def _print_picture(picture: Rendering, path: Path, console: Console) -> None:
-    """Print a rendering's noise and errors, and its files."""
+    """Print the noise, the errors and the files of a rendering."""
     written = [path]
     if path.suffix.lower() == ".exr":
         written += [path.with_suffix(".png")]
@@ -76,13 +76,13 @@ def _print_picture(picture: Rendering, path: Path, console: Console) -> None:
         if picture.differences:
             console.output.print(picture.head)
             console.print_image_errors(picture.errors())
-        else:  # without the noise floor, of which `write_picture` informed
+        else:  # without the noise floor, which `write_picture` reports
             console.output.print(str(replace(picture, requested_noise_floor=None)))
         console.print_written(written)
 
 
 def _write_film(film: Film, path: Path, tone: ToneMapping, console: Console) -> int:
-    """Write a film, print its frames and its file, and return the number of frames."""
+    """Write a film to a file, print its length and path, and return its number of frames."""
     replace(film, tone_mapping=tone).write(path)
     count, requested = len(film.frames), film.requested
     if count < requested:

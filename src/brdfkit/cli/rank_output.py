@@ -66,7 +66,7 @@ def _print_ranking(ranking: Ranking, console: Console) -> None:
 
 
 def make_ranking_record(ranking: Ranking | None) -> dict[str, Any] | None:
-    """Return the record of a ranking for JSON; None stays None."""
+    """Return a ranking as a dictionary for --json; None stays None."""
     if ranking is None:
         return None
     return {

@@ -15,7 +15,7 @@ from brdfkit.core.errors import BrdfkitError
 
 Command = Callable[..., Any]
 
-FIT_OPTIONS: dict[str, dict[str, Any]] = {  # without -m
+FIT_OPTIONS: dict[str, dict[str, Any]] = {  # all except -m
     "--loss": {
         "default": "cbrt",
         "metavar": "LOSS",
@@ -68,8 +68,8 @@ def parse_settings(
 ) -> dict[str, Any]:
     """Read words NAME=VALUE behind an `option` into a dictionary; a value is a number or a tuple.
 
-    `forms` say what VALUE may be, as VALUE or LOW,HIGH, and thus how many numbers; `free` allows
-    any number of numbers, true, false or a word, too.
+    `forms`, such as VALUE or LOW,HIGH, say how many numbers a value may have. With `free`, a value
+    may also be true, false, a word, or any number of numbers.
     """
     values: dict[str, Any] = {}
     forms = forms or ("VALUE",)

@@ -31,7 +31,7 @@ def make_table(
     rows = [row for section in sections for row in section]
     cells = [[h, *texts] for h, *texts in zip(headers, *rows, strict=True)]
     whole = [k == 0 or column.startswith(">") for k, column in enumerate(columns)]
-    widths = _compute_widths(cells, whole, width - 3 * len(columns) + 1)  # less the gaps
+    widths = _compute_widths(cells, whole, width - 3 * len(columns) + 1)  # without the gaps
     if widths is None:
         return None
 
@@ -70,10 +70,11 @@ def format_blocks(columns: Sequence[str], sections: Sections, width: int) -> Ite
 def _compute_widths(
     cells: Sequence[Sequence[str]], whole: Sequence[bool], total: int
 ) -> list[int] | None:
-    """Compute the widths of columns that have `total` characters, or None if that is too little.
+    """Compute the widths of columns within `total` characters, or None if words do not fit.
 
-    `cells` are the texts of each column; `whole` says which columns do not fold. Each column is at
-    least as wide as its longest word; the rest is shared in proportion to what the columns lack.
+    `cells` are the texts of each column; `whole` says which columns must not fold. A column is at
+    least as wide as its longest word. The remaining characters are shared in proportion to what the
+    columns lack to be as wide as their longest text.
     """
     from rich.cells import cell_len
 

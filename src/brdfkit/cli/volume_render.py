@@ -31,8 +31,8 @@ VOLUME_OPTIONS: dict[str, dict[str, Any]] = {
     },
     "--transfer": {
         "metavar": "NAME|FILE",
-        "help": f"transfer function: {', '.join(sorted(path.stem for path in PRESETS))}; or a "
-        ".json file. Default: chosen by the data.",
+        "help": f"transfer function, one of {', '.join(sorted(path.stem for path in PRESETS))}, or "
+        "a .json file. Default: chosen by the data.",
     },
     "--density": NUMBER | {"help": "factor on the transfer function's extinction. Default: 1."},
     "--azimuth": NUMBER

@@ -37,7 +37,10 @@ def check(things: tuple[str, ...], values: tuple[str, ...], console: Console) ->
 
 
 def _find_subject(name: str, settings: Sequence[str]) -> Any:
-    """Return the material or, for a plugin that is no model, its dictionary, with `settings`."""
+    """Return the material to check, or the dictionary of a plugin that is no model.
+
+    `settings` are words PARAMETER=VALUE.
+    """
     from brdfkit.checks.plugin_subject import is_no_model, make_example, require_declared
     from brdfkit.cli.arguments import find_material
     from brdfkit.mitsuba_bridge.registration.users_plugins import load_plugins
@@ -61,7 +64,7 @@ def _print_reports(reports: Sequence[Report], console: Console) -> None:
 
 
 def _make_report_record(report: Report) -> dict[str, Any]:
-    """Return the record of a report for JSON."""
+    """Return a report of checks as a dictionary, for --json."""
     findings = [
         {"check": f.check, "passed": bool(f.passed), "figure": f.figure} for f in report.findings
     ]

@@ -43,8 +43,7 @@ def convert(
     """Convert a material or an environment map.
 
     A material is written in the format that belongs to the suffix of OUTPUT. The command prints
-    what the format cannot hold. Models and fits are evaluated at the pairs of directions of a
-    table.
+    what the format cannot hold. Models and fits are evaluated at the direction pairs of a table.
 
     A MAP is an .exr or .hdr file, and its OUTPUT an .exr file. A CONVENTION is the name of a
     program, such as blender, or of a layout, such as cross or angular. The axes that point right,
@@ -78,7 +77,7 @@ def convert(
 
 
 def _print_conversion(path: Path, changes: Sequence[str], text: object, console: Console) -> None:
-    """Print the file that was written and what changed, which `text` says for people."""
+    """Print the written file and what the conversion changed, as JSON or as `text` for people."""
     if console.as_json:
         console.print_json({"written": path, "changes": changes})
     else:

@@ -73,7 +73,7 @@ def data_get(names: tuple[str, ...], console: Console) -> None:
     files = {}
     for name in names:
         with console.progress(f"download {name}") as bar:
-            progress: Any = bar  # shows a total of None, too
+            progress: Any = bar  # the total is None for a file of unknown size
             files[name] = download(name, progress)
     _print_files(files, collections.values(), console)
 
@@ -151,7 +151,7 @@ def _print_files(
 
 
 def _make_collection_record(collection: Collection) -> dict[str, Any]:
-    """Return the record of a collection for JSON, with the path or the address of each file."""
+    """Return a collection as a dictionary, with the path or address of each file, for --json."""
     here = collection.list_files_on_disk()
     files: dict[str, dict[str, Any]] = {
         name: {"file": listed.file, "bytes": listed.bytes or None, "url": listed.url or None}

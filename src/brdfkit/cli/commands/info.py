@@ -124,7 +124,7 @@ def print_audit(audit: Any, written: Sequence[Path], console: Console) -> None:
 
 
 def make_audit_record(audit: Any, written: Sequence[Path]) -> dict[str, Any]:
-    """Return the record of an audit for JSON, with the files that were `written`."""
+    """Return an audit and the paths of the `written` files as a dictionary, for --json."""
     return {
         **{f.name: getattr(audit, f.name) for f in fields(audit) if f.name != "data"},
         "findings": audit.findings(),
@@ -134,7 +134,7 @@ def make_audit_record(audit: Any, written: Sequence[Path]) -> dict[str, Any]:
 
 
 def _find_notes(audit: Any) -> Mapping[str, Any]:
-    """Return the notes in a measured file; maps have none."""
+    """Return the notes that a measured file contains, by name; maps and volumes have none."""
     return getattr(audit.data, "info", {})
 
 

@@ -19,7 +19,9 @@ from brdfkit.core.files import require_writable
 
 @click.command()
 @click.argument("geometry", metavar="gaussian|brushed|woven")
-@click.option("--slope", default=0.3, show_default=True, help="Root-mean-square slope.")
+@click.option(
+    "--slope", default=0.3, show_default=True, help="Root-mean-square slope of the surface."
+)
 @click.option("--stretch", type=float, help="For brushed: length of a groove over its width.")
 @click.option("--thickness", type=float, help="For woven: thickness of a yarn over its width.")
 @click.option(
@@ -74,9 +76,9 @@ def measure(
 ) -> None:
     """Measure the BRDF of microgeometry.
 
-    The virtual goniometer traces paths over a rough surface, and writes a table with a standard
-    error for every value. The defaults measure rough gold, which takes about a minute. Ctrl-C ends
-    the measurement early, with larger errors.
+    A virtual goniometer traces paths over a surface that is rough (gaussian), grooved (brushed) or
+    cloth (woven). It writes a table with a standard error for every value. The defaults measure
+    rough gold, in about a minute. Ctrl-C ends the measurement early, with larger errors.
     """
     from brdfkit.materials.auditing import audit
     from brdfkit.materials.goniometer import measure as measure_surface

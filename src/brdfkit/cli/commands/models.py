@@ -29,7 +29,7 @@ def models(name: str | None, console: Console) -> None:
 
 
 def _print_models(models: Mapping[str, Any], console: Console) -> None:
-    """Print the names of models, what they are, and their parameters."""
+    """Print a table of the models, with what each one is and its parameters."""
     from brdfkit.core.discovery.plugin_pages import read_page
 
     if console.as_json:
@@ -41,7 +41,7 @@ def _print_models(models: Mapping[str, Any], console: Console) -> None:
 
 
 def print_model(model: Any, console: Console) -> None:
-    """Print the page of a model, with its parameters and options."""
+    """Print the page of help of a model, with its parameters and options."""
     from brdfkit.core.discovery.plugin_pages import read_page
 
     if console.as_json:
@@ -69,13 +69,13 @@ def print_model(model: Any, console: Console) -> None:
 
 
 def print_references(page: Any, console: Console) -> None:
-    """Print the works that the page of a plugin cites."""
+    """Print the works that a plugin's page of help cites."""
     for n, work in enumerate(page.references):
         console.output.print(f"\n{work}" if n == 0 else str(work))
 
 
 def _describe_parameters(model: Any) -> dict[str, dict[str, Any]]:
-    """Return the parameters of a model by name, for JSON."""
+    """Return the parameters of a model by name, as dictionaries for --json."""
     return {
         name: {
             "default": p.default,

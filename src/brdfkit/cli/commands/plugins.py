@@ -37,7 +37,7 @@ def plugins(word: str | None, console: Console) -> None:
 
 
 def _print_plugins(kinds: Iterable[str], console: Console) -> None:
-    """Print the plugins of these kinds, and what they are."""
+    """Print a table of the plugins of these kinds, with what each one is."""
     from brdfkit.core.discovery.plugin_files import find_plugins
     from brdfkit.core.discovery.plugin_pages import read_page
 
@@ -57,7 +57,7 @@ def _print_plugins(kinds: Iterable[str], console: Console) -> None:
 
 
 def _print_plugin_page(kind: str, name: str, console: Console) -> None:
-    """Print the page of a plugin, with its parameters."""
+    """Print the page of help of a plugin, with its parameters."""
     from brdfkit.cli.commands.models import print_model, print_references
     from brdfkit.core.discovery.plugin_files import MODELS, find_plugins, import_plugin
     from brdfkit.core.discovery.plugin_pages import read_page

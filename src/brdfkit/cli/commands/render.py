@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Request:
-    """The things to render and the options, as the user gave them."""
+    """The things that a user asks to render, and the options of the command."""
 
     things: Sequence[str]
     output: Path | None
@@ -56,11 +56,11 @@ class Request:
     volume_settings: dict[str, Any]
 
     def pick_arguments(self, *names: str) -> dict[str, Any]:
-        """Return the arguments of `brdfkit.render` with these names, and those that all take."""
+        """Return these options and those of samples as arguments of `brdfkit.render`."""
         return {name: getattr(self, name) for name in ("spp", "noise_floor", "seed", *names)}
 
     def require_alone(self, name: str, what: str, *options: str) -> None:
-        """Raise `BrdfkitError` where `name`, which is `what`, is not alone or has these options."""
+        """Raise `BrdfkitError` if `name`, a `what`, comes with other things or these options."""
         if len(self.things) > 1:
             raise BrdfkitError(f"{name} is {what}, which is rendered alone: name nothing else.")
         given = {
@@ -123,7 +123,7 @@ def render(folders: Sequence[str], console: Console, **options: Any) -> None:
     for folder in folders:
         load_plugins(folder)
     request = Request(**options)
-    _check_words(request)
+    _refuse_misplaced_words(request)
     for find, render_kind in KINDS:
         if name := find(request):
             result, path = render_kind(name, request, console)
@@ -131,8 +131,8 @@ def render(folders: Sequence[str], console: Console, **options: Any) -> None:
             return
 
 
-def _check_words(request: Request) -> None:
-    """Raise `BrdfkitError` for words that are no things to render but have a place in options."""
+def _refuse_misplaced_words(request: Request) -> None:
+    """Raise `BrdfkitError` for words that cannot be rendered but belong behind an option."""
     from brdfkit.lighting.environments.map_files import looks_like_map
     from brdfkit.rendering.scene_input.mesh_file import SUFFIXES
     from brdfkit.volumes.loading import looks_like_volume
@@ -183,11 +183,6 @@ def _render_scene(name: str, request: Request, console: Console) -> Rendered:
     return path_trace(name, None, console, **request.pick_arguments()), path
 
 
-def _find_volume(request: Request) -> str | None:
-    """Return the first thing that is a volume."""
-    return find_volume(request.things, request.volume_settings)
-
-
 def _render_volume(name: str, request: Request, console: Console) -> Rendered:
     """Render the volume `name`, or a film of it with --orbit."""
     from brdfkit.cli.arguments import check_film_path
@@ -202,26 +197,21 @@ def _render_volume(name: str, request: Request, console: Console) -> Rendered:
     return render_volume(name, request.volume_settings, request.values, console, **how), path
 
 
-def _find_material(request: Request) -> str | None:
-    """Return the first thing, which is a material since it is nothing else."""
-    return request.things[0]
-
-
 def _render_materials(name: str, request: Request, console: Console) -> Rendered:
     """Render materials side by side: path-traced, or quickly with --preview."""
     from brdfkit.cli.arguments import check_picture_path, find_material
 
     materials = [find_material(word, request.values) for word in request.things]
     if request.values:
-        _warn_of_gains(materials)
+        _warn_of_energy_gain(materials)
     path = check_picture_path(request.output or f"{to_file_stem(materials[0].name)}.png")
     if request.preview:
-        return _preview(materials, request), path
+        return _render_preview(materials, request), path
     how = request.pick_arguments("size", "scene", "environment")
     return path_trace(materials, SPP, console, **how), path
 
 
-def _preview(materials: Sequence[Any], request: Request) -> Rendering:
+def _render_preview(materials: Sequence[Any], request: Request) -> Rendering:
     """Render a preview of materials, without noise."""
     from brdfkit.rendering.previewing.preview import SIZE, SPP, STUDIO, preview
 
@@ -241,8 +231,8 @@ def _preview(materials: Sequence[Any], request: Request) -> Rendering:
 KINDS: tuple[tuple[Callable[[Request], str | None], Callable[..., Rendered]], ...] = (
     (_find_field, _render_field),
     (_find_scene, _render_scene),
-    (_find_volume, _render_volume),
-    (_find_material, _render_materials),
+    (lambda request: find_volume(request.things, request.volume_settings), _render_volume),
+    (lambda request: request.things[0], _render_materials),  # all else is a material
 )
 
 
@@ -253,7 +243,7 @@ def _choose_picture_path(request: Request, name: str) -> Path:
     return check_picture_path(request.output or Path(f"{Path(name).stem}.png"))
 
 
-def _warn_of_gains(models: Sequence[Any]) -> None:
+def _warn_of_energy_gain(models: Sequence[Any]) -> None:
     """Print a warning for each model that reflects more light than arrives, by its parameters."""
     from brdfkit.regression.albedo import LARGEST_ALBEDO, format_share, make_albedo_pixels
 

@@ -121,7 +121,7 @@ def _print_verdict(contents: Contents, console: Console) -> None:
 
 
 def _make_report_record(contents: Contents) -> dict[str, Any]:
-    """Return the record of a report for JSON."""
+    """Return the results of a report as a dictionary, for --json."""
     return {
         "material": contents.material,
         "verdict": contents.verdict,

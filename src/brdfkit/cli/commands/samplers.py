@@ -47,11 +47,12 @@ def samplers(
 ) -> None:
     """Find the sampler that suits an environment map.
 
-    Each sampler path-traces the same pictures. Its cost is noise × time, which is proportional to
-    the time for a picture of given noise. The table says whether a difference from the best sampler
-    is significant (Tukey's test, 5 % for all samplers together). Times are processor times, but
-    other work on the machine still disturbs them. Compensated samplers suit only path tracing,
-    which also samples BSDFs. After Ctrl-C, the finished rounds are kept.
+    A sampler draws the points of the map that light a picture. Each one path-traces the same
+    pictures. Its cost is noise × time, which is proportional to the time for a picture of given
+    noise. The table says whether a difference from the best sampler is significant (Tukey's test,
+    5 % for all samplers together). Times are processor times, but other work on the machine still
+    disturbs them. Compensated samplers suit only path tracing, which also samples BSDFs. After
+    Ctrl-C, the finished rounds are kept.
     """
     from brdfkit.rendering.map_sampling import compare_samplers
     from brdfkit.rendering.sampler_comparison import COLUMNS

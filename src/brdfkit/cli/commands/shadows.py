@@ -19,7 +19,7 @@ FOLDER = Path(brdfkit.__file__).with_name("shadows") / "maps"
 
 
 def technique_option(kind: str, default: Sequence[str], help: str) -> Any:
-    """Return an option that chooses files, by name, in the folder `kind`s of `shadows/maps`."""
+    """Return the option --KIND: shadow techniques by the names of files in `shadows/maps/KINDs`."""
     names = ", ".join(sorted(file.stem for file in (FOLDER / f"{kind}s").glob("[!_]*.py")))
     default_names = ", ".join(default) or "all"
     return click.option(

@@ -64,7 +64,7 @@ def svbrdf(
     output: Path | None,
     console: Console,
 ) -> None:
-    """Fit maps to the photographs in FOLDER.
+    """Fit texture maps of a material to photographs of it.
 
     FOLDER holds linear photographs of a flat sample (OpenEXR), each lit by one point light or
     flash, and the file capture.toml with the positions of the camera and the lights. The camera may
