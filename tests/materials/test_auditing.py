@@ -22,7 +22,11 @@ from brdfkit.materials.auditing.albedos import Albedo, compute_sample_albedo
 from brdfkit.materials.auditing.cosine import explain_suspected_cosine
 from brdfkit.materials.auditing.data_findings import list_data_findings
 from brdfkit.materials.auditing.noise import estimate_noise
-from brdfkit.materials.auditing.ratios import backward_ratio, grazing_ratio, retroreflection_ratio
+from brdfkit.materials.auditing.ratios import (
+    compute_backward_ratio,
+    compute_grazing_ratio,
+    compute_retroreflection_ratio,
+)
 from brdfkit.materials.auditing.report import to_percent
 from brdfkit.materials.auditing.spikes import find_spikes
 from brdfkit.materials.auditing.subsets import draw_samples
@@ -431,10 +435,10 @@ def test_a_line_down_to_the_horizon_is_told():
     line = np.clip((90 - np.degrees(np.arccos(np.clip(wo[:, 2:], 0, 1)))) / 15, 0, 1)
     wo[:, 2] = np.maximum(wo[:, 2], 1e-9)
     honest, faulty = (scattered(v, wi, wo) for v in (np.full((len(wi), 1), 0.3), 0.3 * line))
-    assert grazing_ratio(honest.samples) == pytest.approx(1)
-    assert grazing_ratio(faulty.samples) == pytest.approx(1 / 3, abs=0.04)
+    assert compute_grazing_ratio(honest.samples) == pytest.approx(1)
+    assert compute_grazing_ratio(faulty.samples) == pytest.approx(1 / 3, abs=0.04)
     assert any("fall towards the horizon" in finding for finding in bk.audit(faulty).findings())
-    assert np.isnan(grazing_ratio(scattered().samples))
+    assert np.isnan(compute_grazing_ratio(scattered().samples))
 
 
 def test_light_sent_back_is_told():
@@ -443,30 +447,35 @@ def test_light_sent_back_is_told():
 
     directions = grid(theta_o=range(2, 76, 2))
     data = scattered(back, *directions)
-    assert retroreflection_ratio(data.samples) > 5
+    assert compute_retroreflection_ratio(data.samples) > 5
     mirror = scattered(lambda wi, wo: back(wi * [-1, -1, 1], wo), *directions)
-    assert retroreflection_ratio(mirror.samples) == pytest.approx(1, rel=0.01)
+    assert compute_retroreflection_ratio(mirror.samples) == pytest.approx(1, rel=0.01)
     assert any("retroreflective" in finding for finding in bk.audit(data).findings())
-    assert retroreflection_ratio(
+    assert compute_retroreflection_ratio(
         scattered(lambert(0.5).eval, *directions).samples
     ) == pytest.approx(1)
     plaster = models()["oren_nayar"](sigma=1.0)
-    assert 1 < retroreflection_ratio(scattered(plaster.eval, *directions).samples) < 2.5
-    assert np.isnan(retroreflection_ratio(one_sample().samples))
+    assert 1 < compute_retroreflection_ratio(scattered(plaster.eval, *directions).samples) < 2.5
+    assert np.isnan(compute_retroreflection_ratio(one_sample().samples))
 
 
 def test_azimuths_counted_from_the_mirrors_side():
     """As a file in another convention has them; large steps of theta_o suffice."""
     wi, wo = grid(theta_o=range(0, 76, 10), phi=(0, 90, 180))
     right, wrong = scattered(wi=wi, wo=wo), scattered(GGX.eval(wi, wo), wi, wo * [-1, -1, 1])
-    assert backward_ratio(right.samples) == pytest.approx(1 / backward_ratio(wrong.samples))
-    assert backward_ratio(wrong.samples) > 10
+    assert compute_backward_ratio(right.samples) == pytest.approx(
+        1 / compute_backward_ratio(wrong.samples)
+    )
+    assert compute_backward_ratio(wrong.samples) > 10
     (told,) = (f for f in bk.audit(wrong).findings() if "mirror_azimuth" in f)
-    assert f"{backward_ratio(wrong.samples):.2g} times as large towards the light as in" in told
+    assert (
+        f"{compute_backward_ratio(wrong.samples):.2g} times as large towards the light as in"
+        in told
+    )
     assert not any("mirror_azimuth" in finding for finding in bk.audit(right).findings())
     plaster = models()["oren_nayar"](sigma=1.0)
-    assert 1 < backward_ratio(scattered(plaster.eval).samples) < 4
-    assert np.isnan(backward_ratio(one_sample().samples))
+    assert 1 < compute_backward_ratio(scattered(plaster.eval).samples) < 4
+    assert np.isnan(compute_backward_ratio(one_sample().samples))
 
 
 # A cosine that was not divided out
@@ -503,7 +512,7 @@ def test_a_part_of_a_large_table_tells_what_all_does(anisotropic):
     data = Measured.from_table(tabulated(shape=shape))
     part, whole = draw_samples(data), data.samples
     assert len(part.wi) < len(whole.wi) / 2
-    for ratio in (grazing_ratio, retroreflection_ratio, backward_ratio):
+    for ratio in (compute_grazing_ratio, compute_retroreflection_ratio, compute_backward_ratio):
         assert ratio(part) == pytest.approx(ratio(whole), rel=0.15)
     rows = part.valid
     np.testing.assert_allclose(data.eval(part.wi[rows], part.wo[rows]), part.values[rows])

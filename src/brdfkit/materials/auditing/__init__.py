@@ -1,10 +1,10 @@
-"""`audit`: what a measurement covers, how noisy it is and what is doubtful.
+"""`audit` examines a measurement: its coverage, its noise, and doubtful values.
 
-One file answers one question: `noise.py`, `spikes.py`, `albedos.py`, `ratios.py` (brightness near
-the light and at the horizon), `cosine.py` and `azimuth.py` (other conventions). `symmetries.py`
-compares samples that should be equal, `subsets.py` draws a part of large measurements, `picture.py`
-draws the audit, `report.py` describes it in sentences, and `data_findings.py` has the sentences
-that a fit shows, too.
+`noise.py`, `spikes.py` and `albedos.py` compute what their names say. `ratios.py` compares the
+brightness near the light and at the horizon with other directions, `symmetries.py` compares values
+that should be equal, and `cosine.py` and `azimuth.py` recognise other conventions of instruments.
+`subsets.py` draws a part of large measurements. `picture.py` draws the audit, and `report.py`
+describes it in words. `data_findings.py` has the warnings that fits show, too.
 """
 
 from __future__ import annotations
@@ -19,7 +19,11 @@ from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.core.documents.parts import BAD
 from brdfkit.materials.auditing.albedos import Albedo, compute_albedo, compute_sample_albedo
 from brdfkit.materials.auditing.noise import Noise, estimate_noise
-from brdfkit.materials.auditing.ratios import backward_ratio, grazing_ratio, retroreflection_ratio
+from brdfkit.materials.auditing.ratios import (
+    compute_backward_ratio,
+    compute_grazing_ratio,
+    compute_retroreflection_ratio,
+)
 from brdfkit.materials.auditing.report import describe_audit, list_findings
 from brdfkit.materials.auditing.spikes import Spike, find_spikes
 from brdfkit.materials.auditing.subsets import draw_samples
@@ -33,48 +37,53 @@ from brdfkit.model.samples import Samples
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-MAX_ANGLE = 80.0  # degrees: a fit uses smaller angles by default
-DPI, WIDTH = 75, 760  # of the picture in a notebook
-MOST_LISTED_ANGLES = 10  # of more, the smallest and the largest are given
+MAX_ANGLE = 80.0  # degrees; by default a fit uses only samples with smaller angles to the normal
+DPI, WIDTH = 75, 760  # resolution of the picture in a notebook, and its width in pixels
+MOST_LISTED_ANGLES = 10  # of more measured angles, only the smallest and the largest are listed
 
 
 @dataclass(frozen=True, repr=False)
 class Audit(Shown):
-    """The audit of a measurement, made by `audit`; prints as text. NaN stands for unknown numbers.
+    """The result of `audit`, which prints as text. Numbers that are unknown are NaN.
 
     Attributes
     ----------
     name : str
         Name of the material.
     shape : tuple of int or None
-        Cells of a table; None for samples.
+        Numbers of cells of a table; None for samples.
     channels : tuple of str
-        Names of the columns of the values.
+        Names of the channels of the values.
     size, above, valid, used : int
-        Number of cells or samples; of these, how many are above the horizon, how many are valid,
-        and how many a fit uses by default (both angles below 80°).
+        Number of all cells or samples; number of those with both directions above the horizon;
+        number of valid ones; number of those that a fit uses by default, with both angles to the
+        normal below 80°.
     negative, zero : int
-        Number of valid values below 0 and equal to 0, in all channels.
+        Number of valid values below 0, and of those equal to 0, in all channels.
     negative_from, negative_to : float
-        Angles to the normal [degrees] of light or view, whichever is larger: 9 of 10 negative
-        values are above the first angle, 9 of 10 below the second; nan without negative values.
+        Two angles to the normal [degrees]: 9 of 10 negative values have a larger angle than the
+        first one, and 9 of 10 a smaller angle than the second one, where the angle is that of the
+        light or the view, whichever is larger. NaN without negative values.
     theta_i, theta_o : tuple of float
-        The measured angles to the normal [degrees]; of many, the smallest and the largest.
+        The measured angles to the normal [degrees] of light and view; if there are more than 10,
+        only the smallest and the largest.
     smallest, median, largest : float
-        The smallest valid value above 0, the median and the largest one [sr⁻¹].
+        The smallest valid value above 0, the median of the valid values, and the largest [sr⁻¹].
     coverage : Coverage
-        The share of all direction pairs that was measured.
+        The share of all pairs of directions that was measured.
     in_plane : bool
-        Whether it was measured in the plane of incidence only.
+        Whether all samples lie in the plane of incidence.
     reciprocity, mirror : Difference
-        The differences between values that should be equal: with the directions exchanged, and
-        left and right.
+        The differences between values that should be equal: after exchanging light and view, and on
+        both sides of the plane of incidence.
     noise : Noise
         The relative noise of the values.
     albedo, albedo_of_samples : Albedo
-        The albedo over the angle of incidence: by the lookup, and of the samples alone.
+        The directional albedo over the angle of incidence, by the interpolated BRDF and by linear
+        interpolation of the samples alone. The latter is None where it is not known.
     grazing, retroreflection, backwards : float
-        Three ratios of medians: see `brdfkit.materials.auditing.ratios`.
+        Median values near the horizon, and near the light, relative to other directions, as
+        `brdfkit.materials.auditing.ratios` computes them.
     spikes : tuple of Spike
         Values far above all their neighbours.
     data : Measured
@@ -112,19 +121,19 @@ class Audit(Shown):
 
     @property
     def kind(self) -> str:
-        """The kind in words: "90×90×180 table", "samples" or "anisotropic samples"."""
+        """The kind of data in words: "90×90×180 table", "samples" or "anisotropic samples"."""
         return str(self.data.kind)
 
     def rows(self) -> dict[str, str]:
-        """Return the audit in words, by heading."""
+        """Return the results of the audit in words, as texts by heading."""
         return describe_audit(self)
 
     def findings(self) -> tuple[str, ...]:
-        """Return sentences on what is doubtful."""
+        """Return a sentence on each doubtful property of the measurement."""
         return list_findings(self)
 
     def picture(self) -> Figure:
-        """Draw a slice of the BRDF, its lobes and its albedo, as a matplotlib `Figure`.
+        """Draw a slice of the BRDF's table, its polar plots and its albedo with matplotlib.
 
         >>> audit(load("paint.astm")).picture().savefig("paint.png")    # doctest: +SKIP
         """
@@ -133,7 +142,7 @@ class Audit(Shown):
         return draw_audit(self)
 
     def document(self) -> Document:
-        """Return the audit as a document: the picture, the rows and the findings."""
+        """Return the audit as a document for notebooks: its picture, results and findings."""
         caption = f"{self.name}: a slice of the table, the lobes and the albedo"
         return Document(
             self.name,
@@ -145,7 +154,7 @@ class Audit(Shown):
         )
 
     def _draw_png(self) -> bytes:
-        """Draw the picture as the bytes of a PNG file."""
+        """Draw the picture, and return it as the bytes of a PNG file."""
         from brdfkit.core.figures import to_png
 
         return to_png(self.picture(), DPI)
@@ -162,7 +171,7 @@ def audit(material: MaterialLike) -> Audit:
     Returns
     -------
     Audit
-        The audit, which prints as text; `findings()` are its doubts, `picture()` is a matplotlib
+        The audit, which prints as text. `findings()` returns warnings, and `picture()` a matplotlib
         `Figure`.
 
     Raises
@@ -179,8 +188,11 @@ def audit(material: MaterialLike) -> Audit:
     above = (samples.wi[:, 2] > 0) & (samples.wo[:, 2] > 0)
     values = samples.values[samples.valid]
     positive = values[values > 0]
-    negative_from, negative_to = _locate_negative(samples)
-    theta_i, theta_o = _list_angles(data, samples.wi), _list_angles(data, samples.wo)
+    negative_from, negative_to = _locate_negative_values(samples)
+    theta_i, theta_o = (
+        _list_measured_angles(data, samples.wi),
+        _list_measured_angles(data, samples.wo),
+    )
     coloured = to_rgb_or_mean(data)
     return Audit(
         name=data.name,
@@ -206,18 +218,19 @@ def audit(material: MaterialLike) -> Audit:
         noise=estimate_noise(data),
         albedo=compute_albedo(coloured, theta_i[-1]),
         albedo_of_samples=compute_sample_albedo(coloured),
-        grazing=grazing_ratio(part),
-        retroreflection=retroreflection_ratio(part),
-        backwards=backward_ratio(part),
+        grazing=compute_grazing_ratio(part),
+        retroreflection=compute_retroreflection_ratio(part),
+        backwards=compute_backward_ratio(part),
         spikes=find_spikes(data),
         data=data,
     )
 
 
-def _locate_negative(samples: Samples) -> tuple[float, float]:
-    """Return the angles to the normal [degrees] above and below which 9 of 10 negative values are.
+def _locate_negative_values(samples: Samples) -> tuple[float, float]:
+    """Return two angles to the normal [degrees] between which most negative values lie.
 
-    The larger angle of each pair counts. They are nan where no value is negative.
+    9 of 10 are above the first angle, and 9 of 10 below the second. The larger angle of each pair
+    of directions counts. Both are NaN where no value is negative.
     """
     below = samples.valid[:, None] & (samples.values < 0)
     cosines = np.minimum(samples.wi[:, 2], samples.wo[:, 2])
@@ -225,10 +238,11 @@ def _locate_negative(samples: Samples) -> tuple[float, float]:
     return tuple(np.percentile(angles, (10, 90)).tolist()) if angles.size else (np.nan, np.nan)
 
 
-def _list_angles(data: Measured, w: FloatArray) -> tuple[float, ...]:
-    """Return the angles to the normal [degrees] of the valid directions `w` (n, 3), ascending.
+def _list_measured_angles(data: Measured, w: FloatArray) -> tuple[float, ...]:
+    """Return the angles to the normal [degrees] of the valid samples' directions `w` (n, 3).
 
-    For a table, and for many angles, they are only the smallest and the largest.
+    They are ascending. For a table, and for many angles, only the smallest and the largest are
+    returned.
     """
     cosines = w[data.samples.valid, 2]
     if data.is_table:

@@ -1,4 +1,7 @@
-"""Computes the albedo over the angle of incidence: by the lookup, and of the samples alone."""
+"""Computes the albedo of a measurement over the angle of incidence, in two ways.
+
+The first way is by the interpolated BRDF, the second by linear interpolation of the samples alone.
+"""
 
 from dataclasses import dataclass
 
@@ -10,19 +13,19 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import compute_directional_albedo
 from brdfkit.model.samples import Samples
 
-DEGREES = np.arange(0, 90, 5)  # angles of incidence
-AZIMUTHS = 8  # azimuths of incidence for an anisotropic material
-LEAST_AREA = 0.75  # share of the disc of directions that samples must cover for their albedo
+DEGREES = np.arange(0, 90, 5)  # angles of incidence [degrees]
+AZIMUTHS = 8  # number of azimuths of incidence for an anisotropic material
+LEAST_AREA = 0.75  # samples must cover this share of the disc of directions for their albedo
 
 
 @dataclass(frozen=True)
 class Albedo:
-    """Reflected over incident light, for each angle of incidence and channel.
+    """The directional albedo of a measurement for several angles of incidence.
 
-    `theta_i`: angles of incidence [degrees], (n,); `values`: (n, channels), the mean over the
-    azimuth of incidence; `measured_to`: the largest measured angle of incidence [degrees], beyond
-    which the values are extrapolated; `brightest`: (n, channels), at the azimuth of incidence that
-    reflects most.
+    `channels`: names of the channels; `theta_i`: angles of incidence [degrees], (n,); `values`:
+    albedo as a mean over the azimuth of incidence, (n, channels); `measured_to`: largest measured
+    angle of incidence [degrees], beyond which the albedo is extrapolated; `brightest`: albedo at
+    the azimuth of incidence that reflects most, (n, channels).
     """
 
     channels: tuple[str, ...]
@@ -33,9 +36,9 @@ class Albedo:
 
 
 def compute_albedo(data: Measured, measured_to: float) -> Albedo:
-    """Return the albedo ∫ f cos θo dωo of a `Measured`, by its lookup.
+    """Compute the albedo ∫ f cos θo dωo of a `Measured` by its interpolated BRDF f.
 
-    `measured_to` is its largest measured θi [degrees].
+    `measured_to` is the largest measured angle of incidence [degrees].
     """
     azimuths = np.arange(AZIMUTHS) / AZIMUTHS * 2 * np.pi if data.anisotropic else (0.0,)
     values = np.array(
@@ -48,7 +51,7 @@ def compute_albedo(data: Measured, measured_to: float) -> Albedo:
 
 
 def compute_sample_albedo(data: Measured) -> Albedo | None:
-    """Return the albedo of scattered samples alone, where an angle of incidence has enough of them.
+    """Compute the albedo of scattered samples at each angle of incidence that has enough of them.
 
     Directions are projected onto the unit disc (sin θo cos φo, sin θo sin φo), where an area is
     cos θo dωo. There the BRDF is taken as linear between the samples, and as constant from the
@@ -71,24 +74,27 @@ def compute_sample_albedo(data: Measured) -> Albedo | None:
 
 
 def _integrate_over_disc(samples: Samples) -> FloatArray | None:
-    """Return ∫ f over the unit disc (channels,) from samples at one incidence; None for too few."""
+    """Integrate the BRDF over the unit disc of views, by samples at one incidence, (channels,).
+
+    The result is None where the samples are too few.
+    """
     from scipy.spatial import ConvexHull, Delaunay
 
-    # They are too few where they lie on a line, or cover too little of the disc
+    # The samples are too few where they lie on a line, or cover too little of the disc
     places, values = _project_to_disc(samples)
     if len(places) < 4 or np.linalg.matrix_rank(places - places[0], tol=1e-3) < 2:
         return None
-    hull = ConvexHull(places)  # its volume is an area
+    hull = ConvexHull(places)  # SciPy calls the area of a hull in the plane its volume
     if hull.volume < LEAST_AREA * np.pi:
         return None
 
-    # The outermost samples once more at the horizon
+    # Repeat the outermost samples at the horizon
     outermost = places[hull.vertices]
     rim = outermost / np.linalg.norm(outermost, axis=1, keepdims=True)
     places = np.concatenate([places, rim])
     values = np.concatenate([values, values[hull.vertices]])
 
-    # Linear on triangles between the samples; the polygon's area is scaled to the disc's
+    # Integrate linearly over triangles between the samples, and scale their area to the disc's
     corners = Delaunay(places).simplices
     (ax, ay), (bx, by) = (places[corners[:, k]].T - places[corners[:, 0]].T for k in (1, 2))
     area = np.abs(ax * by - ay * bx)
@@ -96,9 +102,10 @@ def _integrate_over_disc(samples: Samples) -> FloatArray | None:
 
 
 def _project_to_disc(samples: Samples) -> tuple[FloatArray, FloatArray]:
-    """Return places (n, 2) on the disc, and values (n, channels), of samples and mirror images.
+    """Return the views of samples as points (n, 2) of the unit disc, and the values (n, channels).
 
-    Samples at the same place are averaged.
+    The mirror image of each sample at the plane of incidence is added. Samples at the same point
+    are averaged.
     """
     radius = np.sin(to_angles(samples.wo)[0])
     azimuth = to_angles(samples.wo)[1] - to_angles(samples.wi)[1]

@@ -1,6 +1,6 @@
-"""Finds out whether an instrument counts phi_o from the mirror's side: a highlight at the light.
+"""Tests whether an instrument counts phi_o from the mirror's side, so that it is off by 180°.
 
-If so, a model fits the samples much better with phi_o turned by 180°.
+The highlight then lies at the light, and a model fits the samples much better after turning phi_o.
 """
 
 from dataclasses import replace
@@ -13,20 +13,20 @@ from brdfkit.model.samples import Samples
 from brdfkit.regression import losses, regress
 
 MODEL, STARTS = "ggx", 2
-FEWEST_SAMPLES, MOST_SAMPLES = 12, 1_000  # fewer say nothing, and more are not needed
-MAX_ANGLE = 85  # degrees: beyond it, few files are reliable
-TURN = np.array([-1.0, -1.0, 1.0])
-# Where the correlation of logarithms with how far wo lies towards the mirror direction is larger,
-# no fit is needed: in the recognised ones of 37 files turned by 180° it is -0.1 or less
+FEWEST_SAMPLES, MOST_SAMPLES = 12, 1_000  # fewer prove nothing, and more are not needed
+MAX_ANGLE = 85  # degrees from the normal, beyond which few files are reliable
+TURN = np.array([-1.0, -1.0, 1.0])  # factors of a direction's components for a turn by 180°
+# Where values correlate more than this with nearness to the mirror direction, no fit is needed. 37
+# files were turned by 180°: those that are recognised have a correlation of -0.1 or less
 CLEAR_CORRELATION = 0.1
 
 
 def compute_turned_error_ratio(samples: Samples) -> float:
-    """Return a model's error on `Samples` with phi_o turned by 180°, over its error as they are.
+    """Return a model's error on samples with phi_o turned by 180°, over its error on the originals.
 
-    The ratio is above 1 for materials with a highlight in the mirror direction, from 0.35 for
-    CUReT's materials that are brightest towards the light, and below 0.2 where the instrument
-    counts phi_o from the mirror's side, unless noise hides it. It is NaN for too few samples, and
+    The ratio is above 1 for materials with a highlight in the mirror direction. It is at least 0.35
+    for CUReT's materials that are brightest towards the light, and, unless noise hides it, below
+    0.2 where the instrument counts phi_o from the mirror's side. It is NaN for too few samples, and
     where values clearly become larger towards the mirror direction.
     """
     samples = samples.at(samples.valid)
@@ -34,15 +34,21 @@ def compute_turned_error_ratio(samples: Samples) -> float:
         rows = np.random.default_rng(0).choice(len(samples.wi), MOST_SAMPLES, replace=False)
         samples = samples.at(rows)
     inside = samples.within(MAX_ANGLE)
-    if inside.sum() < FEWEST_SAMPLES or _correlate_forwards(samples.at(inside)) > CLEAR_CORRELATION:
+    if (
+        inside.sum() < FEWEST_SAMPLES
+        or _correlate_with_mirror_direction(samples.at(inside)) > CLEAR_CORRELATION
+    ):
         return np.nan
     turned = replace(samples, wo=samples.wo * TURN)
-    error, turned_error = (_compute_error(s.at(inside)) for s in (samples, turned))
+    error, turned_error = (_compute_model_error(s.at(inside)) for s in (samples, turned))
     return turned_error / error if error > 0 else np.nan
 
 
-def _correlate_forwards(samples: Samples) -> float:
-    """Return how much larger values become towards the mirror direction, from -1 to 1."""
+def _correlate_with_mirror_direction(samples: Samples) -> float:
+    """Return the correlation of the values' logarithms with nearness to the mirror direction.
+
+    It is positive if values become larger towards the mirror direction.
+    """
     values = samples.values.mean(axis=1)
     rows = values > 0
     towards = -(samples.wi[rows, :2] * samples.wo[rows, :2]).sum(axis=1)
@@ -52,8 +58,8 @@ def _correlate_forwards(samples: Samples) -> float:
     return float(np.corrcoef(logs, towards)[0, 1])
 
 
-def _compute_error(samples: Samples) -> float:
-    """Return the model's error on the mean of the channels."""
+def _compute_model_error(samples: Samples) -> float:
+    """Fit the model to the samples' mean over the channels, and return the loss of the fit."""
     values = samples.values.mean(axis=1, keepdims=True)
     grey = Samples.from_arrays(samples.wi, samples.wo, values, None, ("Y",), "grey")
     model: Any = labels.model(MODEL)

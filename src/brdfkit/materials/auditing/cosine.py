@@ -1,7 +1,7 @@
-"""Finds out whether values are the BRDF times cos theta_o, by reciprocity or near the horizon.
+"""Tests whether measured values are the BRDF times cos theta_o, in place of the BRDF.
 
-Each test finds the power p of cos theta_o that the values have besides their BRDF. It is 1 where
-the cosine was never divided out, and about 0 where it was.
+Two tests, by reciprocity and by values near the horizon, estimate the power p for which the values
+are the BRDF times cos^p theta_o. It is 1 if the values contain the cosine, and about 0 if not.
 """
 
 import numpy as np
@@ -9,23 +9,25 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.materials.auditing.ratios import compute_light_and_mirror_cosines, cos_degrees
 from brdfkit.materials.auditing.subsets import draw_valid_samples
-from brdfkit.materials.auditing.symmetries import find_swapped
+from brdfkit.materials.auditing.symmetries import find_swapped_pairs
 from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Samples
 
-# By reciprocity: the least number of pairs, and the least factor between their two cosines
+# The test by reciprocity needs this number of pairs of samples, whose two cosines differ at least
+# by this factor
 FEWEST_PAIRS, LEAST_FACTOR = 6, 1.2
-# A fitted power p of the cosine within RECIPROCAL_POWERS is reported, if p = 1 leaves at most the
-# share LARGEST_REST of the differences. Of 194 materials none is reported; multiplied by the
-# cosine, 188 of them are.
+# It reports a power p within RECIPROCAL_POWERS if p = 1 leaves at most the share LARGEST_REST of
+# the differences unexplained. Of 194 materials it reports none; multiplied by the cosine, it
+# reports 188 of them
 RECIPROCAL_POWERS, LARGEST_REST = (0.6, 1.4), 0.45
-# Near the horizon: the ranges of theta_o [degrees] that are compared; the second of the steeper
-# ones counts where the first has too few samples
+# The test near the horizon compares values in ranges of theta_o [degrees]: one near the horizon
+# with the first steeper one that has enough samples
 GRAZING_RANGE, STEEPER_RANGES = (67.5, 89.5), ((39.5, 60.5), (19.5, 39.5))
-# Samples in each range, within BIN degrees of theta_i, so many degrees from light and mirror
+# It needs this number of samples in each range, whose theta_i are grouped in bins of BIN degrees,
+# and which lie this far from the light and from the mirror direction [degrees]
 FEWEST_SAMPLES, BIN, FROM_LIGHT, FROM_MIRROR = 2, 5, 15, 35
-# The powers that are a finding: of 199 materials none is above 0.64; times the cosine, 191 of them
-# have these
+# It reports a power p in this range. Of 199 materials none has a power above 0.64; multiplied by
+# the cosine, 191 of them are in the range
 HORIZON_POWERS = (0.7, 1.5)
 
 BY_RECIPROCITY = "exchanging wi and wo changes them as it changes this cosine"
@@ -35,11 +37,11 @@ BY_HORIZON = (
 
 
 def explain_suspected_cosine(data: Measured) -> str:
-    """Return why a `Measured` seems to hold the BRDF times cos theta_o; "" where it does not.
+    """Return the reason why a `Measured` seems to contain the BRDF times cos theta_o, or "".
 
-    Samples are tested by reciprocity where they have exchanged directions, else by how they fall
-    towards the horizon. A table holds one value for a pair of directions and the exchanged pair,
-    and a format with its own interpolation states what it holds; neither is tested.
+    Samples are tested by reciprocity if some have the directions of others exchanged, otherwise by
+    how they fall towards the horizon. Tables, and formats with their own interpolation, are not
+    tested, because they define what they contain.
     """
     if data.is_table or data.has_lookup:
         return ""
@@ -52,13 +54,13 @@ def explain_suspected_cosine(data: Measured) -> str:
 
 
 def compute_power_by_reciprocity(samples: Samples, anisotropic: bool) -> tuple[float, float, int]:
-    """Return the power p in f(wi, wo) / f(wo, wi) = (cos theta_o / cos theta_i)^p.
+    """Estimate the power p of cos theta_o in valid samples f, by exchanging wi and wo.
 
-    f are the values of valid `Samples`. The other results are the median |ln| of the ratio that
-    p = 1 leaves, over the median |ln| of the cosines' ratio, and the number of pairs. Without any
-    pair they are NaN, NaN, 0.
+    p solves f(wi, wo) / f(wo, wi) = (cos theta_o / cos theta_i)^p. The second result is the median
+    |ln| of the ratio that p = 1 leaves unexplained, over the median |ln| of the cosines' ratio; the
+    third is the number of pairs. Without any pair the results are NaN, NaN, 0.
     """
-    first, second = find_swapped(samples, anisotropic).T
+    first, second = find_swapped_pairs(samples, anisotropic).T
     values = samples.values.mean(axis=1)
     known = (values[first] > 0) & (values[second] > 0)
     cosines = np.log(samples.wo[first, 2] / samples.wi[first, 2])
@@ -73,10 +75,10 @@ def compute_power_by_reciprocity(samples: Samples, anisotropic: bool) -> tuple[f
 
 
 def compute_power_at_horizon(samples: Samples) -> float:
-    """Return the power p for which valid `Samples` fall towards the horizon as cos^p theta_o.
+    """Estimate the power p for which valid samples fall towards the horizon as cos^p theta_o.
 
-    It is the median over the angles of incidence; NaN where none has samples in both ranges of
-    theta_o, far from the light and from the mirror direction.
+    The result is the median over the angles of incidence. It is NaN where none has enough samples
+    in both ranges of theta_o, far from the light and from the mirror direction.
     """
     to_light, to_mirror = compute_light_and_mirror_cosines(samples)
     values, cosine = samples.values.mean(axis=1), samples.wo[:, 2]
@@ -99,7 +101,7 @@ def compute_power_at_horizon(samples: Samples) -> float:
 
 
 def _is_within(power: float, ends: tuple[float, float]) -> bool:
-    """Return whether a power is within its `ends`; NaN is not."""
+    """Return whether `power` lies between the two `ends`; False for NaN."""
     return ends[0] <= power <= ends[1]
 
 

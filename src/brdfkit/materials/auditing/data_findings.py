@@ -1,4 +1,7 @@
-"""Finds in milliseconds what a fit should know of its data, in sentences."""
+"""Warns in sentences of doubtful properties of a measurement, for its audit and for every fit.
+
+The tests take milliseconds.
+"""
 
 import math
 from weakref import WeakKeyDictionary
@@ -12,9 +15,9 @@ from brdfkit.materials.auditing.noise import estimate_noise
 from brdfkit.materials.auditing.ratios import (
     GRAZING,
     STEEP,
-    backward_ratio,
-    grazing_ratio,
-    retroreflection_ratio,
+    compute_backward_ratio,
+    compute_grazing_ratio,
+    compute_retroreflection_ratio,
 )
 from brdfkit.materials.auditing.subsets import draw_samples
 from brdfkit.materials.auditing.symmetries import compare_reciprocal
@@ -24,58 +27,64 @@ from brdfkit.materials.measured.coverage import is_in_plane
 from brdfkit.model.samples import Samples
 from brdfkit.regression.albedo import format_share
 
-# The limits above which something is a finding; for the two ratios *_BELOW, below which
-RECIPROCITY_ERROR, FEWEST_PAIRS = 0.1, 20  # a median difference, by at least so many pairs
+# Values are not reciprocal if the median difference is larger, of at least this number of pairs
+RECIPROCITY_ERROR, FEWEST_PAIRS = 0.1, 20
 # The median difference of two values that are equal but for noise, over this noise
 NOISE_TO_DIFFERENCE = 0.6745 * math.sqrt(2)
-GRAZING_BELOW, RETROREFLECTIVE = 0.5, 5  # ratios of `ratios.py`
-# The backward ratio alone, or with this retroreflection ratio; rough plaster has 3.5 and 1.6
+# Values fall towards the horizon if the grazing ratio is below the first number, and a material is
+# retroreflective if the retroreflection ratio is above the second (`ratios.py`)
+GRAZING_BELOW, RETROREFLECTIVE = 0.5, 5
+# The highlight is at the light if the backward ratio is above the first number, or if backward and
+# retroreflection ratio are above the two others; rough plaster has 3.5 and 1.6
 BACKWARD, BACKWARD_WITH_LOBE = 5, (2, 2.5)
-# The error ratio of a turned azimuth, where the backward ratio is not below the first
+# It is so, too, if a model fits turned samples better: if the error ratio is below the second
+# number, and the backward ratio not below the first
 LEAST_BACKWARD, TURNED_ERROR_BELOW = 0.9, 0.3
-SAME_ANGLE = 1.0  # degrees: angles of incidence that differ by less are one
-ZERO_SHARE = 0.01  # of samples that are 0
-MOST_EQUAL_NEGATIVE = 4  # values below 0
-LARGEST_ALBEDO, SMALLEST_ALBEDO = 1.25, 1e-3  # ...
-OBLIQUE = 60  # ... below this angle of incidence [degrees]
-ALONG_NORMAL = math.cos(math.radians(5))  # the cosine of directions along the normal
+SAME_ANGLE = 1.0  # degrees; angles of incidence that differ by less count as equal
+ZERO_SHARE = 0.01  # a larger share of samples that are 0 is reported
+MOST_EQUAL_NEGATIVE = 4  # a larger number of values with the same negative whole number is reported
+# An albedo above the first or below the second number, at incidences below OBLIQUE [degrees], means
+# that the unit is wrong
+LARGEST_ALBEDO, SMALLEST_ALBEDO = 1.25, 1e-3
+OBLIQUE = 60
+ALONG_NORMAL = math.cos(math.radians(5))  # directions with a larger cosine are along the normal
 
-# The sentences of each material: fits of many models ask for the same ones
+# The sentences on each material, which fits of many models ask for
 _cache: WeakKeyDictionary[Measured, dict[str, str]] = WeakKeyDictionary()
 
 
 def list_data_findings(data: Measured, max_angle: float = 90.0) -> tuple[str, ...]:
-    """Return sentences on what is doubtful in a `Measured`, as far as it is found quickly.
+    """Return a sentence on each doubtful property of a `Measured` that is found quickly.
 
-    `max_angle` is the largest angle to the normal [degrees] of the samples that are used; faults
-    beyond it are left out.
+    `max_angle` [degrees] is the largest angle to the normal of the samples that a fit uses; faults
+    beyond it are not reported.
     """
     if data not in _cache:
-        _cache[data] = {topic: text for topic, text in _describe(data).items() if text}
+        _cache[data] = {topic: text for topic, text in _describe_findings(data).items() if text}
     sentences = _cache[data]
     return tuple(s for topic, s in sentences.items() if topic != "horizon" or max_angle > GRAZING)
 
 
-def _describe(data: Measured) -> dict[str, str]:
-    """Return the sentences by their topics, "" for topics without a finding."""
+def _describe_findings(data: Measured) -> dict[str, str]:
+    """Test a `Measured` for faults of all kinds; return a sentence on each, or "", by its topic."""
     samples = draw_samples(data)
     cosine = _describe_cosine(data)
     return {
-        "azimuth": _describe_direction(data, samples),
+        "azimuth": _describe_backward_highlight(data, samples),
         "cosine": cosine,
         "reciprocity": "" if cosine else _describe_reciprocity(data),
         "horizon": "" if cosine else _describe_horizon(samples),
         "plane": _describe_plane(samples),
-        "incidence": _describe_incidence(samples),
+        "incidence": _describe_single_incidence(samples),
         "zero": _describe_zeros(samples),
         "sentinel": _describe_sentinel(samples),
         "unit": _describe_unit(data),
     }
 
 
-def _describe_direction(data: Measured, samples: Samples) -> str:
-    """Describe light that returns to its source, or azimuths that make it seem to return."""
-    ratio, near_light = backward_ratio(samples), retroreflection_ratio(samples)
+def _describe_backward_highlight(data: Measured, samples: Samples) -> str:
+    """Warn of a highlight at the light: of retroreflection, or azimuths that are off by 180°."""
+    ratio, near_light = compute_backward_ratio(samples), compute_retroreflection_ratio(samples)
     mendable = can_mend(data, "mirror_azimuth")
     beginning = ""
     has_lobe = ratio > BACKWARD_WITH_LOBE[0] and near_light > BACKWARD_WITH_LOBE[1]
@@ -106,7 +115,7 @@ def _describe_direction(data: Measured, samples: Samples) -> str:
 
 
 def _describe_cosine(data: Measured) -> str:
-    """Describe values that seem to be the BRDF times cos theta_o."""
+    """Warn of values that seem to be the BRDF times cos theta_o."""
     why = explain_suspected_cosine(data)
     if not why:
         return ""
@@ -117,7 +126,7 @@ def _describe_cosine(data: Measured) -> str:
 
 
 def _describe_reciprocity(data: Measured) -> str:
-    """Describe values that exchanging wi and wo changes by more than their noise."""
+    """Warn of values that are not reciprocal, where they differ by more than their noise."""
     difference = compare_reciprocal(data)
     if difference.pairs < FEWEST_PAIRS or not difference.median > RECIPROCITY_ERROR:
         return ""
@@ -131,8 +140,8 @@ def _describe_reciprocity(data: Measured) -> str:
 
 
 def _describe_horizon(samples: Samples) -> str:
-    """Describe values near the horizon that are darker than on most surfaces."""
-    ratio = grazing_ratio(samples)
+    """Warn of values that fall towards the horizon, as those of few surfaces do."""
+    ratio = compute_grazing_ratio(samples)
     if not ratio < GRAZING_BELOW:
         return ""
     return (
@@ -143,7 +152,7 @@ def _describe_horizon(samples: Samples) -> str:
 
 
 def _describe_plane(samples: Samples) -> str:
-    """Describe samples that all lie in the plane of incidence; along the normal there is none."""
+    """Warn of samples that all lie in the plane of incidence, which needs oblique directions."""
     oblique = (samples.wi[:, 2] < ALONG_NORMAL) & (samples.wo[:, 2] < ALONG_NORMAL)
     oblique &= samples.valid
     if not oblique.any() or not is_in_plane(samples):
@@ -154,8 +163,8 @@ def _describe_plane(samples: Samples) -> str:
     )
 
 
-def _describe_incidence(samples: Samples) -> str:
-    """Describe samples that all have the light at one angle to the normal."""
+def _describe_single_incidence(samples: Samples) -> str:
+    """Warn of samples that all have the same angle of incidence."""
     angles = np.degrees(np.arccos(np.clip(samples.wi[samples.valid, 2], -1, 1)))
     if len(angles) < 2 or np.ptp(angles) > SAME_ANGLE:
         return ""
@@ -166,7 +175,7 @@ def _describe_incidence(samples: Samples) -> str:
 
 
 def _describe_zeros(samples: Samples) -> str:
-    """Describe samples that are 0 in all channels, as no surface is."""
+    """Warn of samples that are 0 in all channels, which no surface is."""
     share = (samples.values[samples.valid] == 0).all(axis=1).mean()
     if not share > ZERO_SHARE:
         return ""
@@ -175,7 +184,7 @@ def _describe_zeros(samples: Samples) -> str:
 
 
 def _describe_sentinel(samples: Samples) -> str:
-    """Describe a negative whole number in many samples, such as -9999, which marks missing ones."""
+    """Warn of a negative whole number in many samples, such as -9999, a mark for missing values."""
     values = samples.values[samples.valid]
     whole = (values < 0) & (values == np.round(values))
     below, counts = np.unique(values[whole], return_counts=True)
@@ -189,7 +198,7 @@ def _describe_sentinel(samples: Samples) -> str:
 
 
 def _describe_unit(data: Measured) -> str:
-    """Describe a measurement that reflects more light than arrives, or next to none."""
+    """Warn of a wrong unit, if the albedo is above 1 or far below that of the blackest paints."""
     albedo = data.rgb.albedo
     angles = zip(albedo.theta_i, albedo.means, strict=False)
     shares = {angle: share for angle, share in angles if angle < OBLIQUE and share > 0}

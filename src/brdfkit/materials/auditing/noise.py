@@ -6,21 +6,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.materials.auditing.subsets import draw_valid_samples, thin_half_vectors
-from brdfkit.materials.auditing.symmetries import compute_relative_differences, find_mirrored
+from brdfkit.materials.auditing.subsets import draw_valid_samples, thin_out_theta_h
+from brdfkit.materials.auditing.symmetries import compute_relative_differences, find_mirrored_pairs
 from brdfkit.materials.measured import Measured
 
-TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, for normal noise
-FEWEST_DIFFERENCES = 20  # for an estimate
-LEAST_NOISE = 1e-6  # two values that differ by less are one measurement, written twice
+TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, for a normal distribution
+FEWEST_DIFFERENCES = 20  # an estimate needs at least this number of differences
+LEAST_NOISE = 1e-6  # if all values differ by less, they are copies of a single measurement
 
 
 @dataclass(frozen=True)
 class Noise:
-    """The noise of a measurement.
+    """The noise of a measurement, and how it was estimated.
 
-    `relative`: standard deviation of a value over the value, per channel, NaN where unknown;
-    `method`: how it was estimated, in words.
+    `relative`: standard deviation of a value over the value, for each channel, NaN where unknown;
+    `method`: source of the estimate, or the reason why there is none, in words.
     """
 
     relative: tuple[float, ...]
@@ -28,10 +28,10 @@ class Noise:
 
 
 def estimate_noise(data: Measured) -> Noise:
-    """Return the `Noise` that a measurement states, else an estimate.
+    """Estimate the `Noise` of a measurement.
 
-    The estimate comes from differences that should be 0: of mirrored samples, or along phi_d of a
-    table.
+    Standard errors that it states are used. Otherwise the noise is estimated from differences that
+    should be 0: those of mirrored samples, or fourth differences along phi_d of a table.
     """
     if data.standard_error is not None:
         values = np.where(data.values == 0, np.nan, data.values)
@@ -39,14 +39,14 @@ def estimate_noise(data: Measured) -> Noise:
         noise = _apply_to_channels(_compute_median, stated)
         return Noise(noise, "the standard error that the file states")
     if data.is_table:
-        differences = _compute_fourth_differences(thin_half_vectors(data.table))
+        differences = _compute_fourth_differences(thin_out_theta_h(data.table))
         noise = _apply_to_channels(_compute_sigma, differences)
         return Noise(noise, "fourth differences along phi_d")
     unknown = (np.nan,) * len(data.channels)
 
-    # Scattered samples that mirror each other; a difference has the noise of two values
+    # Compare scattered samples that mirror each other; √2: a difference has the noise of two values
     samples = draw_valid_samples(data)
-    rows, values = find_mirrored(samples, data.anisotropic), samples.values
+    rows, values = find_mirrored_pairs(samples, data.anisotropic), samples.values
     sigmas = tuple(
         _compute_sigma(compute_relative_differences(*channel[rows].T) / np.sqrt(2))
         for channel in values.T
@@ -59,31 +59,31 @@ def estimate_noise(data: Measured) -> Noise:
 
 
 def _compute_fourth_differences(f: FloatArray) -> FloatArray:
-    """Return relative fourth differences (n, channels) of table values along phi_d.
+    """Return fourth differences (n, channels) along phi_d of a table's values `f`, over the values.
 
-    They are scaled to the standard deviation of one value. A smooth BRDF leaves 10⁻⁵ of its value;
-    in second differences a highlight would leave 10⁻³.
+    They are scaled to have the standard deviation of one value. The fourth difference of a smooth
+    BRDF is 10⁻⁵ of its value, whereas its second difference reaches 10⁻³ in a highlight.
     """
     before, behind = f[..., :-4, :] + f[..., 4:, :], f[..., 1:-3, :] + f[..., 3:-1, :]
     middle = f[..., 2:-2, :]
     with np.errstate(divide="ignore", invalid="ignore"):
-        # √70: the root of the sum of the squared factors 1, 4, 6, 4, 1
+        # √70 is the root of the sum of the squared factors 1, -4, 6, -4, 1
         return ((before - 4 * behind + 6 * middle) / middle / np.sqrt(70)).reshape(-1, f.shape[-1])
 
 
 def _apply_to_channels(
     statistic: Callable[[FloatArray], float], values: FloatArray
 ) -> tuple[float, ...]:
-    """Return the `statistic` of each channel of `values` (n, channels)."""
+    """Return the `statistic`, such as the median, of each channel of `values` (n, channels)."""
     return tuple(statistic(column) for column in values.T)
 
 
 def _compute_sigma(differences: FloatArray) -> float:
-    """Return a standard deviation of `differences` that ignores outliers."""
+    """Return a robust estimate of the standard deviation of `differences`, by their median."""
     return TO_SIGMA * _compute_median(np.abs(differences))
 
 
 def _compute_median(values: FloatArray) -> float:
-    """Return the median of the finite values; NaN if they are too few."""
+    """Return the median of the finite `values`; NaN if there are fewer than 20."""
     values = values[np.isfinite(values)]
     return float(np.median(values)) if values.size >= FEWEST_DIFFERENCES else np.nan

@@ -1,4 +1,4 @@
-"""Draws an `Audit`: a slice of the table, the lobes and the albedo."""
+"""Draws an `Audit` with matplotlib: a slice of the BRDF's table, polar plots and the albedo."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -19,15 +19,17 @@ from brdfkit.materials.plotting.plane_of_incidence import choose_angles
 from brdfkit.model.samples import Table
 
 SIZE = 12.6, 6.8  # inches
-GREY = "0.45"  # legend entries that stand for all channels
-COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2"}  # of the channels; others are black
-TICKS = np.array([0, 1, 5, 10, 20, 40, 60, 90])  # degrees of theta_h
-LARGEST_RATIO = 4  # an albedo of samples above so many times the looked-up one is out of range
-FAINT_OPACITY = 0.35  # of cells that were not measured
+GREY = "0.45"  # colour of legend entries that stand for all channels
+COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2"}  # by channel; others are black
+TICKS = np.array([0, 1, 5, 10, 20, 40, 60, 90])  # theta_h [degrees] at the ticks of its axis
+# The scale of the albedo ends at this multiple of the interpolated BRDF's albedo, if the albedo of
+# the samples alone is larger
+LARGEST_RATIO = 4
+FAINT_OPACITY = 0.35  # opacity of cells that were not measured
 
 
 def draw_audit(audit: Any) -> Figure:
-    """Draw an `Audit` as a matplotlib `Figure`."""
+    """Draw the slice, the albedo and the polar plots of an `Audit` in one matplotlib `Figure`."""
     data = to_rgb_or_mean(audit.data)
     figure: Any = Plot(figsize=SIZE, layout="constrained")
     layout: Any = figure.get_layout_engine()
@@ -45,27 +47,31 @@ def draw_audit(audit: Any) -> Figure:
 
 
 def _draw_title(figure: Figure, audit: Any) -> None:
-    """Write the name, the kind and the coverage above the picture."""
+    """Write the material's name, kind of data and coverage above the picture."""
     how = "in valid cells" if audit.data.is_table else "measured"
     covered = f"{to_percent(audit.coverage.measured)} of the direction pairs {how}"
     text = f"{audit.name}: {audit.kind}, {audit.valid:,} valid, {covered}"
-    figure.suptitle(text.replace("$", r"\$"), fontsize=12)  # $ begins a formula
+    # Escape the dollar sign, which begins a formula in matplotlib's texts
+    figure.suptitle(text.replace("$", r"\$"), fontsize=12)
 
 
 def _draw_slice(figure: Any, axes: Any, data: Measured) -> None:
-    """Draw the luminance over theta_h and theta_d; hatched and faint where it was not measured."""
-    # The cells at phi_d ≈ 90°
+    """Draw a table's luminance over theta_h and theta_d, for phi_d ≈ 90°.
+
+    It is hatched and faint where it was not measured.
+    """
+    # Select the cells at phi_d ≈ 90°
     table = data.table
     across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
     cells = (0,) * table.anisotropic + (slice(None), slice(None), across)
     values = luminance(table.filled_values[cells])
     known = is_measured(data, table, cells)
 
-    # The picture; theta_h by its square root, as in a table
+    # Draw the cells; the axis of theta_h is linear in its square root, as in a table
     axes.patch.set(facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0)
-    norm = make_scale(values[known] if known.any() else values)
+    norm = make_colour_scale(values[known] if known.any() else values)
     image = axes.imshow(
-        np.maximum(values, 0.99 * norm.vmin).T,  # 0 gets the colour of values below the scale, too
+        np.maximum(values, 0.99 * norm.vmin).T,  # so that 0 gets the colour for "below the scale"
         norm=norm,
         alpha=np.where(known, 1, FAINT_OPACITY).T,
         extent=(0, 1, 0, 90),
@@ -78,7 +84,7 @@ def _draw_slice(figure: Any, axes: Any, data: Measured) -> None:
     axes.set_xlabel(r"$\theta_h$")
     axes.set_ylabel(r"$\theta_d$")
 
-    # The title and the colour bar
+    # Add the title and the colour bar
     phi_d = np.degrees(table.centres[-1][across])
     hatched = "" if known.all() else "; hatched: not measured"
     what = "luminance" if data.channels in (RGB, ("Y",)) else "mean"
@@ -90,15 +96,18 @@ def _draw_slice(figure: Any, axes: Any, data: Measured) -> None:
 
 
 def is_measured(data: Measured, table: Table, cells: Any) -> BoolArray:
-    """Return a mask of the `cells` of a slice, by an index, that were measured or near a sample."""
+    """Return a mask of the cells of a table that were measured, or are near a measured sample.
+
+    `cells` is an index of the table, which selects a slice.
+    """
     if data.is_table:
         return np.isfinite(table.values[cells]).all(axis=-1)
     wi, wo = (w[cells].reshape(-1, 3) for w in table.directions())
     return is_near_sample(data, wi, wo).reshape(table.values[cells].shape[:-1])
 
 
-def make_scale(values: FloatArray) -> Any:
-    """Make a logarithmic scale of matplotlib's for `values`, without 1 % of them at either end."""
+def make_colour_scale(values: FloatArray) -> Any:
+    """Make a logarithmic colour scale for `values`, without the lowest and the highest 1 %."""
     from matplotlib.colors import LogNorm
 
     positive = values[values > 0]
@@ -109,8 +118,11 @@ def make_scale(values: FloatArray) -> Any:
 
 
 def _draw_albedo(axes: Any, audit: Any) -> None:
-    """Draw the albedo over the angle of incidence: by the lookup, and of the samples alone."""
-    # Lines of the lookup, dotted where it is extrapolated
+    """Draw the albedo over the angle of incidence: lines for the interpolated BRDF, and circles.
+
+    The circles are albedos of the samples alone.
+    """
+    # Draw lines, dotted where the BRDF is extrapolated
     albedo, samples = audit.albedo, audit.albedo_of_samples
     measured = albedo.theta_i <= albedo.measured_to + 1
     last = int(np.flatnonzero(measured)[-1])
@@ -122,7 +134,7 @@ def _draw_albedo(axes: Any, audit: Any) -> None:
     if not measured.all():
         axes.plot([], ":", color=GREY, linewidth=1.8, label="extrapolated")
 
-    # Circles of the samples
+    # Draw the circles
     top = 1.12 * albedo.values.max() or 1.0
     if samples:
         top = max(top, 1.12 * min(samples.values.max(), LARGEST_RATIO * albedo.values.max()))
@@ -140,11 +152,9 @@ def _draw_albedo(axes: Any, audit: Any) -> None:
 
 
 def _draw_sample_albedo(axes: Any, samples: Albedo, top: float) -> None:
-    """Draw circles at the albedos of the samples, and triangles at the edge where out of range.
-
-    The triangles of the channels stand side by side, as they may be out of range together.
-    """
-    beside = 2.0 * (np.arange(len(samples.channels)) - (len(samples.channels) - 1) / 2)  # degrees
+    """Draw circles at the albedos of the samples; those above `top` or below 0 become triangles."""
+    # Triangles of several channels stand side by side, a few degrees of theta_i apart
+    beside = 2.0 * (np.arange(len(samples.channels)) - (len(samples.channels) - 1) / 2)
     for channel, values, aside in zip(samples.channels, samples.values.T, beside, strict=True):
         style = {"linestyle": "", "color": COLOURS.get(channel, "black")}
         for marker, outside in (("^", values > top), ("v", values < 0)):

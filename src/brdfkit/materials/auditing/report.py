@@ -1,4 +1,4 @@
-"""Describes an `Audit` in words: the rows and sentences that `brdfkit info` prints."""
+"""Describes an `Audit` in words: the results and warnings that `brdfkit info` prints."""
 
 import math
 from typing import Any
@@ -11,14 +11,13 @@ from brdfkit.materials.auditing.symmetries import Difference
 from brdfkit.materials.measured.coverage import Coverage
 from brdfkit.materials.measured.spectrum_to_rgb import format_channels
 
-MOST_SPIKES = 3  # spikes that are named; the others are counted
-# The limits above which something is a finding
-NEGATIVE_SHARE = 0.01  # of the values
-LARGEST_ALBEDO = 1.001  # because the quadrature is accurate to 10⁻³
+MOST_SPIKES = 3  # number of spikes that are described; the others are counted
+NEGATIVE_SHARE = 0.01  # a larger share of negative values is reported as a finding
+LARGEST_ALBEDO = 1.001  # a larger albedo is reported; the quadrature is accurate to 10⁻³
 
 
 def describe_audit(audit: Any) -> dict[str, str]:
-    """Return what an `Audit` says was measured and how well: texts by heading."""
+    """Describe what was measured and how well, by the results of an `Audit`: texts by heading."""
     unit = "cells" if audit.data.is_table else "samples"
     below = audit.size - audit.above
     beneath = f"; {below:,} at or below the horizon" if below else ""
@@ -41,8 +40,8 @@ def describe_audit(audit: Any) -> dict[str, str]:
 
 
 def list_findings(audit: Any) -> tuple[str, ...]:
-    """Return a sentence on each finding of an `Audit`."""
-    findings = [*_describe_spikes(audit.spikes), *_describe_energy(audit)]
+    """Return a sentence on each doubtful property that an `Audit` has found."""
+    findings = [*_describe_spikes(audit.spikes), *_describe_excess_albedo(audit)]
     share = audit.negative / (audit.valid * len(audit.channels))
     if share > NEGATIVE_SHARE:
         findings.append(
@@ -53,7 +52,7 @@ def list_findings(audit: Any) -> tuple[str, ...]:
 
 
 def _describe_negative(audit: Any) -> str:
-    """Describe how many of the values are below 0, and where."""
+    """Describe how many of the values are below 0, and at which angles to the normal."""
     values = audit.valid * len(audit.channels)
     count = f"{audit.negative:,} of {values:,} values"
     if not audit.negative:
@@ -66,14 +65,14 @@ def _describe_negative(audit: Any) -> str:
 
 
 def _describe_range(audit: Any) -> str:
-    """Describe the smallest, the largest and the median value."""
+    """Describe the smallest, largest and median BRDF value."""
     if math.isnan(audit.smallest):
         return "nowhere above 0"
     return f"{audit.smallest:.4g} to {audit.largest:.4g} sr⁻¹, median {audit.median:.4g}"
 
 
 def _describe_coverage(coverage: Coverage, is_table: bool) -> str:
-    """Describe the coverage; a table does not say what was interpolated before it was written."""
+    """Describe which shares of all pairs of directions were measured and are extrapolated."""
     shares = (coverage.measured, coverage.between, coverage.beyond)
     measured, between, beyond = map(to_percent, shares)
     if is_table and measured == "100 %":
@@ -86,16 +85,16 @@ def _describe_coverage(coverage: Coverage, is_table: bool) -> str:
 
 
 def _join_angles(angles: tuple[float, ...]) -> str:
-    """Return a list of angles [degrees], or the first and the last of two."""
+    """Return a text that lists angles [degrees], or, if they are two, gives a range."""
     if len(angles) > 2:
         return ", ".join(f"{a:g}" for a in angles) + "°"
     return " to ".join(f"{a:g}°" for a in angles)
 
 
 def to_percent(share: float) -> str:
-    """Return a share in percent, to two digits.
+    """Return a text with a share in percent, to two digits.
 
-    A share above 0 is never shown as 0, and a share below 1 never as 100 %.
+    A share above 0 is never rounded to 0, nor one below 0.99999 to 100 %.
     """
     share = 100 * share
     if 0 < share < 0.001:
@@ -106,14 +105,17 @@ def to_percent(share: float) -> str:
 
 
 def _describe_reciprocity(audit: Any) -> str:
-    """Describe the difference that exchanging the directions makes."""
+    """Describe how far values differ after exchanging the directions of light and view."""
     if audit.data.is_table and not audit.reciprocity and audit.data.table.phi_d_period < 4:
         return "by construction: the table holds each pair once"
     return _describe_difference(audit.reciprocity, "no pairs measured both ways")
 
 
 def _describe_difference(difference: Difference, without: str) -> str:
-    """Describe a `Difference`; `without` says what is missing where there is none."""
+    """Describe how far values that should be equal differ.
+
+    `without` says why, where no values could be compared.
+    """
     if not difference:
         return f"not testable: {without}"
     return (
@@ -123,7 +125,7 @@ def _describe_difference(difference: Difference, without: str) -> str:
 
 
 def _describe_noise(noise: Noise) -> str:
-    """Describe the noise of all channels, and how it was estimated."""
+    """Describe the relative noise of the channels, and how it was estimated."""
     known = [n for n in noise.relative if not math.isnan(n)]
     if not known:
         return noise.method
@@ -132,25 +134,26 @@ def _describe_noise(noise: Noise) -> str:
 
 
 def _describe_albedos(audit: Any) -> dict[str, str]:
-    """Describe the albedo by the lookup, and of the samples alone."""
-    rows = {"albedo": f"{_join_ends(audit.albedo)}, over θi 0° to {audit.albedo.theta_i[-1]:g}°"}
+    """Describe the albedo, by heading: by the interpolated BRDF, and by the samples alone."""
+    ends = _join_albedo_ranges(audit.albedo)
+    rows = {"albedo": f"{ends}, over θi 0° to {audit.albedo.theta_i[-1]:g}°"}
     if audit.albedo_of_samples:
         low, high = audit.albedo_of_samples.theta_i[[0, -1]]
-        ends = _join_ends(audit.albedo_of_samples)
+        ends = _join_albedo_ranges(audit.albedo_of_samples)
         rows["albedo of samples"] = (
             f"{ends}, over θi {low:g}° to {high:g}°, linear between the samples"
         )
     return rows
 
 
-def _join_ends(albedo: Albedo) -> str:
-    """Return the smallest and the largest albedo of each channel."""
+def _join_albedo_ranges(albedo: Albedo) -> str:
+    """Return a text with the smallest and the largest albedo of each channel."""
     columns = zip(albedo.channels, albedo.values.T, strict=True)
     return ", ".join(f"{name} {a.min():.3f} to {a.max():.3f}" for name, a in columns)
 
 
-def _describe_energy(audit: Any) -> list[str]:
-    """Return a sentence on each albedo that is above 1."""
+def _describe_excess_albedo(audit: Any) -> list[str]:
+    """Return a sentence on each kind of albedo that is above 1 somewhere."""
     sentences = []
     for albedo, what in (
         (audit.albedo, "albedo, interpolated," if audit.albedo_of_samples else "albedo"),
@@ -171,7 +174,7 @@ def _describe_energy(audit: Any) -> list[str]:
 
 
 def _describe_spikes(spikes: tuple[Spike, ...]) -> list[str]:
-    """Return a sentence on each of the worst spikes, and one on the number of the others."""
+    """Return a sentence on each of the worst spikes, and one that counts the others."""
     named = [f"spike at {spike}" for spike in spikes[:MOST_SPIKES]]
     more = len(spikes) - MOST_SPIKES
     return [*named, f"and {more:,} more spikes"] if more > 0 else named

@@ -1,6 +1,6 @@
-"""Finds lone spikes: values far above all their neighbours.
+"""Finds spikes in a measurement: single values far above all their neighbours.
 
-The products f cos θi cos θo are compared, because the BRDF f of a smooth surface grows towards the
+The products f cos θi cos θo are compared, because the BRDF f of a smooth surface rises towards the
 horizon as 1 / (4 cos θi cos θo), which is no spike.
 """
 
@@ -14,17 +14,18 @@ from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Table
 from brdfkit.model.samples.coordinates import compute_coordinates
 
-LEAST_FACTOR = 4  # over the largest neighbour; rough and smooth paints, cloth and stone reach 3.4
-NEIGHBOURS = 6  # of a scattered sample
+# A spike exceeds its largest neighbour by this factor; paints, cloth and stone reach 3.4
+LEAST_FACTOR = 4
+NEIGHBOURS = 6  # number of neighbours of a scattered sample
 
 
 @dataclass(frozen=True)
 class Spike:
-    """A suspicious sample.
+    """A suspicious sample, far above its neighbours.
 
-    `theta_i`, `theta_o`, `delta_phi`: its angles [degrees], with delta_phi = 180 for the azimuth of
-    the mirror direction; `value`: its mean over the channels [sr⁻¹]; `factor`: its f cos θi cos θo
-    over the largest among its neighbours.
+    `theta_i`, `theta_o`: angles to the normal of light and view [degrees]; `delta_phi`: azimuth
+    between them [degrees], 180 in the mirror direction; `value`: mean over the channels [sr⁻¹];
+    `factor`: f cos θi cos θo over the largest one of its neighbours, where f is the value.
     """
 
     theta_i: float
@@ -41,13 +42,13 @@ class Spike:
 
 
 def find_spikes(data: Measured) -> tuple[Spike, ...]:
-    """Return the spikes of a `Measured`, the worst first.
+    """Find the spikes of a `Measured`, and return them, the worst first.
 
     A spike is brighter than the median, and more than 4 times its largest neighbour. The neighbours
     of a table's cell share a side with it; the neighbours of a sample are the 6 samples with the
     nearest half and difference vectors.
     """
-    # The values, and the largest of their neighbours; clipped zeros count as nearly 0
+    # Find the largest neighbour of each value, bounded below lest all values beside zeros be spikes
     samples = data.samples
     brightness = np.where(samples.valid, samples.values.mean(axis=1), np.nan)
     projected = brightness * samples.wi[:, 2] * samples.wo[:, 2]
@@ -57,7 +58,7 @@ def find_spikes(data: Measured) -> tuple[Spike, ...]:
         around = _find_largest_nearby(data, projected)
     around = np.maximum(around, 1e-3 * abs(np.nanmedian(projected)))
 
-    # The spikes, the worst first
+    # Sort the spikes by their factor
     stands_out = (projected > LEAST_FACTOR * around) & (brightness > np.nanmedian(brightness))
     worst = np.flatnonzero(stands_out)
     worst = worst[np.argsort(-projected[worst] / around[worst])]
@@ -68,21 +69,27 @@ def find_spikes(data: Measured) -> tuple[Spike, ...]:
 
 
 def _find_largest_adjacent(table: Table, values: FloatArray) -> FloatArray:
-    """Return for each cell the largest of `values` in the cells that share a side, or NaN; (n,)."""
+    """Return for each cell the largest of `values` (n,) in the cells that share a side with it.
+
+    The result (n,) is NaN where these have no values.
+    """
     f = values.reshape(table.shape)
     around = np.full(f.shape, np.nan)
     for axis in range(f.ndim):
         here, there = np.moveaxis(around, axis, 0), np.moveaxis(f, axis, 0)
         np.fmax(here[1:], there[:-1], out=here[1:])
         np.fmax(here[:-1], there[1:], out=here[:-1])
-        if axis not in (f.ndim - 3, f.ndim - 2):  # an azimuth: its ends are neighbours
+        if axis not in (f.ndim - 3, f.ndim - 2):  # the ends of an axis of azimuths are neighbours
             np.fmax(here[0], there[-1], out=here[0])
             np.fmax(here[-1], there[0], out=here[-1])
     return around.reshape(-1)
 
 
 def _find_largest_nearby(data: Measured, values: FloatArray) -> FloatArray:
-    """Return for each sample the largest of `values` at the nearest valid ones, or NaN; (n,)."""
+    """Return for each sample the largest of `values` (n,) at the nearest valid samples.
+
+    The result (n,) is NaN for samples that are not valid, and where there are too few samples.
+    """
     from scipy.spatial import cKDTree
 
     samples, valid = data.samples, np.flatnonzero(data.samples.valid)

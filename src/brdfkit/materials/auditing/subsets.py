@@ -1,4 +1,4 @@
-"""Draws a part of a large measurement, whose medians are found in milliseconds."""
+"""Draws a random part of a large measurement, so that statistics are computed in milliseconds."""
 
 import numpy as np
 
@@ -7,24 +7,24 @@ from brdfkit.core.geometry.directions import from_half_difference
 from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Samples, Table
 
-MOST_SAMPLES = 50_000  # samples, or cells, that are drawn
-MOST_CELLS = 200_000  # cells of a table that are compared with each other
+MOST_SAMPLES = 50_000  # largest number of samples, or cells, that are drawn
+MOST_CELLS = 200_000  # largest number of cells of a table that are compared with each other
 
 
-def draw_rows(count: int) -> IntArray:
-    """Return the numbers of at most 50,000 of `count` rows, ascending, and equal in each call."""
+def draw_row_numbers(count: int) -> IntArray:
+    """Draw the numbers of at most 50,000 of `count` rows, ascending, the same ones in each call."""
     if count <= MOST_SAMPLES:
         return np.arange(count)
     return np.unique(np.random.default_rng(0).integers(count, size=MOST_SAMPLES))
 
 
 def draw_samples(data: Measured) -> Samples:
-    """Return at most 50,000 samples of a `Measured`, or cells of a table as samples."""
+    """Draw at most 50,000 samples of a `Measured`; cells of a table are converted to samples."""
     if not data.is_table:
         samples, count = data.samples, len(data.samples.wi)
-        return samples if count <= MOST_SAMPLES else samples.at(draw_rows(count))
+        return samples if count <= MOST_SAMPLES else samples.at(draw_row_numbers(count))
     table = data.table
-    cells = draw_rows(table.values[..., 0].size)
+    cells = draw_row_numbers(table.values[..., 0].size)
     places = np.unravel_index(cells, table.shape)
     *phi_h, theta_h, theta_d, phi_d = map(np.take, table.centres, places)
     wi, wo = from_half_difference(theta_h, theta_d, phi_d, *phi_h)
@@ -34,12 +34,12 @@ def draw_samples(data: Measured) -> Samples:
 
 
 def draw_valid_samples(data: Measured) -> Samples:
-    """Return the valid ones of `draw_samples`."""
+    """Draw at most 50,000 samples of a `Measured`, and return the valid ones among them."""
     samples = draw_samples(data)
     return samples.at(samples.valid)
 
 
-def thin_half_vectors(table: Table) -> FloatArray:
-    """Return the values of a `Table`; of a large one, at every second, third, ... theta_h."""
+def thin_out_theta_h(table: Table) -> FloatArray:
+    """Return the values of a `Table`, of a large one only at every second or further theta_h."""
     step = -(-table.values[..., 0].size // MOST_CELLS)
     return table.values[..., ::step, :, :, :]

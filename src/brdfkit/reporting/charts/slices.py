@@ -13,7 +13,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.colours import luminance
 from brdfkit.core.pages import images
-from brdfkit.materials.auditing.picture import is_measured, make_scale
+from brdfkit.materials.auditing.picture import is_measured, make_colour_scale
 from brdfkit.materials.measured import Measured
 from brdfkit.regression import Fit
 from brdfkit.reporting.charts.svg import Axis, Chart, make_linear_axis
@@ -35,7 +35,7 @@ def draw_slices(material: Measured, fits: Sequence[Fit]) -> dict[str, Any]:
     wi, wo = (w[cells] for w in table.directions())
     known = is_measured(data, table, cells)
     measured = luminance(table.filled_values[cells])
-    scale = make_scale(measured[known] if known.any() else measured)
+    scale = make_colour_scale(measured[known] if known.any() else measured)
 
     def draw_slice(title: str, shares: FloatArray, colour_map: str) -> str:
         """Return a slice as SVG text; `shares` (θh, θd): positions from 0 to 1 on a colour map."""
