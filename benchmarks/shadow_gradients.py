@@ -4,10 +4,10 @@ import drjit as dr
 from drjit.llvm.ad import Array3f64 as P
 from drjit.llvm.ad import Float64 as Float
 
-from brdfkit.distance_fields.shadows import light_cone
-from brdfkit.distance_fields.shadows.marches import linear
-from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.split import split
+from brdfkit.distance_fields.shadows import make_light_cone
+from brdfkit.distance_fields.shadows.marches import compute_linear_shadow
+from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
+from brdfkit.distance_fields.shadows.split import compute_split_shadow
 
 BALL, STEP, TRUE_STEP, TRUE_RAYS = 0.02, 0.005, 0.05, 20_000
 
@@ -48,17 +48,23 @@ def measure():
 
         def share(method, x, *settings, scene=scene):
             light, radius, field = scene(Float(x))
-            return method(field, light_cone(P(0, 0, 0), light, radius, BALL), *settings).visible
+            return method(
+                field, make_light_cone(P(0, 0, 0), light, radius, BALL), *settings
+            ).visible
 
         def difference(method, step, *settings, at=at, share=share):
             both = (share(method, at + s, *settings)[0] for s in (step, -step))
             return float(next(both) - next(both)) / (2 * step)
 
-        found[name] = {"truth": difference(monte_carlo, TRUE_STEP, TRUE_RAYS, 1e-5)}
-        for method, epsilon in ((linear, 1 / 256), (split, 1 / 2000)):
+        found[name] = {"truth": difference(compute_monte_carlo_shadow, TRUE_STEP, TRUE_RAYS, 1e-5)}
+        methods = (
+            ("linear", compute_linear_shadow, 1 / 256),
+            ("split", compute_split_shadow, 1 / 2000),
+        )
+        for label, method, epsilon in methods:
             x = Float(at)
             dr.enable_grad(x)
             dr.backward(share(method, x, 1 / 20))
-            found[name][method.__name__] = float(dr.grad(x)[0])
-            found[name][f"{method.__name__}, difference"] = difference(method, STEP, epsilon)
+            found[name][label] = float(dr.grad(x)[0])
+            found[name][f"{label}, difference"] = difference(method, STEP, epsilon)
     return found

@@ -21,10 +21,10 @@ import occluders
 import shadow_gradients
 import single_ray_shadows_page as page
 
-from brdfkit.distance_fields.shadows.marches import convex, linear
-from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.split import split
-from brdfkit.distance_fields.shadows.tau import tau
+from brdfkit.distance_fields.shadows.marches import compute_convex_shadow, compute_linear_shadow
+from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
+from brdfkit.distance_fields.shadows.split import compute_split_shadow
+from brdfkit.distance_fields.shadows.tau import lit_disc_share
 from brdfkit.core.json_values import round_numbers
 from brdfkit.theses.balint2019.dense import dense
 from brdfkit.theses.balint2019.rivals import aaltonen, base, discrete, quilez
@@ -34,19 +34,24 @@ DIGITS = 4  # of numbers in it
 LANES, TRUE_RAYS, HIT = 4096, 2048, 1e-4  # random scenes of a kind, and rays of the truth
 SIZE, FRAME_RAYS = 160, 512  # pixels along a side of a frame, and rays of its truth
 RAYS = 1, 2, 4, 8, 16, 32, 64, 128
-MARCHES = {m.__name__: m for m in (base, linear, discrete, convex)}
+MARCHES = {
+    "base": base,
+    "linear": compute_linear_shadow,
+    "discrete": discrete,
+    "convex": compute_convex_shadow,
+}
 REPEATS = 8
 
 
 def methods():
     """Label → the function of a field and a cone."""
     found = {f"{n} 1/20": partial(m, epsilon=1 / 20) for n, m in MARCHES.items()}
-    found |= {"linear 1/10": partial(linear, epsilon=1 / 10)}
-    found |= {"linear 1/256": partial(linear, epsilon=1 / 256)}
-    found |= {f"split 1/{n}": partial(split, epsilon=1 / n) for n in (5, 10, 20)}
-    found |= {"split, 19 cones, 1/10": partial(split, epsilon=1 / 10, rings=2)}
+    found |= {"linear 1/10": partial(compute_linear_shadow, epsilon=1 / 10)}
+    found |= {"linear 1/256": partial(compute_linear_shadow, epsilon=1 / 256)}
+    found |= {f"split 1/{n}": partial(compute_split_shadow, epsilon=1 / n) for n in (5, 10, 20)}
+    found |= {"split, 19 cones, 1/10": partial(compute_split_shadow, epsilon=1 / 10, rings=2)}
     found |= {"quilez": quilez, "aaltonen": aaltonen}
-    return found | {f"monte_carlo {n}": partial(monte_carlo, rays=n) for n in RAYS}
+    return found | {f"monte_carlo {n}": partial(compute_monte_carlo_shadow, rays=n) for n in RAYS}
 
 
 def timed(calls):
@@ -85,9 +90,9 @@ def measure_occluder(kind):
     lanes = occluders.Lanes(LANES, seed=0)
     field = kind(lanes)
     if kind is occluders.half_plane:
-        truth = np.array(tau(dr.llvm.Float(lanes.edge)))  # in closed form
+        truth = np.array(lit_disc_share(dr.llvm.Float(lanes.edge)))  # in closed form
     else:
-        truth = np.array(monte_carlo(field, lanes.cone, TRUE_RAYS, HIT).visible)
+        truth = np.array(compute_monte_carlo_shadow(field, lanes.cone, TRUE_RAYS, HIT).visible)
     model = np.array(dense(field, lanes.cone).visible)
     rows = compare(field, lanes.cone, truth)
     for name, march in MARCHES.items():
@@ -100,7 +105,9 @@ def measure_occluder(kind):
 def measure_frame(scene, radius):
     """A frame of shadows on the ground: all methods against the true light."""
     field, cone = scene(), ground_scenes.ground(SIZE, radius)
-    return compare(field, cone, np.array(monte_carlo(field, cone, FRAME_RAYS, HIT).visible))
+    return compare(
+        field, cone, np.array(compute_monte_carlo_shadow(field, cone, FRAME_RAYS, HIT).visible)
+    )
 
 
 def parts():

@@ -4,17 +4,17 @@ import ground_scenes
 import numpy as np
 from brdfkit.theses.balint2019.rivals import quilez
 
-from brdfkit.distance_fields.shadows.marches import linear
-from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.split import split
+from brdfkit.distance_fields.shadows.marches import compute_linear_shadow
+from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
+from brdfkit.distance_fields.shadows.split import compute_split_shadow
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 
 FAMILIES = "monte_carlo", "linear", "base", "discrete", "convex", "split", "quilez", "aaltonen"
 SIZE, RADIUS = 200, 1.0
 PICTURES = {
-    "256 rays": lambda field, cone: monte_carlo(field, cone, 256),
-    "split, ε = 1/10": lambda field, cone: split(field, cone, 1 / 10),
-    "linear, ε = 1/20": linear,
+    "256 rays": lambda field, cone: compute_monte_carlo_shadow(field, cone, 256),
+    "split, ε = 1/10": lambda field, cone: compute_split_shadow(field, cone, 1 / 10),
+    "linear, ε = 1/20": compute_linear_shadow,
     "quilez": quilez,
 }
 

@@ -85,8 +85,8 @@ class hasty(gyroid):
 
 
 check_steps(hasty(0.35).scale(0.17) & sphere(0.9))
-# BrdfkitError: the field is -0.0101 at (0.408, -0.0587, 0.00171), yet its surface is within 0.0099
-# of that: it is steeper than its bound 1; divide it by its slope.
+# BrdfkitError: the field is -0.0101 at (0.408, -0.0587, 0.00171), but its surface is less than
+# 0.0099 away: it is steeper than its bound 1; divide it by its slope.
 ```"""
 MORE = """Errors of all methods on nine kinds of occluders: [errors of single-ray
 shadows](single_ray_shadows.md). Derivatives through shadows: the notebook [Shadow of a

@@ -61,7 +61,7 @@ from brdfkit.distance_fields.checking import check_steps
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.shading.direct_light import SHADINGS, SHADOWS, DirectLight
 from brdfkit.distance_fields.shading.lamps import find_lamps
-from brdfkit.distance_fields.shading.parts import differentiable_parameters, match_bsdfs
+from brdfkit.distance_fields.shading.parts import make_differentiable_parameters, match_bsdfs
 from brdfkit.distance_fields.shading.silhouettes import find_near_miss
 from brdfkit.distance_fields.shading.visible_point import (
     NORMAL_STEP,
@@ -112,7 +112,7 @@ def define(mi: MitsubaModule) -> type:
             self.far: float = self.far or RAY_LENGTH * max(size, 1)
             self.precision: float = self.precision or PRECISION * size
             self.parts = match_bsdfs(self.tree, self.bsdfs, NORMAL_STEP * self.precision)
-            self.values = differentiable_parameters(self.tree)
+            self.values = make_differentiable_parameters(self.tree)
             settings = "shadow", "direction", "epsilon", "rays", "shading", "samples", "far"
             self.light = DirectLight(**{name: getattr(self, name) for name in settings})
             self.parameters_changed([])
@@ -125,7 +125,7 @@ def define(mi: MitsubaModule) -> type:
 
         def parameters_changed(self, keys: Sequence[str]) -> None:
             self.now = self.tree.with_parameters(self.values)
-            self.larger = self.parts.grow(self.now)
+            self.larger = self.parts.grow_each_material(self.now)
 
         def sample(
             self,
@@ -154,7 +154,7 @@ def define(mi: MitsubaModule) -> type:
                 miss = find_near_miss(self.now, ray, end, self.precision, active)
                 with dr.suspend_grad():
                     front = self.reflect_light(scene, miss.seen, sampler)
-                light = miss.add_derivatives(light, front)
+                light = miss.attach_silhouette_derivatives(light, front)
             return mi.depolarizer(light), active, []
 
         def reflect_light(
@@ -162,12 +162,12 @@ def define(mi: MitsubaModule) -> type:
         ) -> JitColour:
             """Return the light of all lamps and the sky that a `VisiblePoint` reflects."""
             light = mi.UnpolarizedSpectrum(0)
-            bsdf = self.parts.bsdf(self.now, self.larger, point.si.p)
+            bsdf = self.parts.find_bsdf(self.now, self.larger, point.si.p)
             for lamp in find_lamps(scene):
-                light += self.light.reflect_lamp(lamp, point, bsdf, sampler)
+                light += self.light.compute_light_from_lamp(lamp, point, bsdf, sampler)
             sky = scene.environment()
             if sky is not None:
-                light += self.light.reflect_sky(sky, point, bsdf, sampler)
+                light += self.light.compute_light_from_environment(sky, point, bsdf, sampler)
             return light
 
         def to_string(self) -> str:

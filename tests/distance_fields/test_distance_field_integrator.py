@@ -164,7 +164,7 @@ def test_parts_have_their_bsdfs(mi):
     loaded = scene(mi, field, {"type": "constant", "radiance": 1.0}, **bsdfs)
     parts, now = loaded.integrator().parts, loaded.integrator().now
     where = mi.Point3f([-0.84, -0.2, 0.5], [0, 0, 0.1], [0.48, 0.4, 0])
-    found = parts.bsdf(now, loaded.integrator().larger, where)
+    found = parts.find_bsdf(now, loaded.integrator().larger, where)
     si = dr.zeros(mi.SurfaceInteraction3f, 3)
     albedo = found.eval_diffuse_reflectance(si).x
     np.testing.assert_allclose(albedo, [0.4, 0.1, 0.8])
@@ -347,8 +347,8 @@ def test_a_field_that_is_no_distance_is_refused(mi, monkeypatch):
             return super().distance(p) + dr.sqrt(p.x)
 
     for field, said in (
-        (plane() | steep(1).at(30, 0, 1), "field: .*yet its surface is within .* its slope"),
-        (holed(), r"field: the field is nan at \(-.*; a distance is finite"),
+        (plane() | steep(1).at(30, 0, 1), "field: .*but its surface is less than .* its slope"),
+        (holed(), r"field: the field is nan at \(-.*; make it finite"),
     ):
         with pytest.raises(RuntimeError, match=said):
             scene(mi, field, POINT)
@@ -362,13 +362,16 @@ def test_a_field_that_is_no_distance_is_refused(mi, monkeypatch):
         ({"filename": "a.json"}, "give the field as a filename, or"),
         ({"filename": "a.json", "field": ""}, "a.json: there is no such file"),
         ({"field": "[1]"}, 'distance_field: field: .* should be an object with a "kind"'),
-        ({"field": '{"kind": "union", "children": []}'}, "union: there is nothing in it"),
+        ({"field": '{"kind": "union", "children": []}'}, "union: it has no children"),
         ({"field": '{"kind": "sphere", "radius": NaN}'}, "radius = nan should be a number"),
         ({"shadow": "soft"}, "distance_field: shadow = soft should be one of linear, base"),
-        ({"shading": "estimated", "shadow": "quilez"}, "shadow = quilez finds none; give one of"),
+        (
+            {"shading": "estimated", "shadow": "quilez"},
+            "shadow = quilez does not find; give one of",
+        ),
         ({"field": sphere(1).made_of("gold").to_json()}, "made of 'gold'; give a bsdf"),
         ({"more": GREY}, "bsdfs bsdf, more belong to no part of the field"),
-        ({"lamp": lit(BALL)}, "distance_field: lamp is no bsdf"),
+        ({"lamp": lit(BALL)}, "distance_field: lamp is not a bsdf"),
     ],
 )
 def test_what_cannot_be_rendered_is_said(mi, given, said):
@@ -389,7 +392,7 @@ def test_a_bsdf_that_lets_light_through_is_said_to_be_dark(mi, bsdf):
 @pytest.mark.parametrize(
     ("more", "said"),
     [
-        ({"lamp": {"type": "cube"}}, "the shape 'lamp' is no lamp; besides the field"),
+        ({"lamp": {"type": "cube"}}, "the shape 'lamp' is not a lamp; remove it"),
         ({"lamp": GREY}, "the scene has no light; add an emitter"),
     ],
 )

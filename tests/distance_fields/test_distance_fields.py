@@ -584,7 +584,7 @@ def open_mesh():
 WRONG = {
     "slope": (lambda: df.check(bad_slope, (0, 0, 0), (1, 1, 1)), r"changes by 3 per unit near \("),
     "nan": (lambda: df.check(bad_hole, (-1, 0, 0), (0, 1, 1)), r"the field is nan at \("),
-    "nothing": (lambda: df.union(()), "union: there is nothing in it"),
+    "nothing": (lambda: df.union(()), "union: it has no children"),
     "no surface": (
         lambda: (df.sphere(1) & df.sphere(1).at(3, 0, 0)).to_grid(8),
         "no surface in it",
@@ -594,7 +594,7 @@ WRONG = {
     "no corners": (lambda: df.sphere(1).to_grid(8, (1, 2)), r"\(1, 2\) should be two corners"),
     "no list": (lambda: df.union(df.sphere(1), df.box(1)), "give the fields as one list"),
     "slope of a node": (lambda: df.check(df.mandelbulb(), (0, 0, 0), (1, 1, 1)), "its bound 3"),
-    "endless": (lambda: df.plane().to_grid(8), "is endless; give bounds"),
+    "endless": (lambda: df.plane().to_grid(8), "is unbounded; give bounds"),
     "open mesh": (open_mesh, "not closed: 3 edges"),
     "no such node": (lambda: df.from_json('{"kind": "spere"}', "a.json"), "a.json: .*mean sphere"),
     "no such number": (
@@ -603,10 +603,10 @@ WRONG = {
     ),
     "no kind": (lambda: df.from_json("[1]"), 'should be an object with a "kind"'),
     "kind of no name": (lambda: df.from_json('{"kind": ["box"]}'), "there is no node"),
-    "nested deeply": (lambda: df.from_json('{"child":' * 20_000), "is no JSON"),
-    "no text": (lambda: df.from_json(None), "is no JSON"),
+    "nested deeply": (lambda: df.from_json('{"child":' * 20_000), "this is not JSON"),
+    "no text": (lambda: df.from_json(None), "this is not JSON"),
     "huge": (lambda: df.sphere(10**400), "should be a number"),
-    "no JSON": (lambda: df.from_json("{", "a.json"), "a.json: is no JSON"),
+    "no JSON": (lambda: df.from_json("{", "a.json"), "a.json: this is not JSON"),
     "bad child": (lambda: df.from_json('{"kind": "shell"}'), "shell needs child"),
     "bad value": (
         lambda: df.from_json('{"kind": "sphere", "radius": -1}', "a"),
@@ -616,7 +616,7 @@ WRONG = {
     "infinite": (lambda: df.box((1, np.inf, 1)), r"box.size\[1\] = inf"),
     "no triple": (lambda: df.sphere(1).translate(1), "translate.offset = 1 should be three"),
     "no field": (lambda: df.sphere(1) | 2, "2 should be a distance field"),
-    "one point": (lambda: df.capsule((0, 0, 0), (0, 0, 0)), "a and b are one point"),
+    "one point": (lambda: df.capsule((0, 0, 0), (0, 0, 0)), "a and b are the same point"),
     "too round": (lambda: df.rounded_box(1, 0.6), "at most half of the shortest edge, 0.5"),
     "no room": (lambda: df.sphere(0.5).repeat(1), "from -0.5 to 0.5 along x"),
     "no parameter": (lambda: df.sphere(1).with_parameters({"radius": 1}), "mean sphere.radius"),
@@ -682,7 +682,7 @@ class my_ball(df.Node):
 def test_python_of_the_users_is_not_saved_but_a_grid_of_it_is(part, tmp_path):
     file = tmp_path / "field.json"
     field = df.sphere(0.5) | part.at(0.1, 0, 0).k(0.1)
-    with pytest.raises(BrdfkitError, match=r"field.json: the field holds .* Python of yours"):
+    with pytest.raises(BrdfkitError, match=r"field.json: the field contains .* Python of your own"):
         field.save(file)
     assert not list(tmp_path.iterdir())
     field.to_grid(8, BOX).save(file)
@@ -693,9 +693,9 @@ def test_python_of_the_users_is_not_saved_but_a_grid_of_it_is(part, tmp_path):
     ("f", "how", "said"),
     [
         (numpy_ball, {}, "numpy_ball works on NumPy's arrays.*from_function.*bounds="),
-        (lambda p: "x", {}, r"is no function of points .*; it should take points p with p\.x"),
+        (lambda p: "x", {}, r"is not a function of points .*; it should take points p with p\.x"),
         (lambda p: np.ones((3, 3)), {}, r"gives \(3, 3\) for 2 points"),
-        (3, {}, "3 is no function; it should take"),
+        (3, {}, "3 is not a function; it should take"),
         (ball, {"lipschitz": 0}, "lipschitz = 0 should be a number above 0"),
         (ball, {"bounds": 3}, "bounds = 3 should be two corners"),
     ],

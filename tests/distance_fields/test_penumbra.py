@@ -10,12 +10,16 @@ from scipy.integrate import quad
 import brdfkit as bk
 from brdfkit import distance_fields as df
 from brdfkit.core.jit import llvm
-from brdfkit.distance_fields.shadows import LightCone, find_edge, light_cone, soft_shadow
-from brdfkit.distance_fields.shadows.field import pieces_of
-from brdfkit.distance_fields.shadows.marches import convex, linear
-from brdfkit.distance_fields.shadows.monte_carlo import halton_disc, monte_carlo, trace
-from brdfkit.distance_fields.shadows.split import cell_centres, split
-from brdfkit.distance_fields.shadows.tau import tau, tau_slope
+from brdfkit.distance_fields.shadows import LightCone, find_edge, make_light_cone, soft_shadow
+from brdfkit.distance_fields.shadows.field import split_into_pieces
+from brdfkit.distance_fields.shadows.marches import compute_convex_shadow, compute_linear_shadow
+from brdfkit.distance_fields.shadows.monte_carlo import (
+    compute_monte_carlo_shadow,
+    halton_points_in_disc,
+    trace_ray,
+)
+from brdfkit.distance_fields.shadows.split import cell_centres, compute_split_shadow
+from brdfkit.distance_fields.shadows.tau import lit_disc_share, lit_disc_slope
 
 if llvm.find_loaded_version() < llvm.OLDEST:
     pytest.skip("needs LLVM", allow_module_level=True)
@@ -80,7 +84,7 @@ def random_cones(rng, n):
     start = vectors(rng.normal(0, 0.1, (n, 3)))
     light = vectors(rng.normal((0, 0, 6), 0.3, (n, 3)))
     radius, ball = rng.choice([0.0, 0.2, 1.0, 2.0, 4.0], n), rng.uniform(0.005, 0.05, n)
-    return light_cone(start, light, Float(radius), Float(ball))
+    return make_light_cone(start, light, Float(radius), Float(ball))
 
 
 def random_spheres(rng, n):
@@ -102,7 +106,7 @@ def vectors(values):
 
 @pytest.mark.quick
 def test_tau_has_its_check_values():
-    found = [float(f"{tau(r):.9f}") for r in (0.0, 0.25, 0.5, 0.75, 0.9)]
+    found = [float(f"{lit_disc_share(r):.9f}") for r in (0.0, 0.25, 0.5, 0.75, 0.9)]
     assert found == [0.5, 0.657481179, 0.804498891, 0.927853194, 0.981306963]
     found = [float(f"{tau_inverse(m):.9f}") for m in (0.75, 0.9, 0.95, 1 - 1 / 30, 1 - 1 / 256)]
     assert found == [0.403972753, 0.687048826, 0.805383637, 0.852215275, 0.965019008]
@@ -112,10 +116,10 @@ def test_tau_has_its_check_values():
 def test_tau_is_the_area_of_a_disc_beside_a_line():
     for r in (-0.9, -0.2, 0.6):
         area, _ = quad(lambda x: 2 * np.sqrt(1 - x * x), -1, r)
-        assert tau(r) == pytest.approx(area / np.pi, abs=1e-8)
-        assert tau(-r) == pytest.approx(1 - tau(r), abs=1e-8)
-        assert tau_inverse(tau(r)) == pytest.approx(r, abs=1e-8)
-    assert [tau(r) for r in (-3.0, 3.0)] == [0, 1]
+        assert lit_disc_share(r) == pytest.approx(area / np.pi, abs=1e-8)
+        assert lit_disc_share(-r) == pytest.approx(1 - lit_disc_share(r), abs=1e-8)
+        assert tau_inverse(lit_disc_share(r)) == pytest.approx(r, abs=1e-8)
+    assert [lit_disc_share(r) for r in (-3.0, 3.0)] == [0, 1]
     assert [tau_inverse(m) for m in (-0.1, 1.1)] == pytest.approx([-1, 1])
 
 
@@ -123,9 +127,9 @@ def test_tau_is_the_area_of_a_disc_beside_a_line():
 def test_tau_has_finite_derivatives_everywhere():
     r = Float(-2, -1, -0.5, 0, 0.7, 1, 2)
     dr.enable_grad(r)
-    dr.backward(tau(r))
+    dr.backward(lit_disc_share(r))
     assert np.allclose(dr.grad(r), 2 / np.pi * np.sqrt([0, 0, 0.75, 1, 0.51, 0, 0]))
-    assert float(f"{tau_slope(0.0):.9f}") == round(2 / np.pi, 9)
+    assert float(f"{lit_disc_slope(0.0):.9f}") == round(2 / np.pi, 9)
 
 
 # The cone
@@ -133,23 +137,23 @@ def test_tau_has_finite_derivatives_everywhere():
 
 @pytest.mark.quick
 def test_a_cone_touches_both_balls():
-    cone = light_cone(P(0, 0, 0), P(3, 0, 4), 1.2, 0.1)
+    cone = make_light_cone(P(0, 0, 0), P(3, 0, 4), 1.2, 0.1)
     # From a centre to the line through the two rims, which lies at R cos α
     cos = 1 / np.sqrt(1 + cone.tan[0] ** 2)
     assert cone.R_0[0] * cos == pytest.approx(0.1)
     assert cone.R_1[0] * cos == pytest.approx(1.2)
     assert cone.tan[0] * cos == pytest.approx(1.1 / 5)
-    back = cone.reversed()
+    back = cone.make_reversed()
     assert np.allclose(back.point(back.d), 0)
     assert np.allclose(back.radius(2.0), cone.radius(3.0))
-    x, y = cone.to_disc(cone.disc_point(Float(2), Float(0.3), Float(-0.4)))
+    x, y = cone.project_to_disc(cone.disc_point(Float(2), Float(0.3), Float(-0.4)))
     assert (x[0], y[0]) == pytest.approx((0.3, -0.4))
 
 
 def test_a_light_about_the_point_is_a_wide_cone():
-    inside = light_cone(P(0, 0, 0), P(0, 0, 0.5), 2.0, 0.1)
+    inside = make_light_cone(P(0, 0, 0), P(0, 0, 0.5), 2.0, 0.1)
     assert np.isfinite(inside.R_1).all()
-    assert linear(Sphere(P(0, 0, 50), 1.0), inside).visible[0] == 1
+    assert compute_linear_shadow(Sphere(P(0, 0, 50), 1.0), inside).visible[0] == 1
 
 
 # Check values; those of steps are in test_reproduce_balint2019.py
@@ -159,7 +163,9 @@ def test_a_sphere_has_its_printed_minimum_and_its_true_share():
     found = dense(SPHERE, CONE)
     assert f"{found.r[0]:.6f} {found.visible[0]:.6f}" == "0.116583 0.574051"
     assert found.t[0] == pytest.approx(2.50667, abs=6 / 2000)
-    assert monte_carlo(SPHERE, CONE, 20_000, hit=1e-5).visible[0] == pytest.approx(0.7123, abs=5e-4)
+    assert compute_monte_carlo_shadow(SPHERE, CONE, 20_000, hit=1e-5).visible[0] == pytest.approx(
+        0.7123, abs=5e-4
+    )
 
 
 def test_a_half_space_through_the_apex_has_the_share_tau():
@@ -168,15 +174,17 @@ def test_a_half_space_through_the_apex_has_the_share_tau():
     sin = r * tan
     plane = HalfSpace(P(float(np.sqrt(1 - sin**2)), 0, sin), -sin * 0.02 / tan)
     for direction in "AB":
-        for method in (base, linear, convex):
+        for method in (base, compute_linear_shadow, compute_convex_shadow):
             share = method(plane, CONE, 1 / 30, direction).visible[0]
-            assert f"{share:.6f}" == f"{tau(r):.6f}" == "0.688081"
+            assert f"{share:.6f}" == f"{lit_disc_share(r):.6f}" == "0.688081"
         assert f"{discrete(plane, CONE, 1 / 30, direction).visible[0]:.6f}" == "0.666667"
-    truth = tau(r / np.sqrt(1 - sin**2))
+    truth = lit_disc_share(r / np.sqrt(1 - sin**2))
     assert f"{truth:.6f}" == "0.688300"
-    assert monte_carlo(plane, CONE, 10_000, hit=1e-5).visible[0] == pytest.approx(truth, abs=1e-3)
-    found = find_edge(plane, CONE, linear(plane, CONE))
-    assert tau(found.offset[0]) == pytest.approx(truth, abs=1e-9)
+    assert compute_monte_carlo_shadow(plane, CONE, 10_000, hit=1e-5).visible[0] == pytest.approx(
+        truth, abs=1e-3
+    )
+    found = find_edge(plane, CONE, compute_linear_shadow(plane, CONE))
+    assert lit_disc_share(found.offset[0]) == pytest.approx(truth, abs=1e-9)
 
 
 # The error bound: 0 ≤ m - τ(r_min) ≤ ε over thousands of scenes
@@ -184,7 +192,7 @@ def test_a_half_space_through_the_apex_has_the_share_tau():
 
 @pytest.mark.parametrize("direction", "AB")
 @pytest.mark.parametrize("n", [10, 30, 256])
-@pytest.mark.parametrize("method", [base, linear, convex, discrete])
+@pytest.mark.parametrize("method", [base, compute_linear_shadow, compute_convex_shadow, discrete])
 def test_the_error_is_within_epsilon(method, n, direction):
     rng = np.random.default_rng(n)
     many = 2000 if n < 256 else 500
@@ -195,7 +203,7 @@ def test_the_error_is_within_epsilon(method, n, direction):
     low, rounding = (-1 if method is discrete else 0), 2e-5 * n  # of the dense search
     assert (error >= low - rounding).all()
     assert (error <= 1 + rounding).all()
-    most = np.array((cone if direction == "A" else cone.reversed()).max_steps(1 / n))
+    most = np.array((cone if direction == "A" else cone.make_reversed()).bound_step_count(1 / n))
     assert (np.array(found.evaluations) < most).all()
 
 
@@ -209,7 +217,9 @@ def test_a_field_that_is_steeper_than_a_distance_keeps_the_bound():
             return 3 * self.inner.distance(p)
 
     cone = random_cones(rng, 1000)
-    error = np.array(linear(Steep(), cone, 1 / 10).visible) - np.array(dense(Steep(), cone).visible)
+    error = np.array(compute_linear_shadow(Steep(), cone, 1 / 10).visible) - np.array(
+        dense(Steep(), cone).visible
+    )
     assert ((error >= -1e-4) & (error <= 0.1)).all()
 
 
@@ -220,22 +230,23 @@ def test_variants_need_evaluations_in_the_order_of_the_thesis():
     rng = np.random.default_rng(1)
     cone, field = random_cones(rng, 500), random_spheres(rng, 500)
     needed = {
-        m: np.mean(m(field, cone, 1 / 30).evaluations) for m in (linear, base, discrete, convex)
+        m: np.mean(m(field, cone, 1 / 30).evaluations)
+        for m in (compute_linear_shadow, base, discrete, compute_convex_shadow)
     }
-    assert needed[convex] < 0.7 * needed[linear]
-    assert needed[discrete] < needed[base] < needed[linear] < 1.4 * needed[base]
+    assert needed[compute_convex_shadow] < 0.7 * needed[compute_linear_shadow]
+    assert needed[discrete] < needed[base] < needed[compute_linear_shadow] < 1.4 * needed[base]
 
 
 def test_rivals_darken_the_inner_half_of_the_penumbra():
     s = np.linspace(-0.95, 0.95, 39)
     plane = HalfSpace(P(1, 0, 0), Float(-s * np.array(CONE.radius(3.0))))
     slab = Slab(plane, 3.0)
-    truth = np.array(monte_carlo(slab, CONE, 500).visible)
+    truth = np.array(compute_monte_carlo_shadow(slab, CONE, 500).visible)
     for rival in (quilez, aaltonen):
         share = np.array(rival(slab, CONE).visible)
         assert share[s < -0.1].max() == 0
         assert np.abs(share - truth).max() > 0.4
-    assert np.abs(np.array(linear(slab, CONE).visible) - truth).max() < 0.1
+    assert np.abs(np.array(compute_linear_shadow(slab, CONE).visible) - truth).max() < 0.1
 
 
 class Slab(Field):
@@ -264,11 +275,13 @@ OCCLUDERS = {  # with the share of the model's error that `split` may keep
 @pytest.mark.parametrize("name", OCCLUDERS)
 def test_split_sees_several_small_and_pointed_occluders(name):
     field, kept = OCCLUDERS[name]
-    truth = monte_carlo(field, CONE, 5000).visible[0]
-    model = linear(field, CONE, 1 / 30).visible[0] - truth
+    truth = compute_monte_carlo_shadow(field, CONE, 5000).visible[0]
+    model = compute_linear_shadow(field, CONE, 1 / 30).visible[0] - truth
     assert abs(model) > 0.1
     for direction in "AB":
-        assert abs(split(field, CONE, 1 / 10, direction).visible[0] - truth) < kept * abs(model)
+        assert abs(
+            compute_split_shadow(field, CONE, 1 / 10, direction).visible[0] - truth
+        ) < kept * abs(model)
 
 
 @pytest.mark.quick
@@ -300,19 +313,19 @@ def test_samples_of_a_rectangle_are_seen_as_rays_see_them():
     rng = np.random.default_rng(0)
     u, v = rng.uniform(-1, 1, (2, 5000))
     wall = Box(P(-3.1, 0, 3), P(3, 9, 0.2))
-    cone = light_cone(P(0, 0, 0), P(0, 0, 6), np.hypot(0.8, 0.4), 0.02)
-    found = find_edge(wall, cone, linear(wall, cone, 1 / 100))
+    cone = make_light_cone(P(0, 0, 0), P(0, 0, 6), np.hypot(0.8, 0.4), 0.02)
+    found = find_edge(wall, cone, compute_linear_shadow(wall, cone, 1 / 100))
     on_light = P(Float(0.8 * u), Float(0.4 * v), 6)
-    seen = np.array(found.shows(cone, on_light))
-    room, _ = trace(wall, cone, *cone.to_disc(on_light), 1e-4)
+    seen = np.array(found.is_point_visible(cone, on_light))
+    room, _ = trace_ray(wall, cone, *cone.project_to_disc(on_light), 1e-4)
     assert np.mean(seen != (np.array(room) > 0)) < 0.02
     assert 0.5 < seen.mean() < 0.8
 
 
 def test_the_lit_share_of_samples_is_tau():
-    x, y = (Float(q) for q in halton_disc(20_000))
-    shadow = linear(SPHERE, CONE, 1 / 256)
-    share = np.mean(find_edge(SPHERE, CONE, shadow).lets_through(x, y))
+    x, y = (Float(q) for q in halton_points_in_disc(20_000))
+    shadow = compute_linear_shadow(SPHERE, CONE, 1 / 256)
+    share = np.mean(find_edge(SPHERE, CONE, shadow).is_lit_at(x, y))
     assert share == pytest.approx(shadow.visible[0], abs=2e-3)
 
 
@@ -334,7 +347,7 @@ def share_and_derivative(method, name, *settings):
 
     def share(x):
         light, radius, field = scene(x)
-        return method(field, light_cone(P(0, 0, 0), light, radius, 0.02), *settings).visible
+        return method(field, make_light_cone(P(0, 0, 0), light, radius, 0.02), *settings).visible
 
     x = Float(at)
     dr.enable_grad(x)
@@ -342,7 +355,10 @@ def share_and_derivative(method, name, *settings):
     return lambda x: np.array(share(Float(x))), at, dr.grad(x)[0]
 
 
-@pytest.mark.parametrize(("method", "n", "step"), [(linear, 256, 0.01), (split, 2000, 0.005)])
+@pytest.mark.parametrize(
+    ("method", "n", "step"),
+    [(compute_linear_shadow, 256, 0.01), (compute_split_shadow, 2000, 0.005)],
+)
 @pytest.mark.parametrize("name", SCENES)
 def test_derivatives_are_those_of_finite_differences(name, method, n, step):
     share, at, derivative = share_and_derivative(method, name, 1 / n)
@@ -351,7 +367,7 @@ def test_derivatives_are_those_of_finite_differences(name, method, n, step):
     assert derivative == pytest.approx(difference, rel=0.05)
 
 
-@pytest.mark.parametrize("method", [linear, base, convex])
+@pytest.mark.parametrize("method", [compute_linear_shadow, base, compute_convex_shadow])
 @pytest.mark.parametrize("name", SCENES)
 def test_derivatives_are_those_of_the_minimum(name, method):
     """Though ε is large: those of τ(r_min), which is smooth; the box has a crease there."""
@@ -360,7 +376,7 @@ def test_derivatives_are_those_of_the_minimum(name, method):
 
     def exact(x):
         light, radius, field = scene(Float(x))
-        return dense(field, light_cone(P(0, 0, 0), light, radius, 0.02)).visible[0]
+        return dense(field, make_light_cone(P(0, 0, 0), light, radius, 0.02)).visible[0]
 
     assert derivative == pytest.approx((exact(at + 1e-3) - exact(at - 1e-3)) / 2e-3, rel=0.01)
 
@@ -387,7 +403,7 @@ def test_derivatives_of_rings_are_those_of_the_minimum(direction):
     centre = vectors(np.column_stack([rng.normal(0, 0.5, (many, 2)), rng.uniform(1.2, 5, many)]))
     axis = dr.normalize(vectors(rng.normal(size=(many, 3))))
     radius, tube = rng.uniform(0.2, 1, many), rng.uniform(0.1, 0.4, many)
-    cone = light_cone(P(0, 0, 0) + 0 * centre, P(0, 0, 6), 1.0, 0.02)
+    cone = make_light_cone(P(0, 0, 0) + 0 * centre, P(0, 0, 6), 1.0, 0.02)
 
     def share(method, x, *settings):
         ring = Ring(centre, axis, Float(radius) + x, Float(tube * radius))
@@ -399,10 +415,10 @@ def test_derivatives_of_rings_are_those_of_the_minimum(direction):
 
     x = dr.zeros(Float, many)
     dr.enable_grad(x)
-    found = share(linear, x, 1 / 20, direction)
+    found = share(compute_linear_shadow, x, 1 / 20, direction)
     dr.forward(x)
     expected = differences(dense, 1e-4)
-    rough = differences(linear, 1e-2, 1 / 20, direction)
+    rough = differences(compute_linear_shadow, 1e-2, 1 / 20, direction)
     scale = np.abs(expected).sum()
     assert np.abs(np.array(dr.grad(found)) - expected).sum() < 0.005 * scale
     assert np.abs(rough - expected).sum() > 0.02 * scale
@@ -443,7 +459,7 @@ def test_a_wrong_argument_is_one_sentence(wrong, said):
 def test_the_pieces_of_unions_that_are_moved_and_named():
     things = (df.sphere(1) | df.box(1).at(1, 0, 0)).rotate(0.3).scale(2).made_of("gold")
     field = things.at(0, 0, 1) | (df.plane() | df.torus(1, 0.2).k(0.1))
-    pieces, points = pieces_of(field), np.random.default_rng(0).uniform(-3, 3, (200, 3))
+    pieces, points = split_into_pieces(field), np.random.default_rng(0).uniform(-3, 3, (200, 3))
     assert [piece.is_convex for piece in pieces] == [True, True, False]
     np.testing.assert_allclose(np.min([p(points) for p in pieces], axis=0), field(points))
 

@@ -379,7 +379,7 @@ def test_both_ways_to_silhouettes_agree():
 
 
 def test_what_a_ball_takes():
-    """E = 3 F / 2 edges, of which some √E are the silhouette, a closed way; a few kB of memory."""
+    """E = 3 F / 2 edges, of which some √E are the silhouette, a closed way."""
     scene = scene_of(objects())
     mesh = next(mesh for mesh in meshes_of(scene) if len(mesh.triangles) > 12)
     volumes = volumes_of(scene, [mesh], casters="light_facing")
@@ -388,8 +388,6 @@ def test_what_a_ball_takes():
     assert np.sqrt(edges) / 2 < len(volume.walls) < 3 * np.sqrt(edges)
     ends = volume.walls.corners[:, :2, :3]
     assert {tuple(p) for p in ends[:, 0]} == {tuple(p) for p in ends[:, 1]}
-    faces = len(volume.walls) + len(volume.front) + len(volume.back)
-    assert 80 * faces < volumes.stencil.memory < 400 * faces + 4 * 32**2
 
 
 @pytest.mark.quick

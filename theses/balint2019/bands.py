@@ -4,7 +4,7 @@ import numpy as np
 from brdfkit.theses.balint2019.dense import dense
 from brdfkit.theses.balint2019.measuring import shares
 
-from brdfkit.distance_fields.shadows.marches import linear
+from brdfkit.distance_fields.shadows.marches import compute_linear_shadow
 
 INVERSES = 2, 4, 8, 16, 32, 64, 128, 256  # of ε
 SMOOTH = 0.05  # jumps of the truth up to which a pixel is no edge
@@ -20,7 +20,7 @@ class Light:
         self.truth = view.image(model)
         self.shares, self.errors, self.evaluations = {}, {}, {}
         for n in INVERSES:
-            shadow = linear(field, cone, 1 / n)
+            shadow = compute_linear_shadow(field, cone, 1 / n)
             self.shares[n] = shares(shadow)
             self.errors[n] = view.image(self.shares[n] - model)
             self.evaluations[n] = float(np.mean(shadow.evaluations))

@@ -12,8 +12,8 @@ from scipy.integrate import quad
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.distance_fields import plane, sphere
 from brdfkit.distance_fields.shadows import LightCone
-from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.tau import tau
+from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
+from brdfkit.distance_fields.shadows.tau import lit_disc_share
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section, Table
 
@@ -53,7 +53,7 @@ def run(sources, report):
         rows.append((name, f"1/{n}", *(in_words(values) for values in (found, expected))))
         report(done, len(SHARES_AND_STEPS))
     model = dense(SPHERE, cone())
-    true = monte_carlo(SPHERE, cone(), RAYS, hit=1e-5).visible[0]
+    true = compute_monte_carlo_shadow(SPHERE, cone(), RAYS, hit=1e-5).visible[0]
     caption = (
         "Shares of the light and steps, in the directions A and B. Dense search: r_min = "
         f"{model.r[0]:.6f} at t = {model.t[0]:.5f}, τ(r_min) = {model.visible[0]:.6f}, apart "
@@ -93,7 +93,7 @@ def share_claim():
     """τ against its integral."""
     places = np.linspace(-0.99, 0.99, 45)
     areas = [quad(lambda x: 2 * np.sqrt(1 - x * x), -1, r)[0] / np.pi for r in places]
-    off = max(abs(tau(float(r)) - area) for r, area in zip(places, areas, strict=True))
+    off = max(abs(lit_disc_share(float(r)) - area) for r, area in zip(places, areas, strict=True))
     return Claim(
         "Behind a straight edge a disc's lit share is τ(r) = ½ + (r √(1 - r²) + arcsin r) / π.",
         "4.1",
@@ -106,7 +106,7 @@ def share_claim():
 def inverse_claim():
     """τ⁻¹, and how it is found."""
     shares = np.linspace(0, 1, 10_001)
-    off = np.abs(np.array(tau(tau_inverse(Float64(shares)))) - shares).max()
+    off = np.abs(np.array(lit_disc_share(tau_inverse(Float64(shares)))) - shares).max()
     return Claim(
         "Newton's method cannot invert τ, because its slope is 0 at both ends.",
         "4.1",
@@ -126,7 +126,7 @@ def plane_claim():
     field = plane(normal).translate(-normal * sin * 0.02 / tan)
     names = "base", "linear", "convex"
     shares = [MARCHES[m](field, cone(), 1 / 30, d).visible[0] for m in names for d in "AB"]
-    true = tau(SLOPE / np.sqrt(1 - sin**2))
+    true = lit_disc_share(SLOPE / np.sqrt(1 - sin**2))
     return Claim(
         "Behind a plane through the apex the marches give τ(r), whatever ε is.",
         "4.1",

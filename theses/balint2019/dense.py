@@ -12,22 +12,22 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.shadow import Shadow, find_minimum_near, ratio
-from brdfkit.distance_fields.shadows.tau import tau
+from brdfkit.distance_fields.shadows.shadow import Shadow, clearance_ratio, find_smallest_ratio_near
+from brdfkit.distance_fields.shadows.tau import lit_disc_share
 
 
 def dense(field: Any, cone: LightCone, samples: int = 2000, refinements: int = 40) -> Shadow:
     """Compute the shadow of the smallest of `samples` ratios, refined between its neighbours."""
-    cone = cone.detached()
+    cone = cone.make_detached()
     zero = 0 * cone.d
     spacing = cone.d / samples
 
     def look(i: JitFloat, r: JitFloat, t_min: JitFloat) -> tuple[JitFloat, JitFloat, JitFloat]:
-        here = ratio(field, cone, i * spacing)
+        here = clearance_ratio(field, cone, i * spacing)
         return i + 1, dr.minimum(r, here), dr.select(here < r, i * spacing, t_min)
 
     with dr.suspend_grad():
         _, r, t = dr.while_loop((zero, zero + 1, zero), lambda i, r, t: i <= samples, look)
-        t = find_minimum_near(field, cone, t, spacing, refinements)
-        r = dr.minimum(r, ratio(field, cone, t))
-    return Shadow(tau(r), r, t, zero + samples + 2 * refinements)
+        t = find_smallest_ratio_near(field, cone, t, spacing, refinements)
+        r = dr.minimum(r, clearance_ratio(field, cone, t))
+    return Shadow(lit_disc_share(r), r, t, zero + samples + 2 * refinements)

@@ -10,10 +10,10 @@ from drjit.llvm import Array3f64, Float64
 
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.distance_fields import box, plane, sphere, union
-from brdfkit.distance_fields.shadows import light_cone
+from brdfkit.distance_fields.shadows import make_light_cone
 from brdfkit.distance_fields.shadows.march import Rule
-from brdfkit.distance_fields.shadows.shadow import single_ray
-from brdfkit.distance_fields.shadows.tau import tau
+from brdfkit.distance_fields.shadows.shadow import trace_shadow
+from brdfkit.distance_fields.shadows.tau import lit_disc_share
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section, Table
 
@@ -154,24 +154,24 @@ def base_as_printed(field, cone, epsilon, direction):
     """Algorithm 3, whose ratio is that to the radius R_T ρ."""
 
     def lower(ratio, R_T):
-        return ratio / R_T, tau_inverse(tau(ratio / R_T) - epsilon)
+        return ratio / R_T, tau_inverse(lit_disc_share(ratio / R_T) - epsilon)
 
     rule = Rule((1.0, tau_inverse(1 - epsilon)), lower, tau_inverse(epsilon))
-    return single_ray(field, cone, rule, epsilon, direction)
+    return trace_shadow(field, cone, rule, epsilon, direction)
 
 
 def linear_as_printed(field, cone, epsilon, direction):
     """Algorithm 4, whose ratio is that to the radius R_T ρ, down to R_T = e."""
     e = epsilon * pi / 2
     rule = Rule((1.0, 1 - e), lambda ratio, R_T: (ratio / R_T, ratio / R_T - e), e)
-    return single_ray(field, cone, rule, epsilon, direction)
+    return trace_shadow(field, cone, rule, epsilon, direction)
 
 
 def half_linear(field, cone, epsilon, direction):
     """Algorithm 4 with the ratio to ρ, down to R_T = e."""
     e = epsilon * pi / 2
     rule = Rule((1.0, 1 - e), lambda ratio, R_T: (ratio, ratio - e), e)
-    return single_ray(field, cone, rule, epsilon, direction)
+    return trace_shadow(field, cone, rule, epsilon, direction)
 
 
 def random_scenes(rng, n):
@@ -182,7 +182,7 @@ def random_scenes(rng, n):
     start = vectors(rng.normal(0, 0.1, (n, 3)))
     light = vectors(rng.normal((0, 0, 6), 0.3, (n, 3)))
     radius, empty = rng.choice([0.0, 0.2, 1.0, 2.0, 4.0], n), rng.uniform(0.005, 0.05, n)
-    cone = light_cone(start, light, Float64(radius), Float64(empty))
+    cone = make_light_cone(start, light, Float64(radius), Float64(empty))
     return union((ball, block, plane().at(0, 0, -0.2))), cone
 
 

@@ -7,9 +7,9 @@ from brdfkit.theses.balint2019.measuring import rms, seconds_in_turns, shares
 from brdfkit.theses.balint2019.rivals import aaltonen, quilez
 from brdfkit.theses.balint2019.view import View
 
-from brdfkit.distance_fields.shadows.marches import linear
-from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.split import split
+from brdfkit.distance_fields.shadows.marches import compute_linear_shadow
+from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
+from brdfkit.distance_fields.shadows.split import compute_split_shadow
 from brdfkit.images.errors.psnr import psnr
 
 SIZE, TRUE_RAYS, TIMES = 144, 1024, 3
@@ -23,12 +23,13 @@ class Frame:
     def __init__(self, scene, radius):
         self.view = View(scene(), SIZE)
         field, cone, epsilon = self.view.scene.field, self.view.cones(radius), EPSILON[radius]
-        methods = {n: partial(monte_carlo, field, cone, n) for n in RAYS}
-        methods |= {m.__name__: partial(m, field, cone, epsilon) for m in (linear, split)}
+        methods = {n: partial(compute_monte_carlo_shadow, field, cone, n) for n in RAYS}
+        methods["linear"] = partial(compute_linear_shadow, field, cone, epsilon)
+        methods["split"] = partial(compute_split_shadow, field, cone, epsilon)
         methods |= {m.__name__: partial(m, field, cone) for m in (quilez, aaltonen)}
         self.seconds = seconds_in_turns(methods, TIMES)
         self.shares = {name: shares(method()) for name, method in methods.items()}
-        self.truth = shares(monte_carlo(field, cone, TRUE_RAYS, 1e-4))
+        self.truth = shares(compute_monte_carlo_shadow(field, cone, TRUE_RAYS, 1e-4))
         self.errors = {name: rms(share - self.truth) for name, share in self.shares.items()}
 
     def faster(self, rays, name="linear"):

@@ -6,7 +6,7 @@ from brdfkit.theses.balint2019.measuring import shares
 from brdfkit.theses.balint2019.view import View, ground
 
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.distance_fields.shadows.marches import hard, linear
+from brdfkit.distance_fields.shadows.marches import compute_hard_shadow, compute_linear_shadow
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.drawing import figure
 from brdfkit.theses.page import Picture, Section
@@ -25,7 +25,7 @@ def run(sources, report):
     """The edge, and the pictures."""
     scene = scenes.simple()
     cone = ground(SIZE, HALF, scene.light, 0.0, HALF / SIZE)
-    share = shares(hard(scene.field, cone, EPSILON)).reshape(SIZE, SIZE)
+    share = shares(compute_hard_shadow(scene.field, cone, EPSILON)).reshape(SIZE, SIZE)
     report(1, 2)
     wide = width(share)
     claim = Claim(
@@ -52,9 +52,11 @@ def draw():
     field = view.scene.field
     shown = {
         "no shadow": 1.0,
-        "radius 0": shares(hard(field, view.cones(0.0), EPSILON)),
-        f"radius {RADIUS:g}": shares(linear(field, view.cones(RADIUS), EPSILON)),
-        f"radius {2 * RADIUS:g}": shares(linear(field, view.cones(2 * RADIUS), EPSILON)),
+        "radius 0": shares(compute_hard_shadow(field, view.cones(0.0), EPSILON)),
+        f"radius {RADIUS:g}": shares(compute_linear_shadow(field, view.cones(RADIUS), EPSILON)),
+        f"radius {2 * RADIUS:g}": shares(
+            compute_linear_shadow(field, view.cones(2 * RADIUS), EPSILON)
+        ),
     }
     drawn = figure(9, 2.5)
     for axes, (title, visible) in zip(drawn.subplots(1, len(shown)), shown.items(), strict=True):

@@ -9,9 +9,9 @@ from brdfkit.theses.balint2019.view import ground
 
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.distance_fields import box, plane
-from brdfkit.distance_fields.shadows.marches import linear
-from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
-from brdfkit.distance_fields.shadows.split import split
+from brdfkit.distance_fields.shadows.marches import compute_linear_shadow
+from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
+from brdfkit.distance_fields.shadows.split import compute_split_shadow
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.drawing import figure
 from brdfkit.theses.page import Picture, Section, Table
@@ -104,9 +104,9 @@ class Shadows:
     def __init__(self, field):
         cone = ground(SIZE, HALF, LIGHT, RADIUS, BALL)
         calls = {
-            "truth": monte_carlo(field, cone, RAYS, 1e-4),
-            "linear": linear(field, cone, EPSILON),
-            "split": split(field, cone, EPSILON),
+            "truth": compute_monte_carlo_shadow(field, cone, RAYS, 1e-4),
+            "linear": compute_linear_shadow(field, cone, EPSILON),
+            "split": compute_split_shadow(field, cone, EPSILON),
         }
         self.images = {name: shares(s).reshape(SIZE, SIZE) for name, s in calls.items()}
 

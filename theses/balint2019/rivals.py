@@ -13,10 +13,10 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.field import distance_of, lipschitz_of
+from brdfkit.distance_fields.shadows.field import get_distance_function, get_lipschitz_bound
 from brdfkit.distance_fields.shadows.march import Rule
-from brdfkit.distance_fields.shadows.shadow import Shadow, single_ray
-from brdfkit.distance_fields.shadows.tau import tau
+from brdfkit.distance_fields.shadows.shadow import Shadow, trace_shadow
+from brdfkit.distance_fields.shadows.tau import lit_disc_share
 
 NEWTON_STEPS = 4  # errors below 1e-14, and below 1e-6 in single precision
 MAX_STEPS = 512  # of a hard ray
@@ -27,10 +27,10 @@ def base(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = 
     """Compute a shadow by the basic march, with 0 ≤ visible - τ(r_min) ≤ ε."""
 
     def lower(ratio: JitFloat, R_T: JitFloat) -> tuple[JitFloat, JitFloat]:
-        return ratio, tau_inverse(tau(ratio) - epsilon)
+        return ratio, tau_inverse(lit_disc_share(ratio) - epsilon)
 
     rule = Rule((1.0, tau_inverse(1 - epsilon)), lower, tau_inverse(epsilon))
-    return single_ray(field, cone, rule, epsilon, direction)
+    return trace_shadow(field, cone, rule, epsilon, direction)
 
 
 def discrete(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A") -> Shadow:
@@ -42,12 +42,12 @@ def discrete(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: st
 
     def lower(ratio: JitFloat, R_T: JitFloat) -> tuple[JitFloat, JitFloat]:
         """Go down one level, or several where the light itself lies within an object."""
-        levels = dr.maximum(dr.ceil((tau(R_T) - tau(ratio)) / epsilon - 1), 1)
-        share = tau(R_T) - levels * epsilon
+        levels = dr.maximum(dr.ceil((lit_disc_share(R_T) - lit_disc_share(ratio)) / epsilon - 1), 1)
+        share = lit_disc_share(R_T) - levels * epsilon
         return tau_inverse(share), tau_inverse(share - epsilon)
 
     rule = Rule((1.0, tau_inverse(1 - epsilon)), lower, tau_inverse(epsilon))
-    return single_ray(field, cone, rule, epsilon, direction)
+    return trace_shadow(field, cone, rule, epsilon, direction)
 
 
 def tau_inverse(share: JitFloat) -> JitFloat:
@@ -97,7 +97,11 @@ def trace_hard_ray(
     The ray ends where it meets an object, so that the inner half of the penumbra is black.
     `nearness(t, F, F_before)` is the distance at which it passes, over t.
     """
-    f, lipschitz, cone = distance_of(field), lipschitz_of(field), cone.detached()
+    f, lipschitz, cone = (
+        get_distance_function(field),
+        get_lipschitz_bound(field),
+        cone.make_detached(),
+    )
     k, hit = cone.d / cone.R_1, HIT_DISTANCE * cone.d
 
     def step(

@@ -6,9 +6,14 @@ import numpy as np
 from brdfkit.theses.balint2019.rivals import base, discrete
 
 from brdfkit.distance_fields import Node, box, capped_cylinder, mandelbulb, plane, sphere, union
-from brdfkit.distance_fields.shadows.marches import convex, linear
+from brdfkit.distance_fields.shadows.marches import compute_convex_shadow, compute_linear_shadow
 
-MARCHES = {march.__name__: march for march in (base, linear, discrete, convex)}
+MARCHES = {
+    "base": base,
+    "linear": compute_linear_shadow,
+    "discrete": discrete,
+    "convex": compute_convex_shadow,
+}
 
 
 Triple = tuple[float, float, float]

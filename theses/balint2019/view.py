@@ -7,7 +7,7 @@ import numpy as np
 from drjit.llvm import Array3f, Float, UInt
 
 from brdfkit.distance_fields import cone_trace, normal, pixel_tangent
-from brdfkit.distance_fields.shadows import light_cone
+from brdfkit.distance_fields.shadows import make_light_cone
 
 
 def ground(size, half, light, radius, ball):
@@ -19,7 +19,7 @@ def ground(size, half, light, radius, ball):
     i = dr.arange(UInt, size * size)
     x = (Float(i % size) + 0.5) / size * 2 * half - half
     y = (Float(i // size) + 0.5) / size * 2 * half - half
-    cones = light_cone(Array3f(x, y, 1.05 * ball), Array3f(light), radius, ball)
+    cones = make_light_cone(Array3f(x, y, 1.05 * ball), Array3f(light), radius, ball)
     dr.eval(cones)
     return cones
 
@@ -50,7 +50,7 @@ class View:
 
     def cones(self, radius):
         """The cones from all points to a light of this radius."""
-        cones = light_cone(self.points, Array3f(self.scene.light), radius, self.ball)
+        cones = make_light_cone(self.points, Array3f(self.scene.light), radius, self.ball)
         dr.eval(cones)
         return cones
 

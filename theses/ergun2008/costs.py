@@ -77,7 +77,9 @@ def cost_of_volumes(view):
 
     volumes = prepare()
     shade = measure_least_seconds(lambda: np.array(volumes.visibility(si.p, si.n)))
-    return measure_least_seconds(prepare), shade, volumes.stencil.memory
+    stencil = volumes.stencil
+    memory = 4 * sum(map(len, (stencil.records, stencil.indices, stencil.begins)))
+    return measure_least_seconds(prepare), shade, memory
 
 
 def cost_of_maps(view):

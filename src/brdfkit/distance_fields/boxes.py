@@ -1,4 +1,4 @@
-"""Axis-aligned boxes that bound surfaces, each a pair (low, high) of corners (3,)."""
+"""Axis-aligned bounding boxes of surfaces, each a pair (low, high) of opposite corners (3,)."""
 
 from collections.abc import Iterable
 from itertools import product
@@ -14,18 +14,18 @@ Box: TypeAlias = tuple[FloatArray, FloatArray]
 EVERYWHERE: Box = np.full(3, -np.inf), np.full(3, np.inf)
 
 
-def to_numbers(value: JitFloat | tuple[JitFloat, ...]) -> Any:
-    """Return a parameter as a float, or a triple as an array (3,), without derivatives.
+def to_floats(value: JitFloat | tuple[JitFloat, ...]) -> Any:
+    """Return a field's parameter as a float, or a triple as an array (3,), without derivatives.
 
-    A Dr.Jit array counts with its first entry.
+    Only the first entry of a Dr.Jit array is returned.
     """
     if isinstance(value, tuple):
-        return np.array([to_numbers(v) for v in value])
+        return np.array([to_floats(v) for v in value])
     return float(np.ravel(dr.detach(value))[0]) if dr.is_array_v(value) else float(value)
 
 
 def bound_points(*points: ArrayLike, margin: float) -> Box:
-    """Return the box around points (3,), grown by `margin` [length] on all sides."""
+    """Return the box around points (3,), grown by `margin` [unit of length] on all sides."""
     corners = [np.asarray(p, float) for p in points]
     return np.minimum.reduce(corners) - margin, np.maximum.reduce(corners) + margin
 
@@ -43,7 +43,7 @@ def intersect_boxes(boxes: Iterable[Box]) -> Box:
 
 
 def rotate_box(box: Box, matrix: FloatArray) -> Box:
-    """Return the box around `box` rotated by a matrix (3, 3); `EVERYWHERE` if it is unbounded."""
+    """Return a box around `box` rotated by a matrix (3, 3); `EVERYWHERE` if it is unbounded."""
     if not np.isfinite(box).all():
         return EVERYWHERE
     corners = np.array(list(product(*np.transpose(box)))) @ matrix.T

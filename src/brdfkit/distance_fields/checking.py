@@ -1,4 +1,4 @@
-"""Sample-based checks that a field is a distance, or at least that ray steps along it are safe."""
+"""Checks by random samples that a field is a distance, or that ray steps along it are safe."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.boxes import Box, format_point, join_boxes
 from brdfkit.distance_fields.functions import evaluate
 
-ROUNDING_ERROR = 1e-9  # of the difference between two values of f
-BALL_SHARE = 0.999  # the share of the surface-free ball's radius that a step may use
+ROUNDING_ERROR = 1e-9  # the rounding error of the difference between two values of f
+BALL_SHARE = 0.999  # the longest step, over the radius of the ball that should hold no surface
 
 
 def check(
@@ -32,7 +32,7 @@ def check(
     Parameters
     ----------
     distance : callable
-        f(p) of points; or a node.
+        A node, or a function f(p) of points.
     low, high : three numbers
         The corners of the box that is checked.
     lipschitz : float, optional
@@ -68,21 +68,23 @@ def check(
     if slope[worst] > lipschitz:
         raise BrdfkitError(
             f"the field changes by {slope[worst]:.3g} per unit near {format_point(a[worst])}, "
-            f"more than its bound {lipschitz:g}: no distance does; divide it by the slope."
+            f"more than its bound {lipschitz:g}, so that rays may miss the surface; divide the "
+            "field by its slope, or state a larger lipschitz."
         )
 
 
 def check_steps(node: Any, walks: int = 500, steps: int = 8, seed: int = 0) -> None:
     """Check by random walks that no step of the length f / L crosses the surface of a node.
 
-    `check` demands more: an estimate whose values jump, such as the Mandelbulb's, may still have
-    safe steps. Each step of a walk leads to a random point of the ball that should hold no surface,
-    so that the walk soon comes near the surface. A check that finds nothing is no proof.
+    f is the field and L its bound `lipschitz`. `check` demands more: an estimate whose values jump,
+    such as the Mandelbulb's, may still have safe steps. Each step of a walk leads to a random point
+    of the ball that should hold no surface, so that the walk soon comes near the surface. A check
+    that finds nothing is no proof.
 
     Parameters
     ----------
     node : distance field
-        The field, as a scene has it.
+        The field.
     walks : integer, default 500
         The number of walks.
     steps : integer, default 8
@@ -100,7 +102,7 @@ def check_steps(node: Any, walks: int = 500, steps: int = 8, seed: int = 0) -> N
     >>> check_steps(sphere(1) | box(2).translate((1, 0, 0)))
     """
     rng = np.random.default_rng(seed)
-    low, high = join_boxes(_finite_boxes(node) or [(-np.ones(3), np.ones(3))])
+    low, high = join_boxes(_list_finite_boxes(node) or [(-np.ones(3), np.ones(3))])
     spread = (high - low) * 10 ** rng.uniform(-1, 1, (walks, 1))
     a = (low + high) / 2 + spread * rng.normal(size=(walks, 3))
     f = node(a)
@@ -112,18 +114,18 @@ def check_steps(node: Any, walks: int = 500, steps: int = 8, seed: int = 0) -> N
         g = node(b)
         for i in np.flatnonzero(f * g < 0)[:1]:
             raise BrdfkitError(
-                f"the field is {f[i]:.3g} at {format_point(a[i])}, yet its surface is within "
-                f"{np.linalg.norm(b[i] - a[i]):.3g} of that: it is steeper than its bound "
+                f"the field is {f[i]:.3g} at {format_point(a[i])}, but its surface is less than "
+                f"{np.linalg.norm(b[i] - a[i]):.3g} away: it is steeper than its bound "
                 f"{node.lipschitz:g}; divide it by its slope, or state a larger lipschitz."
             )
         a, f = b, g
 
 
-def _finite_boxes(node: Any) -> list[Box]:
-    """Return the boxes of the bounded parts of a node."""
+def _list_finite_boxes(node: Any) -> list[Box]:
+    """Return the bounding boxes of those parts of a node that are bounded."""
     if np.isfinite(node.bounds()).all():
         return [node.bounds()]
-    return [box for child in node.children for box in _finite_boxes(child)]
+    return [box for child in node.children for box in _list_finite_boxes(child)]
 
 
 def _require_finite(f: FloatArray, points: FloatArray) -> None:
@@ -131,4 +133,4 @@ def _require_finite(f: FloatArray, points: FloatArray) -> None:
     bad = ~np.isfinite(f)
     if bad.any():
         place = format_point(points[bad][0])
-        raise BrdfkitError(f"the field is {f[bad][0]} at {place}; a distance is finite.")
+        raise BrdfkitError(f"the field is {f[bad][0]} at {place}; make it finite everywhere.")

@@ -1,4 +1,4 @@
-"""The functions that distance formulas are written with.
+"""The functions in which the formulas of distance fields are written.
 
 A formula is written once, with these functions and with + - * / and <. On Dr.Jit arrays and plain
 numbers it computes the distance; on the symbols of `symbols.py` it writes the formula as GLSL.
@@ -38,7 +38,11 @@ class Point(NamedTuple):
 
 
 def _make_function(glsl: str, drjit: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that calls `drjit`, or writes a call of `glsl` if given symbols."""
+    """Return a function that calls `drjit`, or adds a call of `glsl` to a program if given symbols.
+
+    drjit : a function of Dr.Jit arrays and numbers.
+    glsl : the name of the same function in GLSL.
+    """
 
     def call(*args: Any) -> Any:
         symbol = next((a for a in args if isinstance(a, Symbol)), None)
@@ -75,16 +79,16 @@ def select(condition: JitMask, a: JitFloat, b: JitFloat) -> JitFloat:
 
 
 def to_int(a: JitFloat) -> JitInt:
-    """Return a number as an integer, without its fractional part."""
+    """Return a number without its fractional part, as an integer."""
     if isinstance(a, Symbol):
         return a.to_int()
     return int(a) if isinstance(a, float) else dr.int32_array_t(type(a))(a)
 
 
-def grid_value(grid: Any, i: JitInt, j: JitInt, k: JitInt, dtype: type) -> JitFloat:
+def read_grid_value(grid: Any, i: JitInt, j: JitInt, k: JitInt, dtype: type) -> JitFloat:
     """Return the value of a `grid` at the indices i, j, k along x, y, z, as an array of `dtype`."""
     if isinstance(i, Symbol):
-        return i.program.grid_value(grid, i, j, k)
+        return i.program.read_grid_value(grid, i, j, k)
     columns, rows = (int(n) for n in grid.counts[:2])
     index = i + columns * (j + rows * k)
     if isinstance(i, int):
@@ -93,7 +97,7 @@ def grid_value(grid: Any, i: JitInt, j: JitInt, k: JitInt, dtype: type) -> JitFl
 
 
 def lerp(a: JitFloat, b: JitFloat, t: JitFloat) -> JitFloat:
-    """Interpolate linearly between `a` at t = 0 and `b` at t = 1."""
+    """Return the linear interpolation between `a` at t = 0 and `b` at t = 1."""
     return a + t * (b - a)
 
 
@@ -109,13 +113,13 @@ def dot(a: Iterable[JitFloat], b: Iterable[JitFloat]) -> JitFloat:
 
 
 def subtract(p: JitVector, q: Iterable[JitFloat]) -> Point:
-    """Return `p` - `q`, where p has x, y and z, and q is a triple."""
+    """Return `p` - `q` as a `Point`; p has the attributes x, y and z, and q is a triple."""
     x, y, z = q
     return Point(p.x - x, p.y - y, p.z - z)
 
 
 def normalize(v: Iterable[JitFloat]) -> Point:
-    """Return the unit vector along the triple `v` of numbers or arrays."""
+    """Return the unit vector along `v`, a triple of numbers or arrays."""
     x, y, z = v
     size = dr.sqrt(x * x + y * y + z * z)
     return Point(x / size, y / size, z / size)

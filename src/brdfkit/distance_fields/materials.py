@@ -1,8 +1,8 @@
-"""Names of materials, and which part of a field the surface at a point belongs to.
+"""Materials of fields by name, and the part of a field to which a surface point belongs.
 
-A point belongs to the part that would move the surface there if it grew. So a point where two parts
-are blended smoothly belongs to both, with shares; the surface of a cut belongs to the solid that
-was cut away.
+A point belongs to the part that would move the surface there if the part grew. So a point where two
+parts are blended smoothly belongs to both, by shares; the surface of a cut belongs to the solid
+that was cut away.
 """
 
 from collections.abc import Mapping
@@ -13,14 +13,17 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import Box, to_numbers
+from brdfkit.distance_fields.boxes import Box, to_floats
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.shapes.motions import Motion
 from brdfkit.distance_fields.shapes.offsets import dilate
 
 
 def _check_name(what: str, value: Any, rules: Mapping[str, Any]) -> str:
-    """Return a name that a parameter of Mitsuba's can contain, else raise `BrdfkitError`."""
+    """Return the name of a material; raise `BrdfkitError` unless it is an identifier.
+
+    what : name of the parameter, for the error message.
+    """
     if not isinstance(value, str) or not value.isidentifier():
         raise BrdfkitError(f"{what} = {value!r} should be a name, such as gold or wood_2.")
     return value
@@ -28,14 +31,14 @@ def _check_name(what: str, value: Any, rules: Mapping[str, Any]) -> str:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class made_of(Motion):
-    """A solid with the name of its material, which a renderer uses to find the BSDF.
+    """A solid with the name of its material, by which a renderer finds the BSDF.
 
     Parameters
     ----------
     child : distance field
-        The solid, with no named parts within.
+        The solid, which must not contain parts with names already.
     material : str
-        The name: letters, digits and _.
+        The name of the material: letters, digits and _.
     """
 
     child: Node
@@ -43,7 +46,7 @@ class made_of(Motion):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for name in material_names(self.child):
+        for name in list_material_names(self.child):
             raise BrdfkitError(
                 f"made_of: the solid made of {self.material!r} has a part made of {name!r} "
                 "already; name each part once."
@@ -56,11 +59,11 @@ class made_of(Motion):
         return self.child.bounds(level)
 
 
-def material_names(node: Node) -> list[str]:
+def list_material_names(node: Node) -> list[str]:
     """Return the names of all materials in a field, sorted."""
     if isinstance(node, made_of):
         return [node.material]
-    return sorted({name for child in node.children for name in material_names(child)})
+    return sorted({name for child in node.children for name in list_material_names(child)})
 
 
 def grow_material(node: Any, material: str, growth: float) -> Any:
@@ -68,7 +71,7 @@ def grow_material(node: Any, material: str, growth: float) -> Any:
     if node.kind == "made_of":
         return dilate(node.child, growth) if node.material == material else node
     if node.kind == "scale":
-        growth = growth / to_numbers(node.factor)
+        growth = growth / to_floats(node.factor)
     if hasattr(node, "child"):
         return replace(node, child=grow_material(node.child, material, growth))
     if node.children:
@@ -77,7 +80,7 @@ def grow_material(node: Any, material: str, growth: float) -> Any:
     return node
 
 
-def material_share(node: Node, larger: Node, p: JitVector, growth: float) -> JitFloat:
+def compute_material_share(node: Node, larger: Node, p: JitVector, growth: float) -> JitFloat:
     """Return the share, 0 to 1, of the surface at `p` that belongs to a material.
 
     larger : the field with the parts of that material grown by `growth`, see `grow_material`.

@@ -17,24 +17,24 @@ from brdfkit.distance_fields.operators import Operators
 
 
 class Node(Operators, Conversions):
-    """A distance field f: negative inside a solid, and never more than the distance to its surface.
+    """A distance field f: negative inside a solid, and at most the distance to its surface.
 
     A kind of node is a frozen dataclass that is derived from this class and has a method
     `distance(p)`, written with `functions.py`. Operators, files and parameters use its class name.
 
-    Three things are tracked through every operation. `lipschitz` is a bound L: from x to y, f
-    changes by no more than L ‖x - y‖, so that f / L never overstates the distance: a safe step.
+    Three properties follow every operation. `lipschitz` is a bound L: from x to y, f changes by no
+    more than L ‖x - y‖, so that f / L never overstates the distance and is a safe step.
     `exact_outside` and `exact_inside` say that f is the distance there, not an estimate below it.
     `is_convex` says that f is a convex function, and so every {f ≤ c} a convex set.
     """
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        if "distance" in vars(cls):  # a class without it is the base of several kinds
+        if "distance" in vars(cls):  # a class without this method is the base of several kinds
             kinds.register_kind(cls)
 
     def __post_init__(self) -> None:
-        for f in public_fields(self):
+        for f in list_public_fields(self):
             value = kinds.check_value(f"{self.kind}.{f.name}", getattr(self, f.name), f.metadata)
             object.__setattr__(self, f.name, value)
             for child in value if isinstance(value, tuple) else (value,):
@@ -47,7 +47,7 @@ class Node(Operators, Conversions):
         return type(self).__name__
 
     def distance(self, p: JitVector) -> JitFloat:
-        """Return f at `p`, which has x, y and z: Dr.Jit arrays of any backend, or numbers."""
+        """Return f at points `p` with x, y and z: Dr.Jit arrays of any backend, or numbers."""
         raise NotImplementedError
 
     def bounds(self, level: float = 0.0) -> Box:
@@ -56,7 +56,7 @@ class Node(Operators, Conversions):
 
     @property
     def children(self) -> tuple[Node, ...]:
-        """The nodes that this one is made of."""
+        """The nodes of which this node is made."""
         child = getattr(self, "child", ())
         return child if isinstance(child, tuple) else (child,)
 
@@ -81,7 +81,7 @@ class Node(Operators, Conversions):
         return max((child.lipschitz for child in self.children), default=1.0)
 
     def __call__(self, points: ArrayLike) -> FloatArray:
-        """Return f (n,) at NumPy's `points` (n, 3), in double precision.
+        """Return the values f (n,) at `points` (n, 3) of NumPy's, in double precision.
 
         >>> sphere(1)([[0, 0, 3]])
         array([2.])
@@ -89,13 +89,13 @@ class Node(Operators, Conversions):
         return evaluate(self.distance, points)
 
     def parameters(self) -> dict[str, Any]:
-        """Return all parameters by name, as ``union.0.sphere.radius``.
+        """Return the values of all parameters by names such as ``union.0.sphere.radius``.
 
         A parameter is a number, a triple, or the array of a grid's values.
         """
         values = {
             f"{self.kind}.{f.name}": getattr(self, f.name)
-            for f in public_fields(self)
+            for f in list_public_fields(self)
             if "check" in f.metadata and "fixed" not in f.metadata
         }
         for prefix, child in self._children_by_prefix():
@@ -103,7 +103,7 @@ class Node(Operators, Conversions):
         return values
 
     def with_parameters(self, values: Mapping[str, Any]) -> Node:
-        """Return the same tree with other values of some parameters, by their `parameters()` names.
+        """Return the same tree with other values of parameters, by their names in `parameters()`.
 
         Dr.Jit floats carry derivatives through `distance`.
         """
@@ -114,14 +114,14 @@ class Node(Operators, Conversions):
         return self._replace_parameters(values)
 
     def _replace_parameters(self, values: Mapping[str, Any]) -> Node:
-        """Return the tree with the `values` of known parameters."""
+        """Return the tree with other values of the named parameters, which are known to exist."""
         own: dict[str, Any] = {
             f.name: values[f"{self.kind}.{f.name}"]
-            for f in public_fields(self)
+            for f in list_public_fields(self)
             if f"{self.kind}.{f.name}" in values
         }
         children = tuple(
-            child._replace_parameters(values_below(values, prefix))
+            child._replace_parameters(select_by_prefix(values, prefix))
             for prefix, child in self._children_by_prefix()
         )
         if hasattr(self, "child"):
@@ -141,11 +141,11 @@ class Node(Operators, Conversions):
         return to_python(self)
 
 
-def public_fields(node: Any) -> list[Field[Any]]:
-    """Return the dataclass fields that define a node, without its caches."""
+def list_public_fields(node: Any) -> list[Field[Any]]:
+    """Return the dataclass fields that define a node; its caches are left out."""
     return [f for f in fields(node) if not f.name.startswith("_")]
 
 
-def values_below(values: Mapping[str, Any], prefix: str) -> dict[str, Any]:
-    """Return the `values` whose names start with a prefix, by their names without it."""
+def select_by_prefix(values: Mapping[str, Any], prefix: str) -> dict[str, Any]:
+    """Return the entries whose names start with a prefix and a dot, which are cut off."""
     return {n[len(prefix) + 1 :]: v for n, v in values.items() if n.startswith(f"{prefix}.")}

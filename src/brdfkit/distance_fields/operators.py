@@ -23,53 +23,54 @@ class Operators:
         return _combine("difference", self, other)
 
     def k(self, k: Any) -> "Smooth":
-        """Return this field as an operand that is blended over a width: ``a | b.k(0.1)``."""
+        """Return this field as an operand that is blended over a width `k`: ``a | b.k(0.1)``."""
         return Smooth(self, k)
 
     def translate(self, offset: Any) -> Any:
-        """Move by the vector `offset`."""
+        """Return the solid moved by the vector `offset`."""
         return find_kind("translate")(self, offset)
 
     def at(self, x: Any, y: Any = None, z: Any = None) -> Any:
-        """Move by (x, y, z), given as three numbers or as one triple, as `translate` does."""
+        """Return the solid moved by (x, y, z), given as three numbers or as one triple."""
         if (y is None) != (z is None):
             raise BrdfkitError("at() needs three numbers, or one triple.")
         return self.translate(x if y is None else (x, y, z))
 
     def rotate(self, angle: Any, axis: Any = (0.0, 0.0, 1.0)) -> Any:
-        """Turn by `angle` [rad] about `axis`, through the origin, by the right-hand rule."""
+        """Return the solid turned by `angle` [rad] about `axis`, a line through the origin."""
         return find_kind("rotate")(self, angle, axis)
 
     def scale(self, factor: Any) -> Any:
-        """Scale about the origin by a number above 0, equally in all directions."""
+        """Return the solid scaled about the origin by a number above 0, in all directions."""
         return find_kind("scale")(self, factor)
 
     def dilate(self, distance: Any) -> Any:
-        """Grow by `distance` on all sides; a negative distance shrinks."""
+        """Return the solid grown by `distance` on all sides; a negative distance shrinks it."""
         return find_kind("dilate")(self, distance)
 
     def shell(self, thickness: Any) -> Any:
-        """Make a hollow shell of this thickness, with the surface in its middle."""
+        """Return a hollow shell of this thickness, with the solid's surface in its middle."""
         return find_kind("shell")(self, thickness)
 
     def made_of(self, material: str) -> Any:
-        """Name the material, which a renderer uses to find the BSDF."""
+        """Return the solid with the name of its material, by which a renderer finds the BSDF."""
         return find_kind("made_of")(self, material)
 
     def repeat(self, spacing: Any, copies: int | None = None) -> Any:
-        """Repeat in a lattice with distances `spacing`; 0 along an axis does not repeat there.
+        """Return copies of the solid in a lattice with distances `spacing` along x, y and z.
 
-        There are `copies` copies on each side of the first one, or without end if it is None.
+        Along an axis with spacing 0 there is one copy, else `copies` copies on each side of the
+        first one, or infinitely many if it is None.
         """
         return find_kind("repeat")(self, spacing, copies)
 
     def circular_array(self, copies: int, offset: Any = 0.0) -> Any:
-        """Arrange `copies` copies around the z axis, after a move by `offset` along x."""
+        """Return `copies` copies of the solid around the z axis, moved along x by `offset`."""
         return find_kind("circular_array")(self.at(offset, 0, 0) if offset else self, copies)
 
 
 class Smooth(NamedTuple):
-    """A field that the next operator blends in over the width `k`."""
+    """A field that the next operator combines with another by a smooth blend of the width `k`."""
 
     field: Any
     k: Any
@@ -85,7 +86,10 @@ class Smooth(NamedTuple):
 
 
 def _combine(name: str, a: Any, b: Any) -> Any:
-    """Combine two fields sharply; a chain such as a | b | c becomes one node."""
+    """Return the sharp combination of two fields; a chain such as a | b | c becomes one node.
+
+    name : kind of the combination: union, intersection or difference.
+    """
     if isinstance(b, Smooth):
         return NotImplemented
     first = a.children if a.kind == name and a.is_sharp else (a,)

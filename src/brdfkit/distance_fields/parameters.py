@@ -19,7 +19,7 @@ def register_kind(cls: type) -> None:
 
 
 def find_kind(name: Any, where: str = "") -> type:
-    """Return the class of nodes of this name; `where` begins the error for an unknown name."""
+    """Return the class of nodes with this name; `where` begins the error for an unknown name."""
     if not isinstance(name, str) or name not in _KINDS:
         raise no_such_error("node", name, sorted(_KINDS), where)
     return _KINDS[name]
@@ -33,7 +33,7 @@ def number(default: Any, least: float | None = None, above: float | None = None)
 def vector(
     default: Any, above: float | None = None, least: float | None = None, spread: bool = False
 ) -> Any:
-    """Declare a field for three numbers; with `spread` one number stands for three."""
+    """Declare a field for three numbers; with `spread`, one number may stand for three."""
     rules = {"check": _check_vector, "above": above, "least": least, "spread": spread}
     return field(default=default, metadata=rules)
 
@@ -45,13 +45,17 @@ def count(default: Any, least: int = 0, optional: bool = False) -> Any:
 
 
 def check_value(what: str, value: Any, rules: Mapping[str, Any]) -> Any:
-    """Return `value` as its field stores it; raise `BrdfkitError`, which names it, if invalid."""
+    """Return `value` in the form in which its field stores it; raise `BrdfkitError` if invalid.
+
+    what : name of the field, for the error message.
+    rules : metadata of the field.
+    """
     check = rules.get("check")
     return check(what, value, rules) if check else value
 
 
 def _check_number(what: str, value: Any, rules: Mapping[str, Any]) -> Any:
-    """Return a Dr.Jit array as it is, and a number within its bounds as a float."""
+    """Return a number within its bounds as a float; a Dr.Jit array is returned unchecked."""
     if dr.is_array_v(value):
         return value
     return to_number(what, value, rules["least"], above=rules["above"])

@@ -24,8 +24,11 @@ class Program:
         """Add a line that chooses `a` where the condition holds, else `b`; return its symbol."""
         return self.assign("float", f"{condition.name} ? {to_glsl(a)} : {to_glsl(b)}")
 
-    def grid_value(self, grid: Any, i: Any, j: Any, k: Any) -> "Symbol":
-        """Add the lookup of the value (i, j, k) of a grid, which becomes a texture of its own."""
+    def read_grid_value(self, grid: Any, i: Any, j: Any, k: Any) -> "Symbol":
+        """Add a line that reads the value (i, j, k) of a grid, and return its symbol.
+
+        Each grid becomes a texture of its own.
+        """
         if not any(grid is known for known in self.grids):
             self.grids.append(grid)
         number = next(n for n, known in enumerate(self.grids) if known is grid)
@@ -34,7 +37,7 @@ class Program:
 
 
 class Symbol:
-    """A name in a GLSL program, of a float, an int or a bool; arithmetic on it adds lines."""
+    """A float, int or bool by its name in a GLSL program; arithmetic on it adds lines to that."""
 
     def __init__(self, program: Program, name: str, kind: str = "float") -> None:
         self.program, self.name, self.kind = program, name, kind
@@ -81,12 +84,12 @@ class Symbol:
         return self._operate("&&", self, other, "bool")
 
     def to_int(self) -> "Symbol":
-        """Add a line that cuts the number to an integer, and return the integer's symbol."""
+        """Add a line that drops the fractional part of the number; return the integer's symbol."""
         return self.program.assign("int", f"int({self.name})")
 
 
 def to_glsl(value: Any, kind: str = "float") -> str:
-    """Return a symbol, or a number as a literal of the given GLSL type, as text."""
+    """Return the GLSL of a symbol, or of a number as a literal of the type `kind`."""
     if isinstance(value, Symbol):
         return value.name
     return repr(int(value)) if kind == "int" else repr(float(value))

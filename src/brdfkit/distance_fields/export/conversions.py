@@ -13,7 +13,7 @@ TEXTURE = "uniform sampler3D grid_{number};  // values {shape} of x, y, z, not f
 
 
 class Conversions:
-    """The methods of fields that convert them to something else."""
+    """The methods of `Node` that convert a distance field to other representations."""
 
     def to_json(self) -> str:
         """Return the field as JSON, which `from_json` reads."""
@@ -57,7 +57,7 @@ class Conversions:
         return to_grid(self, resolution, bounds)
 
     def to_mesh(self, resolution: int = 64, bounds: Any = None) -> Any:
-        """Return the surface as triangles, see `brdfkit.distance_fields.to_mesh`."""
+        """Return the surface as triangles; see `brdfkit.distance_fields.to_mesh`."""
         from brdfkit.distance_fields.export.mesh import to_mesh
 
         return to_mesh(self, resolution, bounds)

@@ -11,13 +11,13 @@ import numpy as np
 
 from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import read_bytes, write_safely
-from brdfkit.distance_fields.boxes import to_numbers
+from brdfkit.distance_fields.boxes import to_floats
 from brdfkit.distance_fields.parameters import find_kind
 
 
 def to_json(node: Any) -> str:
     """Return a node as JSON text."""
-    return json.dumps(_to_data(node))
+    return json.dumps(_node_to_data(node))
 
 
 def from_json(text: str, where: str = "the field") -> Any:
@@ -26,9 +26,9 @@ def from_json(text: str, where: str = "the field") -> Any:
     Parameters
     ----------
     text : str
-        JSON.
+        The JSON text.
     where : str, default "the field"
-        What errors call the text.
+        The name of the text in error messages.
 
     Returns
     -------
@@ -48,8 +48,8 @@ def from_json(text: str, where: str = "the field") -> Any:
     try:
         data = json.loads(text)
     except (ValueError, TypeError, RecursionError) as error:
-        raise BrdfkitError(f"{where}: is no JSON ({error}); check the file.") from error
-    return _to_node(data, where)
+        raise BrdfkitError(f"{where}: this is not JSON ({error}); check the file.") from error
+    return _data_to_node(data, where)
 
 
 def save(node: Any, path: str | PathLike[str]) -> None:
@@ -60,12 +60,12 @@ def save(node: Any, path: str | PathLike[str]) -> None:
 
 
 def _require_own_kinds(node: Any, path: str | PathLike[str]) -> None:
-    """Raise `BrdfkitError` for a function, or a kind of node that is not brdfkit's."""
+    """Raise `BrdfkitError` if a field contains user-defined nodes, which no file can store."""
     if not type(node).__module__.startswith("brdfkit.") or node.kind == "function":
         raise BrdfkitError(
-            f"{path}: the field holds {node!r:.60}, which is Python of yours, and no file can hold "
-            "that. Save a grid of the field, field.to_grid(128, bounds=(low, high)).save(path), or "
-            "a mesh, field.to_mesh(128, bounds=(low, high)).write(path)."
+            f"{path}: the field contains {node!r:.60}, which is Python of your own and cannot be "
+            "saved. Save a grid, field.to_grid(128, bounds=(low, high)).save(path), or a mesh, "
+            "field.to_mesh(128, bounds=(low, high)).write(path)."
         )
     for child in node.children:
         _require_own_kinds(child, path)
@@ -77,7 +77,7 @@ def load(path: str | PathLike[str]) -> Any:
     Parameters
     ----------
     path : file
-        JSON, compressed or not.
+        A JSON file, compressed or not.
 
     Returns
     -------
@@ -96,37 +96,37 @@ def load(path: str | PathLike[str]) -> Any:
     try:
         return from_json(read_bytes(path).decode(), str(path))
     except UnicodeDecodeError as error:
-        raise BrdfkitError(f"{path}: is no text; a distance field is JSON.") from error
+        raise BrdfkitError(f"{path}: this is not a text file; give the JSON of a field.") from error
 
 
 def is_field_file(path: str | PathLike[str]) -> bool:
-    """Return whether a file exists that begins like those that `save` writes."""
+    """Return whether a path is a file that begins as the files do that `save` writes."""
     if not isfile(path):
         return False
     with open(path, "rb") as file:
         return file.read(100).lstrip().startswith(b'{"kind"')
 
 
-def _to_data(value: Any) -> Any:
-    """Convert a node or a parameter to dictionaries, lists and numbers."""
+def _node_to_data(value: Any) -> Any:
+    """Return a node or a parameter as dictionaries, lists and numbers, which JSON can store."""
     if hasattr(value, "kind"):
-        own = {f.name: _to_data(getattr(value, f.name)) for f in _saved_fields(value)}
+        own = {f.name: _node_to_data(getattr(value, f.name)) for f in _list_saved_fields(value)}
         return {"kind": value.kind} | own
     if isinstance(value, tuple):
-        return [_to_data(v) for v in value]
-    if value is None:  # the number of copies of an infinite repetition
+        return [_node_to_data(v) for v in value]
+    if value is None:  # the parameter `copies` of an infinite repetition
         return None
     if dr.is_tensor_v(value) or isinstance(value, np.ndarray):
         return np.asarray(dr.detach(value), float).tolist()
-    return to_numbers(value) if dr.is_array_v(value) else value
+    return to_floats(value) if dr.is_array_v(value) else value
 
 
-def _to_node(data: Any, where: str) -> Any:
-    """Convert what `_to_data` made back to a node; `where` begins the errors."""
+def _data_to_node(data: Any, where: str) -> Any:
+    """Return the node that `_node_to_data` converted; `where` begins the errors."""
     if not isinstance(data, dict) or "kind" not in data:
         raise BrdfkitError(f'{where}: {str(data)[:40]!r} should be an object with a "kind".')
     cls = find_kind(data["kind"], where)
-    known = {f.name: f for f in _saved_fields(cls)}
+    known = {f.name: f for f in _list_saved_fields(cls)}
     arguments = {name: value for name, value in data.items() if name != "kind"}
     for name in arguments:
         if name not in known:
@@ -135,17 +135,19 @@ def _to_node(data: Any, where: str) -> Any:
         if name not in arguments and field.default is MISSING:
             raise BrdfkitError(f"{where}: {data['kind']} needs {name}; add it.")
     if "child" in arguments:
-        arguments["child"] = _to_node(arguments["child"], where)
+        arguments["child"] = _data_to_node(arguments["child"], where)
     if "children" in arguments:
         if not isinstance(arguments["children"], list):
             raise BrdfkitError(f"{where}: children of {data['kind']} should be a list.")
-        arguments["children"] = tuple(_to_node(child, where) for child in arguments["children"])
+        arguments["children"] = tuple(
+            _data_to_node(child, where) for child in arguments["children"]
+        )
     try:
         return cls(**arguments)
     except BrdfkitError as error:
         raise BrdfkitError(f"{where}: {error}") from error
 
 
-def _saved_fields(node: Any) -> list[Field[Any]]:
+def _list_saved_fields(node: Any) -> list[Field[Any]]:
     """Return the dataclass fields of a node, or of a class of nodes, that a file stores."""
     return [f for f in fields(node) if f.init]

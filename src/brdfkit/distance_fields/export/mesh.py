@@ -26,8 +26,8 @@ NOT_INSTALLED = 'is not installed; pip install "brdfkit[distance_fields]".'
 class Mesh(NamedTuple):
     """A triangle mesh.
 
-    `vertices` (n, 3) are points; `faces` (m, 3) are indices of vertices, anticlockwise seen from
-    outside.
+    `vertices`: points (n, 3).
+    `faces`: indices (m, 3) of the triangles' vertices, anticlockwise seen from outside.
     """
 
     vertices: FloatArray

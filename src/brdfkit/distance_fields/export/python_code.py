@@ -10,7 +10,7 @@ OPERATORS = {"union": " | ", "intersection": " & ", "difference": " - "}
 
 
 def to_python(node: Any) -> str:
-    """Return the Python of a node, such as ``sphere(1) | box(2).translate((1, 0, 0))``.
+    """Return a node as a Python expression, such as ``sphere(1) | box(2).translate((1, 0, 0))``.
 
     The values of a grid are abbreviated to their number.
     """
@@ -25,12 +25,12 @@ def to_python(node: Any) -> str:
 
 
 def _format_operand(node: Any) -> str:
-    """Return the Python of a node, in brackets if it is a combination."""
+    """Return a node as a Python expression, in brackets if it is a combination."""
     return f"({node})" if node.kind in OPERATORS else repr(node)
 
 
 def _format_value(value: Any) -> str:
-    """Return the Python of a parameter's value."""
+    """Return the value of a parameter as a Python expression."""
     if value is None or isinstance(value, int | str):
         return repr(value)
     if isinstance(value, tuple):

@@ -10,7 +10,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.boxes import Box, format_point
 from brdfkit.distance_fields.parameters import find_kind
 
-MARGIN = 0.05  # around the surface's own box [unit of length]
+MARGIN = 0.05  # width of the margin around the surface's own box [unit of length]
 
 
 def to_grid(node: Any, resolution: int = 64, bounds: Any = None) -> Any:
@@ -19,8 +19,8 @@ def to_grid(node: Any, resolution: int = 64, bounds: Any = None) -> Any:
     The grid differs from the field by at most ``node.lipschitz * grid.half_diagonal``. The box is
     `bounds`, (low, high), or the node's own box with a margin.
     """
-    low, high = box_to_sample(node, bounds)
-    axes = grid_axes(low, high, resolution)
+    low, high = find_box_to_sample(node, bounds)
+    axes = make_grid_axes(low, high, resolution)
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     values = node(points.reshape(-1, 3)).reshape(points.shape[:3])
     if not np.isfinite(values).all():
@@ -35,8 +35,11 @@ def to_grid(node: Any, resolution: int = 64, bounds: Any = None) -> Any:
     return find_kind("grid")(values.transpose(2, 1, 0), tuple(low), tuple(a[-1] for a in axes))
 
 
-def box_to_sample(node: Any, bounds: Any = None) -> Box:
-    """Return the box (low, high) to sample: `bounds`, or the surface's own box with a margin."""
+def find_box_to_sample(node: Any, bounds: Any = None) -> Box:
+    """Return the box (low, high) to sample: `bounds`, or the surface's own box with a margin.
+
+    Raises `BrdfkitError` for boxes that are infinite, empty or no boxes at all.
+    """
     corners = node.bounds() if bounds is None else bounds
     try:
         low, high = np.asarray(corners, float).reshape(2, 3)
@@ -45,17 +48,17 @@ def box_to_sample(node: Any, bounds: Any = None) -> Box:
             f"bounds = {bounds!r} should be two corners, (low, high), of three numbers each."
         ) from None
     if not np.isfinite([low, high]).all():
-        raise BrdfkitError("the field is endless; give bounds, (low, high).")
+        raise BrdfkitError("the field is unbounded; give bounds, (low, high).")
     if not (low < high).all():
         raise BrdfkitError(
-            f"the box from {format_point(low)} to {format_point(high)} is empty; there is no "
-            "surface in it."
+            f"the box from {format_point(low)} to {format_point(high)} is empty: there is no "
+            "surface in it; give other bounds, or another field."
         )
     margin = MARGIN if bounds is None else 0.0
     return low - margin, high + margin
 
 
-def grid_axes(low: FloatArray, high: FloatArray, resolution: int) -> list[FloatArray]:
+def make_grid_axes(low: FloatArray, high: FloatArray, resolution: int) -> list[FloatArray]:
     """Return the coordinates along x, y and z of cubic cells that cover a box, from `low` on."""
     step = (high - low).max() / to_whole_number("resolution", resolution, least=1)
     counts = np.ceil((high - low) / step - 1e-9).astype(int)

@@ -1,10 +1,10 @@
 """The direct light that a field's surface reflects to a camera, from lamps and an environment.
 
-A lamp's light is found in one of three ways (`shading`):
+A lamp's light is found in one of three ways, by the integrator's parameter `shading`:
 
 split       f(ω_0) · L · (solid angle of the whole lamp) · (its visible share)
-estimated   the mean of f(ω_s) L / p(ω_s) over samples s of the lamp; the edge that one march found
-            decides which samples are visible
+estimated   the mean of f(ω_s) L / p(ω_s) over visible samples s of the lamp; the edge that one
+            march found decides which samples are visible
 exact       the same, with a shadow ray to each sample
 
 f is the BSDF times the cosine at the surface, ω_0 the direction of the lamp's centre, ω_s that of a
@@ -24,8 +24,8 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.loops import record_loops
 from brdfkit.distance_fields.shading.lamps import Lamp
 from brdfkit.distance_fields.shading.visible_point import VisiblePoint
-from brdfkit.distance_fields.shadows import LightCone, Shadow, find_edge, light_cone
-from brdfkit.distance_fields.shadows.soft_shadow import METHODS, WITH_EDGE, shadow_by_name
+from brdfkit.distance_fields.shadows import LightCone, Shadow, find_edge, make_light_cone
+from brdfkit.distance_fields.shadows.soft_shadow import METHODS, WITH_EDGE, compute_shadow_by_name
 from brdfkit.distance_fields.tracing.cone_tracing import cone_trace
 
 SHADINGS = "split", "estimated", "exact"
@@ -34,7 +34,14 @@ SHADOWS = [*METHODS, "none"]
 
 @dataclass(frozen=True)
 class DirectLight:
-    """The settings of the integrator `distance_field` for direct light, and its computation."""
+    """The settings of the integrator `distance_field` for direct light, and its computation.
+
+    `shadow`, `direction`, `epsilon`, `rays`: method of soft shadows and its settings, see
+    `soft_shadow`.
+    `shading`: how a lamp's light is computed, a name in `SHADINGS`.
+    `samples`: number of samples per lamp or environment.
+    `far`: distance at which rays end [unit of length].
+    """
 
     shadow: str
     direction: str
@@ -47,63 +54,73 @@ class DirectLight:
     def __post_init__(self) -> None:
         if self.shading == "estimated" and self.shadow not in WITH_EDGE:
             raise BrdfkitError(
-                f"distance_field: shading = estimated needs the edge that one march finds, and "
-                f"shadow = {self.shadow} finds none; give one of {', '.join(WITH_EDGE)}."
+                f"distance_field: shading = estimated needs a straight shadow edge, which "
+                f"shadow = {self.shadow} does not find; give one of {', '.join(WITH_EDGE)}."
             )
 
-    def reflect_lamp(
+    def compute_light_from_lamp(
         self, lamp: Lamp, seen: VisiblePoint, bsdf: MitsubaObject, sampler: MitsubaObject
     ) -> JitColour:
-        """Return the radiance of a lamp that a visible point reflects to the camera."""
+        """Return the radiance that a visible point reflects to the camera from a lamp."""
         import mitsuba as mi
 
         if self.shading == "split" or lamp.shape is None:
-            return self._reflect_middle(lamp, seen, bsdf)
+            return self._compute_split_light(lamp, seen, bsdf)
         is_visible: Callable[[MitsubaObject], JitMask]
         if self.shading == "exact":
             is_visible = partial(self._is_unoccluded, seen)
         else:
-            cone, shadow = self._lamp_shadow(lamp, seen, lamp.sample_middle(seen.si, seen.found)[0])
+            cone, shadow = self._compute_lamp_shadow(
+                lamp, seen, lamp.sample_centre(seen.si, seen.found)[0]
+            )
             with dr.suspend_grad():
                 edge = find_edge(seen.field, cone, shadow)
 
             def is_before_edge(ds: MitsubaObject) -> JitMask:
-                return edge.shows(cone, ds.p)
+                return edge.is_point_visible(cone, ds.p)
 
             is_visible = is_before_edge
 
         si, emitter = seen.si, lamp.emitter
 
-        def reflect_sample(sampler: MitsubaObject) -> JitColour:
+        def estimate_lamp_light(sampler: MitsubaObject) -> JitColour:
             ds, light = emitter.sample_direction(si, sampler.next_2d(seen.found), seen.found)
             value = bsdf.eval(mi.BSDFContext(), si, si.to_local(ds.d), seen.found)
             reflected = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light)
             return dr.select(is_visible(ds), reflected, 0)
 
-        return self._average(reflect_sample, sampler, seen.found)
+        return self._average_samples(estimate_lamp_light, sampler, seen.found)
 
-    def _reflect_middle(self, lamp: Lamp, seen: VisiblePoint, bsdf: MitsubaObject) -> JitColour:
-        """Return the reflected light of a lamp's centre, times the visible share of the lamp."""
+    def _compute_split_light(
+        self, lamp: Lamp, seen: VisiblePoint, bsdf: MitsubaObject
+    ) -> JitColour:
+        """Return the light reflected from a lamp's centre, times the lamp's visible share."""
         import mitsuba as mi
 
-        ds, light = lamp.sample_middle(seen.si, seen.found)
+        ds, light = lamp.sample_centre(seen.si, seen.found)
         value = bsdf.eval(mi.BSDFContext(), seen.si, seen.si.to_local(ds.d), seen.found)
-        visible = 1 if self.shadow == "none" else self._lamp_shadow(lamp, seen, ds)[1].visible
+        visible = (
+            1 if self.shadow == "none" else self._compute_lamp_shadow(lamp, seen, ds)[1].visible
+        )
         return mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * visible
 
     @record_loops
-    def _lamp_shadow(
+    def _compute_lamp_shadow(
         self, lamp: Lamp, seen: VisiblePoint, ds: MitsubaObject
     ) -> tuple[LightCone, Shadow]:
-        """Return the cone to a lamp, and the `Shadow` in it.
+        """Return the cone from a visible point to a lamp, and the `Shadow` in it.
 
-        Rays that met nothing start beside the lamp, where the march soon ends.
+        Camera rays that met nothing start beside the lamp, where the march soon ends.
+
+        ds : direction to the lamp's centre.
         """
-        centre, radius = lamp.sphere(seen.si, ds, self.far)
+        centre, radius = lamp.bounding_sphere(seen.si, ds, self.far)
         beside = centre + type(centre)(0, 0, 1) * (2 * radius + 1)
-        cone = light_cone(dr.select(seen.found, seen.middle, beside), centre, radius, seen.ball)
+        cone = make_light_cone(
+            dr.select(seen.found, seen.middle, beside), centre, radius, seen.ball
+        )
         settings = self.epsilon, self.direction, self.rays
-        return cone, shadow_by_name(self.shadow, seen.field, cone, *settings)
+        return cone, compute_shadow_by_name(self.shadow, seen.field, cone, *settings)
 
     @record_loops
     def _is_unoccluded(self, seen: VisiblePoint, ds: MitsubaObject) -> JitMask:
@@ -117,10 +134,10 @@ class DirectLight:
         far = dr.minimum(ds.dist, self.far)
         return ~cone_trace(f, seen.middle, ds.d, far, **settings).found
 
-    def reflect_sky(
+    def compute_light_from_environment(
         self, sky: MitsubaObject, seen: VisiblePoint, bsdf: MitsubaObject, sampler: MitsubaObject
     ) -> JitColour:
-        """Return the radiance of an environment that a visible point reflects to the camera.
+        """Return the radiance that a visible point reflects to the camera from an environment.
 
         As many samples of the BSDF as of the environment are combined by the balance heuristic.
         """
@@ -128,7 +145,7 @@ class DirectLight:
 
         si, active, context = seen.si, seen.found, mi.BSDFContext()
 
-        def reflect_samples(sampler: MitsubaObject) -> JitColour:
+        def estimate_environment_light(sampler: MitsubaObject) -> JitColour:
             ds, light = sky.sample_direction(si, sampler.next_2d(active), active)
             wo = si.to_local(ds.d)
             value = mi.unpolarized_spectrum(bsdf.eval(context, si, wo, active))
@@ -154,15 +171,15 @@ class DirectLight:
             by_bsdf = ratio * radiance * drawn.pdf / (drawn.pdf + other)
             return total + dr.select(visible, by_bsdf, 0)
 
-        return self._average(reflect_samples, sampler, active)
+        return self._average_samples(estimate_environment_light, sampler, active)
 
-    def _average(
+    def _average_samples(
         self,
         estimate: Callable[[MitsubaObject], JitColour],
         sampler: MitsubaObject,
         active: JitMask,
     ) -> JitColour:
-        """Return the mean of `estimate(sampler)` over all samples."""
+        """Return the mean of `estimate(sampler)` over all samples of an emitter."""
         import mitsuba as mi
 
         _, _, total = dr.while_loop(

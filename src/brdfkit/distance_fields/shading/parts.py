@@ -9,15 +9,19 @@ import numpy as np
 from brdfkit.core.array_types import JitVector, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.padding import pad
-from brdfkit.distance_fields.materials import grow_material, material_names, material_share
+from brdfkit.distance_fields.materials import (
+    compute_material_share,
+    grow_material,
+    list_material_names,
+)
 from brdfkit.distance_fields.node import Node
 
 
-def differentiable_parameters(node: Node) -> dict[str, MitsubaObject]:
+def make_differentiable_parameters(node: Node) -> dict[str, MitsubaObject]:
     """Return all parameters of a field by name, as `mi.Float`, `mi.Vector3f` or `mi.TensorXf`.
 
     They are opaque, so that one kernel serves all values. The `blend` of a sharp combination is
-    left out: it stays sharp.
+    left out, so that it stays sharp.
     """
     import mitsuba as mi
 
@@ -37,9 +41,12 @@ def differentiable_parameters(node: Node) -> dict[str, MitsubaObject]:
 
 
 class Parts:
-    """The BSDFs of a field: `named`, name → BSDF, and `other` for all parts without a name.
+    """The BSDFs of the parts of a field.
 
-    growth : a length [unit] less than all details, and more than what single precision rounds.
+    named : name of a material → BSDF of the parts with this name.
+    other : the BSDF of all parts without a name.
+    growth : length by which parts are grown to find the one that a point belongs to: less than all
+        details, and more than single precision rounds [unit of length].
     """
 
     def __init__(
@@ -47,20 +54,21 @@ class Parts:
     ) -> None:
         self.named, self.other, self.growth = named, other, growth
 
-    def grow(self, field: Node) -> dict[str, Node]:
-        """Return, by name, the field with the parts of this name grown; `bsdf` needs them."""
+    def grow_each_material(self, field: Node) -> dict[str, Node]:
+        """Return material → the field with the parts of this material grown by `growth`."""
         return {name: grow_material(field, name, self.growth) for name in self.named}
 
-    def bsdf(self, field: Node, larger: Mapping[str, Node], p: JitVector) -> MitsubaObject:
+    def find_bsdf(self, field: Node, larger: Mapping[str, Node], p: JitVector) -> MitsubaObject:
         """Return the `mi.BSDFPtr` of the part with the largest share of each surface point `p`.
 
-        larger : the result of `grow` for this field.
+        larger : the result of `grow_each_material` for this field.
         """
         import mitsuba as mi
 
         with dr.suspend_grad():
             shares = {
-                name: material_share(field, each, p, self.growth) for name, each in larger.items()
+                name: compute_material_share(field, each, p, self.growth)
+                for name, each in larger.items()
             }
             bsdf, most = mi.BSDFPtr(self.other), 1 - sum(shares.values(), mi.Float(0))
             for name, here in shares.items():
@@ -70,18 +78,18 @@ class Parts:
 
 
 def match_bsdfs(field: Node, bsdfs: Mapping[str, MitsubaObject], growth: float) -> Parts:
-    """Match the BSDFs of a scene, name → BSDF, with the parts of a field.
+    """Return the `Parts` of a field with the BSDFs of a scene, matched by name.
 
     A BSDF whose name belongs to no part is for all unnamed parts; without it they are Mitsuba's
-    `diffuse`. A name without a BSDF and a superfluous BSDF raise `BrdfkitError`; a BSDF
-    that transmits light causes a warning.
+    `diffuse`. A name without a BSDF and a superfluous BSDF raise `BrdfkitError`; a BSDF that
+    transmits light causes a warning.
     """
     import mitsuba as mi
 
-    names = material_names(field)
+    names = list_material_names(field)
     for name, bsdf in bsdfs.items():
         if not isinstance(bsdf, mi.BSDF):
-            raise BrdfkitError(f"distance_field: {name} is no bsdf; only bsdfs belong here.")
+            raise BrdfkitError(f"distance_field: {name} is not a bsdf; remove it.")
         if mi.has_flag(bsdf.flags(), mi.BSDFFlags.Transmission):
             warnings.warn(
                 f"distance_field: the bsdf {name} lets light through, but only the light that it "

@@ -1,6 +1,6 @@
 """Derivatives at silhouettes, where a surface begins to cover what lies behind it.
 
-A cone about a camera ray meets the surface where g(t) = f / L - ρ(t) falls to 0, with the distance
+A cone around a camera ray meets the surface where g(t) = f / L - ρ(t) falls to 0, with the distance
 f, its bound L and the cone's radius ρ. Where it passes closely, g has a minimum g₀ > 0. As g₀ falls
 to 0, the light L_b from behind gives way to the light L_f of the surface. So the derivative of the
 picture by whatever moves the surface is
@@ -8,9 +8,9 @@ picture by whatever moves the surface is
     ∫ δ(g₀) ∂g₀ (L_b - L_f) du
 
 over the points u of the picture. δ is replaced by 1/ε where 0 < g₀ < ε, so that the camera rays
-that are traced anyway find it. ε is `BAND_WIDTH` times ρ, less than a pixel. The silhouette is thus
-taken ε/2 outside of its place, and its derivative is wrong by ε over the surface's radius of
-curvature.
+that are traced anyway can estimate the integral. ε is `BAND_WIDTH` times ρ, less than a pixel. The
+silhouette is thus taken ε/2 outside of its place, and its derivative has a relative error of ε over
+the surface's radius of curvature.
 
 [Wang et al. 2024]
 """
@@ -23,21 +23,25 @@ import drjit as dr
 from brdfkit.core.array_types import JitColour, JitFloat, JitInt, JitMask, MitsubaObject
 from brdfkit.core.jit.loops import record_loops
 from brdfkit.distance_fields.node import Node
-from brdfkit.distance_fields.shading.visible_point import NORMAL_STEP, VisiblePoint, ray_cone
+from brdfkit.distance_fields.shading.visible_point import (
+    NORMAL_STEP,
+    VisiblePoint,
+    compute_ray_cone,
+)
 from brdfkit.distance_fields.tracing.hits import normal
 from brdfkit.mitsuba_bridge.surface_points import make_interaction
 
-BAND_WIDTH = 4.0  # ε, over the cone's radius ρ
-MAX_STEPS = 512  # as many as `cone_trace` takes
-GRAZING_COSINE = 0.01  # between ray and normal at a silhouette; a BSDF reflects nothing at 0
+BAND_WIDTH = 4.0  # the width ε of the band around silhouettes, over the cone's radius ρ
+MAX_STEPS = 512  # the most steps along a ray, as in `cone_trace`
+GRAZING_COSINE = 0.01  # between ray and normal at a silhouette, as a BSDF reflects nothing at 0
 
 
 @dataclass(frozen=True)
 class NearMiss:
-    """A place where a camera ray passes a silhouette closely.
+    """A place where a camera ray passes closely by a silhouette.
 
     seen : the `VisiblePoint` that the ray would meet if the surface reached it.
-    gap : Float, g₀, the least gap between cone and surface, with its derivatives.
+    gap : Float, g₀, the least gap between the ray's cone and the surface, with its derivatives.
     band : Float, ε, the gap below which rays count as close.
     """
 
@@ -45,10 +49,10 @@ class NearMiss:
     gap: Any
     band: Any
 
-    def add_derivatives(self, behind: JitColour, front: JitColour) -> JitColour:
-        """Return the light from `behind`, with its derivatives as the surface covers it.
+    def attach_silhouette_derivatives(self, behind: JitColour, front: JitColour) -> JitColour:
+        """Return the light `behind`, with its derivatives as the surface begins to cover it.
 
-        `front` is the light of the surface.
+        front : the light that the surface reflects.
         """
         weight = dr.detach(dr.select(self.seen.found, (behind - front) / self.band, 0))
         return behind + weight * (self.gap - dr.detach(self.gap))
@@ -58,8 +62,11 @@ class NearMiss:
 def find_near_miss(
     field: Node, ray: MitsubaObject, far: JitFloat, precision: JitFloat, active: JitMask
 ) -> NearMiss:
-    """Find where each `mi.RayDifferential3f` passes a silhouette closely, before `far`."""
-    radius, tangent = ray_cone(ray)
+    """Return where each `mi.RayDifferential3f` passes closely by a silhouette, before `far`.
+
+    precision : the radius of the thinnest cones, as in `find_visible_point`.
+    """
+    radius, tangent = compute_ray_cone(ray)
 
     def rho(t: JitFloat) -> JitFloat:
         return radius + 1.25 * precision + t * tangent  # as in `find_visible_point`
@@ -80,9 +87,10 @@ def find_near_miss(
 def find_nearest_pass(
     gap: Any, rho: Any, tangent: JitFloat, far: JitFloat, active: JitMask
 ) -> JitFloat:
-    """Return the distance t of the smallest minimum of the gap, or 0 if none is within the band.
+    """Return the distance t of the smallest minimum of `gap` along each ray, 0 if none is close.
 
-    gap, rho : functions of t, the gap between cone and surface and the radius of the cone.
+    gap, rho : functions of t: the gap between the ray's cone and the surface, and the cone's
+        radius.
     """
 
     def step(

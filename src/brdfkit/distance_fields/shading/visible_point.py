@@ -1,11 +1,11 @@
 """The points where camera rays meet a field, found by cones as wide as a sample of a pixel.
 
-A cone ends where it touches the surface, so that no object is missed, however thin. Shadows begin
-at the empty ball about its end. At a sharp edge the normal of such a large ball would be that of a
-rounded edge, which would show false highlights. So the ray goes on to a much smaller empty ball,
-whose normal is used. The shaded point is where the ray meets the plane that touches that small
-ball, so that distances to lamps are exact. Objects look larger by half a pixel's diagonal over the
-root of the samples per pixel.
+A cone ends where it touches the surface, so that no object is missed, however thin. The ball around
+its end that contains no object is where shadows begin. At a sharp edge the normal of such a large
+ball would be that of a rounded edge, which would show false highlights. So the ray goes on to a
+much smaller empty ball, whose normal is used. The shaded point is where the ray meets the plane
+that touches that small ball, so that distances to lamps are exact. Objects look larger by half a
+pixel's diagonal over the root of the samples per pixel.
 
 [Bálint et al. 2019, section 2.7]
 """
@@ -23,17 +23,17 @@ from brdfkit.distance_fields.tracing.cone_tracing import cone_trace
 from brdfkit.distance_fields.tracing.hits import normal, reattach
 from brdfkit.mitsuba_bridge.surface_points import make_interaction
 
-NORMAL_STEP = 10.0  # of normals by finite differences, over `precision`; less than all details
+NORMAL_STEP = 10.0  # step of the finite differences of normals, over `precision`
 SMALL_BALL = 1 / 8  # the radius of the small ball over the radius of the first one
 LEAST_COSINE = 0.1  # between ray and normal, so that the way from ball to surface stays short
 
 
 @dataclass(frozen=True)
 class VisiblePoint:
-    """The point that a camera ray meets.
+    """The point where a camera ray meets a field.
 
     si : `mi.SurfaceInteraction3f`, on the surface.
-    middle, ball : the centre and the radius of an empty ball close to it.
+    middle, ball : the centre and the radius of a ball near it that contains no object.
     found : Bool, whether the ray meets the field at all.
     field : the distance field.
     """
@@ -49,19 +49,19 @@ class VisiblePoint:
 def find_visible_point(
     field: Node, ray: MitsubaObject, far: JitFloat, precision: JitFloat, active: JitMask
 ) -> VisiblePoint:
-    """Find where each `mi.RayDifferential3f` meets a field, with derivatives by its parameters.
+    """Return where each `mi.RayDifferential3f` meets a field, with derivatives by its parameters.
 
-    far : where rays end.
+    far : the distance along rays at which they end.
     precision : the radius of the thinnest cones.
     """
-    radius, tangent = ray_cone(ray)
+    radius, tangent = compute_ray_cone(ray)
     settings = {"radius": radius + precision, "tangent": tangent, "active": active}
     f, lipschitz = field.distance, field.lipschitz
     hit = cone_trace(f, ray.o, ray.d, far, lipschitz=lipschitz, precision=precision / 4, **settings)
     t = dr.select(hit.found, hit.t, 0)
     if dr.grad_enabled(f(ray(t))):
         t = reattach(f, ray.o, ray.d, t)
-    ball = dr.maximum(hit.distance, precision / 2)  # above 0 also for rays that meet nothing
+    ball = dr.maximum(hit.distance, precision / 2)  # also rays that meet nothing need a radius > 0
     with dr.suspend_grad():
         end = dr.minimum(far, t + ball / LEAST_COSINE)
         close = dr.maximum(SMALL_BALL * ball, precision / 4)
@@ -75,8 +75,11 @@ def find_visible_point(
     return VisiblePoint(si, ray(t), ball, hit.found, field)
 
 
-def ray_cone(ray: MitsubaObject) -> tuple[JitFloat, JitFloat]:
-    """Return the first radius and the slope of the cone of a ray with differentials, else zeros."""
+def compute_ray_cone(ray: MitsubaObject) -> tuple[JitFloat, JitFloat]:
+    """Return the first radius and the slope of the cone around each ray, from its differentials.
+
+    Both are 0 for rays without differentials.
+    """
     if not ray.has_differentials:
         return 0.0, 0.0
     across = dr.maximum(dr.norm(ray.o_x - ray.o), dr.norm(ray.o_y - ray.o))

@@ -1,13 +1,14 @@
-"""The cone of light between a surface point and a light, along which shadows are searched.
+"""The cone between a surface point and a light, in which a march searches for occluders.
 
-It touches a ball of radius r_0 about the surface point and the ball of the light, of radius r_1:
+The cone touches a ball of radius r_0 around the surface point and the ball of the light, of radius
+r_1:
 
     sin α = (r_1 - r_0) / d,    R_i = r_i / cos α,    ρ(t) = R_0 + t tan α
 
 d is the distance of the balls' centres, R_0 and R_1 are the radii of the cone's sections there, and
-ρ(t) is the radius at the distance t. The ball about the surface point contains no object and is
-about as large as a pixel. Starting with it, a march needs no small first steps, and no edge of its
-shadows is sharper than a pixel.
+ρ(t) is the radius at the distance t. The ball around the surface point contains no object and is
+about as large as a pixel. As the march starts with this radius, it needs no small first steps, and
+no edge of its shadows is sharper than a pixel.
 
 [Bálint et al. 2019, section 4.1]
 """
@@ -20,9 +21,9 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitVector
 
-LARGEST_SINE = 0.999  # of α, for balls that lie within each other and have no cone
+LARGEST_SINE = 0.999  # the limit of sin α, as balls that lie within each other have no cone
 POINT_RADIUS = 1e-6  # the least radius of a section, over the cone's length
-TIP_RADIUS = 1e-3  # where the march in a pointed cone ends, over the widest radius
+TIP_RADIUS = 1e-3  # the radius, over the widest, at which a march counts as at the cone's tip
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class LightCone:
     d : Float, the length of the axis.
     R_0, R_1 : Float, the radii of the sections at its start and its end.
     tan : Float, tan α, the growth of the radius per length.
-    basis : unit vectors a and b that span the sections.
+    basis : two unit vectors at right angles to the axis and to each other.
     """
 
     start: Any
@@ -45,7 +46,7 @@ class LightCone:
     basis: tuple[Any, Any] = field(init=False)
 
     def __post_init__(self) -> None:
-        # A value that is first computed within a Dr.Jit loop is invalid after the loop
+        # Computed here, as a value that a Dr.Jit loop computes first is invalid after the loop
         z = dr.abs(self.axis.z) > 0.5
         side = type(self.axis)(dr.select(z, 1, 0), 0, dr.select(z, 0, 1))
         a = dr.normalize(side - self.axis * dr.dot(side, self.axis))
@@ -57,38 +58,38 @@ class LightCone:
         return dr.maximum(self.R_0 + t * self.tan, POINT_RADIUS * self.d)
 
     def point(self, t: JitFloat) -> JitVector:
-        """Return the point of the axis at t."""
+        """Return the point of the axis at the distance t from the start."""
         return self.start + self.axis * t
 
     def disc_point(self, t: JitFloat, x: JitFloat, y: JitFloat) -> JitVector:
-        """Return the point at (x, y) of the section at t, whose edge is the unit circle."""
+        """Return the point of the section at t with the coordinates (x, y) on the unit disc."""
         a, b = self.basis
         return self.point(t) + (a * x + b * y) * self.radius(t)
 
-    def to_disc(self, point: JitVector) -> tuple[JitFloat, JitFloat]:
-        """Return where the line through the apex and a `point` crosses the sections, as (x, y)."""
+    def project_to_disc(self, point: JitVector) -> tuple[JitFloat, JitFloat]:
+        """Return the coordinates (x, y) on the unit disc of a `point`, projected from the apex."""
         a, b = self.basis
         offset = point - self.start
         radius = self.radius(dr.dot(offset, self.axis))
         return dr.dot(offset, a) / radius, dr.dot(offset, b) / radius
 
-    def reversed(self) -> "LightCone":
-        """Return the same cone from its other end."""
+    def make_reversed(self) -> "LightCone":
+        """Return the cone from the light to the surface point."""
         return LightCone(self.point(self.d), -self.axis, self.d, self.R_1, self.R_0)
 
-    def to_point(self) -> "LightCone":
-        """Return the cone to the centre of the light alone."""
+    def narrow_to_centre(self) -> "LightCone":
+        """Return the cone to the centre of the light alone, as to a light of radius 0."""
         return replace(self, R_1=0 * self.R_1)
 
-    def detached(self) -> "LightCone":
+    def make_detached(self) -> "LightCone":
         """Return the same cone without derivatives."""
         fields = self.start, self.axis, self.d, self.R_0, self.R_1
         return LightCone(*(dr.detach(field) for field in fields))
 
-    def max_steps(self, epsilon: float, lipschitz: float = 1.0) -> JitFloat:
-        """Return a number of steps that no march of this `epsilon` exceeds, in any field.
+    def bound_step_count(self, epsilon: float, lipschitz: float = 1.0) -> JitFloat:
+        """Return an upper bound on the steps of a march with this `epsilon`, in any field.
 
-        A step is at least e ρ / (L + |tan α|) long, with e = ε π / 2.
+        A step is at least e ρ / (L + |tan α|) long, with e = ε π / 2 and the field's bound L.
         """
         wide = dr.maximum(self.R_0, self.R_1)
         narrow = dr.maximum(dr.minimum(self.R_0, self.R_1), TIP_RADIUS * wide)
@@ -98,10 +99,14 @@ class LightCone:
         return 2 + decades / dr.log(1 + growth)
 
 
-def light_cone(point: JitVector, light: JitVector, radius: JitFloat, ball: JitFloat) -> LightCone:
-    """Return the cone of a ball about `point` and a light about `light`, of radius `radius`.
+def make_light_cone(
+    point: JitVector, light: JitVector, radius: JitFloat, ball: JitFloat
+) -> LightCone:
+    """Return the cone from the ball of radius `ball` around `point` to a spherical light.
 
     Where one ball contains the other, the light is all around, and the cone is nearly a half-space.
+
+    light, radius : the light's centre and radius.
     """
     across = light - point
     d = dr.norm(across)

@@ -1,8 +1,8 @@
-"""The straight edge that a march finds, which decides whether samples of a light are visible.
+"""The straight edge of an occluder that a march finds, which tells visible samples of a light.
 
-The occluder of a `Shadow` ends at a straight line on the cone's disc, perpendicular to the gradient
-of the distance. So samples of a light, of a sphere or of any shape within it, are visible or not by
-arithmetic, without further evaluations of the distance.
+In the model of a `Shadow`, the occluder ends at a straight line on the cone's disc, at right angles
+to the gradient of the distance. So simple arithmetic tells whether a sample is visible, on a
+spherical light or on any shape within its sphere, without further evaluations of the distance.
 
 [Bálint et al. 2019, sections 5.2, 5.3]
 """
@@ -14,10 +14,10 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitMask, JitVector
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.field import distance_of
+from brdfkit.distance_fields.shadows.field import get_distance_function
 from brdfkit.distance_fields.shadows.shadow import Shadow
 
-STEP = 0.02  # of finite differences, over the radius of the section
+STEP = 0.02  # step of the finite differences, over the radius of the section
 
 
 @dataclass(frozen=True)
@@ -32,25 +32,27 @@ class Edge:
     n_y: Any
     offset: Any
 
-    def lets_through(self, x: JitFloat, y: JitFloat) -> JitMask:
+    def is_lit_at(self, x: JitFloat, y: JitFloat) -> JitMask:
         """Return whether the ray at (x, y) of the unit disc reaches the light."""
         return x * self.n_x + y * self.n_y >= -self.offset
 
-    def shows(self, cone: LightCone, point: JitVector) -> JitMask:
+    def is_point_visible(self, cone: LightCone, point: JitVector) -> JitMask:
         """Return whether a `point` of the light, or of a shape within its sphere, is visible."""
-        return self.lets_through(*cone.to_disc(point))
+        return self.is_lit_at(*cone.project_to_disc(point))
 
 
 def find_edge(field: Any, cone: LightCone, shadow: Shadow) -> Edge:
-    """Return the edge of the occluder of a `Shadow` in this `cone`.
+    """Return the straight edge of the occluder that a march in `cone` found.
 
-    The plane that touches the occluder goes through the apex, and is not parallel to the axis: its
-    line on the disc is r / √(1 - r² tan² α) from the centre.
+    The plane that touches the occluder goes through the apex. Where the axis is at the distance r ρ
+    from it, its line on the disc is r / √(1 - r² tan² α) from the centre.
+
+    shadow : result of the march.
     """
-    on_axis = distance_of(field)(cone.point(shadow.t))
+    on_axis = get_distance_function(field)(cone.point(shadow.t))
     x, y = gradient_across(field, cone, shadow.t, on_axis)
     length = dr.sqrt(x * x + y * y)
-    flat = length == 0  # where the distance changes only along the axis
+    flat = length == 0  # the distance changes only along the axis, so that any direction will do
     length = dr.select(flat, 1, length)
     lean = dr.safe_sqrt(1 - dr.square(shadow.r * cone.tan))
     offset = dr.select(shadow.r < 1, shadow.r / dr.maximum(lean, 1e-3), 1)
@@ -60,10 +62,12 @@ def find_edge(field: Any, cone: LightCone, shadow: Shadow) -> Edge:
 def gradient_across(
     field: Any, cone: LightCone, t: JitFloat, on_axis: JitFloat
 ) -> tuple[JitFloat, ...]:
-    """Return the two components of the gradient within the section at t, by finite differences.
+    """Return the gradient of a field within the section at t, by finite differences.
 
-    `on_axis` is the distance at the axis.
+    Its two components are along the cone's `basis`.
+
+    on_axis : the distance at the point of the axis.
     """
-    f, width = distance_of(field), STEP * cone.radius(t)
+    f, width = get_distance_function(field), STEP * cone.radius(t)
     aside = f(cone.disc_point(t, STEP, 0)), f(cone.disc_point(t, 0, STEP))
     return tuple((there - on_axis) / width for there in aside)

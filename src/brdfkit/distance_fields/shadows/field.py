@@ -14,41 +14,41 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.distance_fields.boxes import join_boxes
 from brdfkit.distance_fields.shapes.motions import Motion
 
-UNIT_BOX = -np.ones(3), np.ones(3)  # stands for the box of a field without bounded parts
+UNIT_BOX = -np.ones(3), np.ones(3)  # used for fields that have no bounded parts
 
 
-def distance_of(field: Any) -> Callable[[Any], Any]:
-    """Return the function from points to distances."""
+def get_distance_function(field: Any) -> Callable[[Any], Any]:
+    """Return the function from points to distances of a field, which may be the field itself."""
     distance: Callable[[Any], Any] = getattr(field, "distance", field)
     return distance
 
 
-def lipschitz_of(field: Any) -> float:
-    """Return the bound on the change of the distance per unit of length, by default 1."""
+def get_lipschitz_bound(field: Any) -> float:
+    """Return the bound L on the change of the distance per unit of length, by default 1."""
     return float(getattr(field, "lipschitz", 1.0))
 
 
-def pieces_of(field: Any) -> list[Any]:
-    """Return the fields whose minimum this one is: the parts of a union, else the field alone.
+def split_into_pieces(field: Any) -> list[Any]:
+    """Return fields whose minimum is `field`: the parts of a sharp union, else the field itself.
 
-    Unions within unions, and moved ones, are taken apart, too.
+    Unions within unions, and moved unions, are taken apart, too.
     """
     if getattr(field, "kind", None) == "union" and field.is_sharp:
-        return [piece for child in field.children for piece in pieces_of(child)]
+        return [piece for child in field.children for piece in split_into_pieces(child)]
     if isinstance(field, Motion):
         moved: Any = field
-        return [replace(moved, child=piece) for piece in pieces_of(field.child)]
+        return [replace(moved, child=piece) for piece in split_into_pieces(field.child)]
     return [field]
 
 
 def bounding_sphere(field: Any) -> tuple[FloatArray, float]:
-    """Return the centre (3,) and radius of a sphere about the bounded parts of a field.
+    """Return the centre (3,) and radius of a sphere around the bounded parts of a field.
 
     >>> from brdfkit.distance_fields import plane, sphere
     >>> bounding_sphere(sphere(2).at(7, 0, 0) | plane())
     (array([7., 0., 0.]), 3.4641016151377544)
     """
-    boxes = [piece.bounds() for piece in pieces_of(field)]
+    boxes = [piece.bounds() for piece in split_into_pieces(field)]
     boxes = [box for box in boxes if np.isfinite(box).all() and np.less(*box).all()]
     low, high = join_boxes(boxes or [UNIT_BOX])
     return (low + high) / 2, float(np.linalg.norm(high - low) / 2)

@@ -1,8 +1,8 @@
-"""The march that single-ray shadows share: steps along the axis of a cone of light.
+"""The march that single-ray shadows share: steps along the axis of a cone to the light.
 
 The smallest of the ratios f / ρ, the distance over the cone's radius, gives the share of the light
-that comes through. The march keeps the smallest ratio so far, R_T, and a somewhat smaller one, R_C:
-its steps are so short that it misses no ratio below R_C. Both may become negative, so that the
+that comes through. The march keeps the smallest ratio so far, R_T, and a somewhat smaller limit
+R_C: its steps are so short that it misses no ratio below R_C. Both may become negative, so that the
 march goes on through objects.
 
 [Bálint et al. 2019, algorithms 3-5]
@@ -16,22 +16,23 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitMask
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.field import distance_of, lipschitz_of
+from brdfkit.distance_fields.shadows.field import get_distance_function, get_lipschitz_bound
 
-# A function from (t, f, R_C, memory) to a step's length and the memory for the next step
+# A function from (t, f, R_C, memory) to the length of a step and the memory for the next step;
+# the memory is whatever the function wants to know of earlier steps
 Step: TypeAlias = Callable[[JitFloat, JitFloat, JitFloat, Any], tuple[JitFloat, Any]]
-# A function from (field, cone) to the step function and its first memory
+# A function from (field, cone) to a step function and its first memory
 Pace: TypeAlias = Callable[[Any, LightCone], tuple[Step, Any]]
 
 
 @dataclass(frozen=True)
 class Rule:
-    """The rule by which the smallest ratio R_T and its lower limit R_C follow a march.
+    """The rule by which a march updates the smallest ratio R_T and its limit R_C.
 
-    It distinguishes the methods.
+    The methods of single-ray shadows differ by their rules.
 
     first : R_T and R_C at the start.
-    lower : (ratio, R_T) → the new R_T and R_C, where a ratio is below R_T.
+    lower : function from a ratio below R_T, and R_T, to the new R_T and R_C.
     last : the R_T at which hardly any light is left, and the march ends.
     """
 
@@ -42,16 +43,24 @@ class Rule:
 
 @dataclass(frozen=True)
 class Walk:
-    """The result of a march: the smallest ratio R_T, its place t, and evaluations of f."""
+    """The result of a march.
+
+    R_T : the smallest ratio f / ρ that it found.
+    t : the distance along the axis at which it found this ratio.
+    evaluations : the number of evaluations of f.
+    """
 
     R_T: Any
     t: Any
     evaluations: Any
 
 
-def cone_pace(field: Any, cone: LightCone) -> tuple[Step, tuple[()]]:
-    """Return the steps of cone tracing: the ball about a point of the axis, less the cone's end."""
-    lipschitz, tan = lipschitz_of(field), cone.tan
+def make_cone_tracing_step(field: Any, cone: LightCone) -> tuple[Step, tuple[()]]:
+    """Return a function for the steps of cone tracing, and its memory, which is empty.
+
+    A step leads to the point where a cone with the radius R_C ρ may first touch the surface.
+    """
+    lipschitz, tan = get_lipschitz_bound(field), cone.tan
 
     def step(t: JitFloat, F: JitFloat, R_C: JitFloat, memory: Any) -> tuple[JitFloat, Any]:
         return (F - R_C * cone.radius(t)) / (lipschitz + dr.abs(R_C * tan)), memory
@@ -59,18 +68,23 @@ def cone_pace(field: Any, cone: LightCone) -> tuple[Step, tuple[()]]:
     return step, ()
 
 
-def march(
+def march_along_cone(
     field: Any,
     cone: LightCone,
     rule: Rule,
     epsilon: float,
-    pace: Pace = cone_pace,
+    pace: Pace = make_cone_tracing_step,
     active: JitMask = True,
 ) -> Walk:
-    """March from the start of the cone to its end, without derivatives, where `active`."""
-    f, cone = distance_of(field), cone.detached()
+    """March from the start of a cone to its end, without derivatives, where `active`.
+
+    rule : the rule by which R_T and R_C are updated.
+    epsilon : error of the lit share, which bounds the number of steps.
+    pace : function that makes the function for the steps.
+    """
+    f, cone = get_distance_function(field), cone.make_detached()
     step, memory = pace(field, cone)
-    max_steps = cone.max_steps(epsilon, lipschitz_of(field))
+    max_steps = cone.bound_step_count(epsilon, get_lipschitz_bound(field))
 
     def one_step(
         t: JitFloat, R_T: JitFloat, R_C: JitFloat, t_min: JitFloat, i: JitFloat, memory: Any
@@ -92,4 +106,4 @@ def march(
             ),
             one_step,
         )
-    return Walk(dr.select(dr.isnan(t), dr.nan, R_T), t_min, i)  # R_T is NaN where the field is
+    return Walk(dr.select(dr.isnan(t), dr.nan, R_T), t_min, i)  # NaN of the field reaches only t

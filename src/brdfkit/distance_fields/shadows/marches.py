@@ -1,15 +1,15 @@
 """The single-ray methods `linear` (the default), `hard` and `convex`.
 
-`linear` keeps the ratio R_C, below which its steps miss nothing, a constant below the smallest
-ratio R_T so far; so τ is computed only once, at the end. `hard` does the same for a light of radius
-0. `convex` takes longer steps in a union of convex objects. The distance f_j of a convex object is
-a convex function, so that along the axis it lies above the line through its last two values. So the
-cone with the radius R_C ρ cannot touch the object before
+`linear` keeps the limit R_C, below which its steps miss no ratio, a constant below the smallest
+ratio R_T so far; so the lit share τ is computed only once, at the end. `hard` does the same for a
+light of radius 0. `convex` takes longer steps in a union of convex objects. The distance f_j of a
+convex object is a convex function, so that along the axis it lies above the line through its last
+two values. So the cone with the radius R_C ρ cannot touch the object before
 
     Δt_j = (f_j - R_C ρ) / (R_C tan α - slope of that line)
 
-The thesis proposes such steps without a formula. They hold within objects and where R_C < 0, too,
-as the signed distance is convex there. See `march.py` for ratios and `cone.py` for ρ and α.
+The thesis proposes such steps without a formula. They are safe within objects and where R_C < 0,
+too, as the signed distance is convex there. See `march.py` for ratios and `cone.py` for ρ and α.
 
 [Bálint et al. 2019, algorithm 4 and section 4.4]
 """
@@ -21,53 +21,68 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.field import distance_of, lipschitz_of, pieces_of
+from brdfkit.distance_fields.shadows.field import (
+    get_distance_function,
+    get_lipschitz_bound,
+    split_into_pieces,
+)
 from brdfkit.distance_fields.shadows.march import Rule, Step
-from brdfkit.distance_fields.shadows.shadow import Shadow, single_ray
+from brdfkit.distance_fields.shadows.shadow import Shadow, trace_shadow
 
 
-def linear(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A") -> Shadow:
-    """Compute a shadow by the linear march, the default.
+def compute_linear_shadow(
+    field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A"
+) -> Shadow:
+    """Return a soft shadow by the linear march, the default method.
 
-    The visible share is at most ε above τ(r_min), the exact share for the smallest ratio.
+    The visible share is at most ε above the exact share for the smallest ratio.
     """
-    return single_ray(field, cone, linear_rule(epsilon), epsilon, direction)
+    return trace_shadow(field, cone, make_linear_rule(epsilon), epsilon, direction)
 
 
-def linear_rule(epsilon: float) -> Rule:
-    """Return the rule of `linear`: no ratio more than e = ε π / 2 below the smallest is missed.
+def make_linear_rule(epsilon: float) -> Rule:
+    """Return the rule of the linear march, which misses no ratio e = ε π / 2 below the smallest.
 
-    A change of ε in the share τ(r) is a change of e in r at least, because τ' ≤ 2 / π.
+    A change of ε in the lit share τ(r) is a change of e in r at least, because τ' ≤ 2 / π.
     """
     e = epsilon * pi / 2
     return Rule((1.0, 1 - e), lambda ratio, R_T: (ratio, ratio - e), e - 1)
 
 
-def hard(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A") -> Shadow:
-    """Compute the shadow of `linear` for a light of radius 0."""
-    return linear(field, cone.to_point(), epsilon, direction)
+def compute_hard_shadow(
+    field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A"
+) -> Shadow:
+    """Return the shadow of a light of radius 0, by the linear march."""
+    return compute_linear_shadow(field, cone.narrow_to_centre(), epsilon, direction)
 
 
-def convex(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A") -> Shadow:
-    """Compute a shadow by longer steps towards convex pieces, with the error of `linear`.
+def compute_convex_shadow(
+    field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A"
+) -> Shadow:
+    """Return a soft shadow by longer steps towards convex pieces, as exact as the linear march.
 
-    Pieces of a union that do not say `is_convex` are approached by the steps of `linear`.
+    Pieces of a union without `is_convex` are approached by the steps of the linear march.
     """
-    return single_ray(field, cone, linear_rule(epsilon), epsilon, direction, convex_pace)
+    return trace_shadow(
+        field, cone, make_linear_rule(epsilon), epsilon, direction, make_convex_step
+    )
 
 
-def convex_pace(field: Any, cone: LightCone) -> tuple[Step, Any]:
-    """Return steps to the nearest piece; the memory is the last t and the distances there."""
-    pieces = pieces_of(field)
+def make_convex_step(field: Any, cone: LightCone) -> tuple[Step, Any]:
+    """Return a function for steps towards convex pieces, and its first memory.
+
+    The memory is the last t and the distances of all pieces there.
+    """
+    pieces = split_into_pieces(field)
     zero = 0 * cone.d
 
     def step(t: JitFloat, F: JitFloat, R_C: JitFloat, memory: Any) -> tuple[JitFloat, Any]:
         t_before, before = memory
         rho, tan = cone.radius(t), cone.tan
-        now = tuple(distance_of(piece)(cone.point(t)) for piece in pieces)
+        now = tuple(get_distance_function(piece)(cone.point(t)) for piece in pieces)
         dt = cone.d
         for piece, f, f_before in zip(pieces, now, before, strict=True):
-            clearance, lipschitz = f - R_C * rho, lipschitz_of(piece)
+            clearance, lipschitz = f - R_C * rho, get_lipschitz_bound(piece)
             closing = lipschitz + dr.abs(R_C * tan)
             if getattr(piece, "is_convex", False):
                 line = dr.maximum((f - f_before) / (t - t_before), -lipschitz)

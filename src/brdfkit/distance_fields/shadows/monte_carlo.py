@@ -1,7 +1,8 @@
 """`monte_carlo`: the reference for all other methods, by hard rays through points of the disc.
 
-The points are Halton's, with the coordinates u and φ in bases 2 and 3, at √u from the centre. A ray
-leads from the section at the surface point to the section at the light, through the cone's apex.
+The points are Halton's, with the coordinates u and φ in bases 2 and 3, at the distance √u from the
+disc's centre. A ray leads from the section at the surface point to the section at the light,
+through the cone's apex.
 
 [Bálint et al. 2019, section 3.3]
 """
@@ -14,26 +15,28 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitFloat, JitInt
 from brdfkit.core.jit.padding import pad
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.field import distance_of, lipschitz_of
+from brdfkit.distance_fields.shadows.field import get_distance_function, get_lipschitz_bound
 from brdfkit.distance_fields.shadows.shadow import Shadow
 
-MAX_STEPS = 512  # along a ray
+MAX_STEPS = 512  # the most steps along a ray
 
 
-def monte_carlo(field: Any, cone: LightCone, rays: int = 64, hit: float = 1e-3) -> Shadow:
-    """Compute the share of `rays` that reach the light; `r` and `t` of the result are NaN.
+def compute_monte_carlo_shadow(
+    field: Any, cone: LightCone, rays: int = 64, hit: float = 1e-3
+) -> Shadow:
+    """Return the share of `rays` that reach the light; `r` and `t` of the result are NaN.
 
     A ray meets an object where the distance is less than `hit`, over the radius of the cone.
     """
-    cone = cone.detached()
+    cone = cone.make_detached()
     Float = type(cone.d)
     UInt = dr.uint32_array_t(Float)
-    xs, ys = (Float(pad(q)) for q in halton_disc(rays))
+    xs, ys = (Float(pad(q)) for q in halton_points_in_disc(rays))
     zero = 0 * cone.d
 
     def one_ray(k: JitInt, lit: JitFloat, evaluations: JitFloat) -> tuple[Any, ...]:
         x, y = dr.gather(Float, xs, k), dr.gather(Float, ys, k)
-        clearance, n = trace(field, cone, x, y, hit)
+        clearance, n = trace_ray(field, cone, x, y, hit)
         through = dr.select(clearance > 0, 1, dr.select(clearance <= 0, 0, dr.nan))
         return k + 1, lit + through, evaluations + n
 
@@ -45,15 +48,15 @@ def monte_carlo(field: Any, cone: LightCone, rays: int = 64, hit: float = 1e-3) 
     return Shadow(lit / rays, zero + dr.nan, zero + dr.nan, evaluations)
 
 
-def trace(
+def trace_ray(
     field: Any, cone: LightCone, x: JitFloat, y: JitFloat, hit: float
 ) -> tuple[JitFloat, JitFloat]:
-    """Trace the ray at (x, y) of the disc, and return its last clearance and its evaluations.
+    """Trace the ray at (x, y) of the disc; return its last clearance and its evaluations of f.
 
     The clearance is 0 or less where the ray met an object.
     """
-    f, tan = distance_of(field), cone.tan
-    speed = lipschitz_of(field) * dr.sqrt(1 + tan * tan * (x * x + y * y))
+    f, tan = get_distance_function(field), cone.tan
+    speed = get_lipschitz_bound(field) * dr.sqrt(1 + tan * tan * (x * x + y * y))
     zero = 0 * cone.d
 
     def step(t: JitFloat, clearance: JitFloat, i: JitFloat) -> tuple[JitFloat, ...]:
@@ -68,9 +71,9 @@ def trace(
     return clearance, n
 
 
-def halton_disc(n: int) -> tuple[FloatArray, FloatArray]:
+def halton_points_in_disc(n: int) -> tuple[FloatArray, FloatArray]:
     """Return x (n,) and y (n,) of the first Halton points, uniform over the unit disc."""
     from scipy.stats.qmc import Halton
 
-    u, phi = Halton(2, scramble=False).random(n + 1)[1:].T  # without the first, the corner (0, 0)
+    u, phi = Halton(2, scramble=False).random(n + 1)[1:].T  # the first point is the corner (0, 0)
     return np.sqrt(u) * np.cos(2 * np.pi * phi), np.sqrt(u) * np.sin(2 * np.pi * phi)

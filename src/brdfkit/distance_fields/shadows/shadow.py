@@ -2,9 +2,9 @@
 
 The march itself is not differentiated. By the envelope theorem a minimum has the derivative of the
 function at the minimum's place. So f / ρ is evaluated there once more, with derivatives by the
-light, its radius, the surface point, and the parameters of the field. As the march ends
-within ε of the minimum, the place is first refined. Where nothing carries derivatives, none of this
-is part of the kernel.
+light, its radius, the surface point, and the parameters of the field. As the march ends within ε of
+the minimum, the place is first refined. Where nothing carries derivatives, none of this is part of
+the kernel.
 """
 
 from dataclasses import dataclass
@@ -14,21 +14,26 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitMask
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.field import distance_of
-from brdfkit.distance_fields.shadows.march import Pace, Rule, cone_pace, march
-from brdfkit.distance_fields.shadows.tau import tau
+from brdfkit.distance_fields.shadows.field import get_distance_function
+from brdfkit.distance_fields.shadows.march import (
+    Pace,
+    Rule,
+    make_cone_tracing_step,
+    march_along_cone,
+)
+from brdfkit.distance_fields.shadows.tau import lit_disc_share
 
-DIRECTIONS = "A", "B"  # from the surface to the light, or from the light to the surface
+DIRECTIONS = "A", "B"  # A marches from the surface to the light, B from the light to the surface
 GOLDEN_RATIO = (5**0.5 - 1) / 2
-# The search for the exact minimum near a march's smallest ratio: its width over ε ρ, about two
-# steps of the march, and its number of iterations
+# The golden-section search for the exact minimum near a march's smallest ratio: its width over
+# ε ρ, about two steps of the march, and its number of iterations
 SEARCH_WIDTH, SEARCH_STEPS = 4.0, 20
 SIDE_STEP = 1e-3  # the distance of the points on both sides of a minimum, over ρ
 
 
 @dataclass(frozen=True)
 class Shadow:
-    """The visible share of a light, and the ratio that it was computed from.
+    """The visible share of a light, and the ratio from which it was computed.
 
     visible : Float, the share of the light that is visible, 0 to 1.
     r : Float, the smallest ratio f / ρ that was found, at most 1.
@@ -42,24 +47,24 @@ class Shadow:
     evaluations: Any
 
 
-def ratio(field: Any, cone: LightCone, t: JitFloat) -> JitFloat:
+def clearance_ratio(field: Any, cone: LightCone, t: JitFloat) -> JitFloat:
     """Return f / ρ, the distance over the cone's radius, at the place t of the axis."""
-    return distance_of(field)(cone.point(t)) / cone.radius(t)
+    return get_distance_function(field)(cone.point(t)) / cone.radius(t)
 
 
-def find_minimum_near(
+def find_smallest_ratio_near(
     field: Any, cone: LightCone, t: JitFloat, width: JitFloat, steps: int
 ) -> JitFloat:
-    """Return where `ratio` is smallest within `width` of t, by golden-section search.
+    """Return where f / ρ is smallest within `width` of t, by golden-section search.
 
     The result has no derivatives.
     """
-    cone = cone.detached()
+    cone = cone.make_detached()
 
     def narrow(i: JitFloat, left: JitFloat, right: JitFloat) -> tuple[JitFloat, ...]:
         part = GOLDEN_RATIO * (right - left)
         low, high = right - part, left + part
-        lower = ratio(field, cone, low) < ratio(field, cone, high)
+        lower = clearance_ratio(field, cone, low) < clearance_ratio(field, cone, high)
         return i + 1, dr.select(lower, left, low), dr.select(lower, high, right)
 
     with dr.suspend_grad():
@@ -69,53 +74,59 @@ def find_minimum_near(
     return (left + right) / 2
 
 
-def single_ray(
+def trace_shadow(
     field: Any,
     cone: LightCone,
     rule: Rule,
     epsilon: float,
     direction: str,
-    pace: Pace = cone_pace,
+    pace: Pace = make_cone_tracing_step,
     active: JitMask = True,
 ) -> Shadow:
-    """Compute the shadow of one march by a `Rule`; rays that are not `active` are lit."""
+    """Return the shadow that one march by a `Rule` finds; rays that are not `active` are lit."""
     forward = direction == "A"
-    walk = march(field, cone if forward else cone.reversed(), rule, epsilon, pace, active)
+    walk = march_along_cone(
+        field, cone if forward else cone.make_reversed(), rule, epsilon, pace, active
+    )
     d = dr.detach(cone.d)
     t = walk.t if forward else d - walk.t
     r = walk.R_T
-    visible = dr.select(dr.isnan(r), r, tau(r))
-    minimum = attach_minimum(r, field, cone, t, epsilon)
+    visible = dr.select(dr.isnan(r), r, lit_disc_share(r))
+    minimum = attach_ratio_derivatives(r, field, cone, t, epsilon)
     if dr.grad_enabled(minimum):
-        # The slope τ' at the march's last ratio, up to ε above the minimum, would be inexact
+        # The march's own ratio is up to ε above the minimum, where the slope τ' would be inexact
         attach: Any = dr.replace_grad  # Dr.Jit's own annotation says that it returns None
-        visible, r = attach(visible, tau(minimum)), attach(r, minimum)
+        visible, r = attach(visible, lit_disc_share(minimum)), attach(r, minimum)
     return Shadow(visible, r, t, walk.evaluations)
 
 
-def attach_minimum(
+def attach_ratio_derivatives(
     r: JitFloat, field: Any, cone: LightCone, t: JitFloat, epsilon: float
 ) -> JitFloat:
-    """Return the minimum of `ratio` near t, with derivatives; `r` if nothing carries derivatives.
+    """Return the minimum of f / ρ near t, with derivatives; `r` if nothing carries derivatives.
 
     Derivatives jump at a crease of the field. The derivative of the minimum is then a mean of the
     derivatives on both sides, with weights that let the slopes along the axis cancel.
     """
 
     def moving_ratio(t: JitFloat) -> JitFloat:
-        return ratio(field, cone, t / dr.detach(cone.d) * cone.d)  # t moves with the axis
+        return clearance_ratio(field, cone, t / dr.detach(cone.d) * cone.d)  # t moves with the axis
 
     if not dr.grad_enabled(moving_ratio(t)):
         return r
     with dr.suspend_grad():
-        fixed = cone.detached()
+        fixed = cone.make_detached()
         rho = fixed.radius(t)
-        t = find_minimum_near(field, cone, t, SEARCH_WIDTH * epsilon * rho, SEARCH_STEPS)
+        t = find_smallest_ratio_near(field, cone, t, SEARCH_WIDTH * epsilon * rho, SEARCH_STEPS)
         before, left, right, behind = (
             dr.clip(t + k * SIDE_STEP * rho, 0, fixed.d) for k in (-2, -1, 1, 2)
         )
-        falls = dr.maximum(ratio(field, fixed, before) - ratio(field, fixed, left), 0)
-        rises = dr.maximum(ratio(field, fixed, behind) - ratio(field, fixed, right), 0)
+        falls = dr.maximum(
+            clearance_ratio(field, fixed, before) - clearance_ratio(field, fixed, left), 0
+        )
+        rises = dr.maximum(
+            clearance_ratio(field, fixed, behind) - clearance_ratio(field, fixed, right), 0
+        )
         level = falls + rises == 0
         weight = dr.select(level, 0.5, rises / dr.select(level, 1, falls + rises))
     return weight * moving_ratio(left) + (1 - weight) * moving_ratio(right)

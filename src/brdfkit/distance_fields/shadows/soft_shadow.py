@@ -10,26 +10,35 @@ import numpy as np
 from brdfkit.core.arguments import to_number, to_whole_number
 from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError, no_such_error
-from brdfkit.distance_fields.shadows.cone import LightCone, light_cone
-from brdfkit.distance_fields.shadows.marches import convex, hard, linear
-from brdfkit.distance_fields.shadows.monte_carlo import monte_carlo
+from brdfkit.distance_fields.shadows.cone import LightCone, make_light_cone
+from brdfkit.distance_fields.shadows.marches import (
+    compute_convex_shadow,
+    compute_hard_shadow,
+    compute_linear_shadow,
+)
+from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
 from brdfkit.distance_fields.shadows.shadow import DIRECTIONS, Shadow
-from brdfkit.distance_fields.shadows.split import split
+from brdfkit.distance_fields.shadows.split import compute_split_shadow
 
 WITH_EDGE = "linear", "base", "discrete", "convex", "split"  # methods that find a straight edge
 METHODS = (*WITH_EDGE, "hard", "quilez", "aaltonen", "monte_carlo")
-MARCHES = {"linear": linear, "convex": convex, "split": split, "hard": hard}
+MARCHES = {
+    "linear": compute_linear_shadow,
+    "convex": compute_convex_shadow,
+    "split": compute_split_shadow,
+    "hard": compute_hard_shadow,
+}
 
 
-def shadow_by_name(
+def compute_shadow_by_name(
     name: str, field: Any, cone: LightCone, epsilon: float, direction: str, rays: int
 ) -> Shadow:
-    """Compute a shadow by the method called `name`, which ignores settings that it does not have.
+    """Return the shadow by the method called `name`, which ignores settings that it does not have.
 
     Methods that only serve comparison are loaded from the thesis `balint2019`.
     """
     if name == "monte_carlo":
-        return monte_carlo(field, cone, rays)
+        return compute_monte_carlo_shadow(field, cone, rays)
     if name in MARCHES:
         return MARCHES[name](field, cone, epsilon, direction)
     rivals: Any = import_module("brdfkit.theses.balint2019.rivals")
@@ -57,8 +66,9 @@ def soft_shadow(
     Parameters
     ----------
     field : callable
-        The distance [unit] at points p with arrays p.x, p.y and p.z, negative inside; or an object
-        with such a method `distance`, and optionally `lipschitz`, `is_convex` and `children`.
+        The function of the distance [unit] at points p with arrays p.x, p.y and p.z, negative
+        inside; or an object with such a method `distance`, and optionally `lipschitz`, `is_convex`
+        and `children`.
     point : Dr.Jit points
         Points just off the surfaces [unit], of any backend and precision.
     light : Dr.Jit points
@@ -73,14 +83,14 @@ def soft_shadow(
     epsilon : float, default 0.05
         The largest error of the lit share against the method's model of the light, 0 to 0.5.
     direction : str, default "A"
-        "A" marches from the surface to the light, "B" from the light to the surface.
+        The direction of the march: "A" from the surface to the light, "B" back.
     rays : int, default 64
         The number of rays that "monte_carlo" follows for each point.
 
     Returns
     -------
     Shadow
-        `visible`, the share, and the ratio that it was computed from.
+        The visible share of the light, and the ratio from which it was computed.
 
     Raises
     ------
@@ -102,17 +112,17 @@ def soft_shadow(
         raise no_such_error("direction", direction, DIRECTIONS, "direction")
     if not dr.all((radius >= 0) & (ball >= 0) & (radius + ball > 0)):
         raise BrdfkitError(
-            "radius and ball should not be negative, nor both 0: a light of radius 0 needs a ball "
-            "about the point, half a pixel wide."
+            "radius and ball should not be negative, nor both 0: for a light of radius 0 give a "
+            "ball, half a pixel wide."
         )
     rays = to_whole_number("rays", rays, 1)
-    cone = light_cone(point, light, radius, ball)
-    result = shadow_by_name(shadow, field, cone, epsilon, direction, rays)
+    cone = make_light_cone(point, light, radius, ball)
+    result = compute_shadow_by_name(shadow, field, cone, epsilon, direction, rays)
     bad = dr.isnan(result.visible)
     if dr.any(bad):
         first = np.flatnonzero(bad)[0]
         raise BrdfkitError(
-            f"The distance is not a number somewhere between point {first} and the light; see "
-            "that the field is finite everywhere."
+            f"the distance is not a number somewhere between point {first} and the light; make the "
+            "field finite everywhere."
         )
     return result

@@ -2,8 +2,10 @@
 
 One straight edge is wrong for small and pointed occluders, and for several of them. So the disc is
 cut into a centre and rings of 6, 12 ... cells of equal area, and a cone leads through each cell.
+
 Where f does not change sideways in the section at the smallest ratio, the cone has met the inside
-of a thin wall. Dividing the ratio by |∇f| across the axis moves the edge far away then.
+of a thin wall. Therefore the ratio is divided by |∇f| across the axis, which moves the edge far
+away then.
 
 Only rays that the march of the whole cone finds partly lit are split.
 """
@@ -16,40 +18,40 @@ import drjit as dr
 from brdfkit.core.array_types import JitFloat, JitMask
 from brdfkit.distance_fields.shadows.cone import LightCone
 from brdfkit.distance_fields.shadows.edge import gradient_across
-from brdfkit.distance_fields.shadows.marches import convex_pace, linear_rule
-from brdfkit.distance_fields.shadows.shadow import Shadow, single_ray
-from brdfkit.distance_fields.shadows.tau import tau
+from brdfkit.distance_fields.shadows.marches import make_convex_step, make_linear_rule
+from brdfkit.distance_fields.shadows.shadow import Shadow, trace_shadow
+from brdfkit.distance_fields.shadows.tau import lit_disc_share
 
-FURTHEST_EDGE = 1e3  # the largest distance of an edge from its disc, in radii
+FURTHEST_EDGE = 1e3  # the largest distance of an edge from its disc's centre, in radii
 
 
-def split(
+def compute_split_shadow(
     field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A", rings: int = 1
 ) -> Shadow:
-    """Compute a shadow as the mean of 1 + 3 rings (rings + 1) narrower cones, 7 with one ring.
+    """Return the mean shadow of 1 + 3 rings (rings + 1) narrower cones, 7 with one ring.
 
-    `r` and `t` belong to the whole cone.
+    `r` and `t` of the result belong to the whole cone.
     """
-    rule = linear_rule(epsilon)
-    whole = single_ray(field, cone, rule, epsilon, direction, convex_pace)
+    rule = make_linear_rule(epsilon)
+    whole = trace_shadow(field, cone, rule, epsilon, direction, make_convex_step)
     partly = dr.abs(whole.r) < 1
     visible, evaluations = 0 * whole.r, whole.evaluations
     centres = cell_centres(rings)
     for x, y in centres:
-        cell = cell_cone(cone, x, y, 1 / sqrt(len(centres)))
-        shadow = single_ray(field, cell, rule, epsilon, direction, convex_pace, partly)
+        cell = make_cell_cone(cone, x, y, 1 / sqrt(len(centres)))
+        shadow = trace_shadow(field, cell, rule, epsilon, direction, make_convex_step, partly)
         offset = shadow.r / slope_across(field, cell, shadow, partly)
-        visible = visible + tau(offset) / len(centres)
+        visible = visible + lit_disc_share(offset) / len(centres)
         evaluations = evaluations + shadow.evaluations + dr.select(partly, 2, 0)
     return Shadow(dr.select(partly, visible, whole.visible), whole.r, whole.t, evaluations)
 
 
 def slope_across(field: Any, cone: LightCone, shadow: Shadow, active: JitMask) -> JitFloat:
-    """Return |∇f| across the axis where `active`, without derivatives.
+    """Return |∇f| across the axis at the smallest ratio, without derivatives; 1 if not `active`.
 
-    It is 1 at an edge, and 0 within a wall.
+    It is 1 at an edge, and 0, limited to 1 / `FURTHEST_EDGE`, within a wall.
     """
-    cone = cone.detached()
+    cone = cone.make_detached()
 
     def length(r: JitFloat, t: JitFloat) -> JitFloat:
         x, y = gradient_across(field, cone, t, r * cone.radius(t))
@@ -60,8 +62,8 @@ def slope_across(field: Any, cone: LightCone, shadow: Shadow, active: JitMask) -
         return dr.if_stmt((r, t), active, length, lambda r, t: 0 * t + 1)
 
 
-def cell_cone(cone: LightCone, x: float, y: float, width: float) -> LightCone:
-    """Return the cone about the ray at (x, y) whose radii are `width` times those of `cone`."""
+def make_cell_cone(cone: LightCone, x: float, y: float, width: float) -> LightCone:
+    """Return the cone around the ray at (x, y) whose radii are `width` times those of `cone`."""
     start, end = cone.disc_point(0 * cone.d, x, y), cone.disc_point(cone.d, x, y)
     d = dr.norm(end - start)
     return LightCone(start, (end - start) / d, d, cone.R_0 * width, cone.R_1 * width)

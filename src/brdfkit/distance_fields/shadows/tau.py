@@ -13,22 +13,24 @@ import drjit as dr
 from brdfkit.core.array_types import JitFloat
 
 
-def tau(r: JitFloat) -> JitFloat:
-    """Return τ(r), the lit share of a disc with an edge at r; its derivative is finite everywhere.
+def lit_disc_share(r: JitFloat) -> JitFloat:
+    """Return τ(r), the lit share of the unit disc beside a straight edge at the distance r.
 
-    >>> tau(0.25)
+    Its derivative is finite everywhere.
+
+    >>> lit_disc_share(0.25)
     0.6574811791308206
     """
     r = dr.clip(r, -1, 1)
-    fixed = dr.detach(r)  # arcsin and the root have infinite slopes at ±1, which cancel in τ'
+    fixed = dr.detach(r)  # detached: the slopes of arcsin and of the root at ±1 are infinite
     share = 0.5 + (fixed * dr.sqrt(1 - fixed * fixed) + dr.asin(fixed)) / dr.pi
-    return dr.replace_grad(share, tau_slope(fixed) * r) if dr.grad_enabled(r) else share
+    return dr.replace_grad(share, lit_disc_slope(fixed) * r) if dr.grad_enabled(r) else share
 
 
-def tau_slope(r: JitFloat) -> JitFloat:
-    """Return τ'(r), the slope of the lit share, at most 2/π.
+def lit_disc_slope(r: JitFloat) -> JitFloat:
+    """Return τ'(r), the slope of the lit share by the edge's distance r, at most 2/π.
 
-    >>> tau_slope(1.0)
+    >>> lit_disc_slope(1.0)
     0.0
     """
     return 2 / dr.pi * dr.safe_sqrt(1 - r * r)

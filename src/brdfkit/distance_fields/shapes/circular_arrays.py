@@ -31,9 +31,9 @@ class circular_array(Node):
     Parameters
     ----------
     child : distance field
-        The first of them, at any place.
+        The first of the solids, at any place.
     copies : integer ≥ 1, default 1
-        Their number.
+        The number of solids, the first included.
     """
 
     child: Node
@@ -42,8 +42,10 @@ class circular_array(Node):
 
     @property
     def exact_inside(self) -> bool:
-        """True if the copies do not overlap, and f is exact in the child."""
-        return self.child.exact_inside and (self.copies == 1 or self._extent()[1] < self.sector / 2)
+        """True if f is exact inside the child, and the copies do not overlap."""
+        return self.child.exact_inside and (
+            self.copies == 1 or self._angular_extent()[1] < self.sector / 2
+        )
 
     @property
     def is_convex(self) -> bool:
@@ -56,7 +58,7 @@ class circular_array(Node):
         return 2 * pi / self.copies
 
     def distance(self, p: JitVector) -> JitFloat:
-        middle, extent = self._extent()
+        middle, extent = self._angular_extent()
         if self.child.exact_outside and extent <= self.sector / 2 and self.copies > 2:
             first = floor((atan2(p.y, p.x) - middle) / self.sector)
             angles = [first * self.sector, (first + 1.0) * self.sector]
@@ -71,10 +73,10 @@ class circular_array(Node):
         matrices = [rotation_matrix(k * self.sector) for k in range(self.copies)]
         return join_boxes([rotate_box(box, matrix) for matrix in matrices])
 
-    def _extent(self) -> tuple[float, float]:
-        """Return the angles [rad] of the child's middle, and from there to its ends.
+    def _angular_extent(self) -> tuple[float, float]:
+        """Return the angle [rad] of the child's middle around z, and that from there to its ends.
 
-        The second is π for a child that contains the axis or is unbounded.
+        The second angle is π for a child that contains the axis or is unbounded.
         """
         low, high = self.child.bounds()
         around_axis = (low <= 0)[:2].all() and (high >= 0)[:2].all()

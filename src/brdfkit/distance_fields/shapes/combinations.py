@@ -1,9 +1,9 @@
 """Union, intersection and difference of solids, sharp or blended smoothly.
 
-The field of a sharp one is min(f, g), max(f, g) or max(f, -g) [Bálint et al. 2019, theorem 1]. The
-smooth minimum is the polynomial min(f, g) - b/4 max(1 - |f - g|/b, 0)², blended over a width b. Its
-slope lies between those of f and g, so that their bound L holds for it. It is an estimate of the
-distance on both sides of the surface.
+Of two solids with the fields f and g, the field of a sharp combination is min(f, g), max(f, g) or
+max(f, -g) [Bálint et al. 2019, theorem 1]. The smooth minimum is the polynomial min(f, g) - b/4
+max(1 - |f - g|/b, 0)², blended over a width b. Its slope lies between those of f and g, so that
+their bound L holds for it. It is an estimate of the distance on both sides of the surface.
 """
 
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from typing import Any
 
 from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import Box, intersect_boxes, join_boxes, to_numbers
+from brdfkit.distance_fields.boxes import Box, intersect_boxes, join_boxes, to_floats
 from brdfkit.distance_fields.functions import absolute, maximum, minimum
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import number
@@ -30,12 +30,12 @@ class Combination(Node):
             raise BrdfkitError(f"{self.kind}: give the fields as one list, [a, b].")
         object.__setattr__(self, "children", tuple(self.children))
         if not self.children:
-            raise BrdfkitError(f"{self.kind}: there is nothing in it; give at least one field.")
+            raise BrdfkitError(f"{self.kind}: it has no children; give at least one field.")
         super().__post_init__()
 
     @property
     def is_sharp(self) -> bool:
-        """True if nothing is blended."""
+        """True if the children are combined without a blend."""
         return isinstance(self.blend, float) and self.blend == 0
 
     def _smooth_minimum(self, f: JitFloat, g: JitFloat) -> JitFloat:
@@ -52,12 +52,12 @@ class Combination(Node):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class union(Combination):
-    """All points of any of the children.
+    """The solid of all points that lie in any of the children.
 
     Parameters
     ----------
     children : tuple of distance fields
-        At least one.
+        The solids, at least one.
     blend : number ≥ 0, default 0
         The width over which they are blended; 0 for a sharp edge.
     """
@@ -71,18 +71,18 @@ class union(Combination):
         return reduce(self._smooth_minimum, [child.distance(p) for child in self.children])
 
     def bounds(self, level: float = 0.0) -> Box:
-        level = level + 0.25 * to_numbers(self.blend) * (len(self.children) - 1)
+        level = level + 0.25 * to_floats(self.blend) * (len(self.children) - 1)
         return join_boxes([child.bounds(level) for child in self.children])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class intersection(Combination):
-    """The points that all of the children have in common.
+    """The solid of the points that all of the children have in common.
 
     Parameters
     ----------
     children : tuple of distance fields
-        At least one.
+        The solids, at least one.
     blend : number ≥ 0, default 0
         The width over which they are blended; 0 for a sharp edge.
     """
@@ -106,19 +106,19 @@ class intersection(Combination):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class difference(Combination):
-    """The points of the first child that are in none of the others.
+    """The solid of the points that lie in the first child and in none of the others.
 
     Parameters
     ----------
     children : tuple of distance fields
-        At least one.
+        The solids, at least one.
     blend : number ≥ 0, default 0
         The width over which they are blended; 0 for a sharp edge.
     """
 
     @property
     def exact_inside(self) -> bool:
-        """True if nothing is blended, the first is exact inside and all others outside."""
+        """True if nothing is blended, the first child is exact inside, and all others outside."""
         first, *others = self.children
         return self.is_sharp and first.exact_inside and all(c.exact_outside for c in others)
 

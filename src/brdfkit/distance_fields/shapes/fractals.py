@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from brdfkit.core.array_types import JitFloat, JitVector
-from brdfkit.distance_fields.boxes import Box, bound_points, to_numbers
+from brdfkit.distance_fields.boxes import Box, bound_points, to_floats
 from brdfkit.distance_fields.functions import (
     Point,
     absolute,
@@ -23,9 +23,9 @@ from brdfkit.distance_fields.functions import (
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import count, number
 
-ESCAPE_RADIUS = 16.0  # a larger radius changes the estimate by less than 1e-8
-LARGEST_ESTIMATE = 0.5  # far from the surface the formula is no estimate of the distance
-MEASURED_SLOPE = 3.0  # the estimate was never larger than this multiple of the distance
+ESCAPE_RADIUS = 16.0  # the iteration ends beyond it; more changes the estimate by less than 1e-8
+LARGEST_ESTIMATE = 0.5  # far from the surface the formula overestimates the distance
+MEASURED_SLOPE = 3.0  # in tests, the estimate was at most this multiple of the distance
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -36,8 +36,8 @@ class mandelbulb(Node):
     distance is ½ ‖w‖ log ‖w‖ / s. Each iteration replaces the slope s by n ‖w‖ⁿ⁻¹ s + 1, or by more
     towards the poles, where azimuths are stretched by sin(nθ) / sin(θ), at the polar angle θ.
 
-    No bound on its slope is proven. `lipschitz` is 3: at 10⁵ points, compared with the distances
-    to a dense set of surface points, 2.8 was needed. Between neighbours f itself may jump.
+    No bound on its slope is proven. `lipschitz` is 3: at 10⁵ points, compared with the distances to
+    a dense set of surface points, 2.8 was needed. Between neighbouring points, f itself may jump.
 
     Parameters
     ----------
@@ -81,4 +81,4 @@ class mandelbulb(Node):
         return 2.0 ** (1.0 / (self.n - 1.0))
 
     def bounds(self, level: float = 0.0) -> Box:
-        return bound_points((0.0, 0.0, 0.0), margin=float(to_numbers(self.radius())) + level)
+        return bound_points((0.0, 0.0, 0.0), margin=float(to_floats(self.radius())) + level)

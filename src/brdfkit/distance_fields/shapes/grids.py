@@ -10,16 +10,16 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray, JitFloat, JitInt, JitVector
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.padding import pad
-from brdfkit.distance_fields.boxes import Box, to_numbers
+from brdfkit.distance_fields.boxes import Box, to_floats
 from brdfkit.distance_fields.functions import (
     Point,
     clip,
     floor,
-    grid_value,
     length,
     lerp,
     maximum,
     minimum,
+    read_grid_value,
     to_int,
 )
 from brdfkit.distance_fields.node import Node
@@ -27,7 +27,10 @@ from brdfkit.distance_fields.parameters import vector
 
 
 def _check_values(what: str, values: Any, rules: Mapping[str, Any]) -> Any:
-    """Return the values of a grid as an array (z, y, x); a Dr.Jit tensor stays as it is."""
+    """Return the values of a grid as an array (z, y, x); a Dr.Jit tensor stays as it is.
+
+    what : name of the parameter, for the error message.
+    """
     if not dr.is_tensor_v(values):
         try:
             values = np.asarray(values, float)
@@ -44,15 +47,15 @@ def _check_values(what: str, values: Any, rules: Mapping[str, Any]) -> Any:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class grid(Node):
-    """Values at the corners of the cells of a box, laid out as in Mitsuba's `sdfgrid`.
+    """A field by its values at the corners of the cells of a box, as in Mitsuba's `sdfgrid`.
 
-    Outside of its box the value is √(e² + f²), or e + f where f < 0, with the distance e to the box
+    Outside of the box the field is √(e² + f²), or e + f where f < 0, with the distance e to the box
     and the value f at the nearest point of the box.
 
     Parameters
     ----------
     values : array (z, y, x), or a Dr.Jit tensor
-        f; the first and the last along each axis lie on the faces of the box.
+        The values f; the first and the last along each axis lie on the faces of the box.
     low, high : three numbers, default 0 and 1
         The corners of the box.
     """
@@ -64,7 +67,7 @@ class grid(Node):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not (to_numbers(self.low) < to_numbers(self.high)).all():
+        if not (to_floats(self.low) < to_floats(self.high)).all():
             raise BrdfkitError(f"grid: low = {self.low} should be below high = {self.high}.")
 
     @property
@@ -74,22 +77,23 @@ class grid(Node):
 
     @property
     def spacing(self) -> FloatArray:
-        """The edges (3,) of a cell."""
-        spacing: FloatArray = (to_numbers(self.high) - to_numbers(self.low)) / (self.counts - 1)
+        """The edge lengths (3,) of a cell."""
+        spacing: FloatArray = (to_floats(self.high) - to_floats(self.low)) / (self.counts - 1)
         return spacing
 
     @property
     def half_diagonal(self) -> float:
         """Half of the diagonal of a cell, which bounds the error of sampling.
 
-        A grid of samples of a field differs from the field by at most L times this length: no
-        point is further from the corners of its cell, in the mean with their weights.
+        A grid of samples of a field with the bound L differs from the field by at most L times this
+        length, as the mean distance of a point from the corners of its cell, by the weights of the
+        interpolation, is not larger.
         """
         return float(np.linalg.norm(self.spacing) / 2)
 
     @property
     def lipschitz(self) -> float:
-        """The bound L: the slope of the steepest cell."""
+        """The bound L on the slope of the field, from the steepest cell."""
         if "lipschitz" not in self._cache:
             values = np.asarray(dr.detach(self.values), float)
             self._cache["lipschitz"] = _compute_largest_slope(values, self.spacing)
@@ -110,20 +114,20 @@ class grid(Node):
         return length(e, maximum(f, 0.0)) + minimum(f, 0.0)
 
     def _interpolate(self, cell: Sequence[JitInt], shares: Point) -> JitFloat:
-        """Return the value in the cell (i, j, k), at the `shares` (0 to 1) of its edges."""
+        """Return the value within the cell (i, j, k), at the `shares`, 0 to 1, of its edges."""
         i, j, k = cell
         dtype = type(shares.x)
         planes = []
         for c in (k, k + 1):
             rows = []
             for b in (j, j + 1):
-                first, second = (grid_value(self, a, b, c, dtype) for a in (i, i + 1))
+                first, second = (read_grid_value(self, a, b, c, dtype) for a in (i, i + 1))
                 rows.append(lerp(first, second, shares.x))
             planes.append(lerp(rows[0], rows[1], shares.y))
         return lerp(planes[0], planes[1], shares.z)
 
     def array(self, dtype: type) -> Any:
-        """Return all values in a row, as a Dr.Jit array of `dtype`, or NumPy's for float."""
+        """Return all values in a row, x fastest, as a Dr.Jit array `dtype`; NumPy's for float."""
         if dr.is_tensor_v(self.values):
             return np.ravel(self.values) if dtype is float else dtype(self.values.array)
         if dtype not in self._cache:
@@ -132,14 +136,14 @@ class grid(Node):
         return self._cache[dtype]
 
     def bounds(self, level: float = 0.0) -> Box:
-        return to_numbers(self.low) - max(level, 0.0), to_numbers(self.high) + max(level, 0.0)
+        return to_floats(self.low) - max(level, 0.0), to_floats(self.high) + max(level, 0.0)
 
 
 def _compute_largest_slope(values: FloatArray, spacing: FloatArray) -> float:
     """Return the largest slope that the interpolation may have, in the steepest cell.
 
-    Along an axis the slope of a cell is a mean of the slopes of its four edges. Where the box cuts
-    the solid, the value outside is e + f, see `grid`, with a slope up to √(1 + L²).
+    Along an axis the slope within a cell is a mean of the slopes of its four edges. Where the box
+    cuts the solid, the value outside is e + f, see `grid`, with a slope up to √(1 + L²).
     """
     squared: Any = 0.0
     for axis, step in zip((2, 1, 0), spacing, strict=True):

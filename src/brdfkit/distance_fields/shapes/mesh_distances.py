@@ -1,4 +1,4 @@
-"""Grids of distances to triangle meshes."""
+"""Grids of signed distances to triangle meshes."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from brdfkit.core.array_types import AnyArray, ArrayLike
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import read_bytes
 from brdfkit.distance_fields.export.mesh import NOT_INSTALLED
-from brdfkit.distance_fields.export.sampling import grid_axes
+from brdfkit.distance_fields.export.sampling import make_grid_axes
 from brdfkit.distance_fields.shapes.grids import grid
 
-MARGIN = 0.05  # around the mesh, relative to the longest edge of its box
+MARGIN = 0.05  # width of the margin around the mesh, over the longest edge of its box
 
 
 def from_mesh(
     mesh: str | PathLike[str] | tuple[ArrayLike, ArrayLike], resolution: int = 64
 ) -> grid:
-    """Compute the signed distance to a closed mesh on a grid, with libigl.
+    """Return the signed distance to a closed mesh, sampled on a grid by libigl.
 
     Parameters
     ----------
     mesh : file, or (vertices, faces)
-        OBJ, PLY, STL or OFF; or arrays (n, 3) and (m, 3).
+        An OBJ, PLY, STL or OFF file; or arrays (n, 3) and (m, 3).
     resolution : integer, default 64
         The number of cubic cells along the longest edge of the mesh's box and a margin.
 
@@ -50,10 +50,10 @@ def from_mesh(
             f"libigl, which measures distances to meshes, {NOT_INSTALLED}"
         ) from error
 
-    vertices, faces = _weld(*_read_mesh(mesh, igl))
+    vertices, faces = _weld_closed_mesh(*_read_mesh(mesh, igl))
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     margin = MARGIN * (high - low).max()
-    axes = grid_axes(low - margin, high + margin, resolution)
+    axes = make_grid_axes(low - margin, high + margin, resolution)
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     method = igl.SignedDistanceType.SIGNED_DISTANCE_TYPE_FAST_WINDING_NUMBER
     values = igl.signed_distance(points.reshape(-1, 3), vertices, faces, method)[0]
@@ -75,11 +75,11 @@ def _read_mesh(mesh: Any, igl: Any) -> tuple[AnyArray, AnyArray]:
     return vertices, faces
 
 
-def _weld(vertices: AnyArray, faces: AnyArray) -> tuple[AnyArray, AnyArray]:
+def _weld_closed_mesh(vertices: AnyArray, faces: AnyArray) -> tuple[AnyArray, AnyArray]:
     """Return the mesh with equal vertices merged; raise `BrdfkitError` unless it is closed."""
     vertices, first = np.unique(vertices, axis=0, return_inverse=True)
     faces = first.ravel()[faces.astype(np.int64)]
-    faces = faces[(faces != faces[:, [1, 2, 0]]).all(axis=1)]  # without faces of no area
+    faces = faces[(faces != faces[:, [1, 2, 0]]).all(axis=1)]  # merging may make faces degenerate
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     forth, times = np.unique(edges, axis=0, return_counts=True)
     back = np.unique(edges[:, ::-1], axis=0)
@@ -88,7 +88,7 @@ def _weld(vertices: AnyArray, faces: AnyArray) -> tuple[AnyArray, AnyArray]:
     if not len(faces) or unpaired:
         count = len(set(map(frozenset, unpaired)))
         raise BrdfkitError(
-            f"the mesh is not closed: {count} edges have one face only, or faces that are turned "
-            "against each other; close its holes first."
+            f"the mesh is not closed: {count} edges have only one face, or faces of opposite "
+            "orientation; close its holes first."
         )
     return vertices, faces

@@ -11,14 +11,14 @@ import numpy as np
 
 from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import Box, rotate_box, to_numbers
+from brdfkit.distance_fields.boxes import Box, rotate_box, to_floats
 from brdfkit.distance_fields.functions import Point, cos, dot, normalize, sin, subtract
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import number, vector
 
 
 class Motion(Node):
-    """The base of nodes that are as exact, and as convex, as their child."""
+    """The base of nodes whose field is as exact, and as convex, as their child's."""
 
     child: Node
     exact_outside = property(attrgetter("child.exact_outside"))
@@ -46,7 +46,7 @@ class translate(Motion):
 
     def bounds(self, level: float = 0.0) -> Box:
         low, high = self.child.bounds(level)
-        return low + to_numbers(self.offset), high + to_numbers(self.offset)
+        return low + to_floats(self.offset), high + to_floats(self.offset)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -69,11 +69,11 @@ class rotate(Motion):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not np.any(to_numbers(self.axis)):
-            raise BrdfkitError("rotate.axis = (0, 0, 0) has no direction; give another.")
+        if not np.any(to_floats(self.axis)):
+            raise BrdfkitError("rotate.axis = (0, 0, 0) has no direction; give another axis.")
 
     def distance(self, p: JitVector) -> JitFloat:
-        # Rodrigues's rotation formula, for the opposite angle
+        # Rodrigues's rotation formula for the opposite angle: the child does not move, but p does
         u, p = normalize(self.axis), Point(p.x, p.y, p.z)
         c, s = cos(self.angle), sin(self.angle)
         along = (1 - c) * dot(u, p)
@@ -87,8 +87,8 @@ class rotate(Motion):
     def bounds(self, level: float = 0.0) -> Box:
         from scipy.spatial.transform import Rotation
 
-        axis = to_numbers(self.axis)
-        rotation = Rotation.from_rotvec(to_numbers(self.angle) * axis / np.linalg.norm(axis))
+        axis = to_floats(self.axis)
+        rotation = Rotation.from_rotvec(to_floats(self.angle) * axis / np.linalg.norm(axis))
         return rotate_box(self.child.bounds(level), rotation.as_matrix())
 
 
@@ -112,6 +112,6 @@ class scale(Motion):
         return self.factor * self.child.distance(smaller)
 
     def bounds(self, level: float = 0.0) -> Box:
-        factor = to_numbers(self.factor)
+        factor = to_floats(self.factor)
         low, high = self.child.bounds(level / factor)
         return factor * low, factor * high

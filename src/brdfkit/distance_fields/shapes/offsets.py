@@ -8,7 +8,7 @@ from operator import attrgetter
 from typing import Any
 
 from brdfkit.core.array_types import JitFloat, JitVector
-from brdfkit.distance_fields.boxes import Box, to_numbers
+from brdfkit.distance_fields.boxes import Box, to_floats
 from brdfkit.distance_fields.functions import absolute
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import number
@@ -16,7 +16,7 @@ from brdfkit.distance_fields.parameters import number
 
 @dataclass(frozen=True, eq=False, repr=False)
 class dilate(Node):
-    """A solid grown by a distance: {f ≤ distance}.
+    """A solid grown by a distance: {f ≤ radius}, with the field f of the solid.
 
     Where f is exact, a grown solid has round edges. Where f is an estimate, the surface may move
     further than the distance.
@@ -26,7 +26,7 @@ class dilate(Node):
     child : distance field
         The solid.
     radius : number, default 0
-        How far the surface moves out, or in where it is negative.
+        The distance by which the surface moves out, or in where it is negative.
     """
 
     child: Node
@@ -35,24 +35,24 @@ class dilate(Node):
 
     @property
     def exact_outside(self) -> bool:
-        """True for a solid that is exact outside, and grown."""
-        return self.child.exact_outside and to_numbers(self.radius) >= 0
+        """True for a child that is exact outside, and grown."""
+        return self.child.exact_outside and to_floats(self.radius) >= 0
 
     @property
     def exact_inside(self) -> bool:
-        """True for a solid that is exact inside, and shrunk or convex.
+        """True for a child that is exact inside, and shrunk or convex.
 
-        A point between the surfaces of a child and of the grown child may be reached from several
-        sides, unless the child is convex.
+        Unless the child is convex, a point between its surface and the grown surface may be nearest
+        to a part of the grown surface that f does not account for.
         """
         grown = self.child.is_convex and self.child.exact_outside
-        return self.child.exact_inside and (grown or to_numbers(self.radius) <= 0)
+        return self.child.exact_inside and (grown or to_floats(self.radius) <= 0)
 
     def distance(self, p: JitVector) -> JitFloat:
         return self.child.distance(p) - self.radius
 
     def bounds(self, level: float = 0.0) -> Box:
-        return self.child.bounds(level + to_numbers(self.radius))
+        return self.child.bounds(level + to_floats(self.radius))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -79,4 +79,4 @@ class shell(Node):
         return absolute(self.child.distance(p)) - 0.5 * self.thickness
 
     def bounds(self, level: float = 0.0) -> Box:
-        return self.child.bounds(level + 0.5 * to_numbers(self.thickness))
+        return self.child.bounds(level + 0.5 * to_floats(self.thickness))

@@ -21,7 +21,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray, JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import Box, to_numbers
+from brdfkit.distance_fields.boxes import Box, to_floats
 from brdfkit.distance_fields.functions import Point, absolute, clip, floor, maximum, minimum, select
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import count, vector
@@ -34,9 +34,9 @@ class repeat(Node):
     Parameters
     ----------
     child : distance field
-        The solid, within the cell about the origin, and not up to its faces.
+        The solid, which lies within the cell around the origin and does not touch its faces.
     spacing : three numbers ≥ 0, or one for all, default 1
-        Distances between the copies; 0 along an axis that has only one.
+        Distances between the copies along x, y and z; 0 along an axis with a single copy.
     copies : integer, optional
         The number of copies on each side of the first; without it the lattice is infinite.
     """
@@ -49,7 +49,7 @@ class repeat(Node):
         super().__post_init__()
         low, high = self.child.bounds()
         for axis in self.repeated:
-            size = to_numbers(self.spacing)[axis]
+            size = to_floats(self.spacing)[axis]
             if max(-low[axis], high[axis]) >= size / 2:
                 raise BrdfkitError(
                     f"repeat: the field reaches from {low[axis]:g} to {high[axis]:g} along "
@@ -60,7 +60,7 @@ class repeat(Node):
     @property
     def repeated(self) -> list[int]:
         """The axes (0 to 2) along which there are several copies."""
-        return [i for i in range(3) if to_numbers(self.spacing)[i] > 0 and self.copies != 0]
+        return [i for i in range(3) if to_floats(self.spacing)[i] > 0 and self.copies != 0]
 
     @property
     def lipschitz(self) -> float:
@@ -70,7 +70,7 @@ class repeat(Node):
     def distance(self, p: JitVector) -> JitFloat:
         if not self.repeated:
             return self.child.distance(p)
-        # NumPy's numbers would make all values double precision, Python's do not
+        # Python's numbers, as NumPy's would make all values double precision
         low, high = (corner.tolist() for corner in self._box_with_half_gaps())
         reach, gaps = self._lattice_reach().tolist(), self._cell_gaps().tolist()
         local, boxes, faces, lattice = [p.x, p.y, p.z], [], [], []
@@ -94,23 +94,23 @@ class repeat(Node):
 
     def bounds(self, level: float = 0.0) -> Box:
         low, high = self.child.bounds(level)
-        if level > 0 and self.repeated:  # f may also be small between the copies
+        if level > 0 and self.repeated:  # between the copies f may be below `level`, too
             low, high = self._box_with_half_gaps()
             low, high = low - level, high + level
         return low - self._lattice_reach(), high + self._lattice_reach()
 
     def _lattice_reach(self) -> FloatArray:
-        """Return the distances (3,) of the outermost copies from the first along each axis."""
+        """Return the distances (3,) from the first copy to the outermost ones along each axis."""
         copies = np.inf if self.copies is None else self.copies
-        return np.array([copies * s if s > 0 else 0.0 for s in to_numbers(self.spacing)])
+        return np.array([copies * s if s > 0 else 0.0 for s in to_floats(self.spacing)])
 
     def _cell_gaps(self) -> FloatArray:
-        """Return the gaps (3,) between the child and its cell's faces.
+        """Return the gaps (3,) between the child and its cell's faces along each axis.
 
-        The gap along an axis without repetition is the largest of the others.
+        For an axis without repetition, it is the largest gap of the other axes.
         """
         low, high = self.child.bounds()
-        gaps = to_numbers(self.spacing) / 2 - np.maximum(-low, high)
+        gaps = to_floats(self.spacing) / 2 - np.maximum(-low, high)
         return np.array([gaps[i if i in self.repeated else self.repeated].max() for i in range(3)])
 
     def _box_with_half_gaps(self) -> Box:

@@ -1,4 +1,4 @@
-"""Solids about a segment from `a` to `b`: capsule, cylinder, cone. Their distances are exact.
+"""Solids around a segment from `a` to `b`: capsule, cylinder, cone. Their distances are exact.
 
 [Bálint et al. 2019, chapter 2], where a segment is a capsule of radius 0
 """
@@ -10,7 +10,7 @@ import numpy as np
 
 from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import Box, bound_points, join_boxes, to_numbers
+from brdfkit.distance_fields.boxes import Box, bound_points, join_boxes, to_floats
 from brdfkit.distance_fields.functions import (
     absolute,
     clip,
@@ -27,7 +27,7 @@ from brdfkit.distance_fields.parameters import number, vector
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Rod(Node):
-    """The base of convex solids about a segment from `a` to `b`, whose distance is exact."""
+    """The base of convex solids around a segment from `a` to `b`, whose distance is exact."""
 
     a: Any = vector((0.0, 0.0, -0.5))
     b: Any = vector((0.0, 0.0, 0.5))
@@ -35,11 +35,13 @@ class Rod(Node):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if np.array_equal(to_numbers(self.a), to_numbers(self.b)):
-            raise BrdfkitError(f"{self.kind}: a and b are one point; its ends should be two.")
+        if np.array_equal(to_floats(self.a), to_floats(self.b)):
+            raise BrdfkitError(f"{self.kind}: a and b are the same point; give two different ones.")
 
-    def _project(self, p: JitVector, clipped: bool = False) -> tuple[JitFloat, JitFloat, JitFloat]:
-        """Return the position t of `p` along the segment, the distance from there, and ‖b - a‖².
+    def _project_onto_segment(
+        self, p: JitVector, clipped: bool = False
+    ) -> tuple[JitFloat, JitFloat, JitFloat]:
+        """Return the place t of `p` along the segment, the distance from `p` to it, and ‖b - a‖².
 
         t is 0 at `a` and 1 at `b`; it goes on beyond the segment's ends unless `clipped`.
         """
@@ -52,11 +54,11 @@ class Rod(Node):
         return t, length(*(q - t * edge for q, edge in zip(pa, ba, strict=True))), squared
 
     def _bound_discs(self, radius_a: JitFloat, radius_b: JitFloat, level: float) -> Box:
-        """Return the box around discs at the two ends, grown by `level`."""
-        a, b = to_numbers(self.a), to_numbers(self.b)
+        """Return the box around the discs at both ends of the segment, grown by `level`."""
+        a, b = to_floats(self.a), to_floats(self.b)
         axis = (b - a) / np.linalg.norm(b - a)
-        unit = np.sqrt(np.maximum(1 - axis**2, 0))  # half the extent of a unit disc across the axis
-        extents = unit * to_numbers(radius_a), unit * to_numbers(radius_b)
+        unit = np.sqrt(np.maximum(1 - axis**2, 0))  # half the size of the box around a unit disc
+        extents = unit * to_floats(radius_a), unit * to_floats(radius_b)
         discs = zip((a, b), extents, strict=True)
         return join_boxes([bound_points(end + e, end - e, margin=level) for end, e in discs])
 
@@ -76,11 +78,11 @@ class capsule(Rod):
     radius: Any = number(0.25, least=0)
 
     def distance(self, p: JitVector) -> JitFloat:
-        return self._project(p, clipped=True)[1] - self.radius
+        return self._project_onto_segment(p, clipped=True)[1] - self.radius
 
     def bounds(self, level: float = 0.0) -> Box:
-        a, b = to_numbers(self.a), to_numbers(self.b)
-        return bound_points(a, b, margin=to_numbers(self.radius) + level)
+        a, b = to_floats(self.a), to_floats(self.b)
+        return bound_points(a, b, margin=to_floats(self.radius) + level)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -92,13 +94,13 @@ class capped_cylinder(Rod):
     a, b : three numbers, default (0, 0, -0.5) and (0, 0, 0.5)
         The centres of the ends.
     radius : number > 0, default 0.5
-        Its radius.
+        The radius of the cylinder.
     """
 
     radius: Any = number(0.5, above=0)
 
     def distance(self, p: JitVector) -> JitFloat:
-        t, x, squared = self._project(p)
+        t, x, squared = self._project_onto_segment(p)
         x = x - self.radius
         y = (absolute(t - 0.5) - 0.5) * squared**0.5
         return length(maximum(x, 0.0), maximum(y, 0.0)) + minimum(maximum(x, y), 0.0)
@@ -124,16 +126,18 @@ class capped_cone(Rod):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if to_numbers(self.radius_a) == to_numbers(self.radius_b) == 0:
-            raise BrdfkitError("capped_cone: both radii are 0; a capsule of radius 0 is a segment.")
+        if to_floats(self.radius_a) == to_floats(self.radius_b) == 0:
+            raise BrdfkitError(
+                "capped_cone: both radii are 0; for a segment use capsule, radius 0."
+            )
 
     def distance(self, p: JitVector) -> JitFloat:
-        t, x, squared = self._project(p)
+        t, x, squared = self._project_onto_segment(p)
         height, widening = squared**0.5, self.radius_b - self.radius_a
-        # The distances to the nearer end, across and along the axis
+        # The distances to the disc at the nearer end, across and along the axis
         end_x = maximum(select(t < 0.5, x - self.radius_a, x - self.radius_b), 0.0)
         end_y = (absolute(t - 0.5) - 0.5) * height
-        # The distances to the nearest point of the side, at a share of the way from a to b
+        # The distances to the nearest point of the side, which is at a share of the way from a to b
         share = (widening * (x - self.radius_a) + t * squared) / (widening * widening + squared)
         share = clip(share, 0.0, 1.0)
         side_x = x - self.radius_a - share * widening

@@ -1,4 +1,4 @@
-"""Solids about the origin: plane, sphere, box, rounded box, torus. Their distances are exact.
+"""Solids around the origin: plane, sphere, box, rounded box, torus. Their distances are exact.
 
 [Bálint et al. 2019, chapter 2]
 """
@@ -11,14 +11,14 @@ import numpy as np
 
 from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.boxes import Box, bound_points, to_numbers
+from brdfkit.distance_fields.boxes import Box, bound_points, to_floats
 from brdfkit.distance_fields.functions import absolute, dot, length, maximum, minimum, normalize
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import number, vector
 
 
 class Exact(Node):
-    """The base of solids whose f is the distance, inside and outside."""
+    """The base of solids whose field is the exact distance, inside and outside."""
 
     exact_outside = exact_inside = True
 
@@ -38,8 +38,8 @@ class plane(Exact):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not np.any(to_numbers(self.normal)):
-            raise BrdfkitError("plane.normal = (0, 0, 0) has no direction; give another.")
+        if not np.any(to_floats(self.normal)):
+            raise BrdfkitError("plane.normal = (0, 0, 0) has no direction; give another normal.")
 
     def distance(self, p: JitVector) -> JitFloat:
         return dot((p.x, p.y, p.z), normalize(self.normal))
@@ -47,12 +47,12 @@ class plane(Exact):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class sphere(Exact):
-    """A ball.
+    """A ball around the origin.
 
     Parameters
     ----------
     radius : number > 0, default 1
-        Its radius.
+        The radius of the ball.
     """
 
     radius: Any = number(1.0, above=0)
@@ -62,17 +62,17 @@ class sphere(Exact):
         return length(p.x, p.y, p.z) - self.radius
 
     def bounds(self, level: float = 0.0) -> Box:
-        return bound_points(np.zeros(3), margin=to_numbers(self.radius) + level)
+        return bound_points(np.zeros(3), margin=to_floats(self.radius) + level)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class box(Exact):
-    """A box along the axes.
+    """A box around the origin, along the axes.
 
     Parameters
     ----------
     size : three numbers > 0, or one for a cube, default 1
-        Lengths of its edges.
+        The lengths of its edges.
     """
 
     size: Any = vector((1.0, 1.0, 1.0), above=0, spread=True)
@@ -82,30 +82,30 @@ class box(Exact):
         return box_distance(p, self.size)
 
     def bounds(self, level: float = 0.0) -> Box:
-        half = to_numbers(self.size) / 2
+        half = to_floats(self.size) / 2
         return bound_points(half, -half, margin=level)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class rounded_box(box):
-    """A box along the axes whose edges are round.
+    """A box around the origin, along the axes, whose edges are round.
 
     Parameters
     ----------
     size : three numbers > 0, or one for a cube, default 1
-        Lengths of its edges.
+        The lengths of its edges.
     radius : number ≥ 0, default 0.1
-        Radius of the edges, at most half of the shortest.
+        The radius of the edges, at most half of the shortest edge's length.
     """
 
     radius: Any = number(0.1, least=0)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if 2 * to_numbers(self.radius) > min(to_numbers(self.size)):
+        if 2 * to_floats(self.radius) > min(to_floats(self.size)):
             raise BrdfkitError(
-                f"rounded_box.radius = {to_numbers(self.radius):g} should be at most half of the "
-                f"shortest edge, {min(to_numbers(self.size)) / 2:g}."
+                f"rounded_box.radius = {to_floats(self.radius):g} should be at most half of the "
+                f"shortest edge, {min(to_floats(self.size)) / 2:g}."
             )
 
     def distance(self, p: JitVector) -> JitFloat:
@@ -115,14 +115,14 @@ class rounded_box(box):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class torus(Exact):
-    """A ring about the z axis.
+    """A ring around the z axis.
 
     Parameters
     ----------
     radius : number > 0, default 1
-        From the origin to the middle of the tube.
+        The distance from the origin to the middle of the tube.
     tube : number > 0, default 0.25
-        Radius of the tube.
+        The radius of the tube.
     """
 
     radius: Any = number(1.0, above=0)
@@ -132,14 +132,14 @@ class torus(Exact):
         return length(length(p.x, p.y) - self.radius, p.z) - self.tube
 
     def bounds(self, level: float = 0.0) -> Box:
-        tube = to_numbers(self.tube) + level
-        outer = to_numbers(self.radius) + tube
+        tube = to_floats(self.tube) + level
+        outer = to_floats(self.radius) + tube
         corner = np.array([outer, outer, tube])
         return -corner, corner
 
 
 def box_distance(p: JitVector, size: Iterable[JitFloat]) -> JitFloat:
-    """Return the distance from `p` to a box about the origin with edges of the lengths `size`.
+    """Return the distance from `p` to a box around the origin with edges of the lengths `size`.
 
     It is ‖max(q, 0)‖ + min(max(qx, qy, qz), 0) with q = |p| - size/2.
     """

@@ -13,11 +13,11 @@ from brdfkit.core.array_types import FloatArray, JitFloat, JitVector
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit import double_precision
 from brdfkit.distance_fields.boxes import EVERYWHERE, Box
-from brdfkit.distance_fields.export.sampling import box_to_sample, to_grid
+from brdfkit.distance_fields.export.sampling import find_box_to_sample, to_grid
 from brdfkit.distance_fields.node import Node
 
-# The JSON of a field names its function, so that the integrator finds it within the same process;
-# an entry goes with the last field that uses its function
+# Name in the JSON of a field → function, so that the integrator finds the function within the same
+# process. An entry is deleted with the last field that uses its function.
 _FUNCTIONS: WeakValueDictionary[str, Any] = WeakValueDictionary()
 EXPECTED = (
     "it should take points p with p.x, p.y and p.z, arrays of Dr.Jit's, and give f there, as "
@@ -31,7 +31,7 @@ class function(Node):
     """The field of a user's function of Dr.Jit arrays, which has no parameters.
 
     f : the function, or the name under which another field stored the same function.
-    lipschitz : the bound L on its slope.
+    lipschitz : the bound L on the function's slope.
     box : the corners (low, high) of a box around the surface, or None.
     """
 
@@ -43,8 +43,8 @@ class function(Node):
         super().__post_init__()
         f = _FUNCTIONS.get(self.f) if isinstance(self.f, str) else self.f
         if f is None:
-            raise BrdfkitError(f"{self.f} lived in another process; make the field anew there.")
-        name = self.f if isinstance(self.f, str) else f"{_name_of(f)} at {id(f):#x}"
+            raise BrdfkitError(f"{self.f} belongs to another process; make the field anew here.")
+        name = self.f if isinstance(self.f, str) else f"{_format_function_name(f)} at {id(f):#x}"
         _FUNCTIONS[name] = f
         object.__setattr__(self, "_function", f)
         object.__setattr__(self, "f", name)
@@ -68,22 +68,23 @@ def from_function(
     bounds: Any = None,
     resolution: int = 128,
 ) -> Node:
-    """Make a field from a function of points that is negative inside of a solid.
+    """Return a field made from a function of points that is negative inside of a solid.
 
     A function of Dr.Jit arrays becomes the field itself, with derivatives, but cannot be saved. A
-    function of NumPy arrays is sampled on a grid, which can.
+    function of NumPy arrays is sampled on a grid, which can be saved.
 
     Parameters
     ----------
     f : callable
-        f(p) of points p with p.x, p.y and p.z, arrays of Dr.Jit's, made of arithmetic, of
-        `brdfkit.distance_fields.functions` or of drjit's functions; or of NumPy's points (n, 3).
+        The function f(p) of points p with p.x, p.y and p.z, arrays of Dr.Jit's, made of arithmetic,
+        of `brdfkit.distance_fields.functions` or of drjit's functions; or a function of NumPy's
+        points (n, 3).
     lipschitz : float, default 1
         The most that f changes per unit of length: 1 for a distance. Rays step by f over this
         bound; if it is too small, they miss parts of the surface.
     bounds : (low, high), optional
-        Corners of a box, three numbers each, around the surface, which a picture then shows. A
-        function of NumPy's needs it.
+        The corners, three numbers each, of a box around the surface, which a picture then shows.
+        A function of NumPy's arrays needs them.
     resolution : int, default 128
         The number of cells of the grid along the longest edge of the box.
 
@@ -105,19 +106,19 @@ def from_function(
     if isinstance(f, Node):
         return f
     if not callable(f):
-        raise BrdfkitError(f"{f!r:.60} is no function; {EXPECTED}.")
+        raise BrdfkitError(f"{f!r:.60} is not a function; {EXPECTED}.")
     if _takes_drjit_arrays(f):
-        return function(f, lipschitz, None if bounds is None else box_to_sample(None, bounds))
+        return function(f, lipschitz, None if bounds is None else find_box_to_sample(None, bounds))
     _require_numpy_function(f)
     if bounds is None:
         raise BrdfkitError(
-            f"{_name_of(f)} works on NumPy's arrays, which rays cannot use: make a grid of it by "
-            "brdfkit.distance_fields.from_function(f, bounds=(low, high)), or write it with p.x, "
-            "p.y and p.z and the functions of drjit."
+            f"{_format_function_name(f)} works on NumPy's arrays, which rays cannot use: make a "
+            "grid of it by brdfkit.distance_fields.from_function(f, bounds=(low, high)), or write "
+            "it with p.x, p.y and p.z and the functions of drjit."
         )
 
     def sample(points: FloatArray) -> FloatArray:
-        """Return the values (n,) at `points` (n, 3), as `to_grid` calls a node."""
+        """Return the function's values (n,) at `points` (n, 3), so that `to_grid` can use it."""
         return np.asarray(f(points), float)
 
     sampled: Node = to_grid(sample, resolution, bounds)
@@ -139,12 +140,12 @@ def _require_numpy_function(f: Callable[[Any], Any]) -> None:
         shape = np.asarray(f(np.array([[0.1, 0.2, 0.3], [0.3, 0.1, 0.2]])), float).shape
     except Exception as error:
         raise BrdfkitError(
-            f"{_name_of(f)} is no function of points ({error}); {EXPECTED}."
+            f"{_format_function_name(f)} is not a function of points ({error}); {EXPECTED}."
         ) from error
     if shape != (2,):
-        raise BrdfkitError(f"{_name_of(f)} gives {shape} for 2 points; {EXPECTED}.")
+        raise BrdfkitError(f"{_format_function_name(f)} gives {shape} for 2 points; {EXPECTED}.")
 
 
-def _name_of(f: Any) -> str:
+def _format_function_name(f: Any) -> str:
     """Return the name of a function, or of a callable's type."""
     return getattr(f, "__name__", type(f).__name__)

@@ -1,9 +1,9 @@
 """Sphere tracing and cone tracing: where a ray, or a cone around it, first touches a surface.
 
-As f / L is at most the distance, a step of this length along a ray crosses no surface [Hart 1996];
-[Bálint et al. 2019, algorithm 2]. For a cone, the distance less the cone's radius ρ is divided by
-its own bound 1 + |tan α|, with the angle α between axis and side. The result is a distance again
-[Bálint et al. 2019, chapter 2]:
+As f / L, the field over its bound L, is at most the distance, a step of this length along a ray
+crosses no surface [Hart 1996]; [Bálint et al. 2019, algorithm 2]. For a cone, the distance less the
+cone's radius ρ is divided by its own bound 1 + |tan α|, with the angle α between axis and side. The
+result is a distance again [Bálint et al. 2019, chapter 2]:
 
     F(t) = (f(o + t d) / L - ρ(t)) / (1 + |tan α|),   ρ(t) = R₀ + t tan α
 
@@ -40,8 +40,7 @@ def cone_trace(
 
     Without `radius` and `tangent` it traces rays. A cone stops where f / L ≤ (1 + slack) ρ +
     precision, with its radius ρ. As each step ends at ρ, nothing that reaches into the cone is
-    missed; a surface between ρ and (1 + slack) ρ may be found or not. `distance` of the `Hit` is
-    the radius of an empty ball there.
+    missed; a surface between ρ and (1 + slack) ρ may be found or not.
 
     Parameters
     ----------
@@ -71,7 +70,8 @@ def cone_trace(
     Returns
     -------
     Hit
-        Where they stop, and whether a surface is there; without derivatives, see `reattach`.
+        Where the cones stop, and whether a surface is there; without derivatives, see `reattach`.
+        Its `distance` is the radius of a ball there that contains no surface.
 
     Examples
     --------
@@ -115,7 +115,7 @@ def intersect(
     node : distance field
         The field, which knows its bound L and its box.
     o, d : anything with x, y, z
-        Where the rays begin, and their unit directions: Dr.Jit arrays, or numbers.
+        The origins of the rays and their unit directions: Dr.Jit arrays, or numbers.
     t_max : number or array
         The distance along the rays at which they end.
     precision : number > 0, default 1e-4
@@ -123,12 +123,12 @@ def intersect(
     steps : integer, default 512
         The number of steps after which a ray ends.
     active : bool or array, default True
-        Which rays are traced.
+        Whether each ray is traced.
 
     Returns
     -------
     Hit
-        Where they stop, and whether a surface is there; without derivatives, see `reattach`.
+        Where the rays stop, and whether a surface is there; without derivatives, see `reattach`.
 
     Examples
     --------
@@ -144,7 +144,10 @@ def intersect(
 def clip_to_box(
     o: JitVector, d: JitVector, low: FloatArray, high: FloatArray
 ) -> tuple[JitFloat, JitFloat]:
-    """Return where rays enter and leave a box in front of `o`; a ray misses it if far < near."""
+    """Return the distances at which rays enter and leave a box; far < near if a ray misses it.
+
+    Only the part of a ray in front of its origin `o` counts.
+    """
     near, far = o.x * 0.0, o.x * 0.0 + np.inf
     for a, v, least, most in zip((o.x, o.y, o.z), (d.x, d.y, d.z), low, high, strict=True):
         if np.isfinite(least) and np.isfinite(most):
@@ -156,7 +159,7 @@ def clip_to_box(
 
 
 def pixel_tangent(fov: float, pixels: int) -> float:
-    """Compute tan α of the cone that covers a pixel of a perspective picture, up to its corners.
+    """Return tan α of the cone that covers a pixel of a perspective picture, up to its corners.
 
     The cones of all pixels leave no gap, so that no object between them is missed.
 

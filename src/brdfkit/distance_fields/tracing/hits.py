@@ -13,9 +13,9 @@ class Hit(NamedTuple):
 
     Attributes
     ----------
-    t : distance along the ray, where it stopped
+    t : distance along each ray at which it stopped
     found : bool, whether a surface is there
-    distance : f at that point: no surface is nearer, so that a ball of that radius is empty
+    distance : f at that point: the radius of a ball there that contains no surface
     steps : number of evaluations of f
     """
 
@@ -31,7 +31,7 @@ def start_march(o: JitVector, t: JitFloat) -> tuple[JitFloat, JitInt]:
 
 
 def reattach(distance: Callable[[Any], Any], o: JitVector, d: JitVector, t: JitFloat) -> JitFloat:
-    """Give the `t` of hits their derivatives by all parameters of f and of the rays.
+    """Return the `t` of hits with its derivatives by all parameters of f and of the rays.
 
     By the implicit function theorem dt = -df / (∇f·d); a central difference gives the slope of f
     along the ray. Rays that graze the surface get 0.
@@ -41,9 +41,9 @@ def reattach(distance: Callable[[Any], Any], o: JitVector, d: JitVector, t: JitF
     distance : callable
         f(p) of points, whose parameters carry derivatives; such as a node's `distance`.
     o, d : anything with x, y, z
-        Where the rays begin, and their unit directions.
+        The origins of the rays and their unit directions.
     t : array
-        Where rays meet the surface; for rays that do not, the derivatives mean nothing.
+        The distances at which rays meet the surface; for other rays, the derivatives mean nothing.
 
     Returns
     -------
@@ -70,9 +70,9 @@ TETRAHEDRON = ((1, -1, -1), (-1, -1, 1), (-1, 1, -1), (1, 1, 1))
 
 
 def normal(distance: Callable[[Any], Any], p: JitVector, step: float = 1e-3) -> JitVector:
-    """Compute the unit normal of a distance, the direction in which f grows.
+    """Return the unit normal of a distance, the direction in which f grows.
 
-    It is made of four values of f. Automatic differentiation would be exact and takes half the
+    It is computed from four values of f. Automatic differentiation would be exact and take half the
     time. But Dr.Jit has no second derivatives, and scalar variants have none at all; these normals
     have derivatives by every parameter of f, and are the same in all variants.
 
@@ -83,12 +83,13 @@ def normal(distance: Callable[[Any], Any], p: JitVector, step: float = 1e-3) -> 
     p : anything with x, y, z
         Points on the surface or near it.
     step : float > 0, default 1e-3
-        Half the edge of the cube around the tetrahedron, less than the size of all details.
+        Half the edge of a cube around p, at four corners of which f is evaluated; less than the
+        size of all details.
 
     Returns
     -------
     points
-        Vectors of the same type as `p`.
+        The normals, of the same type as `p`.
 
     Examples
     --------

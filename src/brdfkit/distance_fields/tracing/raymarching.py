@@ -11,7 +11,7 @@ import drjit as dr
 from brdfkit.core.array_types import JitFloat, JitInt, JitMask, JitVector
 from brdfkit.distance_fields.tracing.hits import Hit, start_march
 
-BISECTIONS = 24  # single precision does not resolve less than a step / 2²⁴
+BISECTIONS = 24  # halvings of the last step; single precision does not resolve a step / 2²⁴
 
 
 def raymarch(
@@ -22,25 +22,25 @@ def raymarch(
     step: JitFloat,
     active: JitMask = True,
 ) -> Hit:
-    """Find where f first changes its sign along rays, by steps of equal length.
+    """Find where a distance f first changes its sign along rays, by steps of equal length.
 
     Parameters
     ----------
     distance : callable
         f(p) of points; such as a node's `distance`.
     o, d : anything with x, y, z
-        Where the rays begin, and their unit directions: Dr.Jit arrays, or numbers.
+        The origins of the rays and their unit directions: Dr.Jit arrays, or numbers.
     t_max : number or array
         The distance along the rays at which they end.
     step : number > 0
         The length of a step; an object that a ray crosses in less may be missed.
     active : bool or array, default True
-        Which rays are traced.
+        Whether each ray is traced.
 
     Returns
     -------
     Hit
-        Where they stop, and whether a surface is there; without derivatives, see `reattach`.
+        Where the rays stop, and whether a surface is there; without derivatives, see `reattach`.
 
     Examples
     --------

@@ -13,7 +13,7 @@ import numpy as np
 from brdfkit.core.array_types import MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields import Node
-from brdfkit.distance_fields.materials import material_names
+from brdfkit.distance_fields.materials import list_material_names
 from brdfkit.distance_fields.shadows.field import bounding_sphere
 from brdfkit.materials.resolve import to_material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
@@ -41,7 +41,7 @@ def load_field_scene(field: Node, size: tuple[int, int]) -> MitsubaObject:
         "integrator": {
             "type": "distance_field",
             "field": field.to_json(),
-            **{name: _describe_material(name) for name in material_names(field)},
+            **{name: _describe_material(name) for name in list_material_names(field)},
         },
         "sensor": {
             "type": "perspective",

@@ -37,11 +37,6 @@ class Stencil:
         """The number of pairs of a face and a tile in which it may be visible."""
         return len(self.indices)
 
-    @property
-    def memory(self) -> int:
-        """The memory of the faces and of the tiles' lists [bytes]."""
-        return 4 * sum(map(len, (self.records, self.indices, self.begins)))
-
     def count_faces(
         self,
         x: JitFloat,
