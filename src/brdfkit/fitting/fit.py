@@ -211,7 +211,7 @@ def fit(
 
 
 def _add_albedo_warning(message: str) -> str:
-    """Return the message of a converged search with the warning that the fit's albedo is wrong."""
+    """Add the warning that the fit's albedo is wrong to the message of a converged search."""
     end, semicolon, details = message.partition(";")
     converged = end.startswith(("converged", "settled"))
     return f"{end}, but its light is wrong{semicolon}{details}" if converged else message

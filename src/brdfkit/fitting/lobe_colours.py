@@ -1,4 +1,7 @@
-"""Writes notes on implausible colours of a fit: of single lobes, and at grazing angles."""
+"""Writes notes on implausible colours of a fit: of single lobes, and at grazing angles.
+
+A lobe is one term of a model, such as its diffuse part or one of its highlights.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Writes notes on lobes of a fit that have no physical meaning, although the search converged."""
+"""Writes notes on lobes of a fit that have no physical meaning, although the search converged.
+
+A lobe is one term of a model, such as its diffuse part or one of its highlights.
+"""
 
 from __future__ import annotations
 
@@ -80,9 +83,9 @@ def list_lobe_notes(
 
 
 def compute_lobe_albedos(model: Model) -> NDArray[np.float64]:
-    """Return the directional albedo of each lobe, times its weight, at the angles `INCIDENCES`.
+    """Return the directional albedos (incidences, lobes, channels) of the lobes of a model.
 
-    The shape is (incidences, lobes, channels).
+    Lobes are the terms of the model, here times their weights. The incidences are `INCIDENCES`.
     """
     both = make_albedo_pixels(INCIDENCES).evaluate(
         lambda wi, wo: np.hstack(compute_lobe_values(model, wi, wo))
@@ -192,5 +195,5 @@ def _keep_parameters_of_used_lobes(fitted: Model, names: list[str]) -> list[str]
 
 
 def _is_parameter(name: str, kind: str) -> bool:
-    """Return whether `name` is a parameter of this kind: "f0" or, in a sum, "ggx_2_f0" for "f0"."""
+    """Return whether a parameter is of a `kind`: "f0" and "ggx_2_f0", for example, are of the kind "f0"."""
     return name == kind or name.endswith(f"_{kind}")

@@ -1,7 +1,8 @@
 """Finds lobes that are narrower than the spacing of the samples, so that their width is a guess.
 
-The half angle θ_h is the angle between the half vector and the normal; the difference angle θ_d is
-the angle between the half vector and the direction of incidence.
+A lobe is one term of a model, such as one of its highlights. The half angle θ_h is the angle
+between the half vector and the normal; the difference angle θ_d is the angle between the half
+vector and the direction of incidence.
 """
 
 from __future__ import annotations

@@ -158,7 +158,7 @@ def _is_model(given: object) -> bool:
 def select_fitted_samples(fit: Fit, material: MaterialLike) -> Samples:
     """Return the samples of `material` to which `fit` was fitted.
 
-    They have standard errors only if these weighed the samples of the fit.
+    They have standard errors only if the fit weighed its samples by these.
     """
     if not isinstance(fit, Fit):
         raise BrdfkitError(

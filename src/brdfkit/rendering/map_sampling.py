@@ -1,4 +1,4 @@
-"""`compare_samplers`: measures which sampler of an environment map gives least noise per time."""
+"""`compare_samplers`: finds the sampler of an environment map that makes the best use of time."""
 
 from __future__ import annotations
 

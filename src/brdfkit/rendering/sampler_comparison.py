@@ -58,7 +58,7 @@ class SamplerComparison(Shown):
 
     @cached_property
     def p_values(self) -> dict[str, float]:
-        """Probability of so large a difference from the best sampler if there is none, by sampler.
+        """Probability, by sampler, that chance makes its cost differ so much from the best one.
 
         It is from Tukey's test on the logarithms of the costs, with the rounds as blocks. The test
         holds for all pairs of samplers together, so the best sampler may be chosen from the same

@@ -60,9 +60,10 @@ def trace_scenes(
     `limit` [s], they end after the pass in which this time is over. Then `spp` is the largest
     number of samples.
 
-    After Ctrl-C the pictures contain the passes that all of them have; if there is none, it is
-    raised. `progress` is called with (done, total) after each picture of a pass. If it has a
-    parameter `pictures`, it also receives a function that returns the pictures so far.
+    After Ctrl-C the pictures contain the passes that all of them have; before the first of these,
+    KeyboardInterrupt is raised. `progress` is called with (done, total) after each picture of a
+    pass. If it has a parameter `pictures`, it also receives a function that returns the pictures so
+    far.
     """
     if seed >= 2**31:
         raise BrdfkitError(f"The seed {seed} is out of bounds; give one from 0 to 2³¹ - 1.")
@@ -108,7 +109,7 @@ def _find_progress_arguments(
 ) -> dict[str, Callable[[], Any]]:
     """Return further keyword arguments for `progress`: `pictures`, if it has such a parameter.
 
-    The argument is a function, so that the pictures are computed only when it is called.
+    Its value is a function, so that the pictures are computed only when it is called.
     """
     with suppress(TypeError, ValueError):  # some callables, such as built-ins, have no signature
         if progress and "pictures" in inspect.signature(progress).parameters:

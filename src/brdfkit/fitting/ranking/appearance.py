@@ -62,7 +62,7 @@ class Appearance:
         return error / max(find_peak(shown[None]), DARKEST)
 
     def find_implausibility(self, brdf: Brdf) -> str:
-        """Return a clause if the albedo or the colour of a BRDF at 85° is implausible, else ""."""
+        """Return a clause on an implausible albedo or colour of a BRDF at 85°, or "" for none."""
         (albedo,) = make_albedo_pixels((GRAZING,), self.azimuths).evaluate(brdf)
         if (albedo > GAIN * np.maximum(self.albedos.max(axis=0), 1)).any():
             return f"more light is reflected at {GRAZING:g}° than arrives"

@@ -36,7 +36,7 @@ class Choice:
 
     @classmethod
     def from_rows(cls, rows: Sequence[Ranked]) -> "Choice":
-        """Choose from rows, at least one of which must be a fitted model."""
+        """Return the choice among rows, at least one of which must be a fitted model."""
         pareto = [row for row in rows if row.pareto]
         certain = [row for row in rows if not row.doubt and not row.message]
         sound = [row for row in certain if row.pareto] or [row for row in certain if row.tied]

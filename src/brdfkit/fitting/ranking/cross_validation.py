@@ -85,7 +85,7 @@ def compute_held_out_errors(
     settings: dict[str, Any],
     report: Callable[[int], object] = lambda done: None,
 ) -> FloatArray:
-    """Return the squared errors (blocks,) of a model in the blocks that were held out of each fit.
+    """Return the squared errors (blocks,) of a model in blocks of directions held out of each fit.
 
     Their sum is E². The fits begin at the shape parameters `first`, with `settings` of `regress`;
     `report` is called with the number of finished fits.

@@ -128,7 +128,7 @@ def _find_sample_loss(loss: Loss | Picture) -> Loss:
 
 
 def assign_blocks(wi: FloatArray, wo: FloatArray, anisotropic: bool) -> IntArray:
-    """Return the block (n,) to which each direction pair `wi`, `wo` (n, 3) belongs.
+    """Return the block of similar directions (n,) to which each pair `wi`, `wo` (n, 3) belongs.
 
     Blocks are numbered in the order of the half angle theta_h. They are about 15° wide, and
     narrower where theta_h is small.
@@ -187,7 +187,10 @@ def _to_samples_at_normal(pixels: Pixels) -> Samples:
 
 
 def _number_groups(*keys: FloatArray) -> IntArray:
-    """Number the groups of rows with equal `keys` (n,), sorted by the keys; return them as (n,)."""
+    """Return for each row the number (n,) of its group of rows with equal `keys` (n,).
+
+    The groups are in the order of their keys.
+    """
     ranks: IntArray = np.unique(np.stack(keys, axis=1), axis=0, return_inverse=True)[1].ravel()
     return ranks
 

@@ -1,7 +1,6 @@
 """Makes a scene from a mesh file, OBJ or PLY, in which the mesh takes the place of the ball.
 
-Mesh files do not contain which of their axes points up, so the axis is guessed if the user gives
-none.
+Mesh files do not say which of their axes points up, so the axis is guessed if the user gives none.
 """
 
 import warnings
@@ -35,7 +34,7 @@ TURNS: dict[str, tuple[list[int], int]] = {
 
 
 def make_mesh_scene(source: str | Path) -> Callable[..., dict[str, Any]]:
-    """Return a function like those of `brdfkit.rendering.scenes`, whose scene shows a mesh.
+    """Return a function (bsdf, size) that makes the dictionary of a scene with the mesh of a file.
 
     `source` is the file, "FILE.obj", or the file with the axis that points up, "FILE.obj#z".
     Without an axis it is guessed (`guess_up_axis`). If y points up, z points to the camera. The

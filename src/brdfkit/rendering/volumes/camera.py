@@ -1,4 +1,4 @@
-"""Places the camera so that the picture contains all visible parts of a volume, with its top up."""
+"""Places the camera so that the picture contains all visible parts of a volume, upright."""
 
 from __future__ import annotations
 

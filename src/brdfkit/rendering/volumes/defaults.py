@@ -64,9 +64,10 @@ def choose_transfer_function(volume: Volume, renderer: str) -> TransferFunction:
 
 
 def _find_longest_edge(volume: Volume) -> float:
-    """Return the longest edge of the box around all voxels that are above the window's lower end.
+    """Return the longest edge of the box of visible voxels, from which the extinction is computed.
 
-    The box is aligned with the grid, and the edge is in the volume's unit of length.
+    Voxels are visible if their values are above the lower end of the volume's window. The box is
+    aligned with the grid, and the edge is in the volume's unit of length.
     """
     longest = 0.0
     for axis, (n, step) in enumerate(zip(volume.values.shape, volume.spacing[::-1], strict=True)):

@@ -109,7 +109,7 @@ def _to_plugin_value(name: str, value: Any) -> Any:
 
 
 def make_background_light(background: ArrayLike) -> dict[str, Any]:
-    """Return the dictionary of an emitter with one radiance, a number or R, G, B, everywhere."""
+    """Return the dictionary of an emitter with equal radiance, a number or R, G, B, all around."""
     rgb = np.broadcast_to(background, 3).tolist()
     return {"type": "constant", "radiance": {"type": "rgb", "value": rgb}}
 
@@ -123,10 +123,10 @@ def make_environment_light(
 ) -> dict[str, Any]:
     """Return the emitter of an environment map with a uniform `background` behind the volume.
 
-    The camera sees this background, and the light from all other directions is that of the map. If
-    it is None, the camera sees the map itself. The whole map gives level ground this `illuminance`.
-    `towards` is the unit vector to the camera, and `aspect` the picture's width divided by its
-    height.
+    The camera sees this background, and the light from all other directions is that of the map.
+    With a `background` of None the camera sees the map itself. The whole map gives level ground
+    this `illuminance`. `towards` is the unit vector to the camera, and `aspect` the picture's width
+    divided by its height.
     """
     import mitsuba as mi
 
