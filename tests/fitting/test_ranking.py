@@ -80,7 +80,7 @@ def test_held_out_errors_are_those_of_fits_without_the_fold():
     data, rng = measured(bk.models()["ward"](), n=300), np.random.default_rng(0)
     samples = select_samples(data, 80.0)
     plain_sum = sample_sum("plain")
-    held_out = HeldOut.draw(samples, plain_sum, False, 5, rng)
+    held_out = HeldOut.divide(samples, plain_sum, False, 5, rng)
     values, squares = samples.values[:, 0], np.empty(len(samples.wi))
     for fold in range(5):
         out = held_out.folds == fold
@@ -120,7 +120,7 @@ def test_blocks_cover_all_directions_and_folds_share_them(anisotropic):
 def test_each_fold_sees_the_highlight_and_grazing_angles():
     table = bk.load("red_plastic")
     samples = select_samples(table, 80.0)
-    held_out = HeldOut.draw(samples, bk.losses.named["log"], False, 5, np.random.default_rng(3))
+    held_out = HeldOut.divide(samples, bk.losses.named["log"], False, 5, np.random.default_rng(3))
     assert len(held_out.folds) == len(held_out.samples.wi) <= SAMPLE_LIMIT
     theta_h, theta_d, _ = to_half_difference(held_out.samples.wi, held_out.samples.wo)
     for fold in range(5):
@@ -305,7 +305,7 @@ def pixels_held_out():
     data = bk.load("red_plastic")
     samples, loss = select_samples(data, 80.0), bk.losses.Picture(("hall", "sky"))
     pixels = draw_pixels(loss.lights, data.eval, 80.0, 0, directions=8)
-    return HeldOut.draw(samples, loss, False, 5, np.random.default_rng(0), pixels)
+    return HeldOut.divide(samples, loss, False, 5, np.random.default_rng(0), pixels)
 
 
 def test_a_region_of_the_ball_is_held_out_under_all_lights(pixels_held_out):

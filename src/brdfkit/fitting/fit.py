@@ -195,8 +195,8 @@ def fit(
         require_no_sample_settings(robust=robust, weights=weights, spectral=spectral)
         pixels = draw_pixels(error.lights, data.rgb.eval, max_angle, settings.seed)
         solve = partial(regress, pixels=pixels)
-    # A loss that weighs all samples alike does not know their solid angles, so it cannot compare
-    # the albedo of the fit with the measured one
+    # The measured albedo is not kept if its unit is unknown, nor if the loss weighs all samples
+    # alike, because it then does not know their solid angles
     without_light = getattr(error, "measure", None) == "samples" or light.has_another_unit
     search: dict[str, Any] = settings.to_search_arguments() | {
         "target_albedo": None if without_light else light

@@ -15,7 +15,7 @@ from brdfkit.model import Model
 from brdfkit.model.samples import Samples
 from brdfkit.model.samples.measures import compute_measure
 
-# A colour is pure if its smallest channel is below this share of its largest; two colours have
+# A colour is pure if its smallest channel is below the share PURE of its largest; two colours have
 # different hues if the cosine of the angle between their RGB vectors is below ALIKE
 PURE, ALIKE = 0.1, 0.5
 # No note is written on a lobe with a smaller share of the highlight's albedo

@@ -195,5 +195,5 @@ def _keep_parameters_of_used_lobes(fitted: Model, names: list[str]) -> list[str]
 
 
 def _is_parameter(name: str, kind: str) -> bool:
-    """Return whether a parameter is of a `kind`: "f0" and "ggx_2_f0", for example, are of the kind "f0"."""
+    """Return whether a parameter is of a `kind`, such as "ggx_2_f0" of the kind "f0"."""
     return name == kind or name.endswith(f"_{kind}")

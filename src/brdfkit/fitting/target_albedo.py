@@ -42,12 +42,12 @@ def find_target_albedo(data: Measured, weights: ArrayLike | None, max_angle: flo
         target = replace(target, known=target.known & (weights is None))
     else:
         target = TargetAlbedo.from_measured(
-            _select_fitted(data, weights, max_angle).albedo, data.anisotropic
+            _select_fitted_samples(data, weights, max_angle).albedo, data.anisotropic
         )
     return replace(target, known=target.known & (np.array(target.theta_i) < max_angle))
 
 
-def _select_fitted(data: Measured, weights: ArrayLike | None, max_angle: float) -> Measured:
+def _select_fitted_samples(data: Measured, weights: ArrayLike | None, max_angle: float) -> Measured:
     """Return a `Measured` with only the samples below `max_angle` [degrees] and of weight above 0.
 
     If `max_angle` is at least `DEFAULT_MAX_ANGLE`, samples at all angles are kept.

@@ -81,7 +81,7 @@ class Gallery(Shown):
 
     def _to_png(self) -> bytes:
         """Draw the grid as a PNG for notebooks."""
-        from brdfkit.core.figures import to_png  # only here: it imports matplotlib
+        from brdfkit.core.figures import to_png  # here, because it imports matplotlib
 
         return to_png(draw_grid(self.rows), DPI)
 

@@ -32,7 +32,8 @@ SAMPLERS: dict[str, dict[str, Any]] = {
     "alias, compensated": {"type": "sampled_envmap", "sampler": "alias", "compensated": True},
 }
 SPP, SIZE, ROUNDS, FEWEST_ROUNDS = 16, 96, 10, 3
-DARK = 0.01  # least brightness, over the mean, by which the noise of a pixel is divided
+# Noise is divided by the brightness of its pixel, but at least by this share of the mean brightness
+DARK = 0.01
 
 
 def compare_samplers(

@@ -137,7 +137,7 @@ def _to_false_colours(difference: FloatArray) -> AnyArray:
     """Return sRGB values (height, width, 3) in 0..1 for colour differences (height, width)."""
     import matplotlib as mpl
 
-    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # ΔE that is nan
+    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # where ΔE is nan
     return colours(difference / LARGEST_DIFFERENCE)[..., :3]
 
 

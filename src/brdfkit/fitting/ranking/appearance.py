@@ -20,7 +20,7 @@ from brdfkit.model.samples import Samples
 from brdfkit.regression.albedo import ISOTROPIC_AZIMUTHS, make_albedo_pixels
 
 Array = NDArray[np.float64]
-Brdf = Callable[[Array, Array], Array]  # (wi, wo) → (n, channels)
+Brdf = Callable[[Array, Array], Array]  # maps wi, wo (n, 3) to values (n, channels)
 
 ANGLES = 15.0, 30.0, 45.0, 60.0, 75.0  # incidences [degrees] that give the material's own colours
 GRAZING = 85.0  # angle of incidence [degrees] at which the colour of a fit is judged

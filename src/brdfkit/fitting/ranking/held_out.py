@@ -49,7 +49,7 @@ class HeldOut:
     folds: IntArray
 
     @classmethod
-    def draw(
+    def divide(
         cls,
         samples: Samples,
         loss: Loss | Picture,

@@ -100,7 +100,7 @@ def rank(
     samples, pixels, rng = select_samples(data, max_angle), None, np.random.default_rng(seed)
     if isinstance(chosen, Picture):
         pixels = draw_pixels(chosen.lights, data.rgb.eval, max_angle, seed)
-    held_out = HeldOut.draw(samples, chosen, data.anisotropic, folds, rng, pixels)
+    held_out = HeldOut.divide(samples, chosen, data.anisotropic, folds, rng, pixels)
     appearance = Appearance(data, samples, max_angle, seed + 1)
     light = TargetAlbedo.from_measured(data.rgb.albedo, data.anisotropic)
     how = appearance, light, anisotropic, seed

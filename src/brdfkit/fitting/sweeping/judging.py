@@ -32,8 +32,8 @@ class Judge:
         self.held_out, loss = None, to_loss(settings.loss)
         if not isinstance(loss, Picture):
             rng = np.random.default_rng(seed)
-            with suppress(BrdfkitError):  # fewer blocks of directions than folds
-                self.held_out = HeldOut.draw(samples, loss, data.anisotropic, FOLDS, rng)
+            with suppress(BrdfkitError):  # raised for fewer blocks of directions than folds
+                self.held_out = HeldOut.divide(samples, loss, data.anisotropic, FOLDS, rng)
 
     def judge(self, fit: Fit) -> dict[str, float]:
         """Return the held-out error and the PSNR of a fit, by their names in `Row`."""

@@ -59,7 +59,7 @@ def find_saved_fit(
 
 def parse_fit(outcome: Outcome) -> Fit:
     """Return the `Fit` of an outcome that is no failure."""
-    path = Path(f"{outcome.model}.json")  # for error messages only
+    path = Path(f"{outcome.model}.json")  # appears only in error messages
     return fit_json.read(Source(path, None, outcome.text.encode()))
 
 

@@ -20,7 +20,7 @@ from brdfkit.model import Model
 from brdfkit.model.samples.samples import Samples
 from brdfkit.regression import Loss, Picture
 
-PAIRS = 2_000  # direction pairs at which azimuths are compared
+PAIRS = 2_000  # largest number of direction pairs at which azimuths are compared
 TURNS = 8  # number of angles by which the surface is turned for each direction pair
 
 

@@ -42,7 +42,7 @@ def make_knot_tube() -> tuple[FloatArray, FloatArray]:
 
     # Two directions across the tube: away from the middle of the knot, and perpendicular to this
     along = np.gradient(axis, axis=0)
-    along[[0, -1]] = axis[1] - axis[-2]  # the curve is closed
+    along[[0, -1]] = axis[1] - axis[-2]  # as the curve is closed, its ends are neighbours
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     side = axis - np.sum(axis * along, axis=1, keepdims=True) * along
     side /= np.linalg.norm(side, axis=1, keepdims=True)

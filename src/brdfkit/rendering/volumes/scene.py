@@ -66,7 +66,7 @@ def describe_scene(
         emitter = make_environment_light(
             environment, ILLUMINANCES[renderer], background, towards, aspect
         )
-    distance = float(np.linalg.norm(origin - target))  # which may be in any unit of length
+    distance = float(np.linalg.norm(origin - target))  # a reference for any unit of length
     clipping = {"near_clip": 1e-3 * distance, "far_clip": 1e3 * distance}
     return {
         "type": "scene",
