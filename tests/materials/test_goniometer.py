@@ -364,7 +364,7 @@ def test_the_order_of_the_samples_is_that_of_the_cells(monkeypatch):
     monkeypatch.setattr(measuring, "BATCH", 7)
     counts, recorder = np.array([3, 0, 9, 1, 1, 8, 0]), Recorder()
     tally = Tally(len(counts))
-    measuring._trace(recorder, None, None, counts, np.random.default_rng(5), tally)
+    measuring._add_samples(recorder, None, None, counts, np.random.default_rng(5), tally)
     assert [len(pair) for pair in recorder.pairs] == [7, 7, 7, 1]
     assert np.array_equal(np.concatenate(recorder.pairs), np.repeat(np.arange(7), counts))
     random = np.random.default_rng(5)
@@ -383,7 +383,9 @@ def test_many_samples_need_the_memory_of_one_batch(monkeypatch):
     tracemalloc.start()
     try:
         with pytest.raises(KeyboardInterrupt):
-            measuring._trace(Recorder(), None, None, counts, np.random.default_rng(), tally, stop)
+            measuring._add_samples(
+                Recorder(), None, None, counts, np.random.default_rng(), tally, stop
+            )
         assert tracemalloc.get_traced_memory()[1] < 10**6
     finally:
         tracemalloc.stop()
@@ -427,8 +429,8 @@ def test_ctrl_c_keeps_what_there_is(monkeypatch):
         ("error = 0", {"error": 0}),
         ("error = nan", {"error": np.nan}),
         ("error = 1e-200", {"error": 1e-200}),
-        ("above 4,194,304 cells", {"shape": (10**5,) * 3}),
-        ("above 4,194,304 cells", {"shape": (2**32,) * 3}),
+        ("over 4,194,304 cells", {"shape": (10**5,) * 3}),
+        ("over 4,194,304 cells", {"shape": (2**32,) * 3}),
         ("spp = 1 ", {"spp": 1}),
         ("between 2 and", {"spp": 10**20}),
         ("seed = -1", {"seed": -1}),
