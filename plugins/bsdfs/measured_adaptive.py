@@ -54,10 +54,10 @@ def define(mi: MitsubaModule) -> type:
             self.shape = props["values"].shape
 
         def brdf(self, wi: JitVector, wo: JitVector, si: MitsubaObject) -> JitColour:
-            return self.values.mean(self.lookup.find_corners(wi, wo), si)
+            return self.values.average_rows(self.lookup.find_corners(wi, wo), si)
 
         def albedo(self, wi: JitVector, si: MitsubaObject) -> JitColour:
-            return self.albedos.mean(self.lookup.find_incidences(wi), si)
+            return self.albedos.average_rows(self.lookup.find_incidences(wi), si)
 
         def to_string(self) -> str:
             return f"MeasuredAdaptive[shape = {self.shape}]"

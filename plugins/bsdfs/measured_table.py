@@ -52,10 +52,10 @@ def define(mi: MitsubaModule) -> type:
             return np.maximum(self.table.eval(wi, wo), 0)
 
         def brdf(self, wi: JitVector, wo: JitVector, si: MitsubaObject) -> JitColour:
-            return self.values.mean(find_corners(self.table, wi, wo), si)
+            return self.values.average_rows(find_corners(self.table, wi, wo), si)
 
         def albedo(self, wi: JitVector, si: MitsubaObject) -> JitColour:
-            return self.albedos.mean(self.sampling.find_incidences(wi), si)
+            return self.albedos.average_rows(self.sampling.find_incidences(wi), si)
 
         def to_string(self) -> str:
             return f"MeasuredTable[shape = {self.table.shape}]"

@@ -1,8 +1,7 @@
-"""The code that exists only inside Mitsuba: models and tables as its plugins, in each variant.
+"""Makes brdfkit's models, measured tables and other plugins known to Mitsuba, in each variant.
 
-`registration/hook.py` registers the plugins when Mitsuba is imported
-(`registration/registering.py`), a `Model` through `bsdf/adapter.py`. `bsdf/base.py` is the base
-class of all of brdfkit's BSDF plugins. A plugin of another kind declares its parameters by
-`properties/declarations.py`. `channels.py` makes spectra of a variant's type from colours and
-wavelengths.
+`registration/` registers the plugins when Mitsuba is imported. `bsdf/adapter.py` makes a BSDF
+plugin of a `Model`, and `bsdf/base.py` is the base class of all of brdfkit's BSDF plugins. Plugins
+of other kinds declare their parameters by `properties/declarations.py`. `channels.py` converts
+colours and values at wavelengths to spectra of a variant's type.
 """

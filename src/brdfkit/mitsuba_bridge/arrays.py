@@ -1,4 +1,4 @@
-"""Constant arrays that a plugin reads by index, and brackets of nodes around a coordinate."""
+"""Constant arrays that a plugin reads by index, and the nodes of an axis around a coordinate."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ class Rows:
         self.values = values if self.scalar else mi.Float(mi.TensorXf(values).array)
 
     def at(self, index: JitInt, kind: Any = None, active: JitMask = True) -> Any:
-        """Return row `index` as `kind` (a colour), by default `mi.Float`; 0 if not `active`."""
+        """Return row `index` as the type `kind`, by default `mi.Float`; 0 where not `active`."""
         import drjit as dr
         import mitsuba as mi
 
@@ -47,7 +47,7 @@ class Integers:
         self.values: Any = integers if self.scalar else mi.UInt32(pad(integers))
 
     def at(self, index: JitInt, active: JitMask = True) -> JitInt:
-        """Return the number of an index, a `mi.UInt32`; 0 if not `active`."""
+        """Return the number at an index as a `mi.UInt32`; 0 where not `active`."""
         import drjit as dr
         import mitsuba as mi
 
@@ -65,7 +65,7 @@ def find_cell(x: JitFloat, n: int) -> JitInt:
 
 
 def find_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
-    """Return (lower node, upper node, share of the upper) around `x` on an axis of `n` nodes."""
+    """Return (lower, upper, share of the upper) of the nodes 0 ... n - 1 around `x`, clamped."""
     import drjit as dr
     import mitsuba as mi
 
@@ -75,7 +75,7 @@ def find_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
 
 
 def find_periodic_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
-    """Return the nodes and share as `find_bracket`, on a periodic axis whose node n is node 0."""
+    """Return (lower, upper, share of the upper) of the nodes around `x`; node n is node 0."""
     import drjit as dr
     import mitsuba as mi
 
@@ -91,7 +91,7 @@ class Nodes:
         self.count, self.rows = len(values), Rows(values)
 
     def find_bracket(self, x: JitFloat) -> tuple[JitInt, JitInt, JitFloat]:
-        """Return the clamped bracket around `x`: lower node, upper node, share of the upper one."""
+        """Return (lower, upper, share of the upper) of the nodes around `x`, clamped to them."""
         import drjit as dr
         import mitsuba as mi
 

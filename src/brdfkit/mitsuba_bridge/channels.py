@@ -1,8 +1,8 @@
 """Converts values per colour channel or wavelength to the spectrum type of the current variant.
 
-A class here has `mean(corners, si)`: the mean of stored rows of values, weighted by the `corners`
-(row, share), as a spectrum at the wavelengths of the rays `si`. Rows may be negative, so that noise
-about 0 averages out; a mean below 0 becomes 0, as in `Measured.eval`.
+`Colours` and `Wavelengths` have `average_rows(corners, si)`: the mean of stored rows of values,
+weighted by the `corners` (row, share), as a spectrum at the wavelengths of the rays `si`. Rows may
+be negative, so that noise about 0 averages out; a mean below 0 becomes 0, as in `Measured.eval`.
 """
 
 from __future__ import annotations
@@ -28,12 +28,14 @@ def make_channels(values: AnyArray, wavelengths: ArrayLike | None = None) -> Col
 
 
 class Colours:
-    """Rows of linear sRGB."""
+    """Rows of linear sRGB, whose mean becomes a spectrum."""
 
     def __init__(self, values: AnyArray) -> None:
         self.rows, self.spectrum = Rows(values), make_rgb_spectrum()
 
-    def mean(self, corners: Iterable[tuple[JitInt, JitFloat]], si: MitsubaObject) -> JitColour:
+    def average_rows(
+        self, corners: Iterable[tuple[JitInt, JitFloat]], si: MitsubaObject
+    ) -> JitColour:
         import drjit as dr
         import mitsuba as mi
 
@@ -42,7 +44,7 @@ class Colours:
 
 
 def make_rgb_spectrum() -> Callable[[Any, Any], Any]:
-    """Return a function (rgb, si) → spectrum of a reflectance, for the current variant."""
+    """Return a function (rgb, si) → spectrum of a reflectance for the current variant."""
     import drjit as dr
     import mitsuba as mi
 
@@ -71,12 +73,12 @@ def make_white_light() -> Callable[[Any], Any]:
         return lambda it: 1
     daylight: Any = mi.Texture.D65(1.0)
 
-    def spectrum(it: MitsubaObject) -> JitColour:
+    def evaluate_daylight(it: MitsubaObject) -> JitColour:
         si = mi.SurfaceInteraction3f()  # a texture takes no other interaction
         si.wavelengths = it.wavelengths
         return mi.unpolarized_spectrum(daylight.eval(si))
 
-    return spectrum
+    return evaluate_daylight
 
 
 class SmoothSpectrum:
@@ -112,7 +114,9 @@ class Wavelengths:
         self.nodes = Nodes(np.asarray(wavelengths, float)[order])
         self.values = Rows(values[:, order].ravel())
 
-    def mean(self, corners: Iterable[tuple[JitInt, JitFloat]], si: MitsubaObject) -> JitColour:
+    def average_rows(
+        self, corners: Iterable[tuple[JitInt, JitFloat]], si: MitsubaObject
+    ) -> JitColour:
         import drjit as dr
         import mitsuba as mi
 

@@ -8,7 +8,7 @@ from brdfkit.core.array_types import AnyArray
 
 
 def make_film(size: int = 8) -> dict[str, Any]:
-    """Return the dictionary of a square film of independent pixels, in colours if there are any."""
+    """Return the dictionary of a small square film, in colour unless the variant has none."""
     import mitsuba as mi
 
     pixels = "luminance" if mi.is_monochromatic else "rgb"

@@ -49,9 +49,7 @@ def derive_shadow_integrator(mi: MitsubaModule, parameters: dict[str, Any]) -> A
             require_vectorised(self.name)
             sensor = scene.sensors()[sensor] if isinstance(sensor, int) else sensor
             make_shadow = self.prepare_shadows(scene, sensor)
-            self.lights = [
-                (each, _find_or_omit_shadow(make_shadow, each)) for each in scene.emitters()
-            ]
+            self.lights = [(e, _find_or_omit_shadow(make_shadow, e)) for e in scene.emitters()]
             try:
                 return super().render(scene, sensor, seed, spp, develop, evaluate)
             finally:
@@ -77,7 +75,7 @@ def derive_shadow_integrator(mi: MitsubaModule, parameters: dict[str, Any]) -> A
 
 
 class NoShadow:
-    """The shadow of a light that reaches nothing visible, for which any shadow is right."""
+    """The shadow of a light that reaches nothing visible; its visibility does not matter."""
 
     def visibility(self, p: JitVector, n: JitVector, active: JitMask = True) -> JitFloat:
         return 1

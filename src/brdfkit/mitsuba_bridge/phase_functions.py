@@ -60,12 +60,12 @@ def derive_phase_function(mi: MitsubaModule, parameters: dict[str, Any]) -> Any:
 
 
 def even_and_forward_density(n: float, mu: JitFloat) -> JitFloat:
-    """Return p(μ) = (1 + (n + 1) ((1 + μ) / 2)ⁿ) / 8π [sr⁻¹]."""
+    """Return the phase function p(μ) = (1 + (n + 1) ((1 + μ) / 2)ⁿ) / 8π [sr⁻¹] at a cosine μ."""
     return (1 + (n + 1) * (0.5 + 0.5 * mu) ** n) / (8 * dr.pi)
 
 
 def draw_cosine(n: float, lobe: JitFloat, u: JitFloat) -> JitFloat:
-    """Draw a μ from one half of p, which `lobe` chooses, by inverting its integral at `u`."""
+    """Draw the cosine μ of a scattering angle from the half of p(μ) that `lobe` chooses, by `u`."""
     return 2 * dr.select(lobe < 0.5, u, u ** (1 / (n + 1))) - 1
 
 

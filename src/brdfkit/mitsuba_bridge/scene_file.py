@@ -1,4 +1,4 @@
-"""Loads scene files of Mitsuba, as they are or with a material put in."""
+"""Loads scene files of Mitsuba, as they are or with a material in place of one of their BSDFs."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -15,7 +15,7 @@ from brdfkit.mitsuba_bridge.properties.radiance_rows import require_intact_rows
 
 SUFFIX = ".xml"
 RADIANCE_FILE = re.compile(r"""["']([^"'\n]+\.(?:hdr|rgbe))["']""", re.IGNORECASE)
-DEFAULT_ID = "material"  # of the BSDF that a material replaces
+DEFAULT_ID = "material"  # of the BSDF in a scene that a material replaces
 
 
 def load_scene_file(path: str | PathLike[str], **how: Any) -> MitsubaObject:
@@ -51,7 +51,7 @@ def make_scene_builder(source: str | PathLike[str]) -> Callable[[Any, Any], Mits
     name, _, place = str(source).partition("#")
     path, place = require_file(name), place or DEFAULT_ID
 
-    def build(bsdf: MitsubaObject, size: tuple[int, int] | None) -> MitsubaObject:
+    def build_scene(bsdf: MitsubaObject, size: tuple[int, int] | None) -> MitsubaObject:
         # optimize=True would merge equal BSDFs, which leaves one of their ids
         scene = load_scene_file(path, optimize=False)
         by_id: dict[str, list[MitsubaObject]] = {}
@@ -66,11 +66,11 @@ def make_scene_builder(source: str | PathLike[str]) -> Callable[[Any, Any], Mits
             _resize_film(scene.sensors()[0], size)
         return scene
 
-    return build
+    return build_scene
 
 
 def _require_intact_maps(path: Path) -> None:
-    """Raise `BrdfkitError` for a damaged Radiance map that a scene file refers to."""
+    """Raise `BrdfkitError` for a damaged Radiance file that a scene file refers to."""
     for name in RADIANCE_FILE.findall(path.read_text(encoding="utf-8", errors="replace")):
         file = path.parent / unescape(name)
         if file.is_file():

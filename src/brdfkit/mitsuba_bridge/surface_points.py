@@ -40,14 +40,14 @@ def make_interaction(
 
 
 def clearance(p: JitVector, t: JitFloat) -> JitFloat:
-    """Return the distance off a surface at which rays begin; the eye sees `p` at distance `t`."""
+    """Return how far off a surface rays from `p` begin, which the eye sees at the distance `t`."""
     import mitsuba as mi
 
     return mi.math.RayEpsilon * dr.maximum(0.025 * t, 0.5 * dr.max(dr.abs(p)))
 
 
 def spawn_ray(p: JitVector, n: JitVector, t: JitFloat, direction: JitVector) -> MitsubaObject:
-    """Return the `mi.Ray3f` from `p`, off the surface with normal `n` in its direction."""
+    """Return the `mi.Ray3f` from `p`, which begins off the surface with the normal `n`."""
     import mitsuba as mi
 
     off = dr.mulsign(clearance(p, t), dr.dot(n, direction))

@@ -1,1 +1,1 @@
-"""BSDF plugins of models and of measurements, with lookups and sampling of tables."""
+"""BSDF plugins of models and measurements, with lookups in tables and sampling by tables."""

@@ -1,7 +1,7 @@
-"""The one adapter from a model to a Mitsuba BSDF.
+"""Adapts any `Model` to a BSDF of Mitsuba.
 
-It serves all models: it has a texture for every parameter, and one component per lobe, drawn in
-proportion to its weight and energy. Lobes that share a sampling are one component.
+The BSDF has a texture for every parameter. Each lobe is a component, which is drawn in proportion
+to its weight and energy; lobes that share a sampling are one component.
 """
 
 import functools
@@ -43,7 +43,7 @@ def define_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
             self.m_flags = functools.reduce(operator.or_, self.m_components)
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
-            if signed:  # a sum of signed lobes is drawn by a table
+            if signed:  # lobes with signed weights are sampled by a table
                 shapes, weights = self.average_textures()
                 averaged = model(**shapes)
                 self.tables = {k: tabulate_lobe_sum(averaged, weights, groups[k]) for k in signed}
@@ -51,7 +51,7 @@ def define_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
         def make_response(
             self, ctx: MitsubaObject, si: MitsubaObject, wi: JitVector, active: JitMask
         ) -> Point:
-            weights, lobes = self.evaluate(si, active)
+            weights, lobes = self.bind_lobes(si, active)
             samplings = [
                 self.tables.get(k, lobes[group[0]].sampling) for k, group in enumerate(groups)
             ]
@@ -73,7 +73,7 @@ def define_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
 
 
 def find_signed_components(model: type[Model], groups: list[list[int]]) -> list[int]:
-    """Return the components, as indices of `groups`, in which a weight may be negative."""
+    """Return the components, as indices of `groups` of lobes, with weights that may be negative."""
     linear = [model.parameters[name] for name in model.weights()]
     return [k for k, group in enumerate(groups) if any(linear[i].bounds[0] < 0 for i in group)]
 
@@ -81,7 +81,7 @@ def find_signed_components(model: type[Model], groups: list[list[int]]) -> list[
 def find_component_kinds(
     mi: MitsubaModule, model: type[Model], groups: list[list[int]]
 ) -> list[Any]:
-    """Return Mitsuba's flag of each component, diffuse or glossy, by its first lobe."""
+    """Return Mitsuba's flag of each component, diffuse or glossy, by the group's first lobe."""
     flags, lobes = mi.BSDFFlags, model().lobes()
     return [
         flags.DiffuseReflection if lobes[group[0]].diffuse else flags.GlossyReflection

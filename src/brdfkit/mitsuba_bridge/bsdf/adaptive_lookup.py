@@ -1,4 +1,4 @@
-"""RGL's adaptive parameterisation in the renderer: its lookup, and the sampling that it offers.
+"""Looks up and samples a BRDF in RGL's adaptive parameterisation within Mitsuba.
 
 `materials/formats/rgl/parameterisation.py` explains it and has the lookup in NumPy. Here Mitsuba's
 own distributions warp the unit square and interpolate between the stored incidences.
@@ -16,16 +16,16 @@ from brdfkit.core.geometry import multilinear
 from brdfkit.core.geometry.vectors import cos_theta_d, half_vector, reflect
 from brdfkit.mitsuba_bridge.arrays import Nodes, find_bracket
 
-# The least x of a half vector, 0.02 µrad from the normal, since its density is infinite at x = 0
+# The least coordinate x of a half vector on the unit square; at 0 its density is infinite
 LEAST_X = 1e-4
 
 
 class AdaptiveLookup:
-    """The places of a BRDF's stored values, and a `Sampling` of the BRDF, in the current variant.
+    """Finds the stored values around a direction pair and samples the BRDF, in the current variant.
 
-    `phi_i` (a,), `theta_i` (b,), `ndf`, `sigma` (y, x), `vndf` (a, b, y, x), `isotropic` and
-    `parts` are those of the BRDF's `Parameterisation`; `density` (a, b, n, n) and `divided` are
-    those of its `Adaptive`.
+    The arguments are attributes of the BRDF's `Parameterisation`, with a azimuths `phi_i`, b polar
+    angles `theta_i` and tables `ndf`, `sigma` (y, x) and `vndf` (a, b, y, x), and of its
+    `Adaptive`: `density` (a, b, n, n) and `divided`.
     """
 
     def __init__(
@@ -83,12 +83,12 @@ class AdaptiveLookup:
                 )
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
-        """Draw a direction, possibly below the surface, for x and y of a point `u`."""
+        """Draw a direction, possibly below the surface, from the random numbers u.x and u.y."""
         import mitsuba as mi
 
         folded = self._fold_azimuth(wi, wi)
         angles = self._incident_angles(folded)
-        # A point on the square of stored values is warped to the square of directions: the normal
+        # A point on the square of stored values is warped to the square of directions
         point, _ = self.density.sample(mi.Point2f(u.x, u.y), angles)
         m, _ = self.normals.sample(point, angles)
         sin_theta, cos_theta = dr.sincos(m.x * m.x * (dr.pi / 2))
@@ -109,10 +109,10 @@ class AdaptiveLookup:
     def _find_half_vector(
         self, wi: JitVector, wo: JitVector
     ) -> tuple[MitsubaObject, MitsubaObject, JitFloat]:
-        """Return (m, u, density) of a folded direction pair.
+        """Return (m, u, density) of a direction pair that `_fold_azimuth` has transformed.
 
-        m is the half vector on the square of directions, u the point on the square of stored values
-        that the warp of normals maps to m, and density that of the warp at m.
+        m is the half vector as a point in the unit square of directions, u the point in the unit
+        square of stored values that is warped to m, and density that of the warp at m.
         """
         import mitsuba as mi
 
@@ -123,13 +123,13 @@ class AdaptiveLookup:
         return m, *self.normals.invert(m, angles)
 
     def _incident_angles(self, wi: JitVector) -> list[JitFloat]:
-        """Return [phi_i, theta_i] of a direction in the stored part of the circle."""
+        """Return [phi_i, theta_i] of a direction within the stored azimuths."""
         phi_i = dr.atan2(wi.y, wi.x)
         # The nodes of a part of the circle begin at -π, so that the azimuth π becomes -π
         return [phi_i if self.parts < 2 else -dr.abs(phi_i), _polar_angle(wi)]
 
     def _fold_azimuth(self, w: JitVector, wi: JitVector) -> JitVector:
-        """Rotate or reflect `w` as brings `wi` to the stored part of the circle of phi_i.
+        """Return `w` after the rotation or reflection that brings `wi` to the stored azimuths.
 
         The transformation is its own inverse.
         """
@@ -146,10 +146,7 @@ def _polar_angle(w: JitVector) -> JitFloat:
 
 
 def _to_unit_square(theta: JitFloat, phi: JitFloat) -> MitsubaObject:
-    """Return the point (x, y) of a direction on the square of directions.
-
-    θ = x² π/2 and φ = (2y - 1) π.
-    """
+    """Return the point (x, y) of the unit square for θ = x² π/2 and φ = (2y - 1) π [rad]."""
     import mitsuba as mi
 
     return mi.Point2f(dr.sqrt(theta * (2 / dr.pi)), (phi + dr.pi) / (2 * dr.pi))

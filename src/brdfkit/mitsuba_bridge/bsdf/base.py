@@ -19,7 +19,7 @@ from brdfkit.core.array_types import (
 from brdfkit.core.geometry.vectors import mask_below_horizon
 from brdfkit.model.lobes import Cosine
 
-# The share of the samples that follow the cosine for every BRDF
+# The share of samples that are drawn in proportion to the cosine, whatever the BRDF
 COSINE_SHARE = 0.1
 COSINE = Cosine()
 
@@ -30,9 +30,9 @@ def define_frame(mi: MitsubaModule) -> Any:
     A derived class defines `make_response(ctx, si, wi, active)`, which returns the BSDF at a point
     of a surface for light from `wi`, as an object with
 
-    - `draw(sample1, sample2)`: returns an outgoing direction and the number of its component;
-    - `pdf(wo)`: the density of `draw`, per solid angle;
-    - `value(wo)`: the BRDF of the components that the context enables.
+    - `draw_direction(sample1, sample2)`: an outgoing direction and the number of its component;
+    - `pdf(wo)`: the density of `draw_direction`, per solid angle;
+    - `evaluate_brdf(wo)`: the BRDF of the components that the context enables.
 
     It sets `m_components`, to which the numbers of components refer, and `m_flags`.
     """
@@ -49,19 +49,19 @@ def define_frame(mi: MitsubaModule) -> Any:
         ) -> tuple[MitsubaObject, JitColour]:
             wi, active = mask_below_horizon(si.wi, active)
             here = self.make_response(ctx, si, wi, active)
-            wo, component = here.draw(sample1, sample2)
+            wo, component = here.draw_direction(sample1, sample2)
 
             # Neither the direction nor its density in the weight has derivatives
             wo = dr.detach(wo)
             sample = dr.zeros(mi.BSDFSample3f)
             above_wo, active = mask_below_horizon(wo, active)
-            value, pdf = here.value(above_wo) * above_wo.z, here.pdf(above_wo)
+            value, pdf = here.evaluate_brdf(above_wo) * above_wo.z, here.pdf(above_wo)
             active &= pdf > 0
             sample.wo = wo
             sample.pdf = dr.select(active, pdf, 0)
             sample.eta = 1.0
             sample.sampled_component = component
-            sample.sampled_type = self.find_kind(component)
+            sample.sampled_type = self.find_component_kind(component)
             pdf = dr.select(active, pdf, 1)
             weight = dr.select(active, value / dr.detach(pdf), 0)
             return sample, mi.depolarizer(weight)
@@ -72,7 +72,7 @@ def define_frame(mi: MitsubaModule) -> Any:
             wi, active = mask_below_horizon(si.wi, active)
             wo, active = mask_below_horizon(wo, active)
             here = self.make_response(ctx, si, wi, active)
-            value, pdf = here.value(wo) * wo.z, here.pdf(wo)
+            value, pdf = here.evaluate_brdf(wo) * wo.z, here.pdf(wo)
             return mi.depolarizer(dr.select(active, value, 0)), dr.select(active, pdf, 0)
 
         def eval(
@@ -85,7 +85,7 @@ def define_frame(mi: MitsubaModule) -> Any:
         ) -> JitFloat:
             return self.eval_pdf(ctx, si, wo, active)[1]
 
-        def find_kind(self, component: JitInt) -> JitInt:
+        def find_component_kind(self, component: JitInt) -> JitInt:
             """Return Mitsuba's flag of a component, diffuse or glossy, without its other flags."""
             kinds = [int(c) & int(mi.BSDFFlags.Reflection) for c in self.m_components]
             kind = mi.UInt32(kinds[0])

@@ -16,7 +16,7 @@ from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
 @dataclass(frozen=True, eq=False)
 class BsdfMaterial:
-    """A BSDF as a material with a `name`; `entries` is its dictionary for `mitsuba.load_dict`.
+    """A BSDF of Mitsuba as a material with a `name`; `entries` is its dictionary for `load_dict`.
 
     >>> BsdfMaterial("grey", {"type": "diffuse"}).eval(up, up)    # doctest: +SKIP
     array([[0.15915494, 0.15915494, 0.15915494]])

@@ -61,7 +61,7 @@ class HalfVectorTable:
         self.edges = Rows(_edge_versines(cells[0]))
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
-        """Draw a direction, possibly below the surface, for a point `u` (x, y, z)."""
+        """Draw a direction, possibly below the surface, by the random numbers u.x, u.y and u.z."""
         n_h, n_p = self.cells
         incidence = self._choose_incidence(wi, u.z)
         row, x = _draw_cell(self.rows, incidence * n_h, n_h, u.x)
@@ -91,7 +91,7 @@ class HalfVectorTable:
         return [(to_flat_index(nodes, shape), share) for nodes, share in list_corners(brackets)]
 
     def _find_brackets(self, wi: JitVector) -> list[tuple[JitInt, JitInt, JitFloat]]:
-        """Return the brackets of `wi` among azimuths, if there are several, and polar angles."""
+        """Return (lower, upper, share of the upper) for the azimuth, if any, and for theta_i."""
         theta = find_bracket(polar_angle(wi) / (dr.pi / 2) * self.angles - 0.5, self.angles)
         if self.azimuths == 1:
             return [theta]
@@ -150,7 +150,7 @@ def _edge_versines(n: int) -> FloatArray:
 
 
 def _solid_angles(cells: tuple[int, int]) -> FloatArray:
-    """Return the solid angle [sr] of a cell of each row (n_h,)."""
+    """Return the solid angle (n_h,) [sr] of a cell of half vectors in each row of theta_h."""
     return np.diff(_edge_versines(cells[0])) * 2 * np.pi / cells[1]
 
 

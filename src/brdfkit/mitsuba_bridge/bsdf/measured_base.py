@@ -58,7 +58,7 @@ def define_measured_frame(mi: MitsubaModule) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A measurement at a point for light from `wi`; `enabled` is set by the context."""
+    """A measured BRDF at a surface point for light from `wi`; the context sets `enabled`."""
 
     mi: Any
     bsdf: Any
@@ -66,26 +66,26 @@ class Point:
     wi: Any
     enabled: bool
 
-    def draw(self, sample1: JitFloat, sample2: JitVector) -> tuple[JitVector, JitInt]:
+    def draw_direction(self, sample1: JitFloat, sample2: JitVector) -> tuple[JitVector, JitInt]:
         """Draw an outgoing direction; return it with the number of the only component."""
         import drjit as dr
 
         share = self.bsdf.cosine_share
-        # The rest of sample1 is a third random number, as even as sample2
+        # The rest of sample1 is a third random number, uniform like sample2
         u = self.mi.Point3f(sample2.x, sample2.y, dr.maximum(sample1 - share, 0) / (1 - share))
         by_cosine, by_itself = COSINE.sample(self.wi, u), self.bsdf.sampling.sample(self.wi, u)
         wo = dr.select(sample1 < share, by_cosine, by_itself)
         return wo, self.mi.UInt32(0)
 
     def pdf(self, wo: JitVector) -> JitFloat:
-        """Return the density of `draw` per solid angle."""
+        """Return the density of `draw_direction` per solid angle."""
         if not self.enabled:
             return self.mi.Float(0)
         share = self.bsdf.cosine_share
         pdf = share * COSINE.pdf(self.wi, wo)
         return pdf + (1 - share) * self.bsdf.sampling.pdf(self.wi, wo)
 
-    def value(self, wo: JitVector) -> JitColour:
+    def evaluate_brdf(self, wo: JitVector) -> JitColour:
         """Return the BRDF [sr⁻¹], 0 if not enabled."""
         if not self.enabled:
             return self.mi.UnpolarizedSpectrum(0)

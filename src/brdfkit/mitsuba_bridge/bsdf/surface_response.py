@@ -43,7 +43,7 @@ class Point:
         share = 1 - base.COSINE_SHARE
         return [None if e is None else share * e / total for e in energies]
 
-    def draw(self, sample1: JitFloat, sample2: JitVector) -> tuple[JitVector, JitInt]:
+    def draw_direction(self, sample1: JitFloat, sample2: JitVector) -> tuple[JitVector, JitInt]:
         """Draw an outgoing direction by the cosine or a component; return it with its component."""
         wo = base.COSINE.sample(self.wi, sample2)
         first = next((k for k, enabled in enumerate(self.enabled) if enabled), 0)
@@ -53,7 +53,7 @@ class Point:
             if share is None:
                 continue
             hit = (sample1 >= chosen_up_to) & (sample1 < chosen_up_to + share)
-            # The rest of sample1 is a third random number, as even as sample2. It is used where
+            # The rest of sample1 is a third random number, uniform like sample2. It is used where
             # this component was chosen, but must stay in [0, 1) elsewhere, too
             left = dr.clip((sample1 - chosen_up_to) / share, 0, BELOW_ONE)
             u = self.mi.Point3f(sample2.x, sample2.y, left)
@@ -63,7 +63,7 @@ class Point:
         return wo, component
 
     def pdf(self, wo: JitVector) -> JitFloat:
-        """Return the density of `draw` per solid angle."""
+        """Return the density of `draw_direction` per solid angle."""
         cosine = base.COSINE_SHARE * base.COSINE.pdf(self.wi, wo)
         pdf = self.mi.Float(cosine if any(self.enabled) else 0)
         for share, sampling in zip(self.shares, self.samplings, strict=True):
@@ -71,7 +71,7 @@ class Point:
                 pdf += share * sampling.pdf(self.wi, wo)
         return pdf
 
-    def value(self, wo: JitVector) -> JitColour:
+    def evaluate_brdf(self, wo: JitVector) -> JitColour:
         """Return the BRDF [sr⁻¹] of the enabled components."""
         groups = zip(self.groups, self.enabled, strict=True)
         return self.evaluate_lobes([i for group, enabled in groups if enabled for i in group], wo)

@@ -1,4 +1,4 @@
-"""`Table.eval` in the renderer: finds the cells around a pair of directions, and their shares."""
+"""Finds the cells of a measured table around a direction pair in Mitsuba, as `Table.eval` does."""
 
 from collections.abc import Iterator
 
@@ -12,7 +12,7 @@ from brdfkit.model.samples import Table
 
 
 def find_corners(table: Table, wi: JitVector, wo: JitVector) -> Iterator[tuple[JitInt, JitFloat]]:
-    """Yield (index, share) of the cells of a table around a direction pair."""
+    """Yield (index, share) of the cells around a direction pair, to interpolate in a table."""
     theta_h, theta_d, phi_d, phi_h = to_half_difference(wi, wo)
     n_h, n_d, n_p = table.shape[-3:]
     axes = [
@@ -30,7 +30,7 @@ def find_corners(table: Table, wi: JitVector, wo: JitVector) -> Iterator[tuple[J
 def to_half_difference(
     wi: JitVector, wo: JitVector
 ) -> tuple[JitFloat, JitFloat, JitFloat, JitFloat]:
-    """Return (theta_h, theta_d, phi_d, phi_h) [rad] of two directions."""
+    """Return the angles (theta_h, theta_d, phi_d, phi_h) [rad] of half and difference vector."""
     h = half_vector(wi, wo)
     sin_h = dr.safe_sqrt(h.x * h.x + h.y * h.y)
     # The difference vector is wi in the frame of the half vector; where that is the normal, any

@@ -52,26 +52,28 @@ def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
                     kind |= mi.ParamFlags.Discontinuous
                 callback.put(name, texture, kind)
 
-        def find_scale(self, name: str) -> float:
-            """Return the factor of a texture's values, not 1 for a normalised colour."""
+        def texture_scale(self, name: str) -> float:
+            """Return what `normalise_colour` divided a texture's colour by, 1 for other
+            textures.
+            """
             return self.scales.get(name, 1)
 
-        def evaluate(
+        def bind_lobes(
             self, si: MitsubaObject, active: JitMask
         ) -> tuple[list[Any], tuple[Lobe, ...]]:
-            """Return the weights and the lobes at a point of a surface."""
+            """Return the weights and the lobes of the model at a point of a surface."""
             values = {}
             for name, texture in self.textures.items():
                 parameter = model.parameters[name]
                 value = (texture.eval if parameter.linear else texture.eval_1)(si, active)
-                values[name] = clamp_to_bounds(value * self.find_scale(name), parameter)
+                values[name] = clamp_to_bounds(value * self.texture_scale(name), parameter)
             return [values[name] for name in model.weights()], model.bind(values).lobes()
 
         def average_textures(self) -> tuple[dict[str, Any], AnyArray]:
             """Return the textures' means: shape parameters by name, weights (lobes, channels)."""
             means = {}
             for name, texture in self.textures.items():
-                mean = average_texture(texture, getattr(defaults, name)) * self.find_scale(name)
+                mean = average_texture(texture, getattr(defaults, name)) * self.texture_scale(name)
                 means[name] = np.clip(mean, *model.parameters[name].bounds)
             weights = [means.pop(name) for name in model.weights()]
             return {name: m[0] for name, m in means.items()}, np.stack(
@@ -110,7 +112,7 @@ def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
             key = self.find_texture_name(name)
             if key not in self.textures:
                 return inherited(name, si, active)
-            return getattr(self.textures[key], method)(si, active) * self.find_scale(key)
+            return getattr(self.textures[key], method)(si, active) * self.texture_scale(key)
 
         def find_texture_name(self, name: str) -> str | None:
             """Return the name of a parameter's texture, or of the parameter that it follows."""

@@ -12,10 +12,10 @@ from brdfkit.model import Model
 
 
 def require_known_properties(props: MitsubaObject, plugin: str, known: Iterable[str]) -> None:
-    """Raise `BrdfkitError` for a property that the new `plugin` did not ask for.
+    """Raise `BrdfkitError` for a property that a new `plugin` has not read, such as a misspelt one.
 
-    Mitsuba would print all such properties, objects with all that is in them. `known` are the names
-    of the plugin's own parameters.
+    `known` are the names of the plugin's parameters. Mitsuba's own error would print all such
+    properties, objects with all that is in them.
     """
     unknown = props.unqueried()
     if unknown:
@@ -49,14 +49,14 @@ def normalise_colour(props: MitsubaObject, model: type[Model], name: str) -> flo
 
 
 def is_colour(value: object) -> bool:
-    """Return whether a property is a colour of Mitsuba's."""
+    """Return whether a property's value is a colour of Mitsuba."""
     return type(value).__name__.endswith("Color3d")
 
 
 def resolve_file(name: str) -> str:
-    """Return the path of a file, possibly with ``#SAMPLE``, or of one beside the scene's file.
+    """Return the path of a file that a scene names, which may lie beside the scene's file.
 
-    A name of no file is returned as it is.
+    The name may end with ``#SAMPLE``. A name of no file is returned as it is.
     """
     import mitsuba as mi
 

@@ -1,6 +1,6 @@
 """Declares the parameters of a plugin that is no model; one base class reads and checks them.
 
-PARAMETERS = {"k": number(0.5, (-0.999, 0.999), "asymmetry: above 0 forward, below 0 back")}
+PARAMETERS = {"k": declare_number(0.5, (-0.999, 0.999), "asymmetry: above 0 forward, below 0 back")}
 
 def define(mi):
     class Schlick(derive_plugin(mi.PhaseFunction, PARAMETERS)): ...
@@ -39,9 +39,9 @@ class Setting:
 
 
 def declare_number(default: float, bounds: tuple[float, float], meaning: str) -> Setting:
-    """Declare a differentiable number within `bounds`; any value of it uses the same kernel."""
+    """Declare a differentiable number within `bounds`; its values share a compiled kernel."""
 
-    def read(value: Any) -> Any:
+    def read_number(value: Any) -> Any:
         import drjit as dr
         import mitsuba as mi
 
@@ -49,83 +49,83 @@ def declare_number(default: float, bounds: tuple[float, float], meaning: str) ->
         dr.make_opaque(opaque)
         return opaque
 
-    return Setting(default, bounds, meaning, read, differentiable=True)
+    return Setting(default, bounds, meaning, read_number, differentiable=True)
 
 
 def declare_int(default: int, bounds: tuple[float, float], meaning: str) -> Setting:
-    """Declare a whole number within `bounds`, a Python value with a kernel for each value."""
+    """Declare a whole number within `bounds`; each of its values compiles a kernel of its own."""
 
-    def read(value: Any) -> int:
+    def read_int(value: Any) -> int:
         number = _to_number(value, bounds)
         if not number.is_integer():
             raise ValueError("a whole number")
         return int(number)
 
-    return Setting(default, bounds, meaning, read)
+    return Setting(default, bounds, meaning, read_int)
 
 
 def declare_float(default: float, bounds: tuple[float, float], meaning: str) -> Setting:
-    """Declare a number within `bounds`, a Python value, for computations before a render."""
+    """Declare a Python float within `bounds`, for computations before a render."""
 
-    def read(value: Any) -> float:
+    def read_float(value: Any) -> float:
         return _to_number(value, bounds)
 
-    return Setting(default, bounds, meaning, read)
+    return Setting(default, bounds, meaning, read_float)
 
 
 def declare_text(default: str, meaning: str) -> Setting:
-    """Declare a word or the name of a file."""
+    """Declare a text, such as the name of a file."""
 
-    def read(value: Any) -> str:
+    def read_text(value: Any) -> str:
         if not isinstance(value, str):
             raise ValueError("a text")
         return value
 
-    return Setting(default, None, meaning, read)
+    return Setting(default, None, meaning, read_text)
 
 
 def declare_choice(
     allowed: Sequence[str] | Mapping[str, Any], meaning: str, default: str | None = None
 ) -> Setting:
-    """Declare one of the `allowed` words; the `default` is by default the first of them."""
+    """Declare a choice of one of the `allowed` words; by default, it is the first of them."""
 
-    def read(value: Any) -> str:
+    def read_choice(value: Any) -> str:
         if not isinstance(value, str) or value not in allowed:
             raise ValueError("one of " + ", ".join(allowed))
         return value
 
     default = default or next(iter(allowed))
-    return Setting(default, None, f"{meaning}: {', '.join(allowed)}", read)
+    return Setting(default, None, f"{meaning}: {', '.join(allowed)}", read_choice)
 
 
 def declare_bool(default: bool, meaning: str) -> Setting:
     """Declare a parameter that is true or false."""
 
-    def read(value: Any) -> bool:
+    def read_bool(value: Any) -> bool:
         if not isinstance(value, bool):
             raise ValueError("true or false")
         return value
 
-    return Setting(default, None, meaning, read)
+    return Setting(default, None, meaning, read_bool)
 
 
 def declare_picture(meaning: str) -> Setting:
     """Declare a `mi.Bitmap`, which is None where the scene gives none."""
 
-    def read(value: Any) -> Any:
+    def read_picture(value: Any) -> Any:
         import mitsuba as mi
 
         if not isinstance(value, mi.Bitmap | None):
             raise ValueError("a mitsuba.Bitmap")
         return value
 
-    return Setting(None, None, meaning, read)
+    return Setting(None, None, meaning, read_picture)
 
 
 def declare_bsdf(meaning: str) -> Setting:
     """Declare a BSDF, which is white and matt where the scene gives none."""
 
-    def read(value: Any) -> Any:
+    def read_bsdf(value: Any) -> Any:
         import mitsuba as mi
 
         if value is None:
@@ -135,13 +135,13 @@ def declare_bsdf(meaning: str) -> Setting:
             raise ValueError("a bsdf")
         return value
 
-    return Setting(None, None, meaning, read, differentiable=True)
+    return Setting(None, None, meaning, read_bsdf, differentiable=True)
 
 
 def declare_texture(default: float, meaning: str) -> Setting:
     """Declare a texture of numbers; one number makes a constant texture."""
 
-    def read(value: Any) -> Any:
+    def read_texture(value: Any) -> Any:
         import mitsuba as mi
 
         if isinstance(value, mi.Texture):
@@ -150,13 +150,13 @@ def declare_texture(default: float, meaning: str) -> Setting:
             raise ValueError("a texture or a number")
         return mi.load_dict({"type": "uniform", "value": float(value)}, parallel=False)
 
-    return Setting(default, None, meaning, read, differentiable=True)
+    return Setting(default, None, meaning, read_texture, differentiable=True)
 
 
 def declare_phase(meaning: str) -> Setting:
     """Declare a phase function, which is isotropic where the scene gives none."""
 
-    def read(value: Any) -> Any:
+    def read_phase(value: Any) -> Any:
         import mitsuba as mi
 
         if value is None:
@@ -165,7 +165,7 @@ def declare_phase(meaning: str) -> Setting:
             raise ValueError("a phase function")
         return value
 
-    return Setting(None, None, meaning, read, differentiable=True)
+    return Setting(None, None, meaning, read_phase, differentiable=True)
 
 
 def declare_volume(default: Any, meaning: str, coloured: bool = True, least: float = 0) -> Setting:
@@ -174,7 +174,7 @@ def declare_volume(default: Any, meaning: str, coloured: bool = True, least: flo
     A number or a colour makes a constant volume. If not `coloured`, it has one channel.
     """
 
-    def read(value: Any) -> Any:
+    def read_volume(value: Any) -> Any:
         import mitsuba as mi
 
         if isinstance(value, mi.Volume):
@@ -187,7 +187,7 @@ def declare_volume(default: Any, meaning: str, coloured: bool = True, least: flo
             raise ValueError(f"a volume, such as a gridvolume, {constant}")
         return make_constant_volume(_to_number(value, (least, math.inf)))
 
-    return Setting(default, None, meaning, read, differentiable=True)
+    return Setting(default, None, meaning, read_volume, differentiable=True)
 
 
 def read_settings(
@@ -243,5 +243,5 @@ def _to_number(value: Any, bounds: tuple[float, float]) -> float:
 
 
 def _shorten(value: object) -> str:
-    """Return a value as text in one line of at most 60 characters."""
+    """Return a value as text in one line of at most 60 characters, for an error message."""
     return " ".join(str(value).split())[:60]

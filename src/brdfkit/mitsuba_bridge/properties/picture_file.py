@@ -1,4 +1,4 @@
-"""Reads pictures of any format by Mitsuba, as pixels in linear sRGB."""
+"""Loads objects by Mitsuba with brdfkit's errors, and pictures as pixels in linear sRGB."""
 
 from collections.abc import Callable
 from os import PathLike
@@ -48,7 +48,7 @@ def load_by_mitsuba(function: Callable[..., Any], source: Any, name: object) -> 
         raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason.rstrip('.')}).") from error
 
 
-LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"  # files without a curve for screens
+LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"  # formats without a curve for screens
 
 
 def read_photograph(path: str | PathLike[str], accept_8_bit: bool) -> AnyArray:

@@ -14,7 +14,7 @@ NARROWEST, WIDEST = 8, 32767  # pixels; rows of another length are not packed
 
 
 def require_intact_rows(path: str | PathLike[str], name: object) -> None:
-    """Raise `BrdfkitError`, which calls it `name`, for a Radiance file with damaged rows.
+    """Raise `BrdfkitError`, which calls the file `name`, for a Radiance file with damaged rows.
 
     Files of other kinds, and files without packed rows, are not checked.
     """

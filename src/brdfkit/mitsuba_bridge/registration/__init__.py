@@ -1,1 +1,1 @@
-"""Makes the plugins known to Mitsuba when it is imported."""
+"""Registers the plugins in Mitsuba when it is imported, and loads users' plugins."""

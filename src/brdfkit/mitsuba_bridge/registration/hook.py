@@ -30,7 +30,7 @@ def install_import_hook() -> None:
 
 
 class _After:
-    """A finder that finds a module by the other finders, and calls `then()` when it is loaded."""
+    """A finder that finds a module by the other finders, and calls `then()` after its import."""
 
     def __init__(self, module: str, then: Callable[[], None]) -> None:
         self.module, self.then = module, then
@@ -55,15 +55,15 @@ class _After:
         return spec
 
     def _find_by_others(self, path: Sequence[str] | None, target: ModuleType | None) -> Any:
-        """Return the module's import specification from the first other finder that has one."""
-        # sys.meta_path is not changed, since another thread may be looking through it
+        """Return the import specification of the module, from another finder that has one."""
+        # sys.meta_path is not changed meanwhile, since another thread may be looking through it
         others = [f for f in sys.meta_path if hasattr(f, "find_spec") and not isinstance(f, _After)]
         specs = (finder.find_spec(self.module, path, target) for finder in others)
         return next((spec for spec in specs if spec is not None), None)
 
 
 def _forward_to_successor(module: ModuleType) -> None:
-    """Give a module the attributes of the module that its import put into its place, if it did.
+    """Let a module return attributes of the module that its import put into its place, if it did.
 
     Mitsuba's import does so, and a thread that imports Mitsuba at the same time gets the first
     module.
@@ -94,7 +94,7 @@ def _register_in_mitsuba() -> None:
 
 @contextmanager
 def _silence_missing_llvm() -> Iterator[None]:
-    """Silence Dr.Jit's message that it found no LLVM, which brdfkit reports when it matters."""
+    """Silence Dr.Jit's message about a missing LLVM, which brdfkit reports when it matters."""
     if os.environ.get(llvm.VARIABLE) != llvm.NO_LIBRARY:
         yield
         return

@@ -1,4 +1,4 @@
-"""`load_plugins`: makes plugins of a user's own known, including BRDF models."""
+"""Implements `load_plugins`, which makes a user's plugins known, including BRDF models."""
 
 from pathlib import Path
 
@@ -50,7 +50,7 @@ def load_plugins(path: str | Path) -> dict[str, str]:
 
 
 def _find_plugin_files(path: Path) -> list[Path]:
-    """Return the plugin files at `path`, a file or a folder, perhaps of folders of kinds."""
+    """Return the plugin files at `path`: a file, or a folder with files or folders of kinds."""
     _refuse_misspelt_folder(path)
     folders = [path / kind for kind in KINDS if (path / kind).is_dir()]
     if not folders:
@@ -59,7 +59,7 @@ def _find_plugin_files(path: Path) -> list[Path]:
 
 
 def _refuse_misspelt_folder(path: Path) -> None:
-    """Raise `BrdfkitError` for a folder in `path` whose name is nearly a kind."""
+    """Raise `BrdfkitError` for a folder in `path` whose name is a misspelt kind of plugin."""
     for folder in sorted(path.iterdir()) if path.is_dir() else ():
         kind = find_nearest(folder.name.lower(), KINDS)
         if folder.is_dir() and folder.name not in KINDS and kind and any(folder.glob("*.py")):
