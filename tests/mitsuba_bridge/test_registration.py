@@ -274,8 +274,8 @@ def test_a_file_that_holds_no_model_is_refused(folder, text, said):
 @pytest.mark.parametrize(
     ("declared", "said"),
     [
-        ("weight(0.3, 'k', (0, 1))", "'k': a weight is solved for"),
-        ("weight(0.3, 'k', (0.1, math.inf))", "leave its bounds out"),
+        ("weight(0.3, 'k', (0, 1))", "'k': a weight is at least 0 or of any sign"),
+        ("weight(0.3, 'k', (0.1, math.inf))", "leave out its bounds"),
         ("weight(-0.3, 'k')", "the default -0.3 is out of bounds: it should be at least 0"),
         ("shape(2.0, (0.0, math.inf), 'n')", "'n': a fit searches between the bounds 0 and inf"),
         ("shape(2.0, (3.0, 1.0), 'n')", "the lower first"),
