@@ -73,7 +73,11 @@ def list_lobe_notes(
     other_unit = data.rgb.albedo.has_another_unit  # then no albedo has a meaning
     return [
         *([] if other_unit else _list_amplifying_lobes(fitted, albedos)),
-        *_list_unused_lobes(fitted, at_bounds),
+        *(
+            f"the lobe of {name} is not used: its weight is 0"
+            for name, lobe in fitted.terms()
+            if name in at_bounds and not lobe.diffuse
+        ),
         *_list_impossible_fresnel_values(fitted),
         *_list_parameters_at_bounds(fitted, others, highlight),
         *narrow.values(),
@@ -111,15 +115,6 @@ def _list_amplifying_lobes(fitted: Model, albedos: NDArray[np.float64]) -> list[
                 f"the light at {degrees}°: AlbedoAtMost(1), --albedo-at-most 1, prevents it"
             )
     return notes
-
-
-def _list_unused_lobes(fitted: Model, at_bounds: tuple[str, ...]) -> list[str]:
-    """Return a sentence on each lobe whose weight ended on its bound 0, except diffuse lobes."""
-    return [
-        f"the lobe of {name} is not used: its weight is 0"
-        for name, lobe in fitted.terms()
-        if name in at_bounds and not lobe.diffuse
-    ]
 
 
 def _list_impossible_fresnel_values(fitted: Model) -> list[str]:

@@ -218,10 +218,7 @@ def _render_field(
     progress: PictureProgress | None,
     noise_floor: float | None,
 ) -> Rendering:
-    """Render a distance field.
-
-    The scene is freed when this function returns, before another thread renders.
-    """
+    """Render a distance field, and free its scene before another thread renders."""
     require_memory(size, 1)
     load_mitsuba()
     traced = trace_scenes(

@@ -103,18 +103,15 @@ class Ranking(Shown):
         return [_format_row(row, row is own) for row in self.rows if not row.message]
 
     def document(self) -> Document:
-        """Return the table of the models with sentences on the recommended one and on failures."""
+        """Return the table of the models, with the recommended one in bold, and sentences."""
         said = [Paragraph(text) for text in (self.reason, *self.doubts, self.suits) if text]
         failed = [Paragraph(problem, BAD) for problem in self.problems]
-        return Document(
-            f"{self.material}: {self.loss} loss where the models were not fitted",
-            (Table(tuple(map(_make_cells, self.table())), COLUMNS), *said, *failed),
-        )
-
-
-def _make_cells(texts: tuple[str, ...]) -> tuple[Cell, ...]:
-    """Return the cells of a row from their texts, bold in the row of the recommended model."""
-    return tuple(Cell(text, STRONG if texts[-1] == TAKE else "") for text in texts)
+        rows = [
+            tuple(Cell(text, STRONG if texts[-1] == TAKE else "") for text in texts)
+            for texts in self.table()
+        ]
+        title = f"{self.material}: {self.loss} loss where the models were not fitted"
+        return Document(title, (Table(tuple(rows), COLUMNS), *said, *failed))
 
 
 def _format_row(row: Ranked, recommended: bool) -> tuple[str, ...]:
