@@ -65,7 +65,7 @@ def find_cell(x: JitFloat, n: int) -> JitInt:
 
 
 def find_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
-    """Return (lower, upper, share of the upper) of the nodes 0 ... n - 1 around `x`, clamped."""
+    """Return the lower and upper node around `x` among 0 ... n - 1, and the upper one's weight."""
     import drjit as dr
     import mitsuba as mi
 
@@ -75,7 +75,7 @@ def find_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
 
 
 def find_periodic_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
-    """Return (lower, upper, share of the upper) of the nodes around `x`; node n is node 0."""
+    """Return the lower and upper node around `x` (node n is node 0), and the upper one's weight."""
     import drjit as dr
     import mitsuba as mi
 
@@ -91,7 +91,7 @@ class Nodes:
         self.count, self.rows = len(values), Rows(values)
 
     def find_bracket(self, x: JitFloat) -> tuple[JitInt, JitInt, JitFloat]:
-        """Return (lower, upper, share of the upper) of the nodes around `x`, clamped to them."""
+        """Return the lower and upper node around `x`, and the upper one's interpolation weight."""
         import drjit as dr
         import mitsuba as mi
 

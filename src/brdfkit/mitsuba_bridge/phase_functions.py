@@ -65,12 +65,12 @@ def even_and_forward_density(n: float, mu: JitFloat) -> JitFloat:
 
 
 def draw_cosine(n: float, lobe: JitFloat, u: JitFloat) -> JitFloat:
-    """Draw the cosine μ of a scattering angle from the half of p(μ) that `lobe` chooses, by `u`."""
+    """Draw a cosine μ from the half of p(μ) that `lobe` chooses, by the random number `u`."""
     return 2 * dr.select(lobe < 0.5, u, u ** (1 / (n + 1))) - 1
 
 
 def define_even_and_forward(mi: MitsubaModule, n: float) -> Any:
-    """Return the class of `mi.PhaseFunction` that is half even, half forward with the power `n`."""
+    """Define a phase function that is half uniform and half forward with the power `n`."""
 
     Base: Any = derive_phase_function(mi, {})
 

@@ -21,8 +21,8 @@ def make_interaction(
 ) -> MitsubaObject:
     """Return the `mi.SurfaceInteraction3f` of rays at points p with the normals n.
 
-    u and v are x and y. The tangent is the x axis projected onto the surface, or the z axis where
-    the surface stands upright.
+    u and v are x and y; t is infinite where no point was `found`. The tangent is the x axis
+    projected onto the surface, or the z axis where the surface stands upright.
     """
     import mitsuba as mi
 

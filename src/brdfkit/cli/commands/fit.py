@@ -188,7 +188,7 @@ def _refuse_models(files: Sequence[str]) -> None:
 
 
 def _refuse_mends(mends: Mapping[str, bool]) -> None:
-    """Raise `BrdfkitError` where `mends` are given for several files, which may differ in them."""
+    """Raise `BrdfkitError` for repairs of several files, which may need different ones."""
     for option in ("--" + name.replace("_", "-") for name in mends):
         raise BrdfkitError(
             f"{option} mends one FILE: write each one that needs it by brdfkit convert FILE "

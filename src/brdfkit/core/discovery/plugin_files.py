@@ -127,7 +127,7 @@ def _find_own_plugins(kind: str) -> dict[str, Path]:
 
 @cache
 def _import_user_file(file: Path, _modified: int) -> ModuleType:
-    """Import a user's plugin file; another `_modified`, the time of its change, does so again."""
+    """Import a user's plugin file; a new `_modified`, its time of change, bypasses the cache."""
     name = f"{USERS}.{file.stem}"
     if file.suffix != ".py":
         raise BrdfkitError(f"{file} is not a Python file.")

@@ -1,9 +1,8 @@
 """Multilinear interpolation: the nodes around a point on each axis, the corners of its cell.
 
-A bracket is (lower node, upper node, share of the upper node) on one axis, whose nodes lie at 0, 1,
-... n - 1. `find_bracket` and `find_periodic_bracket` take NumPy arrays; the functions of the same
-kind in `mitsuba_bridge/arrays.py` take Dr.Jit's arrays. `list_corners` takes brackets of either
-kind.
+A bracket is (lower node, upper node, weight of the upper node) on one axis, whose nodes lie at
+0, 1, ... n - 1. `find_bracket` and `find_periodic_bracket` take NumPy arrays; the functions of the
+same name in `mitsuba_bridge/arrays.py` take Dr.Jit's arrays, and `list_corners` takes both.
 """
 
 import itertools
@@ -18,34 +17,34 @@ Bracket: TypeAlias = tuple[Any, Any, Any]
 
 
 def find_bracket(x: AnyArray, n: int) -> Bracket:
-    """Return (lower, upper, share of the upper) of the nodes 0 ... n - 1 around `x`, clamped."""
+    """Return the lower and upper node around `x` among 0 ... n - 1, and the upper one's weight."""
     x = np.clip(x, 0, n - 1)
     lower = np.minimum(x.astype(int), max(n - 2, 0))
     return lower, np.minimum(lower + 1, n - 1), x - lower
 
 
 def find_periodic_bracket(x: AnyArray, n: int) -> Bracket:
-    """Return (lower, upper, share of the upper) of the nodes around `x`; node n is node 0."""
+    """Return the lower and upper node around `x` (node n is node 0), and the upper one's weight."""
     x = np.mod(x, n)
     lower = np.minimum(x.astype(int), n - 1)
     return lower, (lower + 1) % n, x - lower
 
 
 def list_corners(brackets: Sequence[Bracket]) -> Iterator[tuple[tuple[Any, ...], Any]]:
-    """Yield (node on each axis, share) for every corner of the cell around a point.
+    """Yield (node on each axis, weight) for every corner of the cell around a point.
 
-    `brackets` has (lower node, upper node, share of the upper) for each axis. The shares of all
+    `brackets` has (lower node, upper node, weight of the upper) for each axis. The weights of all
     corners add up to 1.
 
     >>> list(list_corners([(0, 1, 0.25)]))
     [((0,), 0.75), ((1,), 0.25)]
     """
     for upper in itertools.product((False, True), repeat=len(brackets)):
-        nodes, share = [], 1.0
+        nodes, weight = [], 1.0
         for (low, high, t), up in zip(brackets, upper, strict=True):
             nodes.append(high if up else low)
-            share = share * (t if up else 1 - t)
-        yield tuple(nodes), share
+            weight = weight * (t if up else 1 - t)
+        yield tuple(nodes), weight
 
 
 def to_flat_index(nodes: Sequence[Any], shape: Sequence[int]) -> Any:

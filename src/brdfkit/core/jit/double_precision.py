@@ -53,12 +53,12 @@ def choose_float_type() -> type:
 
 
 def has_derivatives() -> bool:
-    """Return whether the arrays of `choose_float_type()` have derivatives."""
+    """Return whether Dr.Jit's arrays for models have derivatives."""
     return bool(dr.is_diff_v(choose_float_type()))
 
 
 def to_array(values: ArrayLike) -> JitFloat:
-    """Convert a NumPy array (n,) to `choose_float_type()`."""
+    """Convert a NumPy array (n,) to Dr.Jit's array type for models."""
     return choose_float_type()(pad(np.asarray(values, float)))
 
 

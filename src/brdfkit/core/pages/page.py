@@ -66,5 +66,5 @@ def _hash_template(name: str) -> str:
 
 @cache
 def read_template(name: str) -> str:
-    """Read a file of `templates/`, with the line break before it in its element of the page."""
+    """Read a file of `templates/`, after the line break with which its element in a page begins."""
     return "\n" + (resources.files(__package__) / "templates" / name).read_text(encoding="utf-8")

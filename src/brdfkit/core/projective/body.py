@@ -19,7 +19,7 @@ class Empty(BrdfkitError):
 
 @dataclass(frozen=True)
 class Body:
-    """A convex body: its corners (n, 3), and rows (a, d) of planes (m, 4), a·x + d ≤ 0 inside."""
+    """A convex body: corners (n, 3), and planes (m, 4), rows (a, d) with a·x + d ≤ 0 inside."""
 
     corners: np.ndarray
     planes: np.ndarray
@@ -64,7 +64,7 @@ class Body:
         return Body.from_points(middle + size * corners)
 
     def extend_to_light(self, light: FloatArray, length: float) -> Body:
-        """Return the body with the space of at least `length` in front of it that may shadow it.
+        """Return the body extended towards a light, by `length` or more, to what may shadow it.
 
         light : (4,), homogeneous: a position with w = 1, or the direction to the light with w = 0.
         """

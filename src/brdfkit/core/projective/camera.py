@@ -106,7 +106,7 @@ class Camera:
         return np.stack([x, y, np.full_like(x, -1)], axis=-1) @ self.view[:3, :3]
 
     def find_frustum_corners(self) -> FloatArray:
-        """Return the corners (8, 3) of the space that the camera sees; the first four are near."""
+        """Return the corners (8, 3) of the visible space, the first four on the near plane."""
         return project_points(np.linalg.inv(self.matrix), CUBE)
 
     def compute_depths(self, points: ArrayLike) -> FloatArray:

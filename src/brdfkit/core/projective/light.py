@@ -67,7 +67,7 @@ class Light:
         return self.cutoff is not None and self.cutoff <= WIDEST_CUTOFF
 
     def make_bounding_pyramid(self, reach: float) -> Body:
-        """Return the square pyramid about a spot's cone to `reach`, cut off at its thousandth."""
+        """Return the square pyramid about a spot's cone between `reach` / 1000 and `reach`."""
         axis, cutoff = self.axis, self.cutoff
         assert axis is not None, "only a spot has a pyramid"
         assert cutoff is not None

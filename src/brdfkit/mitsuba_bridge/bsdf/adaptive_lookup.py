@@ -98,7 +98,7 @@ class AdaptiveLookup:
         return self._fold_azimuth(reflect(folded, normal), wi)
 
     def pdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        """Return the density of `wo` per solid angle."""
+        """Return the density, per solid angle, with which `sample` draws `wo`."""
         wi, wo = self._fold_azimuth(wi, wi), self._fold_azimuth(wo, wi)
         m, u, density = self._find_half_vector(wi, wo)
         density *= self.density.eval(u, self._incident_angles(wi))

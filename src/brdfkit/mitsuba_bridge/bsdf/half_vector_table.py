@@ -73,7 +73,7 @@ class HalfVectorTable:
         return reflect(wi, type(wi)(sine * cos_phi, sine * sin_phi, 1 - versine))
 
     def pdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        """Return the density of `wo` per solid angle."""
+        """Return the density, per solid angle, with which `sample` draws `wo`."""
         n_h, n_p = self.cells
         h = half_vector(wi, wo)
         row = _find_cell(dr.sqrt(polar_angle(h) / (dr.pi / 2)), n_h)
@@ -91,7 +91,7 @@ class HalfVectorTable:
         return [(to_flat_index(nodes, shape), share) for nodes, share in list_corners(brackets)]
 
     def _find_brackets(self, wi: JitVector) -> list[tuple[JitInt, JitInt, JitFloat]]:
-        """Return (lower, upper, share of the upper) for the azimuth, if any, and for theta_i."""
+        """Return the azimuths (if several) and polar angles around `wi`, with weights."""
         theta = find_bracket(polar_angle(wi) / (dr.pi / 2) * self.angles - 0.5, self.angles)
         if self.azimuths == 1:
             return [theta]

@@ -53,9 +53,7 @@ def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
                 callback.put(name, texture, kind)
 
         def texture_scale(self, name: str) -> float:
-            """Return what `normalise_colour` divided a texture's colour by, 1 for other
-            textures.
-            """
+            """Return what `normalise_colour` divided a colour texture by, 1 for others."""
             return self.scales.get(name, 1)
 
         def bind_lobes(

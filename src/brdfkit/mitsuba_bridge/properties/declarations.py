@@ -87,7 +87,7 @@ def declare_text(default: str, meaning: str) -> Setting:
 def declare_choice(
     allowed: Sequence[str] | Mapping[str, Any], meaning: str, default: str | None = None
 ) -> Setting:
-    """Declare a choice of one of the `allowed` words; by default, it is the first of them."""
+    """Declare a choice of one of the `allowed` words, by default the first one."""
 
     def read_choice(value: Any) -> str:
         if not isinstance(value, str) or value not in allowed:
