@@ -30,7 +30,11 @@ from typing import Any
 
 from brdfkit.core.array_types import FloatArray, MitsubaModule, MitsubaObject
 from brdfkit.lighting.sampling.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
-from brdfkit.lighting.sampling.emitter import MAP_PARAMETERS, environment_emitter, make_small_sky
+from brdfkit.lighting.sampling.emitter import (
+    MAP_PARAMETERS,
+    derive_environment_emitter,
+    make_small_sky,
+)
 from brdfkit.lighting.sampling.tree import CRITERIA
 from brdfkit.mitsuba_bridge.properties.declarations import declare_choice, declare_int
 
@@ -46,7 +50,7 @@ PARAMETERS = MAP_PARAMETERS | {
 
 def define(mi: MitsubaModule) -> type:
     """Return the plugin's class for Mitsuba's current variant: a `mi.Emitter`."""
-    Base: MitsubaObject = environment_emitter(mi, PARAMETERS)
+    Base: MitsubaObject = derive_environment_emitter(mi, PARAMETERS)
 
     class KdtreeEnvmap(Base):
         def make_sampler(self, brightness: FloatArray) -> Blocks:

@@ -23,7 +23,11 @@ from brdfkit.core.array_types import (
     MitsubaModule,
     MitsubaObject,
 )
-from brdfkit.lighting.sampling.emitter import MAP_PARAMETERS, environment_emitter, make_small_sky
+from brdfkit.lighting.sampling.emitter import (
+    MAP_PARAMETERS,
+    derive_environment_emitter,
+    make_small_sky,
+)
 from brdfkit.lighting.sampling.power_map import cell_power, pixel_power
 from brdfkit.mitsuba_bridge.arrays import Integers, Rows, find_cell
 from brdfkit.mitsuba_bridge.properties.declarations import declare_choice
@@ -176,7 +180,7 @@ PARAMETERS = MAP_PARAMETERS | {
 
 def define(mi: MitsubaModule) -> type:
     """Return the plugin's class for Mitsuba's current variant: a `mi.Emitter`."""
-    Base: MitsubaObject = environment_emitter(mi, PARAMETERS)
+    Base: MitsubaObject = derive_environment_emitter(mi, PARAMETERS)
 
     class SampledEnvmap(Base):
         def make_sampler(self, brightness: FloatArray) -> Any:

@@ -64,7 +64,7 @@ def define(mi: MitsubaModule) -> type:
 
         def occluders(self, scene: MitsubaObject) -> Occluders | None:
             """Return the convex parts that cast the shadows, None if no mesh encloses a volume."""
-            return self.casters.find(scene)[0]
+            return self.casters.find_casters(scene)[0]
 
         def sample(
             self,
@@ -107,7 +107,7 @@ def define(mi: MitsubaModule) -> type:
             pdf = dr.select(infinite, dr.select(ds.delta, 0, pdf), 0)
             weight = ds.pdf / dr.select(active, ds.pdf + pdf, 1)
             reflected = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * weight
-            visible = self.casters.visible(scene, si.spawn_ray_to(ds.p), active)
+            visible = self.casters.is_visible(scene, si.spawn_ray_to(ds.p), active)
             return dr.select(visible, reflected, 0)
 
         def reflect_bsdf_sample(
@@ -136,7 +136,7 @@ def define(mi: MitsubaModule) -> type:
             light = mi.unpolarized_spectrum(environment.eval(far, active))
             weight = bs.pdf / dr.select(active, bs.pdf + pdf, 1)
             reflected = mi.unpolarized_spectrum(value) * light * weight
-            return dr.select(self.casters.visible(scene, ray, active), reflected, 0)
+            return dr.select(self.casters.is_visible(scene, ray, active), reflected, 0)
 
     return ConvexDirect
 

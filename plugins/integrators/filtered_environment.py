@@ -107,7 +107,7 @@ def define(mi: MitsubaModule) -> type:
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             hit = active & si.is_valid()
             if self.shadows != "none":
-                directions = unshadowed.light_directions(sampler.sample_count())
+                directions = unshadowed.get_light_directions(sampler.sample_count())
                 light = ShadowedLight(
                     unshadowed, si, self.make_visibility_test(scene, si, hit), directions
                 )
@@ -119,7 +119,7 @@ def define(mi: MitsubaModule) -> type:
             self, scene: MitsubaObject, si: MitsubaObject, active: JitMask
         ) -> Callable[[JitVector], JitMask]:
             """Return a function that tests whether light from a direction reaches the points."""
-            return lambda w: self.casters.visible(scene, si.spawn_ray(w), active)
+            return lambda w: self.casters.is_visible(scene, si.spawn_ray(w), active)
 
     return FilteredEnvironment
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from brdfkit.lighting.sampling.block_laws import Hyperbolic, SortedBlocks, Steps
-from brdfkit.lighting.sampling.tree import build
+from brdfkit.lighting.sampling.tree import build_tree
 
 pytestmark = pytest.mark.quick
 
@@ -53,7 +53,7 @@ def test_a_law_is_a_distribution(law):
 def test_the_renderer_chooses_by_the_law(law, llvm_variant):
     """A point of block i is drawn by the uniform numbers between F(i) and F(i + 1), to rounding."""
     mi = llvm_variant
-    tree = build(np.random.default_rng(0).random((20, 30)), law.n)
+    tree = build_tree(np.random.default_rng(0).random((20, 30)), law.n)
     shares = np.full(law.n, 1 / law.n)
     blocks = SortedBlocks(
         tree, shares, np.zeros((law.n, 2)), type("Law", (type(law),), {"fit": lambda _: law})

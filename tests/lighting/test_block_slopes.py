@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 from brdfkit.plugins.emitters.sampled_envmap import Cdf, Mip
 
-from brdfkit.lighting.sampling.block_slopes import STEEPEST, draw_on_line, fit_slopes, line_density
+from brdfkit.lighting.sampling.block_slopes import (
+    STEEPEST,
+    fit_slopes,
+    line_density,
+    sample_line_density,
+)
 from brdfkit.lighting.sampling.blocks import Blocks
 from brdfkit.lighting.sampling.power_map import cell_power
 from brdfkit.lighting.sampling.tree import Sums
@@ -14,9 +19,9 @@ from brdfkit.lighting.sampling.tree import Sums
 @pytest.mark.parametrize("slope", [-STEEPEST, -0.3, 0.0, 1e-6, 1.0, STEEPEST])
 def test_a_line_is_drawn_by_the_inverse_of_its_integral(slope):
     for u in np.linspace(0, 1, 11).tolist():
-        s = draw_on_line(u, slope)
+        s = sample_line_density(u, slope)
         assert s + slope * (s**2 - s) / 2 == pytest.approx(u, abs=1e-12)
-    assert line_density(draw_on_line(1.0, slope), slope) > 0
+    assert line_density(sample_line_density(1.0, slope), slope) > 0
 
 
 @pytest.mark.quick

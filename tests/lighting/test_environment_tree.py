@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from brdfkit.lighting.sampling.tree import CRITERIA, Sums, block_sums, build
+from brdfkit.lighting.sampling.tree import CRITERIA, Sums, block_sums, build_tree
 
 pytestmark = pytest.mark.quick
 
@@ -20,7 +20,7 @@ def error(values, found):
 @given(st.integers(1, 9), st.integers(1, 12), st.integers(1, 40), st.integers(0, 2**32 - 1))
 def test_blocks_cover_a_picture_once(criterion, height, width, count, seed):
     values = np.random.default_rng(seed).exponential(size=(height, width))
-    tree = build(values, count, criterion)
+    tree = build_tree(values, count, criterion)
     covered = np.zeros((height, width), int)
     for x0, x1, y0, y1 in tree.blocks:
         covered[y0:y1, x0:x1] += 1
@@ -48,14 +48,14 @@ def test_many_cuts_at_once_are_those_of_one_after_the_other(criterion, seed):
     """Ergun 2015, algorithm 2 with eq. 6.1."""
     random = np.random.default_rng(seed)
     values = random.gamma(0.5, size=random.integers(4, 12, 2))
-    found = build(values, 13, criterion).blocks
+    found = build_tree(values, 13, criterion).blocks
     assert sorted(map(tuple, found.tolist())) == greedy(values, 13, criterion)
 
 
 def test_an_even_block_is_not_cut():
     values = np.zeros((4, 6))
     values[:, 4:] = 1.0
-    assert build(values, 100).blocks.tolist() == [[0, 4, 0, 4], [4, 6, 0, 4]]
+    assert build_tree(values, 100).blocks.tolist() == [[0, 4, 0, 4], [4, 6, 0, 4]]
 
 
 def variance_of_samples(power, boxes):
@@ -87,7 +87,7 @@ def three_lobes():
 def test_the_squared_error_reconstructs_best_and_the_relative_one_samples_best():
     """The claim of Ergun 2015 on sse (C1); and what sampling sees is another error."""
     power = three_lobes()
-    trees = {criterion: build(power, 192, criterion).blocks for criterion in CRITERIA}
+    trees = {criterion: build_tree(power, 192, criterion).blocks for criterion in CRITERIA}
     errors = {criterion: error(power, blocks) for criterion, blocks in trees.items()}
     assert min(errors, key=errors.get) == "sse"
     noise = {criterion: variance_of_samples(power, blocks) for criterion, blocks in trees.items()}
@@ -96,6 +96,6 @@ def test_the_squared_error_reconstructs_best_and_the_relative_one_samples_best()
 
 def test_the_relative_error_is_what_a_block_adds_to_the_variance():
     power = three_lobes()
-    boxes = build(power, 50).blocks
+    boxes = build_tree(power, 50).blocks
     added = CRITERIA["relative"](Sums(power), boxes).sum() / power.sum()
     assert added == pytest.approx(variance_of_samples(power, boxes))

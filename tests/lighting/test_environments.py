@@ -16,7 +16,7 @@ from brdfkit.core.colours import luminance
 from brdfkit.lighting.environments.conventions import LAYOUTS, NAMED, parse_convention
 from brdfkit.lighting.environments.light_distribution import pixel_solid_angles
 from brdfkit.lighting.environments.map_files import read_map, write_map
-from brdfkit.lighting.environments.resampling import look_up, resample
+from brdfkit.lighting.environments.resampling import look_up_map, resample
 
 MAPS = sorted(catalogue.list_environments())
 RANDOM = np.random.default_rng(5).normal(size=(400, 3))
@@ -104,7 +104,7 @@ def _octants(rgb):
 def test_places_are_where_their_directions_are(name):
     layout, height = LAYOUTS[name], 240
     width = round(height * layout.aspect)
-    x, y, part = layout.places(DIRECTIONS, height, width)
+    x, y, part = layout.pixel_coordinates(DIRECTIONS, height, width)
     back = layout.directions(x, y, height, width)
     # on the rims of discs, places are moved to the nearest pixel of the disc
     near = 1.5 * np.pi / height if name in ("angular", "paraboloids") else 1e-9
@@ -149,7 +149,7 @@ def test_programs_look_up_where_their_code_does(name, formula, z_up):
     found = parse_convention(name)
     d = DIRECTIONS
     world = np.stack([d[:, 0], d[:, 2], -d[:, 1]], axis=1) if z_up else d
-    x, y, _ = found.layout.places(world @ found.frame, 100, 200)
+    x, y, _ = found.layout.pixel_coordinates(world @ found.frame, 100, 200)
     u, v = formula(d)
     apart = (x + 0.5) / 200 - u
     assert np.abs(apart - np.round(apart)).max() < 1e-9
@@ -164,7 +164,7 @@ def test_debevec_looks_up_as_the_page_says():
     """
     found, (x, y, z) = parse_convention("debevec"), DIRECTIONS.T
     r = np.arccos(-z) / np.pi / np.hypot(x, y)
-    px, py, _ = found.layout.places(DIRECTIONS @ found.frame, 500, 500)
+    px, py, _ = found.layout.pixel_coordinates(DIRECTIONS @ found.frame, 500, 500)
     assert np.allclose((px + 0.5) / 250 - 1, x * r, atol=0.005)
     assert np.allclose(1 - (py + 0.5) / 250, y * r, atol=0.005)
 
@@ -177,7 +177,7 @@ def test_faces_are_those_of_opengl():
     tc = np.array([-y, -y, z, -z, -y, -y])
     ma = np.array([x, -x, y, -y, z, -z])
     face, every = ma.argmax(axis=0), np.arange(len(x))
-    px, py, part = found.layout.places(DIRECTIONS @ found.frame, 64, 384)
+    px, py, part = found.layout.pixel_coordinates(DIRECTIONS @ found.frame, 64, 384)
     assert (part == face).all()
     s, t = ((c[face, every] / ma[face, every] + 1) / 2 for c in (sc, tc))
     assert np.allclose((px + 0.5) / 64 - face, s)
@@ -191,7 +191,7 @@ def test_mitsuba_looks_up_as_mitsuba_does(module_in_llvm):
     si.wi = -mi.Vector3f(DIRECTIONS.T.astype(np.float32))
     theirs = np.array(emitter.eval(si)).T
     found = parse_convention("mitsuba")
-    assert np.allclose(look_up(rgb, found.layout, DIRECTIONS @ found.frame), theirs, atol=2e-4)
+    assert np.allclose(look_up_map(rgb, found.layout, DIRECTIONS @ found.frame), theirs, atol=2e-4)
 
 
 @pytest.mark.parametrize("source", [*NAMED, "cross", "vertical_cross", "paraboloids"])
@@ -248,7 +248,7 @@ def test_compass(maps, make):
     ("words", "sentence"),
     [
         ({"source": "blendr"}, "no convention of maps 'blendr'; did you mean blender?"),
-        ({"target": "latlong:+x+x+z"}, "should name the axes that are right, up and ahead"),
+        ({"target": "latlong:+x+x+z"}, "should be the axes to the right, up and ahead"),
         ({"target": "latlong:+y+x+z"}, "each once, up y or z"),
         ({"source": "cross"}, "sky: the map has 256×128 pixels, and its layout 1.33 times"),
         ({"target": "cross", "height": 100}, "height = 100 should be a multiple of 3"),
@@ -303,8 +303,8 @@ CLIPPED = np.minimum(one_pixel(0.5), 0.4)
         (one_pixel(np.nan), "1 pixels are not finite"),
         (one_pixel(np.inf), "1 pixels are not finite"),
         (one_pixel(-1), "1 pixels are negative"),
-        (np.zeros((4, 8, 3)), "black all over"),
-        (np.ones((4, 8, 3)), "of one value all over"),
+        (np.zeros((4, 8, 3)), "the map is black"),
+        (np.ones((4, 8, 3)), "all pixels are equal"),
         (one_pixel(0.5)[:, :16], "16 × 16 pixels are not twice as wide as high"),
         (CLIPPED, "pixels share the largest luminance, 0.4: clipped"),
         (UPSIDE_DOWN, "of the light comes from below: perhaps upside down"),

@@ -16,10 +16,23 @@ from brdfkit.core.geometry.latitude_rows import solid_angles
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.filtering import paraboloid_levels as levels
 from brdfkit.lighting.filtering.filtered_light import filter_irradiance
-from brdfkit.lighting.filtering.filtered_map import FilteredMap, LobeMaps, Mips, make_picture
+from brdfkit.lighting.filtering.filtered_map import (
+    FilteredMap,
+    LobeMaps,
+    Mips,
+    make_latlong_picture,
+)
 from brdfkit.lighting.filtering.lobe_light import LobeLight
-from brdfkit.lighting.filtering.scene_bsdfs import has_matte_part, is_isotropic, is_same_everywhere
-from brdfkit.lighting.filtering.sphere_filter import azimuths, convolve, row_angles
+from brdfkit.lighting.filtering.scene_bsdfs import (
+    has_separate_diffuse_part,
+    is_isotropic,
+    is_uniform_over_surface,
+)
+from brdfkit.lighting.filtering.sphere_filter import (
+    column_azimuths,
+    convolve_on_sphere,
+    row_polar_angles,
+)
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import log_density
 from brdfkit.rendering.previewing.cache import _load_measured_bsdf
 from brdfkit.rendering.previewing.scene import describe_preview
@@ -40,7 +53,7 @@ def sky(w):
 
 def quadrature(axes, kernel, height=256):
     """∫ sky kernel(axis·ω) dω (n, 3), by points on a fine grid."""
-    theta, phi = np.meshgrid(row_angles(height), azimuths(2 * height), indexing="ij")
+    theta, phi = np.meshgrid(row_polar_angles(height), column_azimuths(2 * height), indexing="ij")
     w = from_angles(theta, phi).reshape(-1, 3)
     light = (
         sky(w) * np.repeat(solid_angles(height, 2 * height, at_poles=False), 2 * height)[:, None]
@@ -92,10 +105,12 @@ def test_texels_of_a_disc_cover_a_hemisphere():
 @pytest.mark.quick
 @pytest.mark.parametrize("kappa", [1.0, 30.0, 1000.0])
 def test_convolution_is_that_of_the_quadrature(kappa):
-    theta, phi = np.meshgrid(row_angles(128), azimuths(256), indexing="ij")
+    theta, phi = np.meshgrid(row_polar_angles(128), column_azimuths(256), indexing="ij")
     w = from_angles(theta, phi)
     reach = math.acos(max(1 - 18 / kappa, -1))
-    filtered = convolve(make_picture(sky, 128), lambda cos: lobe(cos, kappa), reach)
+    filtered = convolve_on_sphere(
+        make_latlong_picture(sky, 128), lambda cos: lobe(cos, kappa), reach
+    )
     some = np.random.default_rng(1).integers(0, [[128], [256]], (2, 20))
     expected = quadrature(w[tuple(some)], lambda cos: lobe(cos, kappa))
     assert error(filtered[tuple(some)], expected) < 1e-3
@@ -105,39 +120,44 @@ def test_a_look_up_is_the_mean_over_the_lobe(module_in_llvm):
     """Of the root mean square within 1 % at the κ of a level, and 2 % halfway between two; the mips
     of graphics hardware are off by tens of per cent."""
     mi = module_in_llvm
-    found = LobeMaps(sky, make_picture(sky, SIDE))
+    found = LobeMaps(sky, make_latlong_picture(sky, SIDE))
     w = axes()
     direction = mi.Vector3f(w.T.astype(np.float32))
     for level, tolerance in ((2, 0.01), (3.5, 0.02), (8, 0.01), (9.5, 0.02), (12, 0.01)):
         kappa = levels.sharpest_kappa(SIDE) / levels.STEP**level
         expected = quadrature(w, lambda cos, kappa=kappa: lobe(cos, kappa))
-        assert error(np.array(found.at(direction, mi.Float(kappa))).T, expected) < tolerance
-    mips = Mips(sky, make_picture(sky, SIDE))
-    assert error(np.array(mips.at(direction, mi.Float(kappa))).T, expected) > 0.1
-    sharp = np.array(found.at(direction, mi.Float(np.inf))).T
-    np.testing.assert_allclose(sharp, np.array(mips.bilinear(direction, 0)).T, rtol=1e-6)
+        assert (
+            error(np.array(found.mean_over_lobe(direction, mi.Float(kappa))).T, expected)
+            < tolerance
+        )
+    mips = Mips(sky, make_latlong_picture(sky, SIDE))
+    assert error(np.array(mips.mean_over_lobe(direction, mi.Float(kappa))).T, expected) > 0.1
+    sharp = np.array(found.mean_over_lobe(direction, mi.Float(np.inf))).T
+    np.testing.assert_allclose(
+        sharp, np.array(mips.interpolate_bilinearly(direction, 0)).T, rtol=1e-6
+    )
 
 
 def test_irradiance_is_that_of_the_quadrature(module_in_llvm):
     mi = module_in_llvm
     w = axes()
     expected = quadrature(w, lambda cos: np.maximum(cos, 0) / np.pi)
-    found = FilteredMap([filter_irradiance(make_picture(sky, SIDE))])
-    values = np.array(found.bilinear(mi.Vector3f(w.T.astype(np.float32)), 0)).T
+    found = FilteredMap([filter_irradiance(make_latlong_picture(sky, SIDE))])
+    values = np.array(found.interpolate_bilinearly(mi.Vector3f(w.T.astype(np.float32)), 0)).T
     assert error(values, expected) < 2e-3
 
 
 def test_levels_meet_at_the_rim(module_in_llvm):
     """Just above and just below the plane z = 0, where one disc ends and the other begins."""
     mi = module_in_llvm
-    found = LobeMaps(sky, make_picture(sky, SIDE))
+    found = LobeMaps(sky, make_latlong_picture(sky, SIDE))
     phi = np.linspace(0, 2 * np.pi, 50)
     above, below = (
         mi.Vector3f(from_angles(np.pi / 2 - tilt, phi).T.astype(np.float32))
         for tilt in (1e-5, -1e-5)
     )
     for kappa in (2.0, 50.0):
-        a, b = (np.array(found.at(w, mi.Float(kappa))) for w in (above, below))
+        a, b = (np.array(found.mean_over_lobe(w, mi.Float(kappa))) for w in (above, below))
         np.testing.assert_allclose(a, b, rtol=0.02)
 
 
@@ -234,7 +254,7 @@ def test_what_is_told_apart(llvm_variant):
         ({"type": "conductor"}, False, True),
     ):
         bsdf = mi.load_dict(entries)
-        assert has_matte_part(bsdf) == matte, entries
+        assert has_separate_diffuse_part(bsdf) == matte, entries
         assert is_isotropic(bsdf) == even, entries
 
 
@@ -271,7 +291,7 @@ def test_directions_of_views_are_those_of_points(llvm_variant, monkeypatch, bsdf
     mi, module = llvm_variant, import_module("brdfkit.lighting.filtering.filtered_sampling")
     light = make_example("kdtree_envmap")
     by_views = shown(scene(mi, ours(), bsdf, light), 4)
-    monkeypatch.setattr(module, "is_same_everywhere", lambda bsdf: False)
+    monkeypatch.setattr(module, "is_uniform_over_surface", lambda bsdf: False)
     assert psnr(shown(scene(mi, ours(), bsdf, light), 4), by_views) > alike
 
 
@@ -307,12 +327,12 @@ def test_what_is_the_same_everywhere(llvm_variant):
         ({"type": "conductor"}, False),
     ):
         bsdf = mi.load_dict(entries)
-        assert is_same_everywhere(bsdf) == same, entries
+        assert is_uniform_over_surface(bsdf) == same, entries
     bsdf = mi.load_dict(WARD)
     parameters = mi.traverse(bsdf)
     dr.enable_grad(parameters["diffuse_reflectance.value"])
     parameters.update()
-    assert not is_same_everywhere(bsdf)
+    assert not is_uniform_over_surface(bsdf)
 
 
 # Shadows
@@ -336,7 +356,7 @@ def test_a_high_wall_hides_half_of_the_light(llvm_variant, bsdf):
     open_air = shown(mi.load_dict(entries | {"integrator": ours()}), spp=4).mean()
     wall = {"type": "cube", "to_world": t().translate([half + gap, 0, 0]).scale(half)}
     shaded = mi.load_dict(entries | {"wall": wall, "integrator": ours(shadows="convex")})
-    occluders, _ = shaded.integrator().casters.find(shaded)
+    occluders, _ = shaded.integrator().casters.find_casters(shaded)
     shares = []
     for turn in (0, 90, 180, 270):
         occluders.move("wall", np.array(t().rotate([0, 0, 1], turn).matrix))
@@ -474,7 +494,7 @@ def test_a_preview_has_the_same_colours_in_a_spectral_variant(llvm_variant, monk
 
 @pytest.mark.quick
 def test_lobes_say_that_they_leave_mirrors_black(llvm_variant, capfd):
-    LobeLight("warped", 1).fit(llvm_variant.load_dict({"type": "conductor"}))
+    LobeLight("warped", 1).fit_lobes(llvm_variant.load_dict({"type": "conductor"}))
     assert "leave mirrors and clear glass black" in "".join(capfd.readouterr())
 
 

@@ -11,7 +11,7 @@ from brdfkit.checks import directions
 from brdfkit.checks import emitters as checks
 from brdfkit.checks.plugin_subject import make_example
 from brdfkit.lighting.sampling.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
-from brdfkit.lighting.sampling.power_map import subtract_mean
+from brdfkit.lighting.sampling.power_map import subtract_mean_brightness
 
 BY_NAME = {
     "cdf": Cdf,
@@ -104,8 +104,8 @@ def test_an_alias_table_holds_its_weights(seed):
 @pytest.mark.quick
 def test_a_compensated_map_is_what_is_above_its_mean():
     even = np.full((8, 16), 0.3)
-    np.testing.assert_array_equal(subtract_mean(even), even)
-    above = subtract_mean(sky())
+    np.testing.assert_array_equal(subtract_mean_brightness(even), even)
+    above = subtract_mean_brightness(sky())
     assert (above == 0).mean() > 0.9
     np.testing.assert_allclose((sky() - above)[above > 0], (sky() - above).max())
 

@@ -8,9 +8,15 @@ import pytest
 import brdfkit as bk
 from brdfkit.core.geometry.directions import from_angles, normalize
 from brdfkit.core.geometry.quadrature import directional_albedo, make_ring_rule
-from brdfkit.lighting.spherical_gaussians import LobeTable, gmm, lobe_table, mixture, single_lobe
+from brdfkit.lighting.spherical_gaussians import (
+    LobeTable,
+    fit_lobe_table,
+    gmm,
+    mixture,
+    single_lobe,
+)
 from brdfkit.lighting.spherical_gaussians import von_mises_fisher as vmf
-from brdfkit.lighting.spherical_gaussians.elliptic import fit_anisotropic
+from brdfkit.lighting.spherical_gaussians.elliptic import fit_anisotropic_gaussian
 from brdfkit.lighting.spherical_gaussians.one_view import sample_view
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -68,14 +74,14 @@ def test_samples_and_points_have_the_mean_of_the_lobe():
     mu = normalize([0.2, 0.9, -0.4])
     for kappa in 0.7, 30.0:
         u = np.random.default_rng(1).random((40_000, 2))
-        cosine = vmf.sample(mu, kappa, u) @ mu
+        cosine = vmf.sample_directions(mu, kappa, u) @ mu
         # The mean of 40,000: within 4 standard errors
         error = cosine.std() / 200
         assert abs(cosine.mean() - vmf.mean_cosine(kappa)) < 4 * error
-        mean = vmf.spread_points(mu, kappa, 2000).mean(axis=0)
+        mean = vmf.spread_lobe_points(mu, kappa, 2000).mean(axis=0)
         np.testing.assert_allclose(mean, vmf.mean_cosine(kappa) * mu, atol=2e-3)
-    several = vmf.spread_points(np.stack([mu, UP]), np.array([5.0, 80.0]), 8)
-    np.testing.assert_allclose(several[1], vmf.spread_points(UP, 80.0, 8))
+    several = vmf.spread_lobe_points(np.stack([mu, UP]), np.array([5.0, 80.0]), 8)
+    np.testing.assert_allclose(several[1], vmf.spread_lobe_points(UP, 80.0, 8))
     np.testing.assert_allclose(np.linalg.norm(several, axis=-1), 1)
 
 
@@ -99,7 +105,7 @@ def table_of_two_views():
 def test_views_between_the_stored_ones_are_interpolated_and_turned():
     table = table_of_two_views()
     wo = from_angles(np.radians([30, 30, 90]), np.radians([0, 70, 0]))
-    diffuse, weights, axes, kappa = table.at(wo)
+    diffuse, weights, axes, kappa = table.interpolate_lobes(wo)
     np.testing.assert_allclose(diffuse[:, 0], [0.2, 0.2, 0.3])
     np.testing.assert_allclose(weights[:, 0, 0], [0.6, 0.6, 0.7])
     np.testing.assert_allclose(kappa[:, 0], [20, 20, 30])
@@ -111,7 +117,7 @@ def test_views_between_the_stored_ones_are_interpolated_and_turned():
 def test_white_light_gives_the_sum_of_the_weights():
     x, solid_angle = sphere()
     found = table_of_two_views().eval(x, np.broadcast_to(from_angles(0.5, 1.0), x.shape))
-    diffuse, weights, _, _ = table_of_two_views().at(from_angles([0.5], [1.0]))
+    diffuse, weights, _, _ = table_of_two_views().interpolate_lobes(from_angles([0.5], [1.0]))
     assert solid_angle @ found[:, 0] == pytest.approx(weights.sum() + diffuse.sum(), rel=1e-4)
 
 
@@ -125,7 +131,9 @@ def some_samples(n=3000):
     """Directions of three lobes with random weights, as a quadrature has them."""
     random = np.random.default_rng(3)
     mu = normalize(random.normal(size=(3, 3)))
-    x = [vmf.sample(m, k, random.random((n, 2))) for m, k in zip(mu, KAPPAS, strict=True)]
+    x = [
+        vmf.sample_directions(m, k, random.random((n, 2))) for m, k in zip(mu, KAPPAS, strict=True)
+    ]
     return mu, np.concatenate(x), random.random(3 * n)
 
 
@@ -133,11 +141,11 @@ def some_samples(n=3000):
 @pytest.mark.parametrize("restarts", [0, 2])
 def test_the_likelihood_never_falls(restarts):
     _, x, weights = some_samples()
-    starts = [gmm.guess_by_intervals(x, weights, 5)]
+    starts = [gmm.guess_mixture_by_intervals(x, weights, 5)]
     random = np.random.default_rng(restarts)
-    starts += [gmm.guess_around_samples(x, weights, 5, random) for _ in range(restarts)]
+    starts += [gmm.guess_mixture_around_samples(x, weights, 5, random) for _ in range(restarts)]
     for start in starts:
-        found, likelihood = mixture.fit(x, weights, start, steps=40)
+        found, likelihood = mixture.fit_mixture(x, weights, start, steps=40)
         assert len(likelihood) > 5
         assert np.diff(likelihood).min() > -1e-12
         assert likelihood[-1] > likelihood[0]
@@ -147,7 +155,7 @@ def test_the_likelihood_never_falls(restarts):
 @quick
 def test_the_lobes_that_samples_come_from_are_found():
     mu, x, weights = some_samples()
-    found = gmm.best_mixture(x, weights, 3)
+    found = gmm.fit_best_mixture(x, weights, 3)
     order = (mu @ found.axes.T).argmax(axis=1)
     assert sorted(order) == [0, 1, 2]
     # Weights between 0 and 1 are worth 3/4 of the 3000 samples; within 4 standard errors
@@ -161,9 +169,9 @@ def test_the_lobes_that_samples_come_from_are_found():
 @quick
 def test_the_fit_stops_where_it_has_converged():
     _, x, weights = some_samples()
-    found, likelihood = mixture.fit(x, weights, gmm.best_mixture(x, weights, 3), 500)
+    found, likelihood = mixture.fit_mixture(x, weights, gmm.fit_best_mixture(x, weights, 3), 500)
     assert len(likelihood) < 100
-    again, _ = mixture.fit(x, weights, found, 1, tolerance=0)
+    again, _ = mixture.fit_mixture(x, weights, found, 1, tolerance=0)
     np.testing.assert_allclose(again.kappa, found.kappa, rtol=1e-3)
 
 
@@ -172,7 +180,7 @@ def test_the_guess_of_the_thesis_cuts_the_wider_angle():
     phi = np.linspace(-0.1, 0.1, 50)
     theta = np.linspace(0.2, 1.2, 50)
     x = from_angles(theta, phi[::-1])
-    found = gmm.guess_by_intervals(x, np.ones(50), 5)
+    found = gmm.guess_mixture_by_intervals(x, np.ones(50), 5)
     np.testing.assert_allclose(found.weights, 0.2)
     middles = np.arccos(found.axes[:, 2])
     np.testing.assert_allclose(middles, 0.2 + (np.arange(5) + 0.5) / 5, atol=0.01)
@@ -182,7 +190,7 @@ def test_the_guess_of_the_thesis_cuts_the_wider_angle():
 def test_one_direction_that_stands_for_a_cell_has_the_width_of_the_cell():
     """κ stays finite, where that of a point would not."""
     start = mixture.Mixture(np.ones(1), UP[None], np.ones(1))
-    found, _ = mixture.fit(UP[None] * 0.999, np.ones(1), start)
+    found, _ = mixture.fit_mixture(UP[None] * 0.999, np.ones(1), start)
     assert found.kappa[0] == pytest.approx(1000, rel=1e-3)
 
 
@@ -198,19 +206,19 @@ def test_the_bandwidth_is_that_of_the_rule_of_thumb():
     }
     for kappa, row in expected.items():
         for n, (h, kernel) in zip((8, 16, 32), row, strict=True):
-            found = single_lobe.bandwidth(float(kappa), n)
+            found = single_lobe.kernel_bandwidth(float(kappa), n)
             assert found == pytest.approx(h, rel=5e-6)
             assert found**-2 == pytest.approx(kernel, rel=1e-5)
-    assert single_lobe.bandwidth(1e7, 8) == pytest.approx(1e7**-0.5 * 8 ** (-1 / 6))
+    assert single_lobe.kernel_bandwidth(1e7, 8) == pytest.approx(1e7**-0.5 * 8 ** (-1 / 6))
 
 
 def test_the_kernels_widen_a_lobe_and_ours_do_not():
     for n, ratio in {8: 0.70, 16: 0.73, 32: 0.77}.items():
         # Computed apart to two digits; 0.693 for n = 8
-        assert single_lobe.estimate_width(500.0, n) / 500 == pytest.approx(ratio, abs=8e-3)
+        assert single_lobe.estimate_concentration(500.0, n) / 500 == pytest.approx(ratio, abs=8e-3)
         mu = normalize([0.3, 0.1, 0.8])
         for kappa in 3.0, 40.0, 500.0:
-            axes, kernel = single_lobe.split(mu, kappa, n)
+            axes, kernel = single_lobe.split_lobe(mu, kappa, n)
             x, solid_angle = sphere()
             estimate = vmf.density(x[:, None], axes, kernel).mean(axis=1)
             mean = (solid_angle * estimate) @ x
@@ -248,8 +256,8 @@ class AnisotropicGaussian:
         """∫ G dω = π / √(λμ), but for what a Gaussian of the plane has beyond the unit disc."""
         return np.pi / np.sqrt(self.bandwidths.prod())
 
-    def to_light(self, view):
-        """This lobe of half vectors as one of light for a `view` (3,): `gmm.to_light`, elliptic.
+    def convert_to_light_lobes(self, view):
+        """This lobe of half vectors as one of light for a `view` (3,), elliptic.
 
         i = 2 (o·h) h - o is linear about z: it stretches by 2 along the plane of incidence, by
         2 (o·z) across it. At z, G is that of z; its integral is larger by 4 (o·z).
@@ -277,7 +285,7 @@ def above_the_horizon(view):
 def test_wangs_warp_is_as_far_from_beckmanns_lobe_as_known(m, degrees, percent):
     """The values, to the percent, and the integrals were computed apart, by drawn directions."""
     view = from_angles(np.radians(degrees), 0.0)
-    mu, kappa = gmm.to_light(UP, 2 / m**2, view)
+    mu, kappa = gmm.convert_to_light_lobes(UP, 2 / m**2, view)
     x, solid_angle = above_the_horizon(view)
     found = vmf.density(x, mu, kappa) * 4 * (view @ UP)  # the amplitude is D's
     expected = beckmann(x, view, m)
@@ -293,8 +301,8 @@ def test_wangs_warp_is_as_far_from_beckmanns_lobe_as_known(m, degrees, percent):
 def test_an_anisotropic_gaussian_warps_better_and_is_wangs_in_the_mean():
     m, view = 0.1, from_angles(np.radians(60), 0.4)
     lobe = AnisotropicGaussian(np.eye(3), np.array([1, 1]) / m**2)
-    warped = lobe.to_light(view)
-    mu, kappa = gmm.to_light(UP, 2 / m**2, view)
+    warped = lobe.convert_to_light_lobes(view)
+    mu, kappa = gmm.convert_to_light_lobes(UP, 2 / m**2, view)
     np.testing.assert_allclose(warped.frame[2], mu, atol=1e-12)
     # Wang's κ / 2 is the geometric mean of the bandwidths, of which one is 4 cos²60° of the other
     assert np.sqrt(warped.bandwidths.prod()) == pytest.approx(kappa / 2)
@@ -313,7 +321,7 @@ def test_the_integral_of_an_anisotropic_gaussian():
         lobe = AnisotropicGaussian(frame, np.array(bandwidths))
         # What it leaves out is e^-8 = 3e-4
         assert solid_angle @ lobe.eval(x) == pytest.approx(lobe.integral(), rel=4e-4)
-        again = AnisotropicGaussian(*fit_anisotropic(x, solid_angle * lobe.eval(x)))
+        again = AnisotropicGaussian(*fit_anisotropic_gaussian(x, solid_angle * lobe.eval(x)))
         np.testing.assert_allclose(again.bandwidths, bandwidths, rtol=4e-3)
     # Along the axes of the last, whose bandwidths differ
     np.testing.assert_allclose(np.abs(again.frame @ frame.T), np.eye(3), atol=1e-6)
@@ -329,10 +337,10 @@ def test_one_anisotropic_gaussian_does_what_eight_round_ones_do():
         return np.abs(light.sum() * density - values) @ seen.solid_angle / light.sum()
 
     def of_round_ones(n):
-        found = gmm.best_mixture(*seen.samples(), n, restarts=2)
-        return error(np.exp(found.log_lobes(seen.directions)).sum(axis=0))
+        found = gmm.fit_best_mixture(*seen.samples(), n, restarts=2)
+        return error(np.exp(found.log_lobe_densities(seen.directions)).sum(axis=0))
 
-    lobe = AnisotropicGaussian(*fit_anisotropic(seen.directions, light))
+    lobe = AnisotropicGaussian(*fit_anisotropic_gaussian(seen.directions, light))
     one = error(lobe.eval(seen.directions) / lobe.integral())
     assert one < 0.06
     assert one < of_round_ones(8) < 2 * one
@@ -343,7 +351,7 @@ def test_a_lobe_of_light_warps_back():
     view = from_angles(1.0, 2.0)
     axes = from_angles(np.array([0.1, 0.7]), np.array([0.0, 1.9]))
     kappa = np.array([30.0, 500.0])
-    halves = gmm.to_half_vectors(*gmm.to_light(axes, kappa, view), view)
+    halves = gmm.convert_to_half_vector_lobes(*gmm.convert_to_light_lobes(axes, kappa, view), view)
     np.testing.assert_allclose(halves[0], axes, atol=1e-12)
     np.testing.assert_allclose(halves[1], kappa)
 
@@ -368,7 +376,7 @@ def material_and_lobes(request):
         brdf = bk.models()["ggx"](diffuse_reflectance=0.1, alpha_u=0.1).eval
     else:
         brdf = bk.load("red_plastic").eval
-    return brdf, lobe_table(brdf, lobes=16, views=12)
+    return brdf, fit_lobe_table(brdf, lobes=16, views=12)
 
 
 @pytest.mark.parametrize(("view", "most"), [(0, 0.03), (4, 0.06), (7, 0.1), (9, 0.2)])
@@ -403,18 +411,18 @@ def test_lobes_of_neighbouring_views_correspond(material_and_lobes):
 
 def test_anisotropic_materials_have_azimuths():
     ward = bk.models()["ward"](diffuse_reflectance=0.2, alpha_u=0.1, alpha_v=0.25)
-    table = lobe_table(ward.eval, lobes=8, views=6, azimuths=12)
+    table = fit_lobe_table(ward.eval, lobes=8, views=6, azimuths=12)
     step = 2 * np.pi / 12
     for phi, most in {0.0: 0.1, 2 * step: 0.1, 4.5 * step: 0.12}.items():
         assert relative_error(table, ward.eval, table.theta_o[2], phi) < most
-    round_one = lobe_table(ward.eval, lobes=8, views=6)
+    round_one = fit_lobe_table(ward.eval, lobes=8, views=6)
     assert relative_error(round_one, ward.eval, table.theta_o[2], 3 * step) > 0.3
 
 
 @pytest.mark.parametrize("method", ["warped", "kde"])
 def test_single_lobes_are_near_what_is_nearly_one(method):
     ward = bk.models()["ward"](diffuse_reflectance=0.2, alpha_u=0.2)
-    table = lobe_table(ward.eval, method=method, lobes=16, views=6)
+    table = fit_lobe_table(ward.eval, method=method, lobes=16, views=6)
     assert table.kappa.shape == (6, 1 if method == "warped" else 16)
     assert relative_error(table, ward.eval, 0.0) < 0.08
     assert relative_error(table, ward.eval, table.theta_o[1] * 1.5) < 0.15
@@ -422,7 +430,7 @@ def test_single_lobes_are_near_what_is_nearly_one(method):
 
 def test_lobes_on_an_ellipse_show_what_is_brushed():
     ward = bk.models()["ward"](diffuse_reflectance=0.0, alpha_u=0.05, alpha_v=0.2)
-    tables = [lobe_table(ward.eval, m, views=2, azimuths=2) for m in ("elliptic", "kde")]
+    tables = [fit_lobe_table(ward.eval, m, views=2, azimuths=2) for m in ("elliptic", "kde")]
     elliptic, kde = (relative_error(t, ward.eval, 0.0) for t in tables)
     assert elliptic < 0.2 < 0.8 < kde
     # Their second moments, in the plane across the normal, are those of Ward's lobe: α_u² : α_v²
@@ -435,14 +443,14 @@ def test_lobes_on_an_ellipse_show_what_is_brushed():
 @pytest.mark.parametrize("method", ["gmm", "elliptic", "warped", "kde"])
 def test_what_is_diffuse_is_the_diffuse_part(method):
     lambert = bk.models()["lambert"](diffuse_reflectance=0.3)
-    table = lobe_table(lambert.eval, method=method, lobes=4, views=3)
+    table = fit_lobe_table(lambert.eval, method=method, lobes=4, views=3)
     np.testing.assert_allclose(table.diffuse, 0.3)
     assert table.weights.max() < 1e-12
 
 
 def test_tables_are_the_same_every_time():
     ggx = bk.models()["ggx"](alpha_u=0.3)
-    one, other = (lobe_table(ggx.eval, lobes=3, views=2) for _ in range(2))
+    one, other = (fit_lobe_table(ggx.eval, lobes=3, views=2) for _ in range(2))
     assert all(np.array_equal(vars(one)[name], vars(other)[name]) for name in vars(one))
 
 
@@ -460,5 +468,5 @@ def test_tables_are_the_same_every_time():
 )
 def test_what_makes_no_table_is_said(arguments, word):
     with pytest.raises(bk.BrdfkitError) as error:
-        lobe_table(**({"brdf": bk.models()["lambert"]().eval} | arguments))
+        fit_lobe_table(**({"brdf": bk.models()["lambert"]().eval} | arguments))
     assert word in str(error.value)

@@ -167,7 +167,7 @@ def test_the_tree_finds_every_box_that_a_ray_hits(llvm_variant, n):
     truth = (near <= far) & (far >= 0)
 
     number = mi.UInt32(wanted.astype(np.uint32))
-    seen, reads = Hierarchy(low, high).any_hit(
+    seen, reads = Hierarchy(low, high).find_any_hit(
         ray_of(mi, o, d), lambda box, active: (box == number, dr.select(active, mi.UInt32(1), 0))
     )
     assert (np.array(seen) == truth[np.arange(500), wanted]).mean() > 0.99  # but for rounding
@@ -198,7 +198,7 @@ def test_a_moved_object_blocks_where_it_is(llvm_variant):
     o, d = random_rays(inside=False)
     t = np.array([clipped(p, o, d) for p in [*objects["left"], *moved]])
     truth = ((t >= 0) & (t < np.inf)).any(axis=0)
-    blocked, _ = occluders.blocked(ray_of(llvm_variant, o, d))
+    blocked, _ = occluders.is_blocked(ray_of(llvm_variant, o, d))
     assert 0.1 < truth.mean() < 0.5
     assert (np.array(blocked) != truth).mean() < 1e-3
 
@@ -227,7 +227,7 @@ def test_the_visible_share_of_a_lobe_is_its_integral(llvm_variant, kappa):
     occluders = Occluders({"part": [found]}, resolution=256, clearance=0)
 
     def visible(direction):
-        return ~occluders.blocked(mi.Ray3f(mi.Point3f(points.T), direction))[0]
+        return ~occluders.is_blocked(mi.Ray3f(mi.Point3f(points.T), direction))[0]
 
     axis = mi.Vector3f(axes.T)
     share = np.array(visible_share(visible, axis, mi.Float(kappa), lambda _: 1, rays=256).x)
@@ -453,9 +453,9 @@ def test_shadows_of_parts_are_those_of_triangles(llvm_variant, tmp_path):
     shapes = {"corner": mesh_file(mi, tmp_path / "corner.ply", *corner())}
     loaded, found = pictures(mi, {"type": "convex_direct"}, **shapes)
     assert list(loaded.integrator().occluders(loaded)._parts) == ["corner"]
-    loaded.integrator().casters.set(loaded, None, loaded)  # all shapes as they are
+    loaded.integrator().casters.set_casters(loaded, None, loaded)  # all shapes as they are
     exact = np.array(loaded.integrator().render(loaded, seed=0, spp=64))
-    loaded.integrator().casters.set(loaded, None, None)
+    loaded.integrator().casters.set_casters(loaded, None, None)
     lit = np.array(loaded.integrator().render(loaded, seed=0, spp=64))
     assert np.abs(lit - exact).mean() > 0.05 * exact.mean()  # the shadows matter
     assert np.square(found - exact).mean() < 1e-4 * np.square(exact).max()  # 40 dB
@@ -472,8 +472,8 @@ def test_a_moved_shadow_is_that_of_the_moved_mesh(llvm_variant, tmp_path):
     loaded, exact = pictures(mi, {"type": "convex_direct"}, corner=there)
     occluders = Occluders({"corner": decompose(points, faces)})
     occluders.move("corner", np.block([[turn, shift[:, None]], [np.eye(4)[3:]]]))
-    others = loaded.integrator().casters.find(loaded)[1]
-    loaded.integrator().casters.set(loaded, occluders, others)
+    others = loaded.integrator().casters.find_casters(loaded)[1]
+    loaded.integrator().casters.set_casters(loaded, occluders, others)
     moved = np.array(loaded.integrator().render(loaded, seed=0, spp=64))
     assert np.square(moved - exact).mean() < 1e-4 * np.square(exact).max()  # 40 dB
 
@@ -550,7 +550,7 @@ def test_height_fields_block_as_triangles_do(llvm_variant, tmp_path):
     ray = ray_of(mi, o, d)
     mesh = mi.load_dict({"type": "scene", "m": mesh_file(mi, tmp_path / "t.ply", points, faces)})
     truth = np.array(mesh.ray_test(ray))
-    blocked, reads = HeightFields(points, faces, clearance=0).blocked(ray)
+    blocked, reads = HeightFields(points, faces, clearance=0).is_blocked(ray)
     assert 0.2 < truth.mean() < 0.8
     assert (np.array(blocked) != truth).mean() < 0.01
     assert np.array(reads)[truth].min() >= 2  # a crossing lies between two heights

@@ -43,7 +43,7 @@ def run(sources, report):
 
 def reconstruction_error(power, criterion, count=BLOCKS):
     """The relative squared error of `power` (rows, columns) where blocks hold their means."""
-    boxes = tree.build(power, count, criterion).blocks
+    boxes = tree.build_tree(power, count, criterion).blocks
     x0, x1, y0, y1 = boxes.T
     means = tree.block_sums(power, boxes) / ((x1 - x0) * (y1 - y0))
     # Σ (power - mean)² = Σ power² - Σ n mean²
@@ -55,7 +55,7 @@ def draw(name, file):
     """A map with its first blocks, by the sum of squared errors."""
     drawn, audit = figure(8, 4.4), environments.audit(file)
     rgb = audit.data.astype(float)
-    blocks = tree.build(cell_power(luminance(rgb)), DRAWN_BLOCKS, "sse").blocks
+    blocks = tree.build_tree(cell_power(luminance(rgb)), DRAWN_BLOCKS, "sse").blocks
     draw_map(drawn.subplots(), audit, rgb, blocks)
     drawn.axes[0].set_title(
         f"{name}: the first {DRAWN_BLOCKS} blocks; the circle is the brightest pixel"

@@ -45,7 +45,7 @@ def run(sources, report):
 
 def sorted_shares(power, count=BLOCKS):
     """The blocks' shares (n,) of the power, the largest first."""
-    boxes = tree.build(power, count).blocks
+    boxes = tree.build_tree(power, count).blocks
     shares = tree.block_sums(power, boxes).clip(0)
     return np.sort(shares / shares.sum())[::-1]
 
@@ -92,7 +92,7 @@ def compression_claim(maps):
     name = "uffizi" if "uffizi" in maps else next(iter(maps))
     power = cell_power(luminance(maps[name]))
     count = max(power.size // COMPRESSION, 1)
-    boxes = tree.build(power, count, "sse").blocks
+    boxes = tree.build_tree(power, count, "sse").blocks
     means = tree.block_sums(power, boxes)
     held = np.empty_like(power)
     for (x0, x1, y0, y1), total in zip(boxes, means, strict=True):

@@ -156,7 +156,7 @@ def time_claim(maps):
 
 
 def _prepare_blocks(power):
-    boxes = tree.build(power, BLOCKS, "sse").blocks
+    boxes = tree.build_tree(power, BLOCKS, "sse").blocks
     shares = np.sort(tree.block_sums(power, boxes))[::-1]
     Hyperbolic.fit(shares / shares.sum())
 

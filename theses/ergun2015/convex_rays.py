@@ -27,7 +27,7 @@ class ExactPlaneMap:
         self.planes = Rows(np.concatenate([hull.planes for hull in hulls]))
         self.first = Integers(np.cumsum([0] + [len(hull.planes) for hull in hulls]))
 
-    def at(self, part, direction, active=True):
+    def look_up_plane(self, part, direction, active=True):
         """Return the normal and the distance of a part's plane in a unit `direction`."""
         import drjit as dr
         import mitsuba as mi

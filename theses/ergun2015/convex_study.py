@@ -82,7 +82,7 @@ class Study:
         """A picture with the shadows of `occluders`, and of the scene `others`: by default of the
         ground."""
         integrator = self.scene.integrator()
-        integrator.casters.set(self.scene, occluders, others or self.ground)
+        integrator.casters.set_casters(self.scene, occluders, others or self.ground)
         return np.array(integrator.render(self.scene, seed=0, spp=spp), float)[..., :3]
 
     def seconds(self, occluders):
@@ -109,11 +109,11 @@ class Counting:
     def __init__(self, occluders):
         self.occluders, self.reads = occluders, []
 
-    def blocked(self, ray, active=True):
+    def is_blocked(self, ray, active=True):
         """As that of the occluders."""
         import drjit as dr
 
-        blocked, reads = self.occluders.blocked(ray, active)
+        blocked, reads = self.occluders.is_blocked(ray, active)
         dr.schedule(reads)
         self.reads.append(reads)
         return blocked, reads

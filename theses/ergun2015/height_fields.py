@@ -40,9 +40,9 @@ class HeightFields:
         self.frames = Frames([to_field for to_field, _ in fields])
         self.heights = Rows(np.concatenate([heights.ravel() for _, heights in fields]))
 
-    def blocked(self, ray, active=True):
+    def is_blocked(self, ray, active=True):
         """(whether a field lies between the ray's origin and its `maxt`, reads of heights)."""
-        return self.tree.any_hit(ray, lambda field, a: self._march(ray, field, a), active)
+        return self.tree.find_any_hit(ray, lambda field, a: self._march(ray, field, a), active)
 
     def _march(self, ray, field, active):
         """(whether the ray crosses a field, reads of heights)."""
@@ -115,10 +115,10 @@ def _field(corners):
     room = MARGIN * (high - low).max()
     size = high - low + 2 * room
     to_field = np.column_stack([axes, room - low]) / size[:, None]
-    return to_field, rasterise((local - low + room) / size)
+    return to_field, rasterise_planes((local - low + room) / size)
 
 
-def rasterise(corners):
+def rasterise_planes(corners):
     """The greatest height z (SIDE, SIDE) of triangles (m, 3, 3) in the unit cube at each texel's
     centre; `NO_SURFACE` where there is none."""
     centres = (np.arange(SIDE) + 0.5) / SIDE

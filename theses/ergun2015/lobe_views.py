@@ -41,7 +41,7 @@ def run(sources, report):
         lobes = integrator.shading.fit(bsdf)
         views = nearest(scene, lobes.step) if views is None else views
         if "nearest" in kind:
-            lobes.around = nearest_view(lobes.around)
+            lobes.around = find_nearest_view(lobes.around)
         integrator.shading.fit = lambda bsdf, lobes=lobes: lobes
         pictures[kind] = render(made, light, integrator)[0]
     psnrs = {kind: decibels(reference, p, seen)[0] for kind, p in pictures.items()}
@@ -71,7 +71,7 @@ def run(sources, report):
     return Section("Between views", TEXT, claims, pictures=[picture])
 
 
-def nearest_view(around):
+def find_nearest_view(around):
     """A function as `ViewedLobes.around`, whose views all count as the nearest of them."""
     import drjit as dr
 

@@ -12,7 +12,7 @@ from brdfkit.core.geometry.directions import from_angles, to_half_difference
 from brdfkit.images.ball import LIGHTS, draw_pixels
 from brdfkit.lighting.environments import map_files
 from brdfkit.lighting.environments.conventions import parse_convention
-from brdfkit.lighting.environments.resampling import label_parts, look_up
+from brdfkit.lighting.environments.resampling import label_layout_parts, look_up_map
 from brdfkit.materials.measured.coverage import find_largest_angles
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.samples.measures import compute_measure
@@ -130,11 +130,11 @@ def light_of(name):
     radiances (n,)."""
     grey = luminance(map_files.read_map(catalogue.find_environment_file(name)))[..., None]
     own = parse_convention("mitsuba")
-    parts = label_parts(own.layout, *grey.shape[:2])
+    parts = label_layout_parts(own.layout, *grey.shape[:2])
 
     def light(w):
         with_y_up = np.stack([w[:, 0], w[:, 2], -w[:, 1]], axis=1)
-        return look_up(grey, own.layout, with_y_up @ own.frame, parts)[:, 0]
+        return look_up_map(grey, own.layout, with_y_up @ own.frame, parts)[:, 0]
 
     return light
 

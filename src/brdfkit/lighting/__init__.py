@@ -1,4 +1,4 @@
-"""Light from environment maps: their files, their sampling, their filtering, and shadows."""
+"""Lighting by environment maps: reading, sampling and filtering the maps, and their shadows."""
 
 import lazy_loader
 

@@ -1,4 +1,7 @@
-"""The figure of an `EnvironmentAudit`: the map with its blocks, and the spread of its light."""
+"""The figure of an `EnvironmentAudit`: the map with its sampling blocks, and its light's spread.
+
+The blocks are the rectangles into which the emitter `kdtree_envmap` cuts a map to sample it.
+"""
 
 from typing import TYPE_CHECKING, Any
 
@@ -8,7 +11,7 @@ from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.colours import luminance, to_srgb
 from brdfkit.core.figures import Plot
 from brdfkit.lighting.environments.light_distribution import (
-    cumulative_shares,
+    cumulative_light_shares,
     pixel_directions,
     pixel_solid_angles,
 )
@@ -23,17 +26,17 @@ if TYPE_CHECKING:
 EnvironmentAudit = Any  # the class in `auditing.py`, which imports this file
 
 SIZE = 10.4, 9.4  # inches
-MIDDLE_GREY = 0.18  # the grey that the geometric mean of the map is drawn in
-BLOCKS = 4096  # the number that `kdtree_envmap` makes by default
-DRAWN_BLOCKS = 256  # the number whose outlines are drawn
-DRAWN_ROWS = 1024  # a larger map is thinned to about this many rows
-CURVE_POINTS = 1000  # along the curve of shares
-COLOUR = "#0072b2"
+MIDDLE_GREY = 0.18  # linear grey in which the geometric mean of the map's luminance is drawn
+BLOCKS = 4096  # blocks in the plot of probabilities, the default of `kdtree_envmap`
+DRAWN_BLOCKS = 256  # blocks whose outlines are drawn on the map
+DRAWN_ROWS = 1024  # approximate number of rows to which a larger map is thinned before drawing
+CURVE_POINTS = 1000  # points along the curve of the shares of light
+COLOUR = "#0072b2"  # of the curves of exact values
 LAW_COLOURS = {"hyperbolic": "#d55e00", "steps": "#009e73"}
-SIDES = ("−z", "+x", "+z", "−x", "−z")  # along the horizon
+SIDES = ("−z", "+x", "+z", "−x", "−z")  # directions along the horizon, at the ticks of the map
 
 
-def draw(audit: EnvironmentAudit) -> "Figure":
+def draw_audit(audit: EnvironmentAudit) -> "Figure":
     """Draw an `EnvironmentAudit` as a matplotlib `Figure`."""
     rgb = np.where(np.isfinite(audit.data), audit.data, 0).clip(0).astype(float)
     brightness = luminance(rgb)
@@ -41,24 +44,25 @@ def draw(audit: EnvironmentAudit) -> "Figure":
     power = cell_power(brightness)
     figure = Plot(figsize=SIZE, layout="constrained")
     above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.45, 1))[:, 0]
-    draw_map(above.subplots(), audit, rgb, tree.build(power, DRAWN_BLOCKS).blocks)
+    draw_map(above.subplots(), audit, rgb, tree.build_tree(power, DRAWN_BLOCKS).blocks)
     left, right = below.subplots(1, 2)
-    _draw_probabilities(left, power)
-    _draw_shares(right, brightness, solid_angle, audit)
+    _draw_block_probabilities(left, power)
+    _draw_light_shares(right, brightness, solid_angle, audit)
     return figure
 
 
 def draw_map(axes: "Axes", audit: EnvironmentAudit, rgb: FloatArray, blocks: IntArray) -> None:
     """Draw the tone-mapped map, the outlines of its `blocks` (n, 4), and its brightest spot.
 
-    `rgb` (height, width, 3) is linear and finite; `blocks` are in cells, as `Tree.blocks` has them.
+    `rgb` (height, width, 3) is linear and finite. A block is (x0, x1, y0, y1) in cells, the squares
+    between four neighbouring pixels, as in `Tree.blocks`.
     """
     from matplotlib.collections import PolyCollection
 
     brightness = luminance(rgb)
     lit = brightness[brightness > 0]
     exposure = MIDDLE_GREY / np.exp(np.log(lit).mean()) if lit.size else 1
-    half = 0.5 / (audit.height - 1)  # half a row
+    half = 0.5 / (audit.height - 1)  # half the height of a row in the plot
     extent = 0, 1, -half, 1 + half
     step = 1 + audit.height // DRAWN_ROWS
     axes.imshow(
@@ -67,7 +71,7 @@ def draw_map(axes: "Axes", audit: EnvironmentAudit, rgb: FloatArray, blocks: Int
         aspect="auto",
         interpolation="nearest",
     )
-    # A cell lies between four pixels; the first and the last row of pixels lie at the poles
+    # Convert blocks from cells to the plot, in which the poles have y = 1 and y = 0
     x0, x1, y0, y1 = blocks.T / np.repeat((audit.width, audit.height - 1), 2)[:, None]
     x0, x1 = x0 + 0.5 / audit.width, x1 + 0.5 / audit.width
     corners = [(x0, 1 - y0), (x1, 1 - y0), (x1, 1 - y1), (x0, 1 - y1)]
@@ -86,14 +90,17 @@ def draw_map(axes: "Axes", audit: EnvironmentAudit, rgb: FloatArray, blocks: Int
     axes.set_title(f"{name}: {len(blocks)} blocks; the circle is the brightest pixel", fontsize=11)
 
 
-def _draw_probabilities(axes: "Axes", power: FloatArray) -> None:
-    """Draw the sorted probabilities of the blocks, and the laws that approximate them."""
-    blocks = tree.build(power, BLOCKS).blocks
+def _draw_block_probabilities(axes: "Axes", power: FloatArray) -> None:
+    """Plot the sorted sampling probabilities of a map's blocks, and the laws that approximate them.
+
+    `power` (rows - 1, columns) is the power per angle of the map's cells.
+    """
+    blocks = tree.build_tree(power, BLOCKS).blocks
     light = np.sort(tree.block_sums(power, blocks).clip(0))[::-1]
     axes.set(xscale="log", xlabel="rank of the block", ylabel="probability")
     axes.set_title(f"probabilities of {len(blocks):,} blocks, sorted", fontsize=10)
     axes.spines[["top", "right"]].set_visible(False)
-    if len(light) < 2:  # a map of one value is not cut
+    if len(light) < 2:  # a map with equal values everywhere is a single block
         return
     share, rank = light / light.sum(), np.arange(len(light))
     lit = share > 0
@@ -105,17 +112,17 @@ def _draw_probabilities(axes: "Axes", power: FloatArray) -> None:
     axes.legend(frameon=False)
 
 
-def _draw_shares(
+def _draw_light_shares(
     axes: "Axes", brightness: FloatArray, solid_angle: FloatArray, audit: EnvironmentAudit
 ) -> None:
-    """Draw the share of the light over the share of the solid angle, the brightest first."""
+    """Plot the share of the light that comes from the brightest share of the solid angle."""
     axes.set(xscale="log", xlim=(1e-5, 1), ylim=(0, 1.03))
     axes.set(xlabel="share of the solid angle, brightest first", ylabel="share of the light")
     axes.set_title("where the light comes from", fontsize=10)
     axes.spines[["top", "right"]].set_visible(False)
     if not audit.mean > 0:
         return
-    areas, light = cumulative_shares(brightness, solid_angle / solid_angle.sum())
+    areas, light = cumulative_light_shares(brightness, solid_angle / solid_angle.sum())
     drawn = np.unique(areas.searchsorted(np.geomspace(areas[1], 1, CURVE_POINTS)))
     axes.plot(areas[drawn], light[drawn], color=COLOUR)
     axes.plot(0.01, audit.brightest_share, "o", color="#d55e00")

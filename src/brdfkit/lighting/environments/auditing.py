@@ -1,4 +1,4 @@
-"""`environments.audit`: the brightness of an environment map by direction, and its defects."""
+"""`environments.audit` measures the light of an environment map, and looks for its defects."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ from brdfkit.lighting.environments.map_files import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-BRIGHTEST = 0.01  # share of the solid angle of which `brightest_share` adds up the light
-# Tolerances: a larger value is a finding
-ASPECT_TOLERANCE = 0.05  # relative deviation of width over height from 2
-EQUAL_TOLERANCE = 4  # pixels that are as bright as the brightest one
-BELOW_TOLERANCE = 2.0  # light from below over light from above
+BRIGHTEST = 0.01  # share of the solid angle whose light is `brightest_share`
+# Larger values of these are reported as likely defects
+ASPECT_TOLERANCE = 0.05  # relative deviation of width / height from 2
+EQUAL_TOLERANCE = 4  # number of pixels that are as bright as the brightest one
+BELOW_TOLERANCE = 2.0  # ratio of the light from below the horizon to that from above
 DPI, WIDTH = 75, 760  # resolution and width [pixels] of the picture in a notebook
 
 
 @dataclass(frozen=True, repr=False)
 class EnvironmentAudit(Shown):
-    """The content of an environment map, which prints as text; `environments.audit` makes it.
+    """The light of an environment map and its likely defects, which print as text.
 
     Directions are those of Mitsuba's `envmap`: +y is up, and +z is in the middle of the picture.
     Pixels that are negative or not finite count as black.
@@ -89,7 +89,7 @@ class EnvironmentAudit(Shown):
     data: AnyArray = field(repr=False, compare=False)
 
     def rows(self) -> dict[str, str]:
-        """Describe how bright the map is and from where; texts by heading."""
+        """Return the lines of the audit's text as {heading: text}, such as size and luminance."""
         x, y, z = self.brightest
         elevation, azimuth = math.degrees(math.asin(y)), math.degrees(math.atan2(x, z))
         r, g, b = self.colour
@@ -97,17 +97,18 @@ class EnvironmentAudit(Shown):
             "size": f"{self.width} × {self.height} pixels",
             "luminance": f"mean {self.mean:.4g}, median {self.median:.4g}, max {self.largest:.4g}",
             "mean colour": f"R {r:.4g}, G {g:.4g}, B {b:.4g}",
-            "dynamic range": self._dynamic_range(),
-            "brightest 1 %": f"{_percent(self.brightest_share)} of the light comes from the "
+            "dynamic range": self._describe_dynamic_range(),
+            "brightest 1 %": f"{_format_percent(self.brightest_share)} of the light comes from the "
             "brightest 1 % of the solid angle",
-            "from above": f"{_percent(self.above)} of the light comes from above the horizon",
+            "from above": f"{_format_percent(self.above)} of the light comes from above the "
+            "horizon",
             "brightest spot": f"towards ({x:.2f}, {y:.2f}, {z:.2f}): {elevation:.0f}° above the "
             f"horizon, {azimuth:.0f}° from +z towards +x",
             "not finite": f"{self.not_finite:,} pixels; negative: {self.negative:,}",
         }
 
     def findings(self) -> tuple[str, ...]:
-        """Return a sentence on each likely defect of the map."""
+        """Return a sentence for each likely defect of the map."""
         sentences = []
         if self.not_finite:
             sentences.append(
@@ -115,7 +116,7 @@ class EnvironmentAudit(Shown):
             )
         if self.negative:
             sentences.append(
-                f"{self.negative:,} pixels are negative: light is never below 0; mend them"
+                f"{self.negative:,} pixels are negative: light is never below 0; correct them"
             )
         if abs(self.width / self.height / LATLONG - 1) > ASPECT_TOLERANCE:
             sentences.append(
@@ -125,9 +126,9 @@ class EnvironmentAudit(Shown):
         if self.eight_bit:
             sentences.append(EIGHT_BIT_WARNING)
         if not self.largest:
-            return (*sentences, "black all over: it lights nothing")
+            return (*sentences, "the map is black: it lights nothing")
         if self.equal == self.width * self.height:
-            return (*sentences, "of one value all over: it has no lamps, and casts no shadows")
+            return (*sentences, "all pixels are equal: the map has no lamps, and casts no shadows")
         if self.equal > EQUAL_TOLERANCE and not self.eight_bit:
             limit = ", the largest half float" if self.data.max() >= LARGEST_HALF_FLOAT else ""
             sentences.append(
@@ -136,38 +137,43 @@ class EnvironmentAudit(Shown):
             )
         if 1 - self.above > BELOW_TOLERANCE * self.above:
             sentences.append(
-                f"{_percent(1 - self.above)} of the light comes from below: perhaps upside down"
+                f"{_format_percent(1 - self.above)} of the light comes from below: perhaps upside "
+                "down"
             )
         return tuple(sentences)
 
     def picture(self) -> Figure:
-        """Draw the map, the blocks that `kdtree_envmap` makes of it, and the spread of its light.
+        """Draw the map, the blocks by which `kdtree_envmap` samples it, and its light's spread.
 
         >>> environments.audit("studio").picture().savefig("studio.png")    # doctest: +SKIP
         """
-        from brdfkit.lighting.environments.audit_picture import draw  # imports matplotlib: slow
+        from brdfkit.lighting.environments.audit_picture import (
+            draw_audit,  # imports matplotlib: slow
+        )
 
-        return draw(self)
+        return draw_audit(self)
 
     def document(self) -> Document:
-        """Return the audit with its picture as a `Document`."""
+        """Return the audit with its picture as a `Document`, for terminals and notebooks."""
         return Document(
             self.name,
             (
-                Picture(self._draw, f"{self.name}: the map, and how its light is spread", WIDTH),
+                Picture(
+                    self._draw_png, f"{self.name}: the map, and how its light is spread", WIDTH
+                ),
                 Table(tuple(self.rows().items())),
                 *(Paragraph(finding, BAD) for finding in self.findings()),
             ),
         )
 
-    def _draw(self) -> bytes:
-        """Return the picture as a PNG file."""
+    def _draw_png(self) -> bytes:
+        """Return the picture as the bytes of a PNG file."""
         from brdfkit.core.figures import to_png
 
         return to_png(self.picture(), DPI)
 
-    def _dynamic_range(self) -> str:
-        """Describe the largest luminance over the median."""
+    def _describe_dynamic_range(self) -> str:
+        """Format the ratio of the largest luminance to the median."""
         if not self.median:
             return "without bound: half of the directions are black"
         ratio = self.largest / self.median
@@ -175,7 +181,7 @@ class EnvironmentAudit(Shown):
 
 
 def audit(environment: str | Path | NDArray[Any]) -> EnvironmentAudit:
-    """Measure how bright an environment map is and from where, and look for its defects.
+    """Measure the brightness of an environment map by direction, and look for its defects.
 
     Parameters
     ----------
@@ -227,6 +233,6 @@ def audit(environment: str | Path | NDArray[Any]) -> EnvironmentAudit:
     )
 
 
-def _percent(share: float) -> str:
-    """Format a share in percent; NaN, of a black map, as "no share"."""
+def _format_percent(share: float) -> str:
+    """Format a share in percent; NaN, the share of a black map, becomes "no share"."""
     return "no share" if math.isnan(share) else f"{100 * share:.3g} %"

@@ -1,7 +1,7 @@
-"""Conventions of environment maps: a layout, and the world's axes that are right, up and ahead.
+"""Conventions of environment maps: the layout of a picture, and the axes of the world in it.
 
 ``mitsuba`` is short for ``latlong_poles:-x+y+z``: latitude and longitude with rows at the poles,
-and the world's +z in the middle of the picture, its +y at the top, and its -x to the right.
+and the world's -x to the right in the picture, its +y at the top, and its +z in the middle.
 """
 
 import re
@@ -26,7 +26,7 @@ LAYOUTS: dict[str, Layout] = {
     "strip": STRIP,
     "paraboloids": Paraboloids(),
 }
-# The conventions of programs and collections, according to their code or documentation
+# The conventions of programs and of map collections, according to their code or documentation
 NAMED = {
     "mitsuba": "latlong_poles:-x+y+z",  # src/emitters/envmap.cpp: atan2(v.x, -v.z), acos(v.y)
     "blender": "latlong:-y+z+x",  # Cycles, kernel/camera/projection.h: direction_to_equirectangular
@@ -41,9 +41,11 @@ AXES = re.compile("([+-][xyz])([+-][yz])([+-][xyz])")
 
 @dataclass(frozen=True)
 class Convention:
-    """A `layout`, and a `frame` (3, 3) whose columns are right, up and ahead in a world with y up.
+    """How a program stores directions of its world in the picture of an environment map.
 
-    A world with z up is turned into one with y up as exporters do: (x, y, z) → (x, z, -y).
+    `layout` relates pixels to the directions right, up and ahead; the columns of `frame` (3, 3) are
+    these directions in a world with y up. A world with z up is turned into one with y up as
+    exporters do: (x, y, z) → (x, z, -y).
     """
 
     layout: Layout
@@ -53,7 +55,7 @@ class Convention:
 def parse_convention(name: str) -> Convention:
     """Return the `Convention` of a name such as ``blender``, ``cross`` or ``latlong:+x+y-z``.
 
-    A layout without axes has Mitsuba's axes. Raises `BrdfkitError` for any other name.
+    A layout's name without axes means Mitsuba's axes. Raises `BrdfkitError` for an unknown name.
 
     >>> parse_convention("blender").frame[:, 2].tolist()    # ahead is +x
     [1.0, 0.0, -0.0]
@@ -65,12 +67,12 @@ def parse_convention(name: str) -> Convention:
 
 
 def _parse_axes(axes: str) -> FloatArray:
-    """Return the frame (3, 3) of axes such as -x+y+z."""
+    """Return the frame (3, 3) of a `Convention` with axes such as "-x+y+z": right, up and ahead."""
     match = AXES.fullmatch(axes)
     if not match or len({word[1] for word in match.groups()}) < 3:
         raise BrdfkitError(
-            f"{axes!r} should name the axes that are right, up and ahead, each once, up y or z: "
-            "as in -x+y+z."
+            f"{axes!r} should be the axes to the right, up and ahead, as in -x+y+z: each once, and "
+            "y or z up."
         )
     columns = [float(f"{word[0]}1") * np.eye(3)["xyz".index(word[1])] for word in match.groups()]
     frame = np.stack(columns, axis=1)

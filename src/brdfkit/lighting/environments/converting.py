@@ -1,4 +1,4 @@
-"""`environments.convert`: writing an environment map in the convention of another program."""
+"""`environments.convert` writes an environment map in the convention of another program."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from brdfkit.lighting.environments.cubes import Cube
 from brdfkit.lighting.environments.map_files import load_radiance, write_map
 from brdfkit.lighting.environments.resampling import resample
 
-LARGEST_HEIGHT = 16_384  # rows; a user who asks for more has mistyped
+LARGEST_HEIGHT = 16_384  # rows of a written map; more are probably a typing error
 
 
 def convert(
@@ -78,7 +78,7 @@ def convert(
         raise BrdfkitError(f"height = {height} is more than {LARGEST_HEIGHT} rows; give fewer.")
     if isinstance(after.layout, Cube) and height % after.layout.lines:
         raise BrdfkitError(
-            f"height = {height} should be a multiple of {after.layout.lines}, the faces from top "
-            f"to bottom of {target}."
+            f"height = {height} should be a multiple of {after.layout.lines}, the number of faces "
+            f"from top to bottom of {target}."
         )
     return write_map(resample(rgb, before, after, height, turn, mirror), path)

@@ -1,17 +1,17 @@
-"""Layouts of cube maps: six square faces, each the view through one side, in a cross or a row."""
+"""Layouts of cube maps: six square faces, the views through a cube's sides, in a cross or row."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray
-from brdfkit.lighting.environments.layouts import Places
+from brdfkit.lighting.environments.layouts import PixelCoordinates
 
 Face = tuple[FloatArray, FloatArray, FloatArray]
 
 RIGHT, UP, AHEAD = np.eye(3)
-# The directions through the middle of each face, towards its right edge and towards its lower edge.
-# With x right and z ahead these are OpenGL's faces +x, -x, +y, -y, +z, -z [OpenGL 4.6, table 8.19]
+# Each face has the directions through its middle, to its right edge and to its lower edge. With x
+# right and z ahead they are OpenGL's faces +x, -x, +y, -y, +z, -z [OpenGL 4.6, table 8.19]
 RIGHT_FACE = RIGHT, -AHEAD, -UP
 LEFT_FACE = -RIGHT, AHEAD, -UP
 UP_FACE = UP, RIGHT, AHEAD
@@ -23,9 +23,11 @@ BACK_FACE_TURNED = -AHEAD, RIGHT, UP
 
 @dataclass(frozen=True)
 class Cube:
-    """A layout of faces on a grid of `columns` × `lines` squares; `layouts.py` says what it has.
+    """A layout of an environment map with a cube's faces on a grid of `columns` × `lines` squares.
 
-    `faces` are tuples (column, line, (through, right, down)); the last three are unit vectors.
+    `faces` are tuples (column, line, (through, right, down)) with the square of a face, and unit
+    vectors through its middle, to its right edge and to its lower edge. `layouts.py` describes the
+    attributes and methods of layouts.
     """
 
     columns: int
@@ -53,7 +55,9 @@ class Cube:
             directions[here] = towards / np.linalg.norm(towards, axis=-1, keepdims=True)
         return directions
 
-    def places(self, directions: FloatArray, height: int, width: int) -> Places:
+    def pixel_coordinates(
+        self, directions: FloatArray, height: int, width: int
+    ) -> PixelCoordinates:
         side = height / self.lines
         forward = np.stack([directions @ face[0] for _, _, face in self.faces])
         part = forward.argmax(axis=0)

@@ -1,6 +1,6 @@
 """Statistics of the light in an environment map: pixel directions, solid angles, shares of light.
 
-All maps here are in Mitsuba's convention: latitude and longitude, with rows at the poles.
+Maps are in Mitsuba's convention: latitude and longitude, with the first and last row at the poles.
 """
 
 import numpy as np
@@ -24,24 +24,24 @@ def pixel_directions(
 
 
 def pixel_solid_angles(height: int, width: int) -> FloatArray:
-    """Return the solid angles (height, width) [sr] of the pixels."""
+    """Return the solid angles (height, width) [sr] of the pixels of an environment map."""
     rows = latitude_rows.solid_angles(height, width, at_poles=True)
     return np.repeat(rows[:, None], width, axis=1)
 
 
 def weighted_median(values: FloatArray, weights: FloatArray) -> float:
-    """Return the median of `values` under `weights` of the same shape, which sum to 1."""
+    """Return the median of `values` with the `weights`, of the same shape, whose sum is 1."""
     order = values.ravel().argsort()
     cumulative = weights.ravel()[order].cumsum()
     return float(values.ravel()[order][np.searchsorted(cumulative, 0.5)])
 
 
-def cumulative_shares(
+def cumulative_light_shares(
     luminance: FloatArray, solid_angle: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return shares of the solid angle (n + 1,), and the shares of the light that comes from there.
+    """Return cumulative shares of the solid angle and of the light, for pixels sorted by luminance.
 
-    Both begin at 0 and add one pixel after the other, the brightest first.
+    Both (n + 1,) begin at 0, and add one of the n pixels after the other, the brightest first.
     """
     order = luminance.ravel().argsort()[::-1]
     areas = np.append(0, solid_angle.ravel()[order].cumsum())
@@ -50,5 +50,5 @@ def cumulative_shares(
 
 
 def share_of_brightest(luminance: FloatArray, solid_angle: FloatArray, share: float) -> float:
-    """Return the share of all light that comes from the brightest `share` of the solid angle."""
-    return float(np.interp(share, *cumulative_shares(luminance, solid_angle)))
+    """Return the share of the light that comes from the brightest `share` of the solid angle."""
+    return float(np.interp(share, *cumulative_light_shares(luminance, solid_angle)))

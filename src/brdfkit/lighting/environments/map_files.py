@@ -20,7 +20,7 @@ EIGHT_BIT_WARNING = (
     "8 bits per channel: nothing is brighter than white, so that lamps and the sun are far too "
     "dark; look for the .exr or .hdr of the picture"
 )
-LATLONG = 2.0  # columns over rows of a map by latitude and longitude
+LATLONG = 2.0  # ratio of columns to rows of a map by latitude and longitude
 LARGEST_HALF_FLOAT = 65_504.0
 
 
@@ -37,10 +37,10 @@ def find_map(name: str | Path) -> Path:
 
 
 def looks_like_map(name: str) -> bool:
-    """Return whether a word of the command line means an environment map.
+    """Return whether an argument of the command line, such as a path, means an environment map.
 
-    The suffix of a file decides, or the name of a shipped map. The name may be misspelt as long as
-    it does not resemble the name of a material.
+    It does if it has the suffix of a picture file, or is the name of a shipped map. The name may be
+    misspelt, unless it resembles the name of a material as well.
     """
     if Path(name).suffix or "/" in name or Path(name).exists():
         return Path(name).suffix.lower() in HDR + EIGHT_BIT
@@ -50,10 +50,10 @@ def looks_like_map(name: str) -> bool:
 
 
 def load_map(source: str | Path | AnyArray) -> tuple[str, AnyArray]:
-    """Return the name and the pixels (height, width, 3) of a map.
+    """Return the name and the pixels (height, width, 3) of an environment map.
 
-    `source` is a path, the name of a shipped map, or an array of pixels. Raises `BrdfkitError` for
-    anything else, and for a map of fewer than 2×2 pixels.
+    `source` is a path, the name of a shipped map, or an array of pixels. Raises `BrdfkitError` if
+    there is no such map, or if it has the wrong shape or fewer than 2×2 pixels.
     """
     if isinstance(source, np.ndarray):
         name, rgb = "the map", source
@@ -70,27 +70,27 @@ def load_map(source: str | Path | AnyArray) -> tuple[str, AnyArray]:
 
 
 def load_radiance(source: str | Path | AnyArray, aspect: float = LATLONG) -> tuple[str, AnyArray]:
-    """Return the name and the pixels of a map as `load_map` does, and check that it can be a light.
+    """Return the name and the pixels of a map like `load_map`, but only if it can light a scene.
 
-    Raises `BrdfkitError` if the map's columns over rows differ from `aspect` by more than 5 %, or
+    Raises `BrdfkitError` if the ratio of columns to rows differs from `aspect` by more than 5 %, or
     if a value is negative or not finite. Warns if the file has 8 bits per channel.
     """
     name, rgb = load_map(source)
     height, width = rgb.shape[:2]
     if abs(width / height / aspect - 1) > 0.05:
         raise BrdfkitError(
-            f"{name}: the map has {width}×{height} pixels, and its layout {aspect:.3g} times as "
-            "many columns as rows; name its layout to 'brdfkit convert --source'."
+            f"{name}: the map has {width}×{height} pixels, but its layout {aspect:.3g} times as "
+            "many columns as rows; convert it by 'brdfkit convert --source LAYOUT'."
         )
     if not (np.isfinite(rgb).all() and rgb.min() >= 0):
-        raise BrdfkitError(f"{name}: the map has a value that is negative or not finite; mend it.")
+        raise BrdfkitError(f"{name}: the map has a value that is negative or not finite.")
     if is_eight_bit(source):
         warnings.warn(f"{name} has {EIGHT_BIT_WARNING}.", stacklevel=2)
     return name, rgb
 
 
 def is_eight_bit(source: str | Path | AnyArray) -> bool:
-    """Return whether a map is a file with 8 bits per channel, judging by its suffix."""
+    """Return whether a map is a file whose suffix means 8 bits per channel, such as .png."""
     return isinstance(source, str | Path) and Path(source).suffix.lower() in EIGHT_BIT
 
 
@@ -104,7 +104,7 @@ def read_map(path: str | Path) -> AnyArray:
         return read_pixels(path, path)
     except BrdfkitError as error:
         reason = str(error).removesuffix(".")
-        raise BrdfkitError(f"{reason}: fetch it again if it is cut off, or another.") from error
+        raise BrdfkitError(f"{reason}: fetch it again, since it may be cut off.") from error
 
 
 @in_turn

@@ -1,4 +1,4 @@
-"""Resampling of environment maps: the same light by direction, in another convention."""
+"""Resampling of environment maps to another convention, so that light keeps its direction."""
 
 from math import ceil, sqrt
 
@@ -16,19 +16,19 @@ def resample(
     turn: float = 0.0,
     mirror: bool = False,
 ) -> FloatArray:
-    """Convert a map (rows, columns, channels) from `source` to `target`, of `height` rows.
+    """Convert a map (rows, columns, channels) from a `source` to a `target` convention.
 
-    `turn` [degrees] turns the light about the up axis, anticlockwise seen from above; `mirror`
-    exchanges left and right of the source. Where the target has fewer pixels, each of them is the
-    mean over several places. Blank pixels are 0.
+    The result has `height` rows. `turn` [degrees] turns the light about the up axis, anticlockwise
+    seen from above; `mirror` exchanges left and right of the source. If the target has fewer
+    pixels, each is the mean over several directions within it. Blank pixels are 0.
     """
     width = round(height * target.layout.aspect)
-    to_source = source.frame.T @ _rotation_about_y(turn).T @ target.frame  # from target's frame
+    to_source = source.frame.T @ _rotation_about_y(turn).T @ target.frame
     if mirror:
         to_source = np.diag([-1, 1, 1]) @ to_source
     finer = max(1, ceil(sqrt(pixels.shape[0] * pixels.shape[1] / (height * width)) - 0.01))
     offsets = (np.arange(finer) + 0.5) / finer - 0.5
-    parts = label_parts(source.layout, *pixels.shape[:2])
+    parts = label_layout_parts(source.layout, *pixels.shape[:2])
     total = np.zeros((height, width, pixels.shape[2]))
     count = np.zeros((height, width, 1))
     for dy in offsets:
@@ -36,22 +36,22 @@ def resample(
             x, y = np.arange(width)[None, :] + dx, np.arange(height)[:, None] + dy
             towards = target.layout.directions(x, y, height, width) @ to_source.T
             filled = np.isfinite(towards[..., 0])
-            total[filled] += look_up(pixels, source.layout, towards[filled], parts)
+            total[filled] += look_up_map(pixels, source.layout, towards[filled], parts)
             count[filled] += 1
     return total / np.maximum(count, 1)
 
 
-def look_up(
+def look_up_map(
     pixels: AnyArray, layout: Layout, directions: FloatArray, parts: IntArray | None = None
 ) -> FloatArray:
-    """Return the map's values (n, channels) at `directions` (n, 3), bilinear between pixels.
+    """Return a map's values (n, channels) at `directions` (n, 3), interpolated between pixels.
 
-    `directions` are in the frame of the `layout`. `parts`, the result of `label_parts`, saves
-    time when a map is looked up repeatedly.
+    `directions` have the components right, up and ahead of the `layout`. `parts`, the result of
+    `label_layout_parts`, saves time when a map is looked up repeatedly.
     """
     height, width = pixels.shape[:2]
-    parts = label_parts(layout, height, width) if parts is None else parts
-    x, y, part = layout.places(directions, height, width)
+    parts = label_layout_parts(layout, height, width) if parts is None else parts
+    x, y, part = layout.pixel_coordinates(directions, height, width)
     left, above = np.floor(x).astype(int), np.floor(y).astype(int)
     total, weights = np.zeros(1), np.zeros(1)
     for column, across in ((left, left + 1 - x), (left + 1, x - left)):
@@ -64,13 +64,16 @@ def look_up(
     return total / weights
 
 
-def label_parts(layout: Layout, height: int, width: int) -> IntArray:
-    """Return the number (height, width) of the part that each pixel is in, -1 if it is blank."""
+def label_layout_parts(layout: Layout, height: int, width: int) -> IntArray:
+    """Return the number of the layout's part, such as a cube's face, for each pixel; -1 if blank.
+
+    The shape is (height, width).
+    """
     x, y = np.arange(width)[None, :], np.arange(height)[:, None]
     towards = layout.directions(x, y, height, width)
     parts = np.full((height, width), -1)
     filled = np.isfinite(towards[..., 0])
-    parts[filled] = layout.places(towards[filled], height, width)[2]
+    parts[filled] = layout.pixel_coordinates(towards[filled], height, width)[2]
     return parts
 
 

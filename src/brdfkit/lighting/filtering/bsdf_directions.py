@@ -1,11 +1,12 @@
-"""A few directions of a BSDF, each with the lobe about it that it represents, and its weight.
+"""Directions drawn by a BSDF for filtered importance sampling, each with a weight and a lobe.
 
-A constant c is subtracted from the BSDF f, for which the irradiance E is known. The N directions,
-of densities p, account for the remainder:
+The light from a direction is averaged over a lobe about it, which is as wide as the distance to the
+next direction. A constant c is subtracted from the BSDF f, since the irradiance gives its reflected
+light exactly. With E, the irradiance divided by π, the reflected radiance is
 
-    L = π c E + Σ (f - c) cosθ / (N p) · mean light
+    L = π c E + Σ (f - c) cosθ / (N p) · mean radiance over the lobe
 
-A matte surface is exact. Any c is unbiased, so that the smallest of a few values will do.
+over N directions with the densities p. It is exact for matte surfaces, and unbiased for any c.
 [Colbert & Křivánek 2007]
 """
 
@@ -21,35 +22,41 @@ from brdfkit.core.array_types import (
     MitsubaObject,
 )
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.lighting.filtering.scene_bsdfs import component_types
+from brdfkit.lighting.filtering.scene_bsdfs import split_component_types
 from brdfkit.mitsuba_bridge.arrays import Rows
 
-# κ of the lobes over 2π / (solid angle of a direction). Sharper lobes leave gaps, in which a lamp
-# is lost, and wider ones blur. With this value, 64 directions of Ward's lobe under a probe with
-# lamps (grace) come nearest to the truth
+# A lobe's κ is this factor times 2π / (solid angle that a direction represents). Sharper lobes
+# would leave gaps, in which lamps are lost, and wider ones would blur. This value minimises the
+# error of 64 directions of Ward's BRDF under a light probe with lamps (grace)
 OVERLAP = 0.15
-PLASTIC = 1.32471795724474602596  # x³ = x + 1, the golden ratio of two dimensions
+PLASTIC = 1.32471795724474602596  # the plastic number, x³ = x + 1, for a sequence in 2 dimensions
 SPREAD_DIRECTIONS = from_angles(
     np.arccos(1 - (np.arange(8) + 0.5) / 8), 2 * np.pi / PLASTIC * np.arange(8)
 )
 
 
 class Directions:
-    """Points of the unit cube that draw at least `count` directions for the `rays` of a pixel."""
+    """Random numbers by which a BSDF draws directions, the same for each pixel of a picture.
+
+    They are at least `count` points of the unit cube, shared out among the `rays` of a pixel.
+    """
 
     def __init__(self, count: int, rays: int) -> None:
         self.rays, self.per_ray = rays, -(-count // rays)
         self.count = rays * self.per_ray
-        self.points = Rows(spread_points(self.count))
+        self.points = Rows(spread_cube_points(self.count))
 
-    def index(self, i: JitInt, si: MitsubaObject) -> JitInt:
-        """Return the index of direction `i` of each ray; rays of a pixel are adjacent in `si`."""
+    def find_index(self, i: JitInt, si: MitsubaObject) -> JitInt:
+        """Return the index of the `i`-th direction of each ray among all directions of its pixel.
+
+        The rays of a pixel must be adjacent in the surface interactions `si`.
+        """
         import drjit as dr
         import mitsuba as mi
 
         return i * self.rays + dr.arange(mi.UInt32, dr.width(si)) % self.rays
 
-    def draw(
+    def draw_direction(
         self,
         index: JitInt,
         bsdf: MitsubaObject,
@@ -58,17 +65,21 @@ class Directions:
         constant: JitColour,
         active: JitMask = True,
     ) -> tuple[JitVector, JitFloat, JitColour]:
-        """Return (direction, κ of its lobe, weight) by the components `types` minus `constant`."""
+        """Draw the direction `index` by a BSDF; return it with the κ of its lobe and its weight.
+
+        The weight is that of the BSDF's components `types` minus the `constant`, in the sum of the
+        module's docstring. The direction is in the local frame of `si`.
+        """
         import drjit as dr
         import mitsuba as mi
 
         context, u = mi.BSDFContext(), self.points.at(index, mi.Point3f)
         context.type_mask = types
         drawn, weight = bsdf.sample(context, si, u.x, mi.Point2f(u.y, u.z), active)
-        # Where no direction can be drawn, any one will do, with the weight 0
+        # Where no direction can be drawn, the view's direction gets the weight 0
         valid = active & (drawn.pdf > 0)
         wo, pdf = dr.select(valid, drawn.wo, si.wi), dr.select(valid, drawn.pdf, 1)
-        # A lobe is as wide as the distance to the next direction; a mirror's has no width
+        # A lobe is as wide as the distance to the next direction; that of a mirror has no width
         mirror = valid & mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Delta)
         kappa = dr.select(mirror, dr.inf, OVERLAP * 2 * dr.pi * self.count * pdf)
         cos = dr.maximum(wo.z * dr.sign(si.wi.z), 0)
@@ -76,32 +87,33 @@ class Directions:
         return wo, kappa, mi.UnpolarizedSpectrum(dr.select(valid, weight, 0))
 
 
-def split_constant(
+def split_off_constant(
     bsdf: MitsubaObject, si: MitsubaObject, active: JitMask, separate: bool
 ) -> tuple[JitColour, int, JitColour]:
-    """Split BSDFs into a constant part c and a remainder; return (c, types, constant).
+    """Split BSDFs at `si` into a constant part and a remainder, which directions have to sample.
 
-    The remainder is the components `types` minus `constant`. `separate` says whether the diffuse
-    components are constant and evaluated separately; these are c, then.
+    Returns (c, types, constant): the constant part c, and the remainder as the BSDF's component
+    `types` minus a `constant`. If `separate`, the BSDF has diffuse components that can be evaluated
+    alone, which are c; otherwise c is the smallest of a few values of the whole BSDF.
     """
     import drjit as dr
     import mitsuba as mi
 
-    matte, others = component_types(mi)
+    matte, others = split_component_types(mi)
     if separate:
-        return _eval_components(bsdf, si, mi.Vector3f(0, 0, 1), active, matte), others, 0
+        return _eval_bsdf_components(bsdf, si, mi.Vector3f(0, 0, 1), active, matte), others, 0
     c = mi.UnpolarizedSpectrum(np.inf)
     for wo in SPREAD_DIRECTIONS.tolist():
         c = dr.minimum(
-            c, _eval_components(bsdf, si, mi.Vector3f(wo), active, matte | others) / wo[2]
+            c, _eval_bsdf_components(bsdf, si, mi.Vector3f(wo), active, matte | others) / wo[2]
         )
     return c, matte | others, c
 
 
-def _eval_components(
+def _eval_bsdf_components(
     bsdf: MitsubaObject, si: MitsubaObject, wo: JitVector, active: JitMask, types: int
 ) -> JitColour:
-    """Return BSDF × cosine of the components `types`, towards `wo` on the side of `si.wi`."""
+    """Evaluate BSDF × cosine of the components `types`, for `wo` on the same side as `si.wi`."""
     import drjit as dr
     import mitsuba as mi
 
@@ -111,12 +123,12 @@ def _eval_components(
     return mi.unpolarized_spectrum(bsdf.eval(context, si, wo, active))
 
 
-def spread_points(count: int) -> FloatArray:
-    """Return `count` points (count, 3) of the unit cube, evenly spread and always the same.
+def spread_cube_points(count: int) -> FloatArray:
+    """Return `count` evenly spread points (count, 3) of the unit cube, for quasi-Monte Carlo.
 
-    Two coordinates advance by powers of the plastic number [Roberts 2018].
+    The first and last coordinates advance by powers of the plastic number [Roberts 2018].
 
-    >>> spread_points(2).shape
+    >>> spread_cube_points(2).shape
     (2, 3)
     """
     i = np.arange(count) + 0.5

@@ -1,4 +1,4 @@
-"""`FilteredLight`: the light of an environment emitter, filtered once and again when it changes."""
+"""`FilteredLight`: the filtered light of an environment emitter, updated when that changes."""
 
 from __future__ import annotations
 
@@ -17,69 +17,75 @@ from brdfkit.core.array_types import (
     MitsubaObject,
 )
 from brdfkit.core.jit.padding import pad
-from brdfkit.lighting.filtering.filtered_map import FilteredMap, LobeMaps, Mips, make_picture
-from brdfkit.lighting.filtering.paraboloid_levels import to_discs
-from brdfkit.lighting.filtering.sphere_filter import convolve, halve
+from brdfkit.lighting.filtering.filtered_map import (
+    FilteredMap,
+    LobeMaps,
+    Mips,
+    make_latlong_picture,
+)
+from brdfkit.lighting.filtering.paraboloid_levels import resample_to_discs
+from brdfkit.lighting.filtering.sphere_filter import convolve_on_sphere, halve_resolution
 from brdfkit.mitsuba_bridge.arrays import Rows
 
-IRRADIANCE_SIDE = 64  # texels: irradiance is smooth
-WAVELENGTHS = 96  # evenly spaced, at which a spectral variant is evaluated
-LIGHT_DIRECTIONS = 256  # that represent all the light where it may be hidden
+IRRADIANCE_SIDE = 64  # texels along a side of the irradiance's map, few because it is smooth
+WAVELENGTHS = 96  # evenly spaced wavelengths at which an emitter is evaluated in spectral variants
+LIGHT_DIRECTIONS = 256  # directions that represent the light for shadows in the irradiance
 FILTERS: dict[str, type[LobeMaps | Mips]] = {"lobes": LobeMaps, "mips": Mips}
 
 
 class Light(Protocol):
-    """Filtered light as surfaces look it up, in linear sRGB."""
+    """Filtered environment light that lights surfaces, in linear sRGB."""
 
-    def mean_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
-        """Return the mean radiance over the von Mises-Fisher lobe of this axis and κ."""
+    def mean_radiance_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
+        """Return the mean radiance over the von Mises-Fisher lobe with this `axis` and κ."""
 
     def irradiance(self, normal: JitVector) -> JitColour:
         """Return the irradiance divided by π: the radiance of a white matte surface."""
 
 
 class FilteredLight:
-    """The light of an environment: its means over lobes, and its irradiance over normals.
+    """The light of an environment emitter, filtered for look-ups: means over lobes, and irradiance.
 
-    `kind` is one of `FILTERS`, and `side` the size of the map's finest level [texels].
+    `kind` is a class of `FILTERS`, and `side` the size of the filtered map's finest level [texels].
     """
 
     def __init__(self, kind: type[LobeMaps | Mips], side: int) -> None:
         self.kind, self.side = kind, side
-        self.source: tuple[MitsubaObject, bytes] | None = None  # the emitter, and its digest
+        self.source: tuple[MitsubaObject, bytes] | None = None  # emitter, digest of its parameters
         self.directions: LightDirections | None = None
 
     def update(self, emitter: MitsubaObject) -> FilteredLight:
         """Filter the `emitter` unless it is unchanged since the last call; return this object."""
-        source = emitter, _digest(emitter)
+        source = emitter, _digest_parameters(emitter)
         if self.source != source:
-            radiance = radiance_function(emitter)
-            picture = make_picture(radiance, self.side)
+            radiance = make_radiance_function(emitter)
+            picture = make_latlong_picture(radiance, self.side)
             self.lobes = self.kind(radiance, picture)
             self.irradiances = FilteredMap([filter_irradiance(picture)])
             self.source, self.directions = source, None
         return self
 
-    def light_directions(self, rays: int) -> LightDirections:
-        """Return the directions from which the light comes, shared by the `rays` of a pixel."""
+    def get_light_directions(self, rays: int) -> LightDirections:
+        """Return directions drawn by the emitter, shared by the `rays` of a pixel, for shadows."""
         if self.directions is None or self.directions.rays != rays:
             assert self.source is not None, "call update first"
             self.directions = LightDirections(self.source[0], LIGHT_DIRECTIONS, rays)
         return self.directions
 
-    def mean_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
-        """Return the mean radiance over a von Mises-Fisher lobe, linear sRGB."""
-        return self.lobes.at(axis, kappa)
+    def mean_radiance_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
+        """Return the mean radiance, in linear sRGB, over a lobe with this `axis` and κ."""
+        return self.lobes.mean_over_lobe(axis, kappa)
 
     def irradiance(self, normal: JitVector) -> JitColour:
-        """Return the radiance of a white matte surface of this `normal`, linear sRGB."""
-        return self.irradiances.bilinear(normal, 0)
+        """Return the irradiance for this `normal` divided by π, in linear sRGB."""
+        return self.irradiances.interpolate_bilinearly(normal, 0)
 
 
 class LightDirections:
-    """At least `count` directions drawn by an `emitter`, the same ones every time.
+    """At least `count` directions drawn by an `emitter`, to test from where its light is visible.
 
-    Brighter light has more of them. They are dealt out to the `rays` of a pixel.
+    Brighter parts of the environment have more directions. They are always the same ones, and are
+    shared out among the `rays` of a pixel.
     """
 
     def __init__(self, emitter: MitsubaObject, count: int, rays: int) -> None:
@@ -88,16 +94,16 @@ class LightDirections:
         from scipy.stats import qmc
 
         self.rays, self.per_ray = rays, -(-count // rays)
-        # Any consecutive points of Halton's sequence, such as those of a ray, are spread out
+        # In Halton's sequence even few consecutive points, such as those of a ray, are spread out
         u = qmc.Halton(2, scramble=False).random(1 + rays * self.per_ray)[1:].astype(np.float32)
         origin = dr.zeros(mi.SurfaceInteraction3f, len(u))
         drawn, _ = emitter.sample_direction(origin, mi.Point2f(u.T))
         directions, density = np.array(drawn.d).T, np.array(drawn.pdf)[:, None]
         self.directions = Rows(directions)
-        self.powers = Rows(radiance_function(emitter)(directions) / density)
+        self.powers = Rows(make_radiance_function(emitter)(directions) / density)
 
-    def at(self, i: JitInt, ray: JitInt) -> tuple[JitVector, JitColour]:
-        """Return direction `i` of a ray, and the radiance from it over its density, linear sRGB."""
+    def get_direction(self, i: JitInt, ray: JitInt) -> tuple[JitVector, JitColour]:
+        """Return direction `i` of a ray, and the radiance from there divided by its density."""
         import mitsuba as mi
 
         place = ray * self.per_ray + i
@@ -105,19 +111,22 @@ class LightDirections:
 
 
 def filter_irradiance(picture: FloatArray) -> FloatArray:
-    """Return the irradiance divided by π for all normals, from the radiance of all directions.
+    """Return a map of the irradiance divided by π for all normals, from a map of the radiance.
 
     `picture` is (height, 2 height, channels) by latitude and longitude. The result is a pair of
-    discs (2, IRRADIANCE_SIDE, IRRADIANCE_SIDE, channels).
+    discs (2, IRRADIANCE_SIDE, IRRADIANCE_SIDE, channels) as in `paraboloid_levels.py`.
     """
     while len(picture) > 4 * IRRADIANCE_SIDE:
-        picture = halve(picture)
-    irradiance = convolve(picture, lambda cos: np.maximum(cos, 0) / np.pi, np.pi / 2)
-    return to_discs(irradiance, IRRADIANCE_SIDE)
+        picture = halve_resolution(picture)
+    irradiance = convolve_on_sphere(picture, lambda cos: np.maximum(cos, 0) / np.pi, np.pi / 2)
+    return resample_to_discs(irradiance, IRRADIANCE_SIDE)
 
 
-def radiance_function(emitter: MitsubaObject) -> Callable[[FloatArray], FloatArray]:
-    """Return a function of unit vectors (n, 3) → radiance (n, 3) from there, linear sRGB."""
+def make_radiance_function(emitter: MitsubaObject) -> Callable[[FloatArray], FloatArray]:
+    """Return a function that evaluates an environment emitter in NumPy, in any variant.
+
+    It takes unit vectors (n, 3), and returns the radiance (n, 3) from there in linear sRGB.
+    """
     import drjit as dr
     import mitsuba as mi
 
@@ -129,14 +138,14 @@ def radiance_function(emitter: MitsubaObject) -> Callable[[FloatArray], FloatArr
             value = _integrate_spectrum(emitter, si)
         else:
             value = np.array(mi.unpolarized_spectrum(emitter.eval(si)), float).T
-        # Uniform light has one value for all directions, grey light one for all channels
+        # A uniform emitter returns one value for all directions, and mono variants one channel
         return np.broadcast_to(value, (len(directions), 3))
 
     return radiance
 
 
 def _integrate_spectrum(emitter: MitsubaObject, si: MitsubaObject) -> FloatArray:
-    """Return the radiance (n, 3) of an emitter's spectrum at `si`, linear sRGB."""
+    """Integrate an emitter's spectrum at `si` to radiance (n, 3) in linear sRGB."""
     import mitsuba as mi
 
     first, last = float(mi.MI_CIE_MIN), float(mi.MI_CIE_MAX)
@@ -150,8 +159,8 @@ def _integrate_spectrum(emitter: MitsubaObject, si: MitsubaObject) -> FloatArray
     return total * (last - first) / (WAVELENGTHS // each)
 
 
-def _digest(emitter: MitsubaObject) -> bytes:
-    """Return a digest of the parameters of an `emitter`, to notice when it changes."""
+def _digest_parameters(emitter: MitsubaObject) -> bytes:
+    """Return a digest of an emitter's parameters, by which changes of them are noticed."""
     import mitsuba as mi
 
     parameters = mi.traverse(emitter)

@@ -1,7 +1,8 @@
-"""Filtered maps in Mitsuba: the mean radiance over a lobe, by one trilinear look-up.
+"""Filtered environment maps in Mitsuba: the mean radiance over a lobe by one trilinear look-up.
 
-`LobeMaps` and `Mips` are made of the light of all directions, given as a function (n, 3) → (n, 3)
-and as its `picture`. Their method `at(axis, kappa)` returns the mean over a von Mises-Fisher lobe.
+`LobeMaps` and `Mips` are made from `radiance`, a function (n, 3) → (n, 3) of directions, and its
+`picture` by latitude and longitude. `mean_over_lobe(axis, kappa)` returns the mean radiance over a
+von Mises-Fisher lobe.
 """
 
 import math
@@ -13,37 +14,40 @@ from brdfkit.core.array_types import FloatArray, JitColour, JitFloat, JitInt, Ji
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.dual_paraboloid import to_disc
 from brdfkit.lighting.filtering import paraboloid_levels as levels
-from brdfkit.lighting.filtering.sphere_filter import azimuths, row_angles
+from brdfkit.lighting.filtering.sphere_filter import column_azimuths, row_polar_angles
 from brdfkit.mitsuba_bridge.arrays import Rows
 
 Radiance = Callable[[FloatArray], FloatArray]
 
 
 class FilteredMap:
-    """The levels of a filtered map, each (2, side, side, 3), looked up by direction and level."""
+    """Environment maps of decreasing resolution, the levels, to look up by direction and level.
+
+    Each is a pair of discs (2, side, side, 3) as in `paraboloid_levels.py`.
+    """
 
     def __init__(self, levels: list[FloatArray]) -> None:
         sides = np.array([level.shape[1] for level in levels])
         starts = np.cumsum(2 * sides**2) - 2 * sides**2
         texels = np.concatenate([level.reshape(-1, 3) for level in levels])
-        # A fourth channel lets a texel be read in one piece
+        # With a fourth channel, a texel is read in one piece
         self.texels = Rows(np.pad(texels, ((0, 0), (0, 1))))
         self.places = Rows(np.stack([starts, sides], axis=1))
         self.count = len(levels)
 
-    def trilinear(self, direction: JitVector, level: JitFloat) -> JitColour:
-        """Return the radiance at a fractional `level`, interpolated between two levels."""
+    def interpolate_trilinearly(self, direction: JitVector, level: JitFloat) -> JitColour:
+        """Return the radiance in a `direction` at a fractional `level`, between two levels."""
         import drjit as dr
         import mitsuba as mi
 
         level = dr.clip(level, 0, self.count - 1)
         lower = dr.minimum(mi.UInt32(level), max(self.count - 2, 0))
         upper = dr.minimum(lower + 1, self.count - 1)
-        below, above = (self.bilinear(direction, whole) for whole in (lower, upper))
+        below, above = (self.interpolate_bilinearly(direction, whole) for whole in (lower, upper))
         return dr.lerp(below, above, level - mi.Float(lower))
 
-    def bilinear(self, direction: JitVector, level: JitInt) -> JitColour:
-        """Return the radiance at a whole `level`."""
+    def interpolate_bilinearly(self, direction: JitVector, level: JitInt) -> JitColour:
+        """Return the radiance in a `direction` at a whole `level`, between four texels."""
         import drjit as dr
         import mitsuba as mi
 
@@ -61,43 +65,48 @@ class FilteredMap:
 
 
 class Mips(FilteredMap):
-    """The levels of graphics hardware, with the level by the rule of [Ergun 2015, eq. 8.9]."""
+    """A filtered map with the mip levels of graphics hardware.
+
+    [Ergun 2015, eq. 8.9] gives the level for a lobe.
+    """
 
     def __init__(self, radiance: Radiance, picture: FloatArray) -> None:
         self.side = len(picture)
-        super().__init__(levels.make_mips(make_base(radiance, self.side)))
+        super().__init__(levels.make_mips(make_finest_level(radiance, self.side)))
 
-    def at(self, axis: JitVector, kappa: JitFloat) -> JitColour:
-        """Return the mean radiance over a lobe."""
-        return self.trilinear(axis, levels.mip_level(kappa, axis.z, self.side))
+    def mean_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
+        """Return the approximate mean radiance over a von Mises-Fisher lobe."""
+        return self.interpolate_trilinearly(axis, levels.mip_level(kappa, axis.z, self.side))
 
 
 class LobeMaps(FilteredMap):
-    """The map itself, and levels below that are convolved with ever wider lobes."""
+    """A filtered map whose levels, after the map itself, are convolved with ever wider lobes."""
 
     def __init__(self, radiance: Radiance, picture: FloatArray) -> None:
         side = len(picture)
         self.sharpest = levels.sharpest_kappa(side)
-        super().__init__([make_base(radiance, side), *levels.convolve_with_lobes(picture, side)])
+        super().__init__(
+            [make_finest_level(radiance, side), *levels.convolve_with_lobes(picture, side)]
+        )
 
-    def at(self, axis: JitVector, kappa: JitFloat) -> JitColour:
-        """Return the mean radiance over a lobe."""
+    def mean_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
+        """Return the mean radiance over a von Mises-Fisher lobe."""
         import drjit as dr
 
-        # Level 1 has the sharpest lobe, and further levels widen by equal ratios. Level 0 has no
-        # width; between it and level 1, the variance 1/κ is interpolated
+        # The variance 1/κ of the levels' lobes is 0 at level 0, then grows by equal ratios from
+        # level to level; between levels 0 and 1 it is interpolated linearly
         variance = self.sharpest / kappa
         level = dr.select(variance < 1, variance, 1 + dr.log2(variance) / math.log2(levels.STEP))
-        return self.trilinear(axis, level)
+        return self.interpolate_trilinearly(axis, level)
 
 
-def make_base(radiance: Radiance, side: int) -> FloatArray:
-    """Return the radiance (2, side, side, 3) in the directions of the texels."""
+def make_finest_level(radiance: Radiance, side: int) -> FloatArray:
+    """Return the finest level (2, side, side, 3): the radiance in the directions of its texels."""
     directions = levels.texel_directions(side)
     return radiance(directions.reshape(-1, 3)).reshape(directions.shape)
 
 
-def make_picture(radiance: Radiance, height: int) -> FloatArray:
-    """Return the radiance (height, 2 height, 3) by latitude and longitude, z up."""
-    theta, phi = np.meshgrid(row_angles(height), azimuths(2 * height), indexing="ij")
+def make_latlong_picture(radiance: Radiance, height: int) -> FloatArray:
+    """Return a picture (height, 2 height, 3) of the radiance by latitude and longitude, z up."""
+    theta, phi = np.meshgrid(row_polar_angles(height), column_azimuths(2 * height), indexing="ij")
     return radiance(from_angles(theta, phi).reshape(-1, 3)).reshape(height, 2 * height, 3)

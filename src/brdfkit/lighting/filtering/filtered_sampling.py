@@ -1,25 +1,25 @@
-"""Filtered importance sampling: a few directions of a BSDF, and the mean light about each.
+"""Filtered importance sampling: a few directions drawn by a BSDF, with the mean light about each.
 
-All pixels take the same ones, so that there is no noise [Colbert & Křivánek 2007]. Where a BSDF is
-the same all over its surface, its directions are stored for a grid of views.
+All pixels use the same random numbers, so that pictures have no noise [Colbert & Křivánek 2007]. If
+a BSDF is uniform over its surface, its directions are stored for a grid of views.
 """
 
 from brdfkit.core.array_types import JitColour, JitInt, JitMask, MitsubaObject
-from brdfkit.lighting.filtering.bsdf_directions import Directions, split_constant
+from brdfkit.lighting.filtering.bsdf_directions import Directions, split_off_constant
 from brdfkit.lighting.filtering.filtered_light import Light
 from brdfkit.lighting.filtering.scene_bsdfs import (
     CacheByValues,
-    distinct_bsdfs,
-    has_matte_part,
+    has_separate_diffuse_part,
     is_one_of,
-    is_same_everywhere,
+    is_uniform_over_surface,
+    list_distinct_bsdfs,
 )
 from brdfkit.lighting.filtering.view_directions import ViewDirections
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
 
 class FilteredSampling:
-    """Lights a pixel by `count` directions of its BSDF, which its rays share."""
+    """Lights each pixel by `count` directions drawn by its BSDF, shared out among its rays."""
 
     def __init__(self, count: int) -> None:
         self.count = count
@@ -33,7 +33,11 @@ class FilteredSampling:
         light: Light,
         active: JitMask,
     ) -> JitColour:
-        """Return the radiance towards `si.wi`, a spectrum of the current variant."""
+        """Return the radiance that the surfaces at `si` reflect towards `si.wi`.
+
+        It is a spectrum of the current variant. The `light` is filtered; `sampler` only gives the
+        number of rays per pixel.
+        """
         import drjit as dr
         import mitsuba as mi
 
@@ -42,21 +46,21 @@ class FilteredSampling:
         if directions is None or directions.rays != rays:
             directions = self.directions = Directions(self.count, rays)
             self.views = CacheByValues(lambda bsdf: ViewDirections(bsdf, directions))
-        total, bsdfs = mi.UnpolarizedSpectrum(0), distinct_bsdfs(scene)
-        uniform = [bsdf for bsdf in bsdfs if is_same_everywhere(bsdf)]
-        for bsdf, views in self.views.get(uniform):
+        total, bsdfs = mi.UnpolarizedSpectrum(0), list_distinct_bsdfs(scene)
+        uniform = [bsdf for bsdf in bsdfs if is_uniform_over_surface(bsdf)]
+        for bsdf, views in self.views.get_results(uniform):
             here = active & (si.bsdf() == mi.BSDFPtr(bsdf))
             total = dr.select(here, views.radiance(si, light, here), total)
         others = [bsdf for bsdf in bsdfs if bsdf not in uniform]
         for separate in (True, False):
-            group = [bsdf for bsdf in others if has_matte_part(bsdf) == separate]
+            group = [bsdf for bsdf in others if has_separate_diffuse_part(bsdf) == separate]
             if group:
                 here = active & is_one_of(si.bsdf(), group)
-                shown = self._draw_at_points(si, light, here, separate, directions)
+                shown = self._estimate_radiance_at_points(si, light, here, separate, directions)
                 total = dr.select(here, shown, total)
         return total
 
-    def _draw_at_points(
+    def _estimate_radiance_at_points(
         self,
         si: MitsubaObject,
         light: Light,
@@ -64,20 +68,20 @@ class FilteredSampling:
         separate: bool,
         directions: Directions,
     ) -> JitColour:
-        """Return the radiance by directions that are drawn at the points `si` themselves.
+        """Return the reflected radiance by directions drawn at the points `si`, not stored ones.
 
-        `separate`: see `split_constant`.
+        `separate` says whether the BSDFs have diffuse components that can be evaluated alone.
         """
         import drjit as dr
         import mitsuba as mi
 
         bsdf, spectrum = si.bsdf(), make_rgb_emission()
-        c, types, constant = split_constant(bsdf, si, active, separate)
+        c, types, constant = split_off_constant(bsdf, si, active, separate)
 
         def add_direction(i: JitInt, total: JitColour) -> tuple[JitInt, JitColour]:
-            index = directions.index(i, si)
-            wo, kappa, weight = directions.draw(index, bsdf, si, types, constant, active)
-            mean = spectrum(light.mean_over_lobe(si.to_world(wo), kappa), si)
+            index = directions.find_index(i, si)
+            wo, kappa, weight = directions.draw_direction(index, bsdf, si, types, constant, active)
+            mean = spectrum(light.mean_radiance_over_lobe(si.to_world(wo), kappa), si)
             return i + 1, total + weight * mean
 
         _, total = dr.while_loop(

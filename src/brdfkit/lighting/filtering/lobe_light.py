@@ -1,31 +1,36 @@
-"""Lighting by spherical Gaussians: a material's lobes for a view, with one look-up for each.
+"""Lighting by spherical Gaussians: one look-up in the filtered light for each lobe of a material.
 
-    L(o) ≈ d(o) E + Σ_k w_k(o) · L filtered by the lobe μ_k(o), κ_k(o)
+The radiance that a surface reflects towards the view o is
 
-with the irradiance E divided by π, and the light's radiance L. The view o, the albedo d and the
-lobes are those of a `LobeTable`, interpolated between its views. [Ergun 2015, sections 8.3, 8.5,
-8.6]
+    d(o) E + Σ_k w_k(o) · L filtered by the lobe with the axis μ_k(o) and concentration κ_k(o)
+
+with the irradiance E divided by π, and the environment's radiance L. A `LobeTable` has the albedo d
+of the diffuse part, and the lobes with their weights w, which are interpolated between its views.
+[Ergun 2015, sections 8.3, 8.5, 8.6]
 """
 
 import numpy as np
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitInt, JitMask, JitVector, MitsubaObject
 from brdfkit.lighting.filtering.filtered_light import Light
-from brdfkit.lighting.filtering.scene_bsdfs import CacheByValues, distinct_bsdfs, is_isotropic
-from brdfkit.lighting.spherical_gaussians.lobe_table import LobeTable, lobe_table
+from brdfkit.lighting.filtering.scene_bsdfs import CacheByValues, is_isotropic, list_distinct_bsdfs
+from brdfkit.lighting.spherical_gaussians.lobe_table import LobeTable, fit_lobe_table
 from brdfkit.mitsuba_bridge.arrays import Rows, find_bracket, find_periodic_bracket
 from brdfkit.mitsuba_bridge.bsdf.from_dictionary import eval_bsdf
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
-AZIMUTHS = 16  # of the views of an anisotropic BSDF
+AZIMUTHS = 16  # number of azimuths of the views to which an anisotropic BSDF is fitted
 
 
 class LobeLight:
-    """Lights surfaces by lobes, `count` per view, that a `method` fits to the BSDFs of a scene."""
+    """Lights surfaces by spherical Gaussians that are fitted to the BSDFs of a scene.
+
+    `method` is a name of `lobe_table.METHODS`, and `count` the number of lobes per view.
+    """
 
     def __init__(self, method: str, count: int) -> None:
         self.method, self.count = method, count
-        self.lobes = CacheByValues(self.fit)
+        self.lobes = CacheByValues(self.fit_lobes)
 
     def radiance(
         self,
@@ -35,20 +40,23 @@ class LobeLight:
         light: Light,
         active: JitMask,
     ) -> JitColour:
-        """Return the radiance towards `si.wi`, a spectrum of the current variant."""
+        """Return the radiance that the surfaces at `si` reflect towards `si.wi`.
+
+        It is a spectrum of the current variant. The `light` is filtered; `sampler` is not used.
+        """
         import drjit as dr
         import mitsuba as mi
 
         bsdf, total = si.bsdf(), mi.Color3f(0)
-        for each, lobes in self.lobes.get(distinct_bsdfs(scene)):
+        for each, lobes in self.lobes.get_results(list_distinct_bsdfs(scene)):
             here = active & (bsdf == mi.BSDFPtr(each))
             if not mi.has_flag(each.flags(), mi.BSDFFlags.BackSide):
                 here &= si.wi.z > 0
             total = dr.select(here, lobes.radiance(si, light, here), total)
         return make_rgb_emission()(total, si)
 
-    def fit(self, bsdf: MitsubaObject) -> "ViewedLobes":
-        """Fit lobes to a BSDF, which takes a few seconds."""
+    def fit_lobes(self, bsdf: MitsubaObject) -> "ViewedLobes":
+        """Fit lobes to a BSDF, in a few seconds; warn if it has a mirror or clear glass."""
         import mitsuba as mi
 
         if mi.has_flag(bsdf.flags(), mi.BSDFFlags.Delta):
@@ -59,14 +67,14 @@ class LobeLight:
             )
         azimuths = 1 if is_isotropic(bsdf) else AZIMUTHS
         return ViewedLobes(
-            lobe_table(
+            fit_lobe_table(
                 lambda wi, wo: eval_bsdf(bsdf, wo, wi), self.method, self.count, azimuths=azimuths
             )
         )
 
 
 class ViewedLobes:
-    """A `LobeTable` in Mitsuba, whose lobes are interpolated between its views."""
+    """A `LobeTable` in Mitsuba's memory, whose lobes are interpolated between its views."""
 
     def __init__(self, table: LobeTable) -> None:
         self.views, self.azimuths = len(table.theta_o), len(table.phi_o)
@@ -80,7 +88,10 @@ class ViewedLobes:
         self.diffuse = Rows(np.broadcast_to(table.diffuse, (len(table.diffuse), 3)))
 
     def radiance(self, si: MitsubaObject, light: Light, active: JitMask) -> JitColour:
-        """Return the radiance towards `si.wi`, linear sRGB, the same on both sides."""
+        """Return the radiance that the points `si` reflect towards `si.wi`, in linear sRGB.
+
+        Both sides of a surface reflect alike.
+        """
         import drjit as dr
         import mitsuba as mi
 
@@ -95,7 +106,7 @@ class ViewedLobes:
             axis = interpolate(self.axes, mi.Vector4f, k, self.count)
             x, y = cos_phi * axis.x - sin_phi * axis.y, sin_phi * axis.x + cos_phi * axis.y
             axis = si.to_world(dr.normalize(mi.Vector3f(x, y, axis.z * side)))
-            mean = light.mean_over_lobe(axis, weight.w)
+            mean = light.mean_radiance_over_lobe(axis, weight.w)
             return k + 1, total + mi.Color3f(weight.x, weight.y, weight.z) * mean
 
         irradiance = light.irradiance(si.to_world(mi.Vector3f(0, 0, side)))
@@ -106,9 +117,10 @@ class ViewedLobes:
         return dr.select(active, total, 0)
 
     def find_views(self, wo: JitVector) -> tuple[list[tuple[JitInt, JitFloat]], JitFloat, JitFloat]:
-        """Return the views around `wo`, as (number, share), and the sine and cosine of its azimuth.
+        """Find the stored views around `wo`, to interpolate the lobes between them.
 
-        The lobes turn by that azimuth.
+        Returns them as (number, weight), and the sine and cosine of the azimuth of `wo`, by which
+        the lobes have to be turned.
         """
         import drjit as dr
 

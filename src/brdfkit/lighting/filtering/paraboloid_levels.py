@@ -1,10 +1,10 @@
-"""The levels of a filtered map of all directions, each a pair of square dual-paraboloid pictures.
+"""The levels of a filtered environment map, each a pair of dual-paraboloid pictures.
 
-They are either the levels of graphics hardware, in which a texel is the mean of four texels of the
-level before, or maps that are convolved with von Mises-Fisher lobes of known concentrations κ, two
-for each halving of the size: then a look-up for a κ has exactly that width, and not only about. A
-square is larger than its disc by the factor `BORDER`: it contains a margin of the other hemisphere,
-so that it can be interpolated at the rim.
+They are made in one of two ways: as the mip levels of graphics hardware, in which a texel is the
+mean of four texels of the level before, or by convolution with von Mises-Fisher lobes of known
+concentrations κ, two levels for each halving of the size, so that a look-up has exactly the width
+of a lobe. The picture of a hemisphere is a square around a disc. It is larger than the disc by the
+factor `BORDER`, and continues into the other hemisphere, to interpolate at the disc's rim.
 
 [Ergun 2015, eqs. 8.8-8.10, whose b is `BORDER`]
 """
@@ -17,32 +17,35 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray, JitFloat
 from brdfkit.core.geometry.dual_paraboloid import from_disc, solid_angle
-from brdfkit.lighting.filtering.sphere_filter import convolve, halve
+from brdfkit.lighting.filtering.sphere_filter import convolve_on_sphere, halve_resolution
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import log_density
 
 BORDER = 1.2
-SMALLEST_SIDE = 16  # texels of a level: the border of a smaller one is too narrow to interpolate
-TEXELS = 2.0  # per standard deviation κ^-1/2 of a lobe in the middle of a disc, where they are few
-STEP = 2**0.5  # ratio of the κ of levels: a lobe between two is nearly the mean of theirs
-ROWS = 1.7  # largest number of rows of a picture per texel of the discs that are made of it
-SMALLEST_KAPPA = 0.5  # nearly uniform: a wider lobe is looked up as this one
-CUT_OFF = 12.0  # where a lobe ends: at e^-12 of its peak, beyond which lies as much of its integral
-# Interpolation between texels adds about this share to the variance of a lobe, so that the map is
-# convolved with a lobe that much sharper
+SMALLEST_SIDE = 16  # texels; the border of smaller pictures would be too narrow to interpolate
+TEXELS = 2.0  # texels per standard deviation κ^-1/2 of a lobe in a disc's middle, where fewest are
+STEP = 2**0.5  # ratio of κ between levels, so small that a lobe between two is nearly their mean
+ROWS = 1.7  # largest number of rows of a picture per texel along a side of the discs made from it
+SMALLEST_KAPPA = 0.5  # a nearly uniform lobe, which is used for wider ones as well
+CUT_OFF = 12.0  # a lobe is cut off at e^-12 of its peak, beyond which lies e^-12 of its integral
+# Interpolation between texels widens a lobe's variance by about this share; so the lobe with which
+# the map is convolved is sharper by as much
 BLUR = 0.03
-COVERAGE = 0.5  # a: the share of a lobe within one texel of the level of its size
-CACHED_PICTURES = 4  # whose filtered levels are kept, a few MB each
+COVERAGE = 0.5  # share of a lobe that one texel of its mip level covers, called a in eq. 8.9
+CACHED_PICTURES = 4  # pictures whose levels, a few MB each, are kept for the next call
 
 
 def texel_directions(side: int) -> FloatArray:
-    """Return the directions (2, side, side, 3) of the texels' middles: discs z ≥ 0 and z < 0."""
+    """Return the directions (2, side, side, 3) of the middles of a level's texels.
+
+    The first picture is the hemisphere z ≥ 0, the second one z < 0.
+    """
     along = BORDER * ((np.arange(side) + 0.5) * 2 / side - 1)
     s, t = np.meshgrid(along, along)
     return np.stack([np.stack(from_disc(s, t, sign), axis=-1) for sign in (1, -1)])
 
 
 def make_mips(base: FloatArray) -> list[FloatArray]:
-    """Return `base` (2, side, side, channels), and its repeated means over 2×2 texels.
+    """Return the mip levels of the map `base` (2, side, side, channels), by means over 2×2 texels.
 
     >>> [level.shape[1] for level in make_mips(np.ones((2, 64, 64, 3)))]
     [64, 32, 16]
@@ -55,10 +58,11 @@ def make_mips(base: FloatArray) -> list[FloatArray]:
 
 
 def mip_level(kappa: JitFloat, z: JitFloat, side: int, coverage: float = COVERAGE) -> JitFloat:
-    """Return the mip level whose texels are as large as the cap that holds a share of a lobe.
+    """Return the fractional mip level whose texels are as large as a lobe, by eq. 8.9.
 
-    The spherical cap holds the share `coverage` of the lobe's energy. This is eq. 8.9, for the
-    concentration `kappa`, a direction with the component `z`, and a base of `side` texels.
+    The lobe's size is that of the spherical cap with the share `coverage` of its energy. `kappa` is
+    its concentration, `z` the component of its axis, and `side` the size of the finest level
+    [texels].
 
     >>> round(mip_level(100.0, 0.5, 512, coverage=0.9), 5)
     5.75745
@@ -67,12 +71,15 @@ def mip_level(kappa: JitFloat, z: JitFloat, side: int, coverage: float = COVERAG
 
 
 def cap_solid_angle(kappa: JitFloat, coverage: float) -> JitFloat:
-    """Return the solid angle [sr] about a lobe's axis that holds the share `coverage` of it."""
+    """Return the solid angle [sr] of the cap with the share `coverage` of a lobe."""
     return -2 * math.pi * math.log(1 - coverage) / kappa
 
 
 def texel_solid_angle(z: JitFloat, side: int) -> JitFloat:
-    """Return the solid angle [sr] of a texel at a direction, by eqs. 8.8 and 8.10."""
+    """Return the solid angle [sr] of a texel at directions with the component `z`.
+
+    The picture has `side` texels along a side. [Ergun 2015, eqs. 8.8, 8.10]
+    """
     return 4 * BORDER**2 * solid_angle(z) / side**2
 
 
@@ -82,10 +89,11 @@ def sharpest_kappa(side: float) -> float:
 
 
 def convolve_with_lobes(picture: FloatArray, side: float) -> list[FloatArray]:
-    """Convolve a `picture` (height, 2 height, channels) with ever wider lobes.
+    """Convolve an environment map with ever wider lobes, and return a level for each of them.
 
-    Their κ are `sharpest_kappa(side)`, its `STEP`-th part and so on. Returns discs (2, texels,
-    texels, channels) for each. The last few results are kept, as most previews share their light.
+    `picture` (height, 2 height, channels) is by latitude and longitude. The κ of the lobes begin
+    with `sharpest_kappa(side)`, and fall by the factor `STEP`. A level has the shape (2, texels,
+    texels, channels). The last few results are kept, since most previews have the same light.
     """
     pixels = np.asarray(picture, float).tobytes()
     return list(_convolve_with_lobes(pixels, picture.shape, side))
@@ -93,30 +101,35 @@ def convolve_with_lobes(picture: FloatArray, side: float) -> list[FloatArray]:
 
 @lru_cache(CACHED_PICTURES)
 def _convolve_with_lobes(pixels: bytes, shape: tuple[int, ...], side: float) -> list[FloatArray]:
-    """Convolve a picture with ever wider lobes; its `pixels` are the bytes of doubles."""
+    """Do the work of `convolve_with_lobes`, for a picture as bytes of doubles, a key of the cache."""
     picture: FloatArray = np.frombuffer(pixels).reshape(shape)
     kappa, levels = sharpest_kappa(side), []
     while kappa > SMALLEST_KAPPA:
         while len(picture) > ROWS * max(side, SMALLEST_SIDE):
-            picture = halve(picture)
+            picture = halve_resolution(picture)
         sharper = (1 + BLUR) * kappa
 
-        def lobe(cos: AnyArray, kappa: float = sharper) -> AnyArray:
+        def evaluate_lobe(cos: AnyArray, kappa: float = sharper) -> AnyArray:
             return np.exp(log_density(cos, kappa))
 
-        filtered = convolve(picture, lobe, math.acos(max(1 - CUT_OFF / kappa, -1)))
-        levels.append(to_discs(filtered, max(round(side), SMALLEST_SIDE)))
+        filtered = convolve_on_sphere(
+            picture, evaluate_lobe, math.acos(max(1 - CUT_OFF / kappa, -1))
+        )
+        levels.append(resample_to_discs(filtered, max(round(side), SMALLEST_SIDE)))
         kappa, side = kappa / STEP, side / math.sqrt(STEP)
     return levels
 
 
-def to_discs(picture: FloatArray, side: int) -> FloatArray:
-    """Resample a `picture` by latitude and longitude as discs (2, side, side, channels)."""
+def resample_to_discs(picture: FloatArray, side: int) -> FloatArray:
+    """Resample a `picture` by latitude and longitude to dual-paraboloid pictures.
+
+    The result has the shape (2, side, side, channels).
+    """
     from scipy.ndimage import map_coordinates
 
     height, width = picture.shape[:2]
     x, y, z = np.moveaxis(texel_directions(side), -1, 0)
-    around = 8  # pixels beyond each edge; behind a pole comes the opposite azimuth
+    around = 8  # pixels added beyond each edge; beyond a pole lies the opposite azimuth
     half = np.roll(picture, width // 2, axis=1)
     tall = np.concatenate([half[:around][::-1], picture, half[-around:][::-1]])
     wide = np.pad(tall, ((0, 0), (around, around), (0, 0)), mode="wrap")

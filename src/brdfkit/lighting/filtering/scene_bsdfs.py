@@ -1,4 +1,4 @@
-"""The BSDFs of a scene: tests of their properties, and a cache of what is computed from them."""
+"""Properties of the BSDFs in a scene, such as isotropy, and a cache of results for each BSDF."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -9,15 +9,15 @@ from brdfkit.core.array_types import FloatArray, JitMask, MitsubaModule, Mitsuba
 from brdfkit.core.geometry.directions import rotate_z
 from brdfkit.mitsuba_bridge.bsdf.from_dictionary import eval_bsdf
 
-TOLERANCE = 1e-3  # share of the largest value: smaller differences do not count
-CACHED_BSDFS = 16
+TOLERANCE = 1e-3  # differences below this share of the largest value count as rounding
+CACHED_BSDFS = 16  # results that `CacheByValues` keeps
 
 
-def _make_pairs(count: int = 64) -> FloatArray:
-    """Return direction pairs (2, count, 3) above the surface.
+def _make_direction_pairs(count: int = 64) -> FloatArray:
+    """Return pairs of directions (2, count, 3) above the surface, to compare BSDFs by their values.
 
-    Half of them lie anywhere. Half lie near the mirror direction, from a thousandth of a radian to
-    a third, where narrow lobes differ.
+    One half are random pairs. The others lie near the mirror direction, at angles from a thousandth
+    of a radian to a third, where narrow lobes differ.
     """
     random, near = np.random.default_rng(0), count // 2
     wi, wo = random.normal(size=(2, count, 3))
@@ -30,16 +30,16 @@ def _make_pairs(count: int = 64) -> FloatArray:
     return pairs
 
 
-PAIRS = _make_pairs()  # BSDFs are compared by their values there
+PAIRS = _make_direction_pairs()  # directions at which BSDFs are compared
 
 
-def distinct_bsdfs(scene: MitsubaObject) -> list[MitsubaObject]:
-    """Return the different BSDFs of a `scene`."""
+def list_distinct_bsdfs(scene: MitsubaObject) -> list[MitsubaObject]:
+    """Return the BSDFs of a scene's shapes, each once."""
     return list(dict.fromkeys(shape.bsdf() for shape in scene.shapes()))
 
 
 def is_one_of(bsdf: MitsubaObject, others: Iterable[MitsubaObject]) -> JitMask:
-    """Return whether a `BSDFPtr` points to one of the BSDFs `others`."""
+    """Return a mask of the elements of a `mi.BSDFPtr` that point to one of the BSDFs `others`."""
     import mitsuba as mi
 
     matches = mi.Bool(False)
@@ -48,21 +48,21 @@ def is_one_of(bsdf: MitsubaObject, others: Iterable[MitsubaObject]) -> JitMask:
     return matches
 
 
-def component_types(mi: MitsubaModule) -> tuple[int, int]:
-    """Return the types of Mitsuba's components that reflect diffusely, and all other types."""
+def split_component_types(mi: MitsubaModule) -> tuple[int, int]:
+    """Return Mitsuba's flags of diffusely reflecting BSDF components, and of all others."""
     matte = int(mi.BSDFFlags.DiffuseReflection)
     return matte, int(mi.BSDFFlags.All) & ~matte
 
 
-def has_matte_part(bsdf: MitsubaObject) -> bool:
-    """Return whether the diffuse components of a BSDF are constant and evaluated separately.
+def has_separate_diffuse_part(bsdf: MitsubaObject) -> bool:
+    """Return whether the diffuse components of a BSDF are constant, and can be evaluated alone.
 
-    Some BSDFs evaluate all components whichever are requested.
+    Some BSDFs evaluate all components even if only the diffuse ones are requested.
     """
     import mitsuba as mi
 
     wi, wo = PAIRS
-    matte, others = (eval_bsdf(bsdf, wi, wo, types) for types in component_types(mi))
+    matte, others = (eval_bsdf(bsdf, wi, wo, types) for types in split_component_types(mi))
     whole = eval_bsdf(bsdf, wi, wo)
     allowed = TOLERANCE * matte.max()
     return bool(
@@ -73,16 +73,16 @@ def has_matte_part(bsdf: MitsubaObject) -> bool:
 
 
 def is_isotropic(bsdf: MitsubaObject) -> bool:
-    """Return whether a BSDF keeps its values when both directions turn about the normal."""
+    """Return whether a BSDF is isotropic: unchanged if both directions turn about the normal."""
     value, turned = eval_bsdf(bsdf, *PAIRS), eval_bsdf(bsdf, *rotate_z(PAIRS, 1.0))
     return bool(np.abs(value - turned).max() <= TOLERANCE * value.max())
 
 
-def is_same_everywhere(bsdf: MitsubaObject) -> bool:
-    """Return whether values at a few directions describe a BSDF at every point of a surface.
+def is_uniform_over_surface(bsdf: MitsubaObject) -> bool:
+    """Return whether a BSDF is equal at all points of a surface, so that results can be stored.
 
-    They do not where the BSDF has a texture, a mirror or refracted light, which those directions
-    miss, nor where derivatives by its parameters are needed, nor in a spectral variant.
+    It counts as different if it has a texture, a mirror or refraction, if derivatives by its
+    parameters are needed, and in spectral variants.
     """
     import drjit as dr
     import mitsuba as mi
@@ -96,7 +96,7 @@ def is_same_everywhere(bsdf: MitsubaObject) -> bool:
 
 
 def _has_texture(parent: MitsubaObject) -> bool:
-    """Return whether an object of Mitsuba's, or a part of it, has a texture that varies."""
+    """Return whether a Mitsuba object or one of its children has a spatially varying texture."""
     import mitsuba as mi
 
     varies = []
@@ -113,18 +113,18 @@ def _has_texture(parent: MitsubaObject) -> bool:
 
 
 class CacheByValues:
-    """A cache of the results of `make(bsdf)`, by the values of the BSDF at some directions."""
+    """A cache of results `make(bsdf)`, which recognises a BSDF by its values at some directions."""
 
     def __init__(self, make: Callable[[MitsubaObject], Any]) -> None:
         self.make, self.results = make, dict[bytes, Any]()
 
-    def get(self, bsdfs: list[MitsubaObject]) -> list[tuple[MitsubaObject, Any]]:
-        """Return pairs (BSDF, result) for `bsdfs` with their present parameters."""
+    def get_results(self, bsdfs: list[MitsubaObject]) -> list[tuple[MitsubaObject, Any]]:
+        """Return pairs (BSDF, result); a result is made again if the BSDF's parameters changed."""
         pairs = []
         for bsdf in bsdfs:
             values = eval_bsdf(bsdf, *PAIRS).tobytes()
             result = self.results.pop(values, None) or self.make(bsdf)
-            self.results[values] = result  # the newest comes last
+            self.results[values] = result  # last in the order, as the latest result in use
             pairs.append((bsdf, result))
         for oldest in list(self.results)[: -max(CACHED_BSDFS, len(pairs))]:
             del self.results[oldest]

@@ -1,8 +1,9 @@
-"""Directions of a BSDF that are drawn once for a grid of views, and serve every picture.
+"""Directions that a BSDF draws once for a grid of views, and that are stored for all pictures.
 
-A view stores the constant part c, and for every direction the half vector h, the κ of its lobe and
-its weight. A surface point takes those of the nearest view, and mirrors its own view about the half
-vectors. A picture thus takes as long with a measured table as with a formula: it evaluates neither.
+For a view the BSDF's constant part c is stored, and for each direction the half vector h, the κ of
+its lobe and its weight. A surface point uses those of the nearest view, and reflects its own view
+about the half vectors. Pictures do not evaluate the BSDF, and thus are as fast with a measured
+table as with a formula.
 """
 
 import numpy as np
@@ -18,18 +19,18 @@ from brdfkit.core.array_types import (
 )
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.vectors import reflect
-from brdfkit.lighting.filtering.bsdf_directions import Directions, split_constant
+from brdfkit.lighting.filtering.bsdf_directions import Directions, split_off_constant
 from brdfkit.lighting.filtering.filtered_light import Light
-from brdfkit.lighting.filtering.scene_bsdfs import has_matte_part, is_isotropic
+from brdfkit.lighting.filtering.scene_bsdfs import has_separate_diffuse_part, is_isotropic
 from brdfkit.mitsuba_bridge.arrays import Rows, find_cell
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
-ISOTROPIC, ANISOTROPIC = (256, 1), (96, 64)  # polar angles and azimuths of the views
-ADJACENT = 5  # polar angles over which the median of a direction's weights is taken
+ISOTROPIC, ANISOTROPIC = (256, 1), (96, 64)  # numbers of polar angles and azimuths of the views
+ADJACENT = 5  # number of adjacent polar angles over which outliers of weights are removed
 
 
 class ViewDirections:
-    """The `directions` of a BSDF at views of its front, and of its back where it has one."""
+    """The directions that a BSDF draws for a grid of views of its front, and of its back if any."""
 
     def __init__(self, bsdf: MitsubaObject, directions: Directions) -> None:
         import drjit as dr
@@ -39,19 +40,19 @@ class ViewDirections:
         self.angles, self.azimuths = ISOTROPIC if is_isotropic(bsdf) else ANISOTROPIC
         self.has_back = mi.has_flag(bsdf.flags(), mi.BSDFFlags.BackSide)
 
-        si = _make_points(np.repeat(self.make_views(), directions.count, axis=0))
-        c, types, constant = split_constant(bsdf, si, True, has_matte_part(bsdf))
+        si = _make_surface_points(np.repeat(self.make_views(), directions.count, axis=0))
+        c, types, constant = split_off_constant(bsdf, si, True, has_separate_diffuse_part(bsdf))
         index = dr.arange(mi.UInt32, dr.width(si)) % directions.count
-        wo, kappa, weight = directions.draw(index, bsdf, si, types, constant)
-        self.constants = Rows(_to_rows(c, 0, len(index))[:: directions.count])
-        self.lobes = Rows(_to_rows(dr.normalize(si.wi + wo), kappa, len(index)))
-        self.weights = Rows(self._remove_outliers(_to_rows(weight, 0, len(index))))
+        wo, kappa, weight = directions.draw_direction(index, bsdf, si, types, constant)
+        self.constants = Rows(_stack_rows(c, 0, len(index))[:: directions.count])
+        self.lobes = Rows(_stack_rows(dr.normalize(si.wi + wo), kappa, len(index)))
+        self.weights = Rows(self._remove_weight_outliers(_stack_rows(weight, 0, len(index))))
 
-    def _remove_outliers(self, weights: FloatArray) -> FloatArray:
+    def _remove_weight_outliers(self, weights: FloatArray) -> FloatArray:
         """Replace `weights` (views · directions, 4) by each direction's median in adjacent views.
 
-        A direction moves little from view to view, and so does its weight, unless it lies in a cell
-        of a table that is drawn too rarely: then one view would be bright, and show as a ring.
+        Weights change little from view to view, except where a measured table's cell is drawn too
+        rarely: then a single view would be too bright, and show as a ring in pictures.
         """
         from scipy.ndimage import median_filter
 
@@ -59,14 +60,14 @@ class ViewDirections:
         return median_filter(views, (1, ADJACENT, 1, 1, 1)).reshape(weights.shape)
 
     def make_views(self) -> FloatArray:
-        """Return the views (n, 3): the azimuth fastest, then the polar angle, then the side."""
+        """Return the views' directions (n, 3): azimuth fastest, then polar angle, then side."""
         theta = (np.arange(self.angles) + 0.5) / self.angles * np.pi / 2
         phi = np.arange(self.azimuths) / self.azimuths * 2 * np.pi
         front = from_angles(theta[:, None], phi).reshape(-1, 3)
         return np.concatenate([front, front * [1, 1, -1]]) if self.has_back else front
 
-    def nearest_view(self, wi: JitVector) -> JitInt:
-        """Return the number of the view nearest to `wi`."""
+    def find_nearest_view(self, wi: JitVector) -> JitInt:
+        """Return the number of the stored view that is nearest to the direction `wi`."""
         import drjit as dr
         import mitsuba as mi
 
@@ -77,21 +78,21 @@ class ViewDirections:
         return view + dr.select(wi.z < 0, mi.UInt32(self.angles * self.azimuths), 0)
 
     def radiance(self, si: MitsubaObject, light: Light, active: JitMask) -> JitColour:
-        """Return the radiance towards `si.wi`, a spectrum of the current variant."""
+        """Return the radiance that the points `si` reflect towards `si.wi`, as a spectrum."""
         import drjit as dr
         import mitsuba as mi
 
         active = mi.Bool(active) if self.has_back else active & (si.wi.z > 0)
-        directions, view = self.directions, self.nearest_view(si.wi)
+        directions, view = self.directions, self.find_nearest_view(si.wi)
         sin, cos = dr.sincos(dr.atan2(si.wi.y, si.wi.x) if self.azimuths == 1 else mi.Float(0))
 
         def add_direction(i: JitInt, total: JitColour) -> tuple[JitInt, JitColour]:
-            index = view * directions.count + directions.index(i, si)
+            index = view * directions.count + directions.find_index(i, si)
             lobe, weight = (
                 rows.at(index, mi.Vector4f, active) for rows in (self.lobes, self.weights)
             )
             h = mi.Vector3f(cos * lobe.x - sin * lobe.y, sin * lobe.x + cos * lobe.y, lobe.z)
-            mean = light.mean_over_lobe(si.to_world(reflect(si.wi, h)), lobe.w)
+            mean = light.mean_radiance_over_lobe(si.to_world(reflect(si.wi, h)), lobe.w)
             return i + 1, total + mi.Color3f(weight.x, weight.y, weight.z) * mean
 
         _, total = dr.while_loop(
@@ -105,8 +106,8 @@ class ViewDirections:
         return make_rgb_emission()(dr.maximum(dr.select(active, total, 0), 0), si)
 
 
-def _make_points(views: FloatArray) -> MitsubaObject:
-    """Return surface points with the normal z that are seen from `views` (n, 3)."""
+def _make_surface_points(views: FloatArray) -> MitsubaObject:
+    """Return a `mi.SurfaceInteraction3f` of points with the normal z, seen from `views` (n, 3)."""
     import drjit as dr
     import mitsuba as mi
 
@@ -116,7 +117,7 @@ def _make_points(views: FloatArray) -> MitsubaObject:
     return si
 
 
-def _to_rows(vector: JitVector, number: AnyArray | float, count: int) -> FloatArray:
-    """Return rows (count, 4) of a vector or colour (grey in mono variants) and a number."""
+def _stack_rows(vector: JitVector, number: AnyArray | float, count: int) -> FloatArray:
+    """Combine a vector or colour (grey in mono variants) and a number to an array (count, 4)."""
     three = np.broadcast_to(np.array(vector), (3, count))
     return np.column_stack([*three, np.broadcast_to(np.array(number), count)])

@@ -1,29 +1,35 @@
-"""Looking up the density at a point of a map: by a texture of block numbers, a grid, or the tree.
+"""Look-ups of the density at a point of a map: by a texture of block numbers, a grid, or the tree.
 
-Multiple importance sampling needs the density at directions that surfaces have drawn. Each class
-is made of the `Tree` of blocks, their mean densities (n,) relative to a uniform one, and their
-slopes (n, 2), in the order of `Tree.blocks`. It has `density(x, y, active)`, and `nbytes`, the
-memory of its tables.
+Multiple importance sampling needs the density for directions that BSDFs have drawn. Each class is
+made from the `Tree` of blocks, their mean densities (n,) relative to a uniform one, and the slopes
+(n, 2) of their densities, in the order of `Tree.blocks`. It has `density(x, y, active)`, and
+`nbytes`, the memory of its tables.
 """
 
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, IntArray, JitFloat, JitInt, JitMask, JitVector
-from brdfkit.lighting.sampling.block_slopes import draw_on_line, line_density
+from brdfkit.lighting.sampling.block_slopes import line_density, sample_line_density
 from brdfkit.lighting.sampling.tree import Tree
 from brdfkit.mitsuba_bridge.arrays import Integers, Rows, find_cell
 
 
 class BlockDensities:
-    """The densities within blocks: `boxes` (n, 4), mean `densities` (n,) and `slopes` (n, 2)."""
+    """The linear densities in the blocks of a map, in Mitsuba's memory.
+
+    Block k covers `boxes[k]`, (x0, x1, y0, y1), with the mean density `densities[k]` and the slopes
+    `slopes[k]` across and down.
+    """
 
     def __init__(self, boxes: IntArray, densities: FloatArray, slopes: FloatArray) -> None:
         self.boxes = Rows(boxes)
         self.lines = Rows(np.column_stack([densities, slopes]))
         self.nbytes = 28 * len(boxes)
 
-    def at(self, block: JitInt, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
-        """Return the density at a point of the block with this number."""
+    def density_in_block(
+        self, block: JitInt, x: JitFloat, y: JitFloat, active: JitMask
+    ) -> JitFloat:
+        """Return the density at a point (x, y) that lies in the block with this number."""
         import drjit as dr
         import mitsuba as mi
 
@@ -35,7 +41,7 @@ class BlockDensities:
 
 
 class TextureLookup:
-    """A texture with the number of the block of every cell: the fastest and the largest."""
+    """Density look-up by a texture with the block's number for each cell: fastest, most memory."""
 
     def __init__(self, tree: Tree, densities: FloatArray, slopes: FloatArray) -> None:
         _, self.columns, _, self.rows = tree.boxes[0].tolist()
@@ -47,16 +53,16 @@ class TextureLookup:
         self.nbytes = texels.nbytes + self.densities.nbytes
 
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
-        """Return the density at a point."""
+        """Return the density at a point (x, y), relative to a uniform one."""
         index = find_cell(y, self.rows) * self.columns + find_cell(x, self.columns)
-        return self.densities.at(self.texels.at(index, active), x, y, active)
+        return self.densities.density_in_block(self.texels.at(index, active), x, y, active)
 
 
 class GridLookup:
-    """A coarse grid over the map, whose squares list the blocks that overlap them.
+    """Density look-up by a coarse grid over the map, whose squares list the overlapping blocks.
 
-    There are half as many squares as blocks. Where blocks are small, at a sun, a square lists many,
-    which are tried one after the other. [Ergun 2015, section 6.2]
+    There are half as many squares as blocks. A square over small blocks, such as at a sun, lists
+    many, which are tested one after the other. [Ergun 2015, section 6.2]
     """
 
     def __init__(self, tree: Tree, densities: FloatArray, slopes: FloatArray) -> None:
@@ -66,8 +72,8 @@ class GridLookup:
         self.columns, self.rows = (max(round(n / side), 1) for n in (self.width, self.height))
 
         lists: list[list[int]] = [[] for _ in range(self.columns * self.rows)]
-        x0, x1 = _find_squares(blocks[:, 0], blocks[:, 1], self.columns, self.width)
-        y0, y1 = _find_squares(blocks[:, 2], blocks[:, 3], self.rows, self.height)
+        x0, x1 = _find_grid_squares(blocks[:, 0], blocks[:, 1], self.columns, self.width)
+        y0, y1 = _find_grid_squares(blocks[:, 2], blocks[:, 3], self.rows, self.height)
         for block, (a, b, c, d) in enumerate(zip(x0, x1, y0, y1, strict=True)):
             for row in range(c, d):
                 for square in lists[row * self.columns + a : row * self.columns + b]:
@@ -78,11 +84,11 @@ class GridLookup:
         self.nbytes = 4 * (len(lists) + sum(map(len, lists))) + self.densities.nbytes
 
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
-        """Return the density at a point."""
+        """Return the density at a point (x, y), relative to a uniform one."""
         import drjit as dr
         import mitsuba as mi
 
-        # All blocks of a list are tried with the same cell, so that one of them holds an edge
+        # Blocks are tested with the point's cell, so that rounding at an edge cannot miss all
         column, row = (mi.Float(find_cell(a, n)) for a, n in ((x, self.width), (y, self.height)))
         square = find_cell((row + 0.5) * (self.rows / self.height), self.rows) * self.columns
         square = square + find_cell((column + 0.5) * (self.columns / self.width), self.columns)
@@ -94,30 +100,32 @@ class GridLookup:
 
         first = self.first.at(square, active)
         (i,) = dr.while_loop((first,), is_outside, lambda i: (i + 1,))
-        return self.densities.at(self.listed.at(i, active), x, y, active)
+        return self.densities.density_in_block(self.listed.at(i, active), x, y, active)
 
 
-def _find_squares(
+def _find_grid_squares(
     start: IntArray, end: IntArray, count: int, size: int
 ) -> tuple[IntArray, IntArray]:
-    """Return the first square, and the one after the last, that pixels `start` to `end` overlap.
+    """Return the range of the grid's squares that blocks overlap along an axis: first, last + 1.
 
-    There are `count` squares along `size` pixels. A pixel belongs to the square of its middle.
+    The blocks reach from the cells `start` to `end`. There are `count` squares along `size` cells;
+    a cell belongs to the square of its middle.
     """
     first, last = ((a + 0.5) * count / size for a in (start, end - 1))
     return first.astype(int), last.astype(int) + 1
 
 
 class TreeWalk:
-    """A walk down the tree of blocks, which finds the block of a point, or draws a point.
+    """A walk down the tree of blocks, which looks up the density at a point, or draws a point.
 
-    To draw, a uniform number moves along the axis of each cut, stretched by the shares of the two
-    parts. Evenly spread numbers thus give evenly spread points, and strata are kept.
+    To draw, a uniform number chooses one of the two parts at each cut by their probabilities, and
+    is stretched to 0 to 1 again. Evenly spread numbers thus give evenly spread points, so that the
+    stratification of samplers is kept.
 
-    A node has four numbers, which are read at once: the place of its cut, the axis of the cut, its
-    first part, and the share of that part. A block has its mean density, and 0 as its part between
-    its two slopes. [Ergun 2015, section 6.2] packs a node into eight bytes, for maps of at most
-    2048 pixels a side and 2¹⁸ blocks; here it has sixteen, and no limits.
+    A node has four numbers, which are read at once: the coordinate of its cut, the cut's axis, the
+    index of its first part, and the probability of that part. A block has its mean density, the
+    slope across, 0 in place of an index, and the slope down. [Ergun 2015, section 6.2] packs a node
+    into eight bytes, for maps up to 2048 pixels a side and 2¹⁸ blocks; sixteen have no limits.
     """
 
     def __init__(self, tree: Tree, densities: FloatArray, slopes: FloatArray) -> None:
@@ -125,7 +133,7 @@ class TreeWalk:
         x0, x1, y0, y1 = tree.boxes.T
         probability = np.zeros(len(leaf))
         probability[leaf] = densities * ((x1 - x0) * (y1 - y0))[leaf]
-        for node in np.flatnonzero(~leaf)[::-1]:  # parts stand behind the whole
+        for node in np.flatnonzero(~leaf)[::-1]:  # parts have larger indices than the whole
             probability[node] = probability[left[node]] + probability[left[node] + 1]
         down = x1[left] == x1
         cut = np.where(down, y1[left], x1[left])
@@ -136,51 +144,54 @@ class TreeWalk:
         self.root_box = tree.boxes[0].tolist()
 
     def sample(self, u: JitVector, active: JitMask) -> tuple[JitFloat, JitFloat, JitFloat]:
-        """Return (x, y, density) of a point, drawn by the probabilities of the blocks."""
+        """Draw a point of the map by uniform numbers `u`; return (x, y, density)."""
         import drjit as dr
         import mitsuba as mi
 
         def descend(node: JitVector, box: JitVector, u: JitVector) -> tuple[JitVector, ...]:
-            # Choose a part, and stretch the number along the axis of the cut to that part
+            # Choose a part, and stretch the random number of the cut's axis to 0 to 1 again
             down, share = node.y > 0, node.w
             along = dr.select(down, u.y, u.x)
             second = along >= share
             start, size = dr.select(second, share, 0), dr.select(second, 1 - share, share)
             along = dr.minimum((along - start) / size, 1)
             u = mi.Vector2f(dr.select(down, u.x, along), dr.select(down, along, u.y))
-            return *self._get_part(node, box, second, active), u
+            return *self._get_child_node(node, box, second, active), u
 
-        start = *self._get_root(active), mi.Vector2f(u)
+        start = *self._get_root_node(active), mi.Vector2f(u)
         node, box, u = dr.while_loop(start, lambda node, box, u: (node.z > 0) & active, descend)
-        s, t = draw_on_line(u.x, node.y), draw_on_line(u.y, node.w)
+        s, t = sample_line_density(u.x, node.y), sample_line_density(u.y, node.w)
         density = node.x * line_density(s, node.y) * line_density(t, node.w)
         return dr.lerp(box.x, box.y, s), dr.lerp(box.z, box.w, t), density
 
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
-        """Return the density at a point."""
+        """Return the density at a point (x, y), relative to a uniform one."""
         import drjit as dr
 
         x, y = dr.detach(x), dr.detach(y)
 
         def descend(node: JitVector, box: JitVector) -> tuple[JitVector, JitVector]:
-            return self._get_part(node, box, dr.select(node.y > 0, y, x) >= node.x, active)
+            return self._get_child_node(node, box, dr.select(node.y > 0, y, x) >= node.x, active)
 
-        start = self._get_root(active)
+        start = self._get_root_node(active)
         node, box = dr.while_loop(start, lambda node, box: (node.z > 0) & active, descend)
         s, t = (x - box.x) / (box.y - box.x), (y - box.z) / (box.w - box.z)
         s, t = dr.clip(s, 0, 1), dr.clip(t, 0, 1)
         return node.x * line_density(s, node.y) * line_density(t, node.w)
 
-    def _get_root(self, active: JitMask) -> tuple[JitVector, JitVector]:
-        """Return the node of the whole picture, and its bounds (x0, x1, y0, y1)."""
+    def _get_root_node(self, active: JitMask) -> tuple[JitVector, JitVector]:
+        """Return the tree's root, the whole map, and its bounds (x0, x1, y0, y1)."""
         import mitsuba as mi
 
         return self.nodes.at(mi.UInt32(0), mi.Vector4f, active), mi.Vector4f(self.root_box)
 
-    def _get_part(
+    def _get_child_node(
         self, node: JitVector, box: JitVector, second: JitMask, active: JitMask
     ) -> tuple[JitVector, JitVector]:
-        """Return the first or the `second` part of a node, and its bounds."""
+        """Return the first or the `second` part of a node, and the bounds of that part.
+
+        `box` are the bounds (x0, x1, y0, y1) of the node itself.
+        """
         import drjit as dr
         import mitsuba as mi
 

@@ -1,8 +1,8 @@
-"""Densities that fall off within a block along straight lines, as the light of the map does.
+"""Linear sampling densities within the blocks of an environment map, fitted to the map's light.
 
-Along an axis where s goes from 0 to 1 through the block, the density is 1 + slope (s - 1/2) times
-the block's mean density; samples are drawn by the inverse of its integral. A block of one cell, as
-in a small sun, thus follows the map between its pixels, and a large one the fall-off of a sky.
+Along an axis on which s runs from 0 to 1 through the block, the density is the block's mean times
+1 + slope (s - 1/2); samples are drawn by the inverse of its integral. A block of one cell, such as
+in a small sun, thus follows the map between its pixels, and a large one the gradient of a sky.
 """
 
 import numpy as np
@@ -10,13 +10,14 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray, JitFloat
 from brdfkit.lighting.sampling.tree import Sums
 
-STEEPEST = 1.8  # the largest slope: the darker end of a line keeps a tenth of its mean
+STEEPEST = 1.8  # largest slope, at which the darker end of a block has a tenth of its mean density
 
 
 def fit_slopes(sums: Sums, pixels: FloatArray, boxes: IntArray) -> FloatArray:
-    """Return the slopes (n, 2) across and down the blocks `boxes` (n, 4).
+    """Fit the slopes (n, 2), across and down, of the densities in the blocks `boxes` (n, 4).
 
-    `sums` are over the power of cells; `pixels` (rows, columns) is the power at pixels.
+    `sums` are sums over the power of a map's cells; `pixels` (rows, columns) is the power at its
+    pixels.
     """
     x0, x1, y0, y1 = boxes.T
     closed = np.append(pixels, pixels[:, :1], axis=1)
@@ -29,15 +30,16 @@ def fit_slopes(sums: Sums, pixels: FloatArray, boxes: IntArray) -> FloatArray:
 def _fit_slope(
     sums: Sums, boxes: IntArray, axis: int, first: FloatArray, last: FloatArray
 ) -> FloatArray:
-    """Return the slope (n,) along the axis whose bounds are columns `axis`, `axis` + 1 of `boxes`.
+    """Fit the slopes (n,) of the blocks' densities along an axis.
 
-    The two halves of a line differ by a quarter of its slope. A block that is one cell wide has no
-    halves; its line goes from its `first` pixels to its `last` ones.
+    The blocks' bounds along it are the columns `axis` and `axis` + 1 of `boxes`. The power in the
+    two halves of a block gives the slope; if the block is only one cell wide, the power of its
+    `first` and `last` pixels does.
     """
     whole = sums.sum_values(boxes)
     start, end = boxes[:, axis], boxes[:, axis + 1]
     half = np.zeros(len(boxes))
-    for middle in ((start + end) // 2, (start + end + 1) // 2):  # a middle cell counts for both
+    for middle in ((start + end) // 2, (start + end + 1) // 2):  # halves share a middle cell
         part = boxes.copy()
         part[:, axis + 1] = middle
         half = half + sums.sum_values(part) / 2
@@ -47,12 +49,12 @@ def _fit_slope(
 
 
 def line_density(s: JitFloat, slope: JitFloat) -> JitFloat:
-    """Return the density at 0 ≤ `s` ≤ 1 along a line of this `slope`, whose mean is 1."""
+    """Return the linear density of mean 1 with this `slope`, at 0 ≤ `s` ≤ 1 through a block."""
     return 1 + slope * (s - 0.5)
 
 
-def draw_on_line(u: JitFloat, slope: JitFloat) -> JitFloat:
-    """Return the place s that a uniform number `u` draws by `line_density`."""
+def sample_line_density(u: JitFloat, slope: JitFloat) -> JitFloat:
+    """Draw 0 ≤ s ≤ 1 with the density `line_density(s, slope)`, by a uniform number `u`."""
     import drjit as dr
 
     start, end = line_density(0, slope), line_density(1, slope)

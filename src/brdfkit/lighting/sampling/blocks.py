@@ -1,4 +1,4 @@
-"""The map sampler `Blocks`: a map cut into blocks in which power is nearly a straight line.
+"""The map sampler `Blocks`: draws points of a map by blocks in which its power is nearly linear.
 
 [Ergun 2015, chapter 6]
 """
@@ -20,19 +20,19 @@ LOOKUPS: dict[str, type[TextureLookup | TreeWalk | GridLookup]] = {
 
 
 class Blocks:
-    """A map sampler with at most `count` blocks.
+    """A sampler of points of an environment map, which is cut into at most `count` blocks.
 
-    `criterion` (of `tree.CRITERIA`) says which block is cut next, `distribution` (of
-    `DISTRIBUTIONS`) how blocks are drawn, `lookup` (of `LOOKUPS`) how the block of a point is
-    found. "exact" draws blocks by their shares of the power, down the tree.
+    `criterion` names the error in `tree.CRITERIA` by which the next block to cut is chosen,
+    `distribution` the way in DISTRIBUTIONS to draw blocks, and `lookup` the way in LOOKUPS to find
+    the block of a point. The distribution "exact" draws blocks by their shares of the power.
     """
 
     def __init__(
         self, brightness: FloatArray, count: int, criterion: str, distribution: str, lookup: str
     ) -> None:
         sums = tree.Sums(cell_power(brightness))
-        self.tree = tree.build_from_sums(sums, count, criterion)
-        cells, power, _ = sums.moments(self.tree.blocks)
+        self.tree = tree.build_tree_from_sums(sums, count, criterion)
+        cells, power, _ = sums.sum_moments(self.tree.blocks)
         self.shares = power.clip(0) / power.clip(0).sum()
         slopes = fit_slopes(sums, pixel_power(brightness), self.tree.blocks)
         self.sampler: TreeWalk | SortedBlocks
@@ -50,9 +50,9 @@ class Blocks:
             self.nbytes += self.lookup.nbytes
 
     def sample(self, u: JitVector, active: JitMask) -> tuple[JitFloat, JitFloat, JitFloat]:
-        """Return (x, y, density) of a point for two uniform numbers `u`."""
+        """Draw a point of the map by two uniform numbers `u`; return (x, y, density)."""
         return self.sampler.sample(u, active)
 
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
-        """Return the density at a point, relative to a uniform one."""
+        """Return the density with which a point (x, y) is drawn, relative to a uniform one."""
         return self.lookup.density(x, y, active)

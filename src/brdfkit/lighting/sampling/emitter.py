@@ -1,6 +1,6 @@
-"""The base class of environment emitters, which lacks only the sampler of the map.
+"""The base class of environment emitters, to which plugins add the sampler of the map.
 
-It has the rows, columns and bilinear interpolation of Mitsuba's `envmap`.
+Rows, columns and bilinear interpolation of the map are those of Mitsuba's `envmap`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from brdfkit.core.array_types import (
 )
 from brdfkit.core.colours import luminance
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.lighting.sampling.power_map import require_light, subtract_mean
+from brdfkit.lighting.sampling.power_map import require_lit_map, subtract_mean_brightness
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 from brdfkit.mitsuba_bridge.properties.declarations import (
     Setting,
@@ -42,14 +42,15 @@ MAP_PARAMETERS = {
         False, "sample only what is brighter than the mean; surfaces do the rest"
     ),
 }
-ENVIRONMENT_DISTANCE = 1e7  # Mitsuba does not tell a plugin how large the scene is
-SMALLEST_SINE = 1e-4  # of the polar angle: nearer the poles, the density divides by this
+ENVIRONMENT_DISTANCE = 1e7  # of samples, since a plugin cannot find the size of the scene
+SMALLEST_SINE = 1e-4  # of the polar angle, so that densities at the poles are not divided by 0
 
 
-def environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]) -> Any:
-    """Return the base class for the current variant; `parameters` include `MAP_PARAMETERS`.
+def derive_environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]) -> Any:
+    """Return the base class of environment emitters for the current variant of Mitsuba.
 
-    A derived class has `make_sampler(brightness)`, which returns a map sampler.
+    `parameters` are the plugin's, and include `MAP_PARAMETERS`. A derived class has to define
+    `make_sampler(brightness)`, which returns a map sampler.
     """
 
     class EnvironmentEmitter(derive_plugin(mi.Emitter, parameters)):  # type: ignore[misc]
@@ -61,7 +62,7 @@ def environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]) -> An
             _require_rotation(self.name, props)
             super().__init__(props)
             self.m_flags = mi.EmitterFlags.Infinite | mi.EmitterFlags.SpatiallyVarying
-            self.data = mi.TensorXf(_load_pixels(mi, self.name, self.filename, self.bitmap))
+            self.data = mi.TensorXf(_load_map_pixels(mi, self.name, self.filename, self.bitmap))
             self.to_local = self.world_transform().inverse()
             self.spectrum = make_rgb_emission()
             self.parameters_changed(["data"])
@@ -73,30 +74,29 @@ def environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]) -> An
         def parameters_changed(self, keys: Any = ()) -> None:
             if not keys or "data" in keys:
                 pixels = np.array(dr.detach(self.data), float)
-                require_light(f"{self.name}: data", pixels)
-                # The first row lies at the polar angle 0, the last one at π; a column lies in the
-                # middle of its azimuths
+                require_lit_map(f"{self.name}: data", pixels)
+                # The first row lies at the upper pole, the last one at the lower pole
                 self.texture = mi.Texture2f(_repeat_first_column(mi, self.data), True, False)
                 self.height, self.width = self.data.shape[0], self.data.shape[1]
                 brightness = luminance(pixels).clip(0)  # an optimiser may step below 0
                 if self.compensated:
-                    brightness = subtract_mean(brightness)
+                    brightness = subtract_mean_brightness(brightness)
                 self.map_sampler = self.make_sampler(brightness)
 
         def eval(self, si: MitsubaObject, active: JitMask = True) -> JitColour:
-            x, y = self.to_map(-si.wi)
+            x, y = self.find_map_point(-si.wi)
             return mi.depolarizer(self.radiance(x, y, si, active))
 
         def radiance(
             self, x: JitFloat, y: JitFloat, si: MitsubaObject, active: JitMask
         ) -> JitColour:
-            """Return the radiance at a point of the map, as the variant's spectrum."""
+            """Return the radiance at a point (x, y) of the map, as the variant's spectrum."""
             uv = mi.Point2f((x + 0.5) / (self.width + 1), (y + 0.5) / self.height)
             rgb = mi.Color3f(*self.texture.eval(uv, active))
             return dr.select(active, self.spectrum(rgb, si) * self.scale, 0)
 
-        def to_map(self, direction: JitVector) -> tuple[JitFloat, JitFloat]:
-            """Return the column and the row of a direction; pixels lie at whole numbers."""
+        def find_map_point(self, direction: JitVector) -> tuple[JitFloat, JitFloat]:
+            """Return the map's column and row in a `direction`; pixels lie at whole numbers."""
             d = self.to_local @ direction
             turn = dr.atan2(d.x, -d.z) * (0.5 / dr.pi) - 0.5 / self.width
             turn = turn - dr.floor(turn)
@@ -123,14 +123,14 @@ def environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]) -> An
         def pdf_direction(
             self, it: MitsubaObject, ds: MitsubaObject, active: JitMask = True
         ) -> JitFloat:
-            x, y = self.to_map(ds.d)
+            x, y = self.find_map_point(ds.d)
             density = self.map_sampler.density(x, y, active)
             return per_solid_angle(density, dr.sin(dr.pi * y / (self.height - 1)))
 
         def eval_direction(
             self, it: MitsubaObject, ds: MitsubaObject, active: JitMask = True
         ) -> JitColour:
-            x, y = self.to_map(ds.d)
+            x, y = self.find_map_point(ds.d)
             return mi.depolarizer(self.radiance(x, y, it, active))
 
         def bbox(self) -> MitsubaObject:
@@ -144,7 +144,7 @@ def per_solid_angle(density: JitFloat, sin_theta: JitFloat) -> JitFloat:
     return density / (2 * dr.pi**2 * dr.maximum(sin_theta, SMALLEST_SINE))
 
 
-def _load_pixels(
+def _load_map_pixels(
     mi: MitsubaModule, name: str, filename: str, bitmap: MitsubaObject | None
 ) -> FloatArray:
     """Load a map (height, width, 3) in linear sRGB from a file or a bitmap.
@@ -160,12 +160,12 @@ def _load_pixels(
         pixels = to_pixels(bitmap)
     if pixels.min(initial=0) < 0:
         raise BrdfkitError(f"{source} has values below 0; mend them.")
-    require_light(source, pixels)
+    require_lit_map(source, pixels)
     return pixels
 
 
 def _require_rotation(name: str, props: Any) -> None:
-    """Raise `BrdfkitError` if the property `to_world` changes angles."""
+    """Raise `BrdfkitError` if the emitter's transform `to_world` scales or shears."""
     if "to_world" not in props:
         return
     matrix = np.array(props["to_world"].matrix, float).reshape(4, 4)[:3, :3]
@@ -176,7 +176,7 @@ def _require_rotation(name: str, props: Any) -> None:
 
 
 def _repeat_first_column(mi: MitsubaModule, data: Any) -> Any:
-    """Return a map (height, width + 1, 3) whose first column follows the last, to interpolate."""
+    """Append a map's first column behind its last, to interpolate between the two."""
     if mi.variant().startswith("scalar"):
         pixels = np.array(data)
         return mi.TensorXf(np.concatenate([pixels, pixels[:, :1]], axis=1))
@@ -184,7 +184,7 @@ def _repeat_first_column(mi: MitsubaModule, data: Any) -> Any:
 
 
 def make_small_sky() -> MitsubaObject:
-    """Make a small sky with a sun, a `mi.Bitmap`, for the checks of plugins."""
+    """Make a small environment map of a sky with a sun, a `mi.Bitmap`, to check plugins with."""
     import mitsuba as mi
 
     v, u = np.meshgrid(np.linspace(0, 1, 16), (np.arange(32) + 0.5) / 32, indexing="ij")

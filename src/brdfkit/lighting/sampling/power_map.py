@@ -1,7 +1,7 @@
-"""Power per angle of an environment map, which samplers draw points in proportion to.
+"""The power per angle of an environment map, the density with which samplers draw its points.
 
-A map has rows from the polar angle 0 to π, both included, and columns around; a cell lies between
-four pixels.
+It is the brightness times the sine of the polar angle. A map's rows reach from the polar angle 0 to
+π, both included. A cell is the square between four neighbouring pixels.
 """
 
 import numpy as np
@@ -10,10 +10,10 @@ from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
 
-def require_light(name: str, pixels: AnyArray) -> None:
-    """Raise `BrdfkitError` unless `pixels` (rows, columns, channels) give light.
+def require_lit_map(name: str, pixels: AnyArray) -> None:
+    """Raise `BrdfkitError` if a map's `pixels` are black, not finite, or fewer than 2×2.
 
-    The error begins with `name`.
+    Their shape is (rows, columns, channels). The error begins with `name`.
     """
     if pixels.ndim != 3 or min(pixels.shape[:2]) < 2:
         size = "×".join(map(str, pixels.shape[1::-1]))
@@ -25,10 +25,10 @@ def require_light(name: str, pixels: AnyArray) -> None:
 
 
 def cell_power(brightness: FloatArray) -> FloatArray:
-    """Return the power per angle (rows - 1, columns) of the cells between pixels.
+    """Return the power per angle (rows - 1, columns) of a map's cells.
 
-    A cell has the mean `brightness` (rows, columns) of its four pixels, so that it is black only
-    where the interpolated map is black.
+    A cell has the mean `brightness` (rows, columns) of the four pixels at its corners, so that it
+    is black only where the interpolated map is black.
     """
     pairs = brightness + np.roll(brightness, -1, axis=1)
     between = (pairs[:-1] + pairs[1:]) / 4
@@ -37,16 +37,16 @@ def cell_power(brightness: FloatArray) -> FloatArray:
 
 
 def pixel_power(brightness: FloatArray) -> FloatArray:
-    """Return the power per angle (rows, columns) at pixels of `brightness` (rows, columns)."""
+    """Return the power per angle (rows, columns) at a map's pixels, from their `brightness`."""
     theta = np.linspace(0, np.pi, len(brightness))
     return brightness * np.sin(theta).clip(0)[:, None]
 
 
-def subtract_mean(brightness: FloatArray) -> FloatArray:
-    """Return the `brightness` (rows, columns) above its mean over the sphere, else 0.
+def subtract_mean_brightness(brightness: FloatArray) -> FloatArray:
+    """Subtract the mean over the sphere from a map's `brightness` (rows, columns), down to 0.
 
-    A density made of it serves where surfaces draw directions as well, because their samples take
-    care of the uniform part of the light. A uniform map is returned unchanged. [Karlík et al. 2019]
+    The result is a density for multiple importance sampling, in which the BSDF's samples find the
+    uniform part of the light. A uniform map is returned unchanged. [Karlík et al. 2019]
     """
     theta = np.linspace(0, np.pi, len(brightness))
     mean = np.average(brightness.mean(axis=1), weights=np.sin(theta))

@@ -1,8 +1,8 @@
 """A tree of axis-aligned cuts that divides a picture into blocks of nearly constant value.
 
-The block with the largest criterion is cut next, at the place that minimises the sum of squared
-errors of its two parts about their means. Sums over blocks come from summed-area tables. All blocks
-that would be cut among the next ones are cut at once, which gives the same tree.
+The block with the largest error, by some criterion, is cut next, at the column or row that
+minimises the squared errors of its two parts about their means. Summed-area tables give the sums
+over blocks. For speed, many blocks are cut at once, in a way that gives the same tree.
 
 A box is (x0, x1, y0, y1): columns x0 ≤ x < x1 and rows y0 ≤ y < y1.
 
@@ -21,10 +21,10 @@ from brdfkit.core.array_types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class Tree:
-    """A tree of nodes with `boxes` (n, 4); node 0 is the whole picture.
+    """A binary tree of boxes in a picture, whose leaves are the blocks.
 
-    `left` (n,) is the index of a node's left or upper part, directly followed by the other part; it
-    is -1 for a block, which is not cut.
+    `boxes` (n, 4) are the boxes of all nodes; node 0 is the whole picture. `left` (n,) is the index
+    of a node's left or upper part, which the other part follows, and -1 for a block.
     """
 
     boxes: IntArray
@@ -32,35 +32,35 @@ class Tree:
 
     @property
     def blocks(self) -> IntArray:
-        """The boxes (blocks, 4) of the blocks, which cover the picture once."""
+        """The boxes (blocks, 4) of the blocks, which cover the picture without overlaps."""
         return self.boxes[self.left < 0]
 
 
-def build(values: FloatArray, count: int, criterion: str = "relative") -> Tree:
+def build_tree(values: FloatArray, count: int, criterion: str = "relative") -> Tree:
     """Cut `values` (height, width) ≥ 0 into at most `count` blocks.
 
-    A block of constant value is not cut, so that there may be fewer blocks. `criterion` is a name
-    in `CRITERIA`.
+    There may be fewer, since blocks of constant value are not cut. `criterion` names the error in
+    CRITERIA by which the next block to cut is chosen.
 
-    >>> build(np.array([[0.0, 0.0, 1.0]]), 2).blocks.tolist()
+    >>> build_tree(np.array([[0.0, 0.0, 1.0]]), 2).blocks.tolist()
     [[0, 2, 0, 1], [2, 3, 0, 1]]
     """
-    return build_from_sums(Sums(values), count, criterion)
+    return build_tree_from_sums(Sums(values), count, criterion)
 
 
-def build_from_sums(sums: Sums, count: int, criterion: str = "relative") -> Tree:
-    """Cut values into at most `count` blocks as `build` does, given their `Sums`."""
+def build_tree_from_sums(sums: Sums, count: int, criterion: str = "relative") -> Tree:
+    """Cut a picture into at most `count` blocks like `build_tree`, by the `Sums` of its values."""
     height, width = sums.values.shape
     error = CRITERIA[criterion]
     boxes, left = np.array([[0, width, 0, height]]), np.array([-1])
     keys = error(sums, boxes)
     while True:
         # In the end the nodes with the `count` - 1 largest keys are cut. A node whose key is not
-        # among these now never will be. Of the others only half are cut: few cuts are wasted
+        # among these now never will be. Half of the others are cut now, so that few are superfluous
         threshold = np.partition(keys, -count + 1)[-count + 1] if 1 < count <= len(keys) else 0
         uncut = np.flatnonzero((left < 0) & (keys > 0) & (keys >= threshold))
         if len(uncut) == 0 or count == 1:
-            return _keep_cuts(boxes, left, np.argsort(-keys, kind="stable")[: count - 1])
+            return _keep_cut_nodes(boxes, left, np.argsort(-keys, kind="stable")[: count - 1])
         uncut = uncut[np.argsort(-keys[uncut], kind="stable")[: len(uncut) // 2 + 1]]
         left[uncut] = len(boxes) + 2 * np.arange(len(uncut))
         parts = _cut_boxes(sums, boxes[uncut])
@@ -70,20 +70,20 @@ def build_from_sums(sums: Sums, count: int, criterion: str = "relative") -> Tree
 
 
 class Sums:
-    """Sums of `values` (height, width) and of their squares over any boxes."""
+    """Sums of a picture's `values` (height, width), and of their squares, over boxes."""
 
     def __init__(self, values: FloatArray) -> None:
         self.values = values
         self.table, self.squares = _summed_area_table(values), _summed_area_table(values**2)
         self.rounding = 1e-14 * self.squares[-1, -1]  # rounding error of sums of squares
 
-    def moments(self, boxes: IntArray) -> tuple[IntArray, FloatArray, FloatArray]:
-        """Return numbers of pixels (n,), sums of values and sums of squares over `boxes` (n, 4)."""
+    def sum_moments(self, boxes: IntArray) -> tuple[IntArray, FloatArray, FloatArray]:
+        """Return the numbers of pixels in `boxes` (n, 4), the sums of values, and of squares."""
         x0, x1, y0, y1 = boxes.T
         return (x1 - x0) * (y1 - y0), self.sum_values(boxes), _sum_boxes(self.squares, boxes)
 
     def sum_values(self, boxes: IntArray) -> FloatArray:
-        """Return the sums of values (n,) over `boxes` (n, 4)."""
+        """Return the sums (n,) of the picture's values over `boxes` (n, 4)."""
         return _sum_boxes(self.table, boxes)
 
 
@@ -93,36 +93,35 @@ def block_sums(values: FloatArray, boxes: IntArray) -> FloatArray:
 
 
 def squared_error(sums: Sums, boxes: IntArray) -> FloatArray:
-    """Return the squared error Σ (value - mean)² (n,) of each box (n, 4)."""
-    n, sum_, squares = sums.moments(boxes)
+    """Return the squared error Σ (value - mean)² (n,) of the values in each box (n, 4)."""
+    n, sum_, squares = sums.sum_moments(boxes)
     error = squares - sum_**2 / n
     return np.where((n > 1) & (error > sums.rounding), error, 0)
 
 
 def relative_squared_error(sums: Sums, boxes: IntArray) -> FloatArray:
-    """Return Σ (value - mean)² / mean (n,) of each box, its share in the variance of samples.
+    """Return Σ (value - mean)² / mean (n,) of each box (n, 4).
 
-    The variance of a sample's weight, times the square of the picture's sum, is Σ value² / density
-    minus that square. If a block's density is proportional to its mean, this equals the sum of the
-    relative squared errors of all blocks.
+    It is proportional to the box's contribution to the variance of samples' weights, if samples are
+    drawn in proportion to the blocks' means.
     """
-    n, sum_, _ = sums.moments(boxes)
+    n, sum_, _ = sums.sum_moments(boxes)
     return squared_error(sums, boxes) * n / np.maximum(sum_, 1e-300)
 
 
 def variance(sums: Sums, boxes: IntArray) -> FloatArray:
-    """Return the variance Σ (value - mean)² / (pixels - 1) (n,) of each box."""
-    n = sums.moments(boxes)[0]
+    """Return the variance Σ (value - mean)² / (pixels - 1) (n,) of values in each box (n, 4)."""
+    n = sums.sum_moments(boxes)[0]
     return squared_error(sums, boxes) / np.maximum(n - 1, 1)
 
 
 def value_range(sums: Sums, boxes: IntArray) -> FloatArray:
-    """Return the largest value minus the smallest (n,) of each box."""
+    """Return the difference (n,) of the largest and the smallest value in each box (n, 4)."""
     cut_out = (sums.values[y0:y1, x0:x1] for x0, x1, y0, y1 in boxes.tolist())
     return np.array([block.max() - block.min() for block in cut_out])
 
 
-# The error of a block, by which the next one to cut is chosen
+# Errors of a block: the block with the largest one is cut next
 CRITERIA = {
     "relative": relative_squared_error,
     "sse": squared_error,
@@ -135,19 +134,19 @@ def _summed_area_table(values: FloatArray) -> FloatArray:
     """Return a table (height + 1, width + 1): entry (y, x) sums all rows < y and columns < x."""
     table = np.zeros((values.shape[0] + 1, values.shape[1] + 1))
     np.cumsum(values, axis=1, out=table[1:, 1:])
-    for above, row in pairwise(table):  # twice as fast as a sum along columns
+    for above, row in pairwise(table):  # twice as fast as np.cumsum along columns
         row += above
     return table
 
 
 def _sum_boxes(table: FloatArray, boxes: IntArray) -> FloatArray:
-    """Return the sums (n,) over `boxes` (n, 4), from a summed-area table."""
+    """Return the sums (n,) of values over `boxes` (n, 4), from their summed-area table."""
     x0, x1, y0, y1 = boxes.T
     return table[y1, x1] - table[y0, x1] - table[y1, x0] + table[y0, x0]
 
 
 def _cut_boxes(sums: Sums, boxes: IntArray) -> IntArray:
-    """Cut each of the `boxes` (n, 4), of more than one pixel, into its two parts (2n, 4)."""
+    """Cut each of the `boxes` (n, 4), of two pixels or more, into its two best parts (2n, 4)."""
     x, across = _find_best_column(sums.table, boxes)
     y, down = _find_best_column(sums.table.T, boxes[:, [2, 3, 0, 1]])
     vertical = across >= down
@@ -158,15 +157,15 @@ def _cut_boxes(sums: Sums, boxes: IntArray) -> IntArray:
 
 
 def _find_best_column(table: FloatArray, boxes: IntArray) -> tuple[IntArray, FloatArray]:
-    """Return the column (n,) before which each box is best cut, and the value (n,) of eq. 6.2.
+    """Return the column (n,) before which each box is best cut, and the cut's score (n,).
 
-    Eq. 6.2, Σ (sum of a part)² / (its number of pixels), is largest where the squared error is
-    smallest. The value of a box of one column, which cannot be cut, is -1.
+    The score, eq. 6.2, is Σ (sum of a part)² / (its number of pixels), which is largest where the
+    parts' squared error is smallest. A box of one column, which cannot be cut, has the score -1.
     """
     x0, x1, y0, y1 = boxes.T
     cuts = x1 - x0 - 1
     start, whole = np.cumsum(cuts) - cuts, _sum_boxes(table, boxes)
-    # All columns inside the boxes, one box after the other; left of each lie n columns of its box
+    # Score all possible cuts of all boxes at once; a cut has n columns of its box on its left
     n = np.arange(1, cuts.sum() + 1) - np.repeat(start, cuts)
     x, top, bottom = np.repeat(x0, cuts) + n, np.repeat(y0, cuts), np.repeat(y1, cuts)
     left = table[bottom, x] - table[top, x] - np.repeat(table[y1, x0] - table[y0, x0], cuts)
@@ -177,14 +176,17 @@ def _find_best_column(table: FloatArray, boxes: IntArray) -> tuple[IntArray, Flo
     wide = cuts > 0
     if wide.any():
         best[wide] = np.maximum.reduceat(score, start[wide])
-    hits = np.flatnonzero(score == np.repeat(best, cuts))[::-1]  # the first is written last
+    hits = np.flatnonzero(score == np.repeat(best, cuts))[::-1]  # of equal scores the first counts
     box = np.searchsorted(start[wide], hits, side="right") - 1
     at[np.flatnonzero(wide)[box]] += n[hits]
     return at, best / (y1 - y0)
 
 
-def _keep_cuts(boxes: IntArray, left: IntArray, cut: IntArray) -> Tree:
-    """Return the `Tree` in which only the nodes with the indices `cut` are cut."""
+def _keep_cut_nodes(boxes: IntArray, left: IntArray, cut: IntArray) -> Tree:
+    """Return the `Tree` in which only the nodes with the indices `cut` are cut, without the rest.
+
+    `boxes` and `left` are those of the larger tree.
+    """
     cut = np.sort(cut[left[cut] >= 0])
     kept = np.concatenate([[0], (left[cut][:, None] + [0, 1]).ravel()])
     number = np.zeros(len(boxes), int)

@@ -1,13 +1,14 @@
-"""The method `elliptic`: one anisotropic lobe per view, as n round lobes spread over its ellipse.
+"""The method `elliptic` fits an anisotropic lobe to each view, as n round lobes over its ellipse.
 
-The lobe of `single_lobe.py` is round. Lobes of brushed metal, and of any material at grazing views,
-are not. Here the samples that belong to that lobe are fitted with an anisotropic spherical Gaussian
+The lobe of `single_lobe.py` is round, but the highlights of brushed metal, and of any material at
+grazing views, are not. Here the samples that belong to that lobe are fitted with an anisotropic
+spherical Gaussian
 
     G(v) = max(v·z, 0) e^(-λ (v·x)² - μ (v·y)²)
 
-with an orthonormal frame x, y, z and bandwidths λ, μ > 0 [Xu et al. 2013]. Seen along z, it is a
-Gaussian of the plane, since v·z dω is an area of the plane; hence its moments. Round lobes narrower
-than the ellipse stand on its points: from 3 lobes on, their sum has the same second moments.
+with an orthonormal frame x, y, z and bandwidths λ, μ > 0 [Xu et al. 2013]. Projected along z, it is
+a Gaussian of the plane, whose second moments give λ and μ. It is replaced by round, narrower lobes
+at points of its ellipse; three or more of them have the same second moments in sum.
 """
 
 import numpy as np
@@ -19,15 +20,19 @@ from brdfkit.lighting.spherical_gaussians.single_lobe import fit_lobe
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import tangents
 
 
-def elliptic(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
-    """Fit an ellipse of `lobes` lobes, of equal weight and κ, to each view of a `grid`."""
-    return [[_spread_lobes(one, lobes) for one in views] for views in grid]
+def fit_elliptic_lobes(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
+    """Fit an anisotropic lobe to each view of a `grid`, by `lobes` round ones of equal weight.
+
+    The grid has a list of views over θ for each azimuth φ.
+    """
+    return [[_spread_over_ellipse(one, lobes) for one in views] for views in grid]
 
 
-def fit_anisotropic(x: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Fit an anisotropic Gaussian to directions `x` (n, 3) with `weights` (n,), by their moments.
+def fit_anisotropic_gaussian(x: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Fit an anisotropic spherical Gaussian to directions `x` (n, 3) with `weights` (n,).
 
-    Returns its frame (3, 3), with the rows x, y and z, and its bandwidths (2,), λ and μ.
+    Returns its frame (3, 3), with the rows x, y and z, and its bandwidths (2,), λ and μ, from the
+    second moments of the directions.
     """
     axis = normalize(weights @ x)
     plane = np.array(tangents(axis))
@@ -37,29 +42,32 @@ def fit_anisotropic(x: FloatArray, weights: FloatArray) -> tuple[FloatArray, Flo
     return np.array([*directions.T @ plane, axis]), bandwidths
 
 
-def _spread_lobes(one: OneView, n: int) -> ViewLobes:
-    """Fit an anisotropic lobe to a view, and spread `n` round lobes over it."""
+def _spread_over_ellipse(one: OneView, n: int) -> ViewLobes:
+    """Fit an anisotropic lobe to one view, and spread `n` round lobes over its ellipse."""
     part, share, *_ = fit_lobe(one)
     x, weights = one.samples()
-    frame, bandwidths = fit_anisotropic(x, weights * share)
+    frame, bandwidths = fit_anisotropic_gaussian(x, weights * share)
     light = one.energy.sum(axis=0)
     variances = 1 / (2 * bandwidths)  # along the lobe's x and y
-    # The kernels have half of a round lobe's variance, and less than that across a narrow lobe
+    # Round lobes have half the variance of a circular ellipse, and less for a narrow one
     kernel = min(np.sqrt(variances.prod()) / 2, 0.9 * variances.min())
-    # The symmetric root of the remaining variance moves points smoothly from view to view, even
-    # where the axes of the ellipse change places
+    # The symmetric root of the remaining variance changes smoothly from view to view, even where
+    # the longer axis of the ellipse becomes the shorter one
     plane = np.array(tangents(frame[2]))
     turn = frame[:2] @ plane.T
     root = turn.T @ np.diag(np.sqrt(variances - kernel)) @ turn
-    u = _normal_points(n) @ root @ plane
+    u = _make_normal_points(n) @ root @ plane
     height = np.sqrt(np.maximum(1 - (u**2).sum(axis=1), 0))
     axes = u + height[:, None] * frame[2]
     weights = np.repeat(part * light[None] / n, n, axis=0)
     return one.diffuse + (1 - part) * light, weights, normalize(axes), np.full(n, 1 / kernel)
 
 
-def _normal_points(n: int) -> FloatArray:
-    """Return `n` points (n, 2) of a normal distribution, with mean 0 and covariance 1."""
+def _make_normal_points(n: int) -> FloatArray:
+    """Return `n` evenly spread points (n, 2) of the standard normal distribution of the plane.
+
+    Their mean is exactly 0 and their covariance the identity.
+    """
     m = np.arange(n)
     radius = np.sqrt(-2 * np.log(1 - (m + 0.5) / n))
     angle = np.pi * (np.sqrt(5) - 1) * m

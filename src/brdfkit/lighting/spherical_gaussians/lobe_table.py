@@ -1,11 +1,11 @@
-"""`lobe_table`: BRDF × cosine of a material as spherical Gaussians, at a grid of views and between.
+"""`fit_lobe_table` approximates a material's BRDF × cosine by spherical Gaussians at many views.
 
     f(i, o) cosθ_i ≈ d(o) cosθ_i / π + Σ_k w_k(o) g(i; μ_k(o), κ_k(o))
 
 with the BRDF f, the light's direction i at the polar angle θ_i, the view o, the albedo d of the
-diffuse part, and lobes g with axes μ_k, concentrations κ_k and integrals w_k. Between the stored
-views, d, w, κ and μ are interpolated: lobe k of a view corresponds to lobe k of its neighbours. A
-white environment of radiance 1 thus gives d + Σ w.
+diffuse part, and lobes g with axes μ_k, concentrations κ_k and integrals w_k. Between the views, d,
+w, κ and μ are interpolated, since lobe k of a view corresponds to lobe k of its neighbours. The
+albedo for a view is d + Σ w.
 """
 
 from dataclasses import dataclass, field
@@ -22,24 +22,28 @@ from brdfkit.core.geometry.multilinear import (
     list_corners,
     to_flat_index,
 )
-from brdfkit.lighting.spherical_gaussians.elliptic import elliptic
-from brdfkit.lighting.spherical_gaussians.gmm import gmm
+from brdfkit.lighting.spherical_gaussians.elliptic import fit_elliptic_lobes
+from brdfkit.lighting.spherical_gaussians.gmm import fit_gmm_lobes
 from brdfkit.lighting.spherical_gaussians.one_view import Brdf, sample_view
-from brdfkit.lighting.spherical_gaussians.single_lobe import kde, warped
+from brdfkit.lighting.spherical_gaussians.single_lobe import fit_kde_lobes, fit_warped_lobes
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import density
 
-METHODS = {"gmm": gmm, "elliptic": elliptic, "kde": kde, "warped": warped}
-LARGEST_THETA_O = np.radians(88)  # beyond it, a ball has a thousandth of its pixels
+METHODS = {
+    "gmm": fit_gmm_lobes,
+    "elliptic": fit_elliptic_lobes,
+    "kde": fit_kde_lobes,
+    "warped": fit_warped_lobes,
+}
+LARGEST_THETA_O = np.radians(88)  # a thousandth of the pixels of a ball have more grazing views
 
 
 @dataclass(frozen=True)
 class LobeTable:
-    """The lobes of a material at each view of a grid; `lobe_table` makes it.
+    """The spherical Gaussian lobes of a material at a grid of views, which `fit_lobe_table` makes.
 
-    The views are a grid of `theta_o` × `phi_o`, the azimuth fastest: view i·len(phi_o) + j has
-    theta_o[i] and phi_o[j], which is j·2π/len(phi_o). An isotropic material has one azimuth. Axes
-    are stored as if every view had azimuth 0, in the plane y = 0 with x ≥ 0, and are turned about z
-    by the azimuth of the view: so the lobes of neighbours are most alike.
+    View i·len(phi_o) + j has the polar angle theta_o[i] and the azimuth phi_o[j] = j·2π/len(phi_o).
+    An isotropic material has one azimuth. Axes are stored as if every view had azimuth 0, and have
+    to be turned about z by the azimuth of the view, so that neighbouring views have similar axes.
     """
 
     theta_o: FloatArray = field(repr=False)  #: (nθ,) [rad], evenly from 0, below π/2
@@ -49,11 +53,13 @@ class LobeTable:
     axes: FloatArray = field(repr=False)  #: (views, lobes, 3) unit vectors, z along the normal
     kappa: FloatArray = field(repr=False)  #: (views, lobes) concentrations
 
-    def at(self, wo: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Interpolate the lobes at views `wo` (n, 3); beyond the last theta_o, take the last.
+    def interpolate_lobes(
+        self, wo: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Interpolate the lobes between the stored views, at views `wo` (n, 3).
 
         Returns diffuse (n, channels), weights (n, lobes, channels), axes (n, lobes, 3) and kappa
-        (n, lobes).
+        (n, lobes). Beyond the last theta_o they are those of the last.
         """
         theta, phi = to_angles(wo)
         brackets = [find_bracket(theta / self.theta_o[1], len(self.theta_o))]
@@ -70,13 +76,13 @@ class LobeTable:
         return diffuse, weights, axes, interpolate(self.kappa)
 
     def eval(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
-        """Evaluate BRDF × cosθ_i (n, channels) [sr⁻¹] by the lobes, at direction pairs (n, 3)."""
-        diffuse, weights, axes, kappa = self.at(wo)
+        """Evaluate BRDF × cosine (n, channels) [sr⁻¹] by the lobes, for direction pairs (n, 3)."""
+        diffuse, weights, axes, kappa = self.interpolate_lobes(wo)
         lobes = density(wi[:, None, :], axes, kappa)
         return diffuse * np.maximum(wi[:, 2:], 0) / np.pi + np.einsum("nk,nkc->nc", lobes, weights)
 
 
-def lobe_table(
+def fit_lobe_table(
     brdf: Brdf, method: str = "gmm", lobes: int = 32, views: int = 24, azimuths: int = 1
 ) -> LobeTable:
     """Fit spherical Gaussians to a material at a grid of views.
@@ -110,7 +116,7 @@ def lobe_table(
 
     Examples
     --------
-    >>> lobe_table(model.eval, lobes=16).weights.shape
+    >>> fit_lobe_table(model.eval, lobes=16).weights.shape
     (24, 16, 3)
     """
     if method not in METHODS:

@@ -2,9 +2,9 @@
 
     f(x) ≈ Σ_k α_k g(x; μ_k, κ_k),  Σ_k α_k = 1
 
-Samples have weights, so that drawn samples and the points of a quadrature are fitted alike. A
-sample may represent the directions around it. Its vector is then their mean, which is shorter than
-1, and bounds κ, since no lobe can close in on a point.
+Lobe k has the weight α_k, axis μ_k and concentration κ_k. Samples x have weights, so that they may
+be drawn at random or be the points of a quadrature. A sample may represent the directions around
+it: its vector is then their mean, which is shorter than 1, so that κ cannot become infinite.
 
 [Ergun 2015, eqs. 8.4 - 8.6]; the steps are those of [Banerjee et al. 2005], but with the exact κ in
 place of their approximation, so that the likelihood never falls.
@@ -19,26 +19,32 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.lighting.spherical_gaussians import von_mises_fisher as vmf
 
-SMALLEST_WEIGHT = 1e-12  # of a lobe, so that its logarithm is finite
+SMALLEST_WEIGHT = 1e-12  # of a lobe, because its logarithm has to be finite
 
 
 @dataclass(frozen=True)
 class Mixture:
-    """Lobes with `weights` (n,), whose sum is 1, `axes` (n, 3) and concentrations `kappa` (n,)."""
+    """A mixture of von Mises-Fisher lobes, a probability density over directions.
+
+    They have `weights` (n,), whose sum is 1, `axes` (n, 3) and concentrations `kappa` (n,).
+    """
 
     weights: FloatArray
     axes: FloatArray
     kappa: FloatArray
 
-    def log_lobes(self, x: FloatArray) -> FloatArray:
-        """Return log(α_k g_k(x)) (n, samples) at directions `x` (samples, 3)."""
-        # κ μ·x, plus what is the same for all samples
+    def log_lobe_densities(self, x: FloatArray) -> FloatArray:
+        """Return the log densities of the weighted lobes, log(α_k g_k(x)) (n, samples), at `x`."""
+        # κ μ·x, plus a constant that does not depend on the sample
         constant = np.log(self.weights) + vmf.log_density(0, self.kappa)
         return (self.kappa[:, None] * self.axes) @ x.T + constant[:, None]
 
-    def shares(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return each lobe's share γ (n, samples) of each sample, and log f (samples,)."""
-        share = self.log_lobes(x)
+    def lobe_shares(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return each lobe's share of each sample (n, samples), and the log density (samples,).
+
+        A lobe's share is its part of the mixture's density at the sample.
+        """
+        share = self.log_lobe_densities(x)
         largest = share.max(axis=0)
         np.exp(np.subtract(share, largest, out=share), out=share)
         total = share.sum(axis=0)
@@ -46,35 +52,41 @@ class Mixture:
         return share, np.log(total) + largest
 
 
-def from_clusters(x: FloatArray, weights: FloatArray, cluster: IntArray, n: int) -> Mixture:
-    """Return the mixture of `n` lobes that fits samples, given the `cluster` (samples,) of each."""
-    return _maximise(x, weights, np.eye(n)[:, cluster])
+def make_mixture_from_clusters(
+    x: FloatArray, weights: FloatArray, cluster: IntArray, n: int
+) -> Mixture:
+    """Return the mixture of `n` lobes that are fitted to clusters of the samples `x` (m, 3).
+
+    `cluster` (m,) is the number of the cluster of each sample, from 0 to n - 1.
+    """
+    return _maximise_likelihood(x, weights, np.eye(n)[:, cluster])
 
 
-def fit(
+def fit_mixture(
     x: FloatArray, weights: FloatArray, start: Mixture, steps: int = 200, tolerance: float = 1e-7
 ) -> tuple[Mixture, FloatArray]:
-    """Fit a mixture to samples `x` (m, 3) with `weights` (m,), from the mixture `start`.
+    """Fit a mixture to samples `x` (m, 3) with `weights` (m,) by expectation maximisation.
 
-    Returns the mixture, and the mean log likelihood before each step, which never falls. Stops
-    after `steps`, or when a step gains less than `tolerance`.
+    The fit begins with the mixture `start`, and ends after `steps`, or when a step increases the
+    mean log likelihood by less than `tolerance`. Returns the mixture, and the mean log likelihood
+    before each step.
     """
     mixture, likelihood = start, []
     for _ in range(steps):
-        share, log_f = mixture.shares(x)
+        share, log_f = mixture.lobe_shares(x)
         likelihood.append(weights @ log_f / weights.sum())
         if len(likelihood) > 1 and likelihood[-1] - likelihood[-2] < tolerance:
             break
-        mixture = _maximise(x, weights, share, mixture)
+        mixture = _maximise_likelihood(x, weights, share, mixture)
     return mixture, np.array(likelihood)
 
 
-def _maximise(
+def _maximise_likelihood(
     x: FloatArray, weights: FloatArray, share: FloatArray, before: Mixture | None = None
 ) -> Mixture:
-    """Return the likeliest mixture for each lobe's `share` (n, m) of the samples.
+    """Return the mixture of maximum likelihood, given each lobe's `share` (n, m) of the samples.
 
-    The axis of a lobe without samples stays as it was `before`.
+    A lobe without samples keeps its axis from the mixture `before`.
     """
     share = share * weights
     each = share.sum(axis=1)

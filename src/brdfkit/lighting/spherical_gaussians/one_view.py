@@ -2,9 +2,9 @@
 
     f(i, o) cosθ_i = ρ_d cosθ_i / π + glossy part,  glossy part ≥ 0
 
-with the light's direction i at the polar angle θ_i, the view o, and the diffuse albedo ρ_d. The
-diffuse part is the floor of f: the largest constant that exceeds f by at most a thousandth of the
-reflected light, so that a few low values, as measurements have them, do not pull it down.
+with the BRDF f, the light's direction i at the polar angle θ_i, the view o, and the diffuse albedo
+ρ_d. The diffuse part is the floor of f: nearly its smallest value, but a thousandth of the
+reflected light may lie below, so that a few low values of a measurement do not determine it.
 """
 
 from __future__ import annotations
@@ -20,22 +20,22 @@ from brdfkit.core.geometry.directions import from_angles, rotate_z
 from brdfkit.core.geometry.quadrature import make_ring_rule
 
 Brdf = Callable[[FloatArray, FloatArray], FloatArray]
-# A method's result for a view: albedo of the diffuse part (channels,), and the lobes' integrals
-# (lobes, channels), axes (lobes, 3) and concentrations κ (lobes,)
+# The lobes that a method fits to a view: albedo of the diffuse part (channels,), and the lobes'
+# integrals (lobes, channels), axes (lobes, 3) and concentrations κ (lobes,)
 ViewLobes = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
-RINGS = 48  # half the number of rings: lobes of 0.01 rad are resolved up to 80°
-FLOOR_EXCESS = 1e-3  # share of the reflected light that the floor may add where f is lower
-OMITTED_LIGHT = 1e-3  # share of the glossy light that fits leave out, in the darkest directions
+RINGS = 48  # half the number of rings of directions, which resolve lobes of 0.01 rad up to 80°
+FLOOR_EXCESS = 1e-3  # share of the reflected light by which the floor may exceed lower values
+OMITTED_LIGHT = 1e-3  # share of the glossy light, in the darkest directions, that fits omit
 
 
 @dataclass(frozen=True)
 class OneView:
-    """The diffuse albedo (channels,) at a `view` (3,), and the glossy part around it.
+    """BRDF × cosine for the `view` (3,), as the albedo of a diffuse part and a glossy part.
 
-    The glossy part [sr⁻¹] has values (n, channels) at `directions` (n, 3), on rings about the
-    mirror direction, each for its `solid_angle` (n,) [sr]. All directions are turned about z so
-    that the view has azimuth 0.
+    `diffuse` is that albedo (channels,). `glossy` (n, channels) [sr⁻¹] are the values at
+    `directions` (n, 3) on rings about the mirror direction, each of which represents its
+    `solid_angle` (n,) [sr]. All directions are turned about z so that the view has azimuth 0.
     """
 
     view: FloatArray
@@ -46,21 +46,23 @@ class OneView:
 
     @property
     def energy(self) -> FloatArray:
-        """The light (n, channels) of each direction, whose sum is the albedo of the glossy part."""
+        """The glossy part's share of reflected light in each direction (n, channels)."""
         return self.glossy * self.solid_angle[:, None]
 
     @property
     def means(self) -> FloatArray:
-        """The mean directions (n, 3) of round caps as large as each direction's solid angle Ω.
+        """The mean vectors (n, 3) of spherical caps about the directions, for fits of lobes.
 
-        Their length is 1 - Ω / 4π.
+        A cap has the solid angle Ω that its direction represents, and its mean the length
+        1 - Ω / 4π.
         """
         return self.directions * (1 - self.solid_angle[:, None] / (4 * np.pi))
 
     def samples(self) -> tuple[FloatArray, FloatArray]:
-        """Return the samples of a fit: `means` (m, 3), and the light of all channels (m,).
+        """Return the samples to which lobes are fitted: vectors (m, 3), and their weights (m,).
 
-        The darkest directions are left out to save time. A black glossy part has cosine weights.
+        Weights are the glossy light, averaged over the channels; a black glossy part has cosine
+        weights. The darkest directions are left out to save time.
         """
         weights = self.energy.mean(axis=1) + 1e-9 * self.directions[:, 2] * self.solid_angle
         order = weights.argsort()
@@ -69,27 +71,31 @@ class OneView:
 
 
 def sample_view(brdf: Brdf, theta: float, phi: float) -> OneView:
-    """Evaluate `brdf(wi, wo)`, which gives (n, channels) [sr⁻¹], for the view at θ and φ [rad]."""
+    """Evaluate a BRDF for the view at the polar angle `theta` and the azimuth `phi` [rad].
+
+    `brdf(wi, wo)` returns values (n, channels) [sr⁻¹] for pairs of directions (n, 3).
+    """
     view = from_angles(theta, 0)
     directions, cosine = make_ring_rule(view, RINGS)  # solid angles times cosθ
     wi, wo = rotate_z(directions, phi), rotate_z(view, phi)
     values = np.asarray(brdf(wi, np.broadcast_to(wo, wi.shape)), float)
     if values.ndim != 2 or not np.isfinite(values).all():
         raise BrdfkitError(
-            f"The BRDF should be finite numbers of shape (n, channels); seen from {wo.round(3)}, "
-            "it is not: check the material."
+            "The BRDF should be finite numbers of shape (n, channels), but it is not for the view "
+            f"{wo.round(3)}: check the material."
         )
     values = np.maximum(values, 0)
-    glossy = np.maximum(values - _find_floor(values, cosine), 0)
+    glossy = np.maximum(values - _find_diffuse_floor(values, cosine), 0)
     diffuse = np.maximum(cosine @ (values - glossy), 0)
     solid_angle = cosine / directions[:, 2]
     return OneView(view, diffuse, directions, solid_angle, glossy * directions[:, 2:])
 
 
-def _find_floor(values: FloatArray, cosine: FloatArray) -> FloatArray:
-    """Return the largest c (channels,) with Σ max(c - f, 0) cosθ ΔΩ ≤ FLOOR_EXCESS · Σ f cosθ ΔΩ.
+def _find_diffuse_floor(values: FloatArray, cosine: FloatArray) -> FloatArray:
+    """Return the diffuse part c (channels,) of BRDF values, nearly their minimum.
 
-    `values` are f (n, channels), `cosine` is cosθ ΔΩ (n,).
+    It is the largest c with Σ max(c - f, 0) cosθ ΔΩ ≤ FLOOR_EXCESS · Σ f cosθ ΔΩ, for the
+    `values` f (n, channels), and the `cosine` cosθ ΔΩ (n,), times solid angles.
     """
     order = values.argsort(axis=0)
     f, weight = np.take_along_axis(values, order, axis=0), cosine[order]

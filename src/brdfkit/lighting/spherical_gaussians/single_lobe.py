@@ -1,13 +1,13 @@
-"""The methods `warped` and `kde`: one lobe per view, or n sharper lobes in its place.
+"""The methods `warped` and `kde` fit one lobe to each view, or n sharper lobes in its place.
 
-The thesis warps the lobe of a model's roughness to light. Here a lobe is fitted to what the view
-sees, so that any material has one. It is fitted beside a cosine, by the steps of a mixture: light
-far from the lobe joins the diffuse part and does not widen the lobe.
+The thesis derives the lobe from the roughness of a model. Here it is fitted to the BRDF, so that
+any material has one. It is fitted together with a cosine, as a mixture of the two, so that light
+far from the lobe is added to the diffuse part and does not widen the lobe.
 
-`kde` replaces the lobe by a kernel density estimate on the sphere: n of its points, each with a
-kernel by García-Portugués's rule of thumb. Kernels blur: the concentration of the sum is only about
-κ / (1 + n^(-1/3)). The thesis takes points of the lobe itself; here they are points of a sharper
-lobe, chosen so that their estimate is as wide as the lobe.
+`kde` replaces the lobe by a kernel density estimate on the sphere: n points drawn from it, each
+with a kernel by García-Portugués's rule of thumb. Kernels blur, so that the sum has only the
+concentration κ / (1 + n^(-1/3)), about. The thesis draws the points from the lobe itself; here they
+are drawn from a sharper lobe, such that the estimate is as wide as the lobe.
 
 [Ergun 2015, section 8.6]; [García-Portugués 2013]
 """
@@ -20,32 +20,42 @@ from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 from brdfkit.lighting.spherical_gaussians import von_mises_fisher as vmf
 from brdfkit.lighting.spherical_gaussians.one_view import OneView, ViewLobes
 
-STEPS = 50
+STEPS = 50  # of expectation maximisation
 
 
-def warped(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
-    """Fit one lobe to each view of a `grid`, whatever the number of `lobes`."""
-    return [[_split_lobe(one, 1) for one in views] for views in grid]
+def fit_warped_lobes(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
+    """Fit one lobe to each view of a `grid`; the number of `lobes` is ignored.
+
+    The grid has a list of views over θ for each azimuth φ.
+    """
+    return [[_fit_split_lobes(one, 1) for one in views] for views in grid]
 
 
-def kde(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
-    """Fit one lobe to each view of a `grid`, and split it into sharper `lobes` of equal weight."""
-    return [[_split_lobe(one, lobes) for one in views] for views in grid]
+def fit_kde_lobes(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
+    """Fit one lobe to each view of a `grid`, and split it into as many sharper ones as `lobes`.
+
+    The grid has a list of views over θ for each azimuth φ.
+    """
+    return [[_fit_split_lobes(one, lobes) for one in views] for views in grid]
 
 
-def _split_lobe(one: OneView, n: int) -> ViewLobes:
-    """Fit the lobe of a view, or `n` lobes in its place; all other light joins the diffuse part."""
+def _fit_split_lobes(one: OneView, n: int) -> ViewLobes:
+    """Fit a lobe to one view, and split it into `n` lobes of equal weight.
+
+    Light that does not belong to the lobe is added to the diffuse part.
+    """
     part, _, axis, kappa = fit_lobe(one)
     light = one.energy.sum(axis=0)
-    axes, kappas = split(axis, kappa, n) if n > 1 else (axis[None], np.array(kappa))
+    axes, kappas = split_lobe(axis, kappa, n) if n > 1 else (axis[None], np.array(kappa))
     weights = np.repeat(part * light[None] / n, n, axis=0)
     return one.diffuse + (1 - part) * light, weights, axes, np.full(n, kappas)
 
 
 def fit_lobe(one: OneView) -> tuple[float, FloatArray, FloatArray, float]:
-    """Fit the likeliest lobe beside a cosine, beginning as narrow as the highest value allows.
+    """Fit a mixture of one lobe and a cosine to the glossy part of a view.
 
-    Returns the lobe's part of the light, its share (m,) of each of `one.samples()`, its axis, κ.
+    Returns the lobe's part of the light, its share (m,) of each of `one.samples()`, its axis and
+    its κ. The fit begins with a narrow lobe at the brightest direction.
     """
     x, weights = one.samples()
     brightest = one.glossy.mean(axis=1).argmax()
@@ -61,38 +71,43 @@ def fit_lobe(one: OneView) -> tuple[float, FloatArray, FloatArray, float]:
     return part, share, axis, kappa
 
 
-def bandwidth(kappa: ArrayLike, n: int) -> AnyArray:
-    """Return the bandwidth h for `n` samples of a lobe, whose kernels have the κ = 1 / h².
+def kernel_bandwidth(kappa: ArrayLike, n: int) -> AnyArray:
+    """Return the bandwidth h of a kernel density estimate from `n` points of a lobe with κ `kappa`.
 
-    >>> round(float(bandwidth(50.0, 8)), 6)
+    The kernels are lobes with the concentration 1 / h². [García-Portugués 2013]
+
+    >>> round(float(kernel_bandwidth(50.0, 8)), 6)
     0.100166
     """
     k = np.asarray(kappa, float)
-    # Numerator and denominator are multiplied by e^(-2κ)
+    # Numerator and denominator are multiplied by e^(-2κ), to avoid overflow
     sinh_squared = (np.expm1(-2 * k) / 2) ** 2
     sinh_twice, cosh_twice = -np.expm1(-4 * k) / 2, (1 + np.exp(-4 * k)) / 2
     spread = (1 + 4 * k**2) * sinh_twice - 2 * k * cosh_twice
     return (8 * sinh_squared / (k * n * spread)) ** (1 / 6)
 
 
-def split(mu: ArrayLike, kappa: ArrayLike, n: int) -> tuple[FloatArray, AnyArray]:
-    """Return axes (..., n, 3) and κ (...) of `n` lobes that together are as wide as lobe μ, κ."""
-    sharper = _sharpen(np.maximum(kappa, 0.1), n)
-    return vmf.spread_points(mu, sharper, n), bandwidth(sharper, n) ** -2
+def split_lobe(mu: ArrayLike, kappa: ArrayLike, n: int) -> tuple[FloatArray, AnyArray]:
+    """Split a lobe with axis μ and concentration κ into `n` sharper lobes, as wide in sum.
+
+    Returns their axes (..., n, 3), and their concentration (...).
+    """
+    sharper = _sharpen_lobe(np.maximum(kappa, 0.1), n)
+    return vmf.spread_lobe_points(mu, sharper, n), kernel_bandwidth(sharper, n) ** -2
 
 
-def estimate_width(kappa: ArrayLike, n: int) -> AnyArray:
-    """Return the concentration of a lobe's estimate by `n` of its points, from its mean."""
+def estimate_concentration(kappa: ArrayLike, n: int) -> AnyArray:
+    """Return the concentration of a kernel density estimate from `n` points of a lobe."""
     kappa = np.asarray(kappa, float)
-    mean = vmf.spread_points(np.array([0.0, 0.0, 1.0]), kappa, n).mean(axis=-2)
-    # The mean of a convolution is the product of the two means
-    length = np.linalg.norm(mean, axis=-1) * vmf.mean_cosine(bandwidth(kappa, n) ** -2)
+    mean = vmf.spread_lobe_points(np.array([0.0, 0.0, 1.0]), kappa, n).mean(axis=-2)
+    # The estimate is a convolution, whose mean cosine is the product of the two mean cosines
+    length = np.linalg.norm(mean, axis=-1) * vmf.mean_cosine(kernel_bandwidth(kappa, n) ** -2)
     return vmf.solve_kappa(length)
 
 
-def _sharpen(kappa: AnyArray, n: int) -> AnyArray:
-    """Return the concentration whose estimate by `n` points has the concentration `kappa`."""
+def _sharpen_lobe(kappa: AnyArray, n: int) -> AnyArray:
+    """Return the concentration of a sharper lobe, from `n` points of which an estimate has κ."""
     sharper = kappa * (1 + n ** (-1 / 3))
-    for _ in range(10):  # the estimate's concentration is nearly proportional to it
-        sharper = sharper * kappa / estimate_width(sharper, n)
+    for _ in range(10):  # converges, since both concentrations are nearly proportional
+        sharper = sharper * kappa / estimate_concentration(sharper, n)
     return sharper

@@ -1,4 +1,4 @@
-"""The von Mises-Fisher density, the spherical Gaussian of unit integral: one lobe about an axis.
+"""The von Mises-Fisher distribution, a spherical Gaussian with unit integral: a lobe about an axis.
 
     g(x; μ, κ) = κ / (2π (1 - e^(-2κ))) · e^(κ (μ·x - 1))
 
@@ -16,11 +16,11 @@ from scipy.special import exprel
 
 from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 
-LARGEST_KAPPA = 1e8  # the κ of a lobe of a ten thousandth of a radian
+LARGEST_KAPPA = 1e8  # of a lobe as narrow as a ten-thousandth of a radian
 
 
 def density(x: FloatArray, mu: ArrayLike, kappa: ArrayLike) -> AnyArray:
-    """Return the density g(x; μ, κ) (...) [sr⁻¹] at directions `x` (..., 3).
+    """Return the von Mises-Fisher density g(x; μ, κ) (...) [sr⁻¹] at directions `x` (..., 3).
 
     >>> density(np.array([0, 0, 1.0]), np.array([0, 0, 1.0]), 0.0) * 4 * np.pi
     np.float64(1.0)
@@ -29,20 +29,23 @@ def density(x: FloatArray, mu: ArrayLike, kappa: ArrayLike) -> AnyArray:
 
 
 def log_density(cosine: ArrayLike, kappa: ArrayLike) -> AnyArray:
-    """Return log g (...) where the angle to the axis has this `cosine` μ·x."""
+    """Return the log density (...) at directions whose angle to the axis has this `cosine`."""
     cosine, kappa = np.asarray(cosine, float), np.asarray(kappa, float)
     return kappa * (cosine - 1) - np.log(4 * np.pi * exprel(-2 * kappa))
 
 
 def mean_cosine(kappa: ArrayLike) -> FloatArray:
-    """Return R̄ = coth κ - 1/κ (...), the length of the mean of directions distributed as g."""
+    """Return the mean cosine of the angle to the axis, coth κ - 1/κ (...).
+
+    It is the length of the mean of directions that are distributed as the lobe.
+    """
     kappa = np.asarray(kappa, float)
     large = np.maximum(kappa, 0.01)  # below 0.01 the two terms cancel
     return np.where(kappa < 0.01, kappa / 3 * (1 - kappa**2 / 15), 1 / np.tanh(large) - 1 / large)
 
 
 def approximate_kappa(mean_cosine: AnyArray) -> AnyArray:
-    """Return κ ≈ (3R̄ - R̄³) / (1 - R̄²), within 4 % of the exact κ [Banerjee et al. 2005].
+    """Return a lobe's κ from its mean cosine R̄, within 4 % of the exact κ [Banerjee et al. 2005].
 
     >>> round(approximate_kappa(0.9), 3)
     10.374
@@ -51,23 +54,25 @@ def approximate_kappa(mean_cosine: AnyArray) -> AnyArray:
 
 
 def solve_kappa(mean_length: ArrayLike) -> AnyArray:
-    """Solve coth κ - 1/κ = R̄ for κ (...) ≤ 1e8, by Newton steps, given R̄ in [0, 1].
+    """Return the κ (...) ≤ 1e8 of a lobe from the length R̄ of its mean, 0 to 1.
+
+    Newton's method solves coth κ - 1/κ = R̄.
 
     >>> float(solve_kappa(0.9).round(3))
     10.0
     """
     r = np.clip(np.asarray(mean_length, float), 0, 1 - 1 / LARGEST_KAPPA)
     kappa = approximate_kappa(r)
-    for _ in range(4):  # from within 4 %, each step doubles the digits
+    for _ in range(4):  # each step doubles the number of correct digits
         # dR̄/dκ hardly changes below 0.01, where the two terms cancel; sinh overflows beyond 300
         slope = 1 / np.maximum(kappa, 0.01) ** 2 - 1 / np.sinh(np.clip(kappa, 0.01, 300)) ** 2
         kappa = np.maximum(kappa + (r - mean_cosine(kappa)) / slope, 0)
     return np.minimum(kappa, LARGEST_KAPPA)
 
 
-def sample(mu: FloatArray, kappa: ArrayLike, u: ArrayLike) -> FloatArray:
-    """Return directions (..., 3) distributed as g, from uniform numbers `u` (..., 2) in [0, 1)."""
-    # The inverse of the distribution of 1 - cosθ; log1p gets a number above -1, since u < 1
+def sample_directions(mu: FloatArray, kappa: ArrayLike, u: ArrayLike) -> FloatArray:
+    """Draw directions (..., 3) from lobes, by uniform random numbers `u` (..., 2) in [0, 1)."""
+    # The inverse of the distribution of cosθ; the argument of log1p is above -1, since u < 1
     u, kappa = np.asarray(u, float), np.asarray(kappa, float)
     cosine = 1 + np.log1p((1 - u[..., 0]) * np.expm1(-2 * kappa)) / kappa
     sine = np.sqrt(np.maximum(1 - cosine**2, 0))
@@ -77,21 +82,21 @@ def sample(mu: FloatArray, kappa: ArrayLike, u: ArrayLike) -> FloatArray:
     return along[0] * x + along[1] * y + along[2] * mu
 
 
-def spread_points(mu: ArrayLike, kappa: ArrayLike, n: int) -> FloatArray:
-    """Return `n` directions (..., n, 3) that represent the lobe, each of them 1/n of it.
+def spread_lobe_points(mu: ArrayLike, kappa: ArrayLike, n: int) -> FloatArray:
+    """Return `n` directions (..., n, 3) that are evenly spread by the probability of the lobe.
 
     They lie in the middles of n rings of equal probability, a golden section of a turn apart.
     """
     m = np.arange(n)
     u = np.stack([(m + 0.5) / n, np.mod(m * (np.sqrt(5) - 1) / 2, 1)], axis=-1)
-    return sample(np.asarray(mu)[..., None, :], np.asarray(kappa, float)[..., None], u)
+    return sample_directions(np.asarray(mu)[..., None, :], np.asarray(kappa, float)[..., None], u)
 
 
 def tangents(mu: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return two unit vectors (..., 3) that form a right-handed frame with μ (..., 3).
+    """Return two unit vectors (..., 3) that form a right-handed orthonormal frame with μ (..., 3).
 
-    They are the x and y axes of a frame whose z is turned to μ by the smallest rotation (or whose
-    -z is, for μ below the horizon), so that they change smoothly within each hemisphere.
+    They are the x and y axes after the smallest rotation of z (or -z, for μ below the horizon) to
+    μ, so that they change smoothly within each hemisphere.
     """
     x, y, z = np.moveaxis(np.asarray(mu, float), -1, 0)
     sign = np.where(z < 0, -1.0, 1.0)

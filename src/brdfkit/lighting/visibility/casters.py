@@ -1,4 +1,4 @@
-"""What casts shadows in a scene: the shapes themselves, or convex parts of their meshes."""
+"""Casters of shadows in a scene: its shapes themselves, or convex parts of its meshes."""
 
 from typing import Any
 
@@ -13,49 +13,53 @@ from brdfkit.lighting.visibility.pieces import is_closed
 
 
 class Casters:
-    """The casters of shadows in a scene, found at the first request; it remembers one scene.
+    """A cache of the shadow casters of one scene, which are found at the first request.
 
-    `concavity` and `resolution` are those of `find_occluders`. `convex` says whether the convex
-    parts of meshes cast the shadows, rather than the meshes themselves.
+    `convex` says whether the convex parts of meshes cast the shadows, rather than the meshes
+    themselves. `concavity` and `resolution` are the settings of the parts, see `find_occluders`.
     """
 
     def __init__(self, concavity: float, resolution: int, convex: bool = True) -> None:
         self.concavity, self.resolution, self.convex = concavity, resolution, convex
-        self.key: list[tuple[MitsubaObject, int]] | None = None  # of the remembered scene
+        self.key: list[tuple[MitsubaObject, int]] | None = None  # identifies the cached scene
         self.casters: tuple[Occluders | None, MitsubaObject | None] = None, None
 
-    def find(self, scene: MitsubaObject) -> tuple[Occluders | None, MitsubaObject | None]:
-        """Return the `Occluders`, and a `mitsuba.Scene` of the other shapes; each may be None."""
-        if self.key != _scene_key(scene):
+    def find_casters(self, scene: MitsubaObject) -> tuple[Occluders | None, MitsubaObject | None]:
+        """Return the shadow casters of a scene: convex parts, and a `mi.Scene` of other shapes.
+
+        Each is None if there are none.
+        """
+        if self.key != _make_scene_key(scene):
             if self.convex:
-                self.set(scene, *find_occluders(scene, self.concavity, self.resolution))
+                self.set_casters(scene, *find_occluders(scene, self.concavity, self.resolution))
             else:
-                self.set(scene, None, scene)
+                self.set_casters(scene, None, scene)
         return self.casters
 
-    def set(
+    def set_casters(
         self, scene: MitsubaObject, occluders: Occluders | None, others: MitsubaObject | None
     ) -> None:
-        """Let `occluders`, and the shapes of the scene `others`, cast the shadows in a scene."""
-        self.key, self.casters = _scene_key(scene), (occluders, others)
+        """Set the shadow casters of a scene: `occluders`, and the shapes of the scene `others`."""
+        self.key, self.casters = _make_scene_key(scene), (occluders, others)
 
-    def visible(self, scene: MitsubaObject, ray: MitsubaObject, active: JitMask) -> JitMask:
-        """Return whether nothing lies between the ray's origin and its `maxt`."""
+    def is_visible(self, scene: MitsubaObject, ray: MitsubaObject, active: JitMask) -> JitMask:
+        """Return whether no shadow caster lies between a ray's origin and its `maxt`."""
         import drjit as dr
 
-        occluders, others = self.find(scene)
+        occluders, others = self.find_casters(scene)
         if others is not None:
             active = dr.select(others.ray_test(ray, active), False, active)
         if occluders is not None:
-            active = dr.select(occluders.blocked(ray, active)[0], False, active)
+            active = dr.select(occluders.is_blocked(ray, active)[0], False, active)
         return active
 
 
-def _scene_key(scene: MitsubaObject) -> list[tuple[MitsubaObject, int]]:
-    """Return a key that identifies a scene by its shapes.
+def _make_scene_key(scene: MitsubaObject) -> list[tuple[MitsubaObject, int]]:
+    """Return a key that identifies a scene by its shapes, for the cache of shadow casters.
 
-    A reference to the scene itself, which holds its integrator, would never be freed. References to
-    the shapes prevent another scene's shapes from appearing at the addresses of freed ones.
+    A reference to the scene itself would be a cycle, which is never freed, since the scene has a
+    reference to its integrator. The key keeps the shapes alive, so that no other scene can have
+    shapes with the same addresses.
     """
     return [(shape, shape.primitive_count()) for shape in scene.shapes()]
 
@@ -63,17 +67,17 @@ def _scene_key(scene: MitsubaObject) -> list[tuple[MitsubaObject, int]]:
 def find_occluders(
     scene: MitsubaObject, concavity: float, resolution: int
 ) -> tuple[Occluders | None, MitsubaObject | None]:
-    """Return the `Occluders` of a scene's meshes, and a `mitsuba.Scene` of its other shapes.
+    """Return the convex parts of a scene's meshes, and a `mi.Scene` of its other shapes.
 
-    Each is None where there are none. `concavity` is that of `decompose`, `resolution` that of
-    `Occluders`, whose objects have the ids of their shapes. A shape has no parts if it is not a
-    mesh (a sphere, an instance), encloses no volume (a ground), or emits light, which its own parts
-    would block. Raises `BrdfkitError` for a scene without shapes.
+    Each is None if there are none. `concavity` is the setting of `decompose`, and `resolution` that
+    of `Occluders`, whose objects are named by the ids of shapes. A shape has no parts if it is not
+    a mesh (a sphere, an instance), encloses no volume (a ground), or emits light, which its own
+    parts would block. Raises `BrdfkitError` for a scene without shapes.
     """
     import mitsuba as mi
 
     if not scene.shapes():
-        raise BrdfkitError("The scene has no shapes; add what should be seen and cast shadows.")
+        raise BrdfkitError("The scene has no shapes; add shapes that cast shadows.")
     objects, others = {}, []
     for shape in scene.shapes():
         solid = shape.shape_type() == mi.ShapeType.Mesh and not shape.is_emitter()
@@ -82,11 +86,11 @@ def find_occluders(
             objects[shape.id()] = parts
         else:
             others.append(shape)
-    return Occluders(objects, resolution) if objects else None, _make_scene(others)
+    return Occluders(objects, resolution) if objects else None, _make_scene_of_shapes(others)
 
 
 def _decompose_mesh(mesh: MitsubaObject, concavity: float) -> list[Hull]:
-    """Return the convex parts of one of Mitsuba's meshes; warn if it is not closed."""
+    """Cut a mesh of Mitsuba's into convex parts; warn if it is not closed."""
     import mitsuba as mi
 
     buffers: Any = mi.traverse(mesh)
@@ -96,14 +100,14 @@ def _decompose_mesh(mesh: MitsubaObject, concavity: float) -> list[Hull]:
     if parts and not is_closed(weld(points, faces)[1]):
         mi.Log(  # type: ignore[operator]  # an object in Mitsuba's stub
             mi.LogLevel.Warn,
-            f"{mesh.id()}: the mesh is not closed; its convex parts are those of a mesh without "
-            "its holes, or of a thicker one around it.",
+            f"{mesh.id()}: the mesh is not closed; its holes were closed, or it was replaced by a "
+            "thicker mesh around it, before it was cut into convex parts.",
         )
     return parts
 
 
-def _make_scene(shapes: list[MitsubaObject]) -> MitsubaObject | None:
-    """Return a `mitsuba.Scene` of `shapes`, None for no shapes."""
+def _make_scene_of_shapes(shapes: list[MitsubaObject]) -> MitsubaObject | None:
+    """Return a `mi.Scene` of the `shapes` alone, or None if there are none."""
     import mitsuba as mi
 
     if not shapes:

@@ -1,9 +1,9 @@
-"""A program that cuts a mesh by coacd, in a process of its own that Ctrl-C can end at once.
+"""A program that cuts a mesh into convex parts by coacd, so that Ctrl-C can end it at once.
 
     python coacd_process.py mesh.npz parts.npz SETTINGS
 
-SETTINGS are those of `coacd.run_coacd`, as JSON. Native code reacts to Ctrl-C only when it is done,
-after minutes, and takes the whole process with it where it fails.
+SETTINGS are those of `coacd.run_coacd`, as JSON. In the caller's process, this native code would
+ignore Ctrl-C until it is done, after minutes, and a crash would end the caller.
 """
 
 import json
@@ -12,8 +12,11 @@ import sys
 import numpy as np
 
 
-def cut(mesh: str, parts: str, settings: str) -> None:
-    """Read the file `mesh`, and write the corners of all parts and the index where each ends."""
+def cut_mesh(mesh: str, parts: str, settings: str) -> None:
+    """Cut the mesh in the file `mesh` into convex parts, and write them to the file `parts`.
+
+    The file has the corners of all parts, and for each part the index behind its last corner.
+    """
     import coacd
 
     coacd.set_log_level("off")
@@ -25,4 +28,4 @@ def cut(mesh: str, parts: str, settings: str) -> None:
 
 
 if __name__ == "__main__":
-    cut(*sys.argv[1:])
+    cut_mesh(*sys.argv[1:])

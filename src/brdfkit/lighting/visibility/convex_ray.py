@@ -1,14 +1,14 @@
-"""Where a ray enters a convex part, by its plane map [Ergun 2015, Algorithm 3].
+"""Intersection of rays with a convex part by its plane map [Ergun 2015, Algorithm 3].
 
-All computations are in the unit frame of the part. From the point where the ray enters the unit
-sphere, on the near or the far side of its origin, the search moves along the ray to the plane of
-the face in that direction, then to the plane in the direction of the new point, and so on until
-it no longer moves.
+A plane map stores the part's face in each direction from its centre. All computations are in the
+part's unit frame, in which the unit sphere encloses it. The search begins where the ray enters the
+sphere, even behind the ray's origin. It moves along the ray to the plane of the face in the
+direction of the current point, again and again, until it no longer moves.
 
-A texel of a rasterised map may hold the plane of a neighbouring face. The printed algorithm then
-takes a step back for a miss, and so loses hits near the edges of faces. Here a plane that faces the
-ray can only move the entry forward, and a plane by which the ray leaves ends the search: the ray
-misses if it is already outside that plane. With the true planes both forms give the same.
+A texel of the map may have the plane of a neighbouring face. The published algorithm then counts a
+step backwards as a miss, and loses hits near the edges of faces. Here a plane that faces the ray
+can only move the point forwards, and a plane that faces away ends the search, with a miss if the
+point is already outside it. With the exact planes both forms give the same.
 """
 
 import drjit as dr
@@ -16,8 +16,8 @@ import drjit as dr
 from brdfkit.core.array_types import JitFloat, JitInt, JitMask, JitVector, MitsubaModule
 from brdfkit.lighting.visibility.plane_map import PlaneMap
 
-EPSILON = 3e-6  # tolerance of distances, where the part has the radius 1
-LOOKUP_LIMIT = 32
+EPSILON = 3e-6  # tolerance of distances in the unit frame
+LOOKUP_LIMIT = 32  # look-ups of a plane after which the search ends
 GOING, HIT, MISSED = 0, 1, 2  # states of the search
 
 
@@ -29,20 +29,21 @@ def find_entry(
     part: JitInt,
     active: JitMask = True,
 ) -> tuple[JitFloat, JitMask, JitInt]:
-    """Return (distance, whether the ray enters the part, number of look-ups in the map).
+    """Find where a ray enters a convex part.
 
-    `o` and the unit vector `d` are the ray in the unit frame of the `part`, a number in the plane
-    map `planes`. The distance from `o` is negative where `o` is inside the part, or beyond it.
+    `o` and the unit vector `d` are the ray in the unit frame of the `part`, which is a number in
+    the plane map `planes`. Returns the distance of the entry from `o`, whether the ray enters, and
+    the number of look-ups. The distance is negative if `o` lies inside the part, or beyond it.
     """
-    # Distances count from the point nearest to the centre, for accuracy where `o` is far away
+    # Distances count from the ray's point nearest to the centre, to be accurate if `o` is far away
     middle = -dr.dot(o, d)
     nearest = o + middle * d
-    half = dr.safe_sqrt(1 + EPSILON - dr.squared_norm(nearest))  # of the chord in the sphere
+    half = dr.safe_sqrt(1 + EPSILON - dr.squared_norm(nearest))  # half of the chord in the sphere
     start = dr.select(active & (half > 0), mi.UInt32(GOING), mi.UInt32(MISSED))
 
     def look_up(t: JitFloat, state: JitInt, count: JitInt) -> tuple[JitFloat, JitInt, JitInt]:
         p = nearest + t * d
-        n, distance = planes.at(part, dr.normalize(p), active)
+        n, distance = planes.look_up_plane(part, dr.normalize(p), active)
         cos, outside = dr.dot(n, d), dr.dot(n, p) - distance
         facing = cos < 0
         step = dr.select(facing, outside / dr.select(facing, -cos, 1), 0)

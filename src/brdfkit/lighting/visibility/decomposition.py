@@ -1,6 +1,7 @@
 """Decomposition of a triangle mesh into nearly convex parts, by coacd [Wei et al. 2022].
 
-[Ergun 2015, section 7.1] used HACD, which is no longer maintained. Of its parameters, coacd has:
+[Ergun 2015, section 7.1] used HACD, which is no longer maintained. Its parameters have these
+counterparts in coacd:
 
 | HACD | here, and in coacd |
 | --- | --- |
@@ -9,8 +10,8 @@
 | NTargetTrianglesDecimatedMesh | none; a mesh with an opening is remeshed, as if decimated |
 | NClusters, ConnectDist, SmallClusterThreshold, AddExtraDistPoints, AddFacesPoints | none |
 
-A decomposition takes seconds to minutes. It is made once, and stored in the user's cache folder as
-an .npz file that is named by the checksum of the mesh and the settings.
+A decomposition takes seconds to minutes. It is thus stored in the user's cache folder, as an .npz
+file whose name is the checksum of the mesh and the settings.
 """
 
 import hashlib
@@ -31,7 +32,8 @@ from brdfkit.lighting.visibility.hull import Hull, make_hull
 from brdfkit.lighting.visibility.pieces import split_solids
 
 PROGRAM = Path(__file__).with_name("coacd_process.py")
-# The search for cuts; coacd's defaults (150, 20, 3 and 2000) find as many parts in 4 times the time
+# coacd's settings of its search; the defaults (150, 20, 3 and 2000) give as many parts 4 times as
+# slowly
 SEARCH = {"mcts_iterations": 20, "mcts_nodes": 10, "mcts_max_depth": 2, "resolution": 500}
 PREPROCESS = "preprocess_mode"  # coacd's: "off" for a closed mesh, "on" to close an open one
 CONCAVITY = 0.03
@@ -44,7 +46,7 @@ def decompose(
     concavity: float = CONCAVITY,
     hull_vertices: int = HULL_VERTICES,
 ) -> list[Hull]:
-    """Cut a mesh into convex parts; a mesh that encloses nothing has none.
+    """Cut a mesh into nearly convex parts, and return their hulls; none if it encloses no volume.
 
     `points` (n, 3) are the mesh's vertices, `faces` (m, 3) the vertex numbers of its triangles.
     `concavity` (0.01 to 1) is the largest distance between a part and its hull, relative to half of
@@ -77,13 +79,13 @@ def decompose(
 def _cut_piece(
     points: FloatArray, faces: IntArray, settings: dict[str, int | float | str]
 ) -> list[Hull]:
-    """Return the parts of one piece, from the cache if it has them."""
+    """Cut a piece of a mesh into convex parts, or read them from the cache of earlier calls."""
     whole = make_hull(points[np.unique(faces)])
     if whole is None:
         return []
     if settings[PREPROCESS] == "off" and _fills_its_hull(points, faces):
         return [whole]
-    file = cache_folder() / f"{_checksum(points, faces, settings)}.npz"
+    file = cache_folder() / f"{_checksum_mesh(points, faces, settings)}.npz"
     if not file.is_file():
         _run_coacd(points, faces, settings, file)
     with np.load(file) as stored:
@@ -92,14 +94,17 @@ def _cut_piece(
 
 
 def cache_folder() -> Path:
-    """Return the folder of the stored decompositions, in the user's cache folder."""
+    """Return the folder in the user's cache folder in which decompositions are stored."""
     import pooch
 
     return Path(pooch.os_cache("brdfkit")) / "convex_parts"
 
 
 def weld(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
-    """Merge vertices that are equal in single precision, and drop faces with two equal corners."""
+    """Merge a mesh's vertices that are equal in single precision, and drop faces that collapse.
+
+    `points` (n, 3) are the vertices, and `faces` (m, 3) the vertex numbers of triangles.
+    """
     points = np.asarray(points, np.float32).astype(float)
     points, number = np.unique(points, axis=0, return_inverse=True)
     faces = number.reshape(-1)[np.asarray(faces)]
@@ -119,7 +124,7 @@ def _fills_its_hull(points: FloatArray, faces: IntArray) -> bool:
 def _run_coacd(
     points: FloatArray, faces: IntArray, settings: dict[str, int | float | str], file: Path
 ) -> None:
-    """Write the parts of a mesh to `file`, by a process that does not outlive this call."""
+    """Cut a mesh by coacd in another process, and write its parts to `file`."""
     if not find_spec("coacd"):
         raise BrdfkitError(
             "Convex parts are found by coacd, which is not installed; pip install "
@@ -130,7 +135,7 @@ def _run_coacd(
     with TemporaryDirectory() as folder, write_safely(file) as beside:
         mesh = Path(folder) / "mesh.npz"
         np.savez(mesh, points=points, faces=faces)
-        status = _run([sys.executable, "-P", PROGRAM, mesh, beside, json.dumps(settings)])
+        status = _run_program([sys.executable, "-P", PROGRAM, mesh, beside, json.dumps(settings)])
         if status:
             raise BrdfkitError(
                 f"coacd could not cut a mesh of {len(faces):,} triangles (exit status {status}); "
@@ -138,9 +143,9 @@ def _run_coacd(
             )
 
 
-def _run(command: list[str | Path]) -> int:
-    """Run a program and return its exit status; Ctrl-C ends it, too."""
-    restore_interrupt_handler()  # Mitsuba's handler, while it renders, waits for the picture
+def _run_program(command: list[str | Path]) -> int:
+    """Run a program until it ends, or Ctrl-C ends both programs; return its exit status."""
+    restore_interrupt_handler()  # while Mitsuba renders, its own handler delays Ctrl-C
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
     try:
         return process.wait()
@@ -149,8 +154,10 @@ def _run(command: list[str | Path]) -> int:
         process.wait()
 
 
-def _checksum(points: FloatArray, faces: IntArray, settings: dict[str, int | float | str]) -> str:
-    """Return the SHA-256 of a mesh and of the settings, in hexadecimal."""
+def _checksum_mesh(
+    points: FloatArray, faces: IntArray, settings: dict[str, int | float | str]
+) -> str:
+    """Return the SHA-256, in hexadecimal, of a mesh and the settings of its decomposition."""
     digest = hashlib.sha256(repr(sorted(settings.items())).encode())
     digest.update(np.asarray(points, "<f8").tobytes())
     digest.update(np.asarray(faces, "<i8").tobytes())

@@ -1,9 +1,9 @@
-"""A small tree of boxes (BVH), built by NumPy in a millisecond and traversed without a stack.
+"""A small bounding volume hierarchy, built by NumPy in a millisecond, traversed without a stack.
 
-The tree is complete: it has 2^k leaves, of which the spare ones are empty. Node 1 is the root, and
-the children of node i are 2 i and 2 i + 1, so no links are stored. After the subtree of node i
-comes the node whose number is i + 1 without the trailing zeros of its binary form; if that is 1,
-the traversal ends.
+The tree is complete: it has 2^k leaves, some of which may be empty. Node 1 is the root, and the
+children of node i are 2 i and 2 i + 1, so that no links are stored. The traversal continues after
+the subtree of node i with the node i + 1 without the trailing zeros of its binary form, and ends if
+that is 1.
 """
 
 from collections.abc import Callable
@@ -14,11 +14,14 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray, JitInt, JitMask, MitsubaObject
 from brdfkit.mitsuba_bridge.arrays import Integers, Rows
 
-ROOT, END = 1, 0  # END follows the last subtree
+ROOT, END = 1, 0  # node numbers; END is reached after the last subtree
 
 
 class Hierarchy:
-    """A tree over n boxes with the corners `low` and `high` (n, 3), each in one leaf."""
+    """A tree of bounding boxes over n boxes, to find those that a ray hits.
+
+    The boxes have the corners `low` and `high` (n, 3), and each is in one leaf.
+    """
 
     def __init__(self, low: FloatArray, high: FloatArray) -> None:
         import drjit as dr
@@ -26,33 +29,34 @@ class Hierarchy:
 
         order = _sort_boxes(low, high)
         self.leaves = mi.UInt32(len(order))
-        dr.make_opaque(self.leaves)  # one kernel for any number of boxes
+        dr.make_opaque(self.leaves)  # so that any number of boxes has the same kernel
         self.order = Integers(np.maximum(order, 0))
-        self.low = Rows(_combine_levels(_arrange(low, order), np.fmin))
-        self.high = Rows(_combine_levels(_arrange(high, order), np.fmax))
+        self.low = Rows(_combine_node_corners(_arrange_corners(low, order), np.fmin))
+        self.high = Rows(_combine_node_corners(_arrange_corners(high, order), np.fmax))
 
-    def any_hit(
+    def find_any_hit(
         self,
         ray: MitsubaObject,
         test: Callable[[JitInt, JitMask], tuple[JitMask, JitInt]],
         active: JitMask = True,
     ) -> tuple[JitMask, JitInt]:
-        """Return whether the ray hits anything before its `maxt`, and the number of map reads.
+        """Return whether a ray hits the content of any box before its `maxt`, and a sum of reads.
 
-        `test(box's number, active)` returns the same for the content of one box.
+        `test(number, active)` tests the content of the box with this number: it returns whether
+        the ray hits it, and a number of memory reads, to measure the costs.
         """
         import drjit as dr
         import mitsuba as mi
 
         def visit(node: JitInt, hit: JitInt, reads: JitInt) -> tuple[JitInt, JitInt, JitInt]:
-            leaf, number = self._next_leaf(node, ray)
+            leaf, number = self._find_next_leaf(node, ray)
             hit_here, more = test(number, leaf != END)
             hit_here = hit_here & (leaf != END)
-            onward = dr.select(leaf != END, next_subtree(leaf), END)
+            onward = dr.select(leaf != END, find_next_subtree(leaf), END)
             return onward, dr.select(hit_here, mi.UInt32(1), mi.UInt32(0)), reads + more
 
         start = dr.select(active, mi.UInt32(ROOT), mi.UInt32(END))
-        with dr.suspend_grad():  # the test is a step function, which has no derivative
+        with dr.suspend_grad():  # visibility is a step function, without derivatives
             _, hit, reads = dr.while_loop(
                 (start, mi.UInt32(0), mi.UInt32(0)),
                 lambda node, hit, reads: (node != END) & (hit == 0),
@@ -60,33 +64,35 @@ class Hierarchy:
             )
         return hit == 1, reads
 
-    def _next_leaf(self, node: JitInt, ray: MitsubaObject) -> tuple[JitInt, JitInt]:
-        """Return the first leaf from `node` on whose box the ray hits, and its box's number.
+    def _find_next_leaf(self, node: JitInt, ray: MitsubaObject) -> tuple[JitInt, JitInt]:
+        """Return the next leaf, from `node` on, whose box the ray hits, and the box's number.
 
-        The leaf is `END` if there is none.
+        The leaf is END if there is none.
         """
         import drjit as dr
         import mitsuba as mi
 
         inverse = dr.rcp(ray.d)
 
-        def step(node: JitInt, found: JitInt) -> tuple[JitInt, JitInt]:
+        def visit_node(node: JitInt, found: JitInt) -> tuple[JitInt, JitInt]:
             a = (self.low.at(node, mi.Point3f) - ray.o) * inverse
             b = (self.high.at(node, mi.Point3f) - ray.o) * inverse
             near, far = dr.max(dr.minimum(a, b)), dr.min(dr.maximum(a, b))
             hit = (near <= far) & (far >= 0) & (near <= ray.maxt)
             leaf = node >= self.leaves
-            onward = dr.select(hit, dr.select(leaf, node, 2 * node), next_subtree(node))
+            onward = dr.select(hit, dr.select(leaf, node, 2 * node), find_next_subtree(node))
             return onward, dr.select(hit & leaf, mi.UInt32(1), mi.UInt32(0))
 
         leaf, _ = dr.while_loop(
-            (mi.UInt32(node), mi.UInt32(0)), lambda node, found: (node != END) & (found == 0), step
+            (mi.UInt32(node), mi.UInt32(0)),
+            lambda node, found: (node != END) & (found == 0),
+            visit_node,
         )
         return leaf, self.order.at(leaf - self.leaves, leaf != END)
 
 
-def next_subtree(node: JitInt) -> JitInt:
-    """Return the node that follows the subtree of `node` in the traversal, or `END`.
+def find_next_subtree(node: JitInt) -> JitInt:
+    """Return the node that follows the subtree of `node` in the traversal, or END.
 
     For node 5, the right child of 2, this is 3, the sibling of 2.
     """
@@ -97,15 +103,15 @@ def next_subtree(node: JitInt) -> JitInt:
 
 
 def _sort_boxes(low: FloatArray, high: FloatArray) -> IntArray:
-    """Return the numbers of the boxes from the first leaf to the last, -1 for an empty leaf.
+    """Assign boxes to the leaves of a tree, so that neighbouring leaves have neighbouring boxes.
 
-    The boxes of a node are sorted along the longest side of the box around their centres, and
-    divided in the middle; all nodes of a level are sorted at once.
+    Returns the box's number for each leaf, -1 for an empty leaf. The boxes of a node are sorted
+    along the longest side of the bounding box of their centres, and divided in the middle.
     """
     leaves = 1 << max(int(np.ceil(np.log2(len(low)))), 0)
     order = np.full(leaves, -1)
     order[: len(low)] = np.arange(len(low))
-    centres = np.full((leaves, 3), np.nan)  # empty leaves are sorted to the end
+    centres = np.full((leaves, 3), np.nan)  # NaN sorts empty leaves to the end
     centres[: len(low)] = (low + high) / 2
     size = leaves
     while size > 1:
@@ -120,13 +126,16 @@ def _sort_boxes(low: FloatArray, high: FloatArray) -> IntArray:
     return order
 
 
-def _arrange(corners: FloatArray, order: IntArray) -> FloatArray:
-    """Return the corners (leaves, 3) in this `order`; NaN for an empty leaf, which no ray hits."""
+def _arrange_corners(corners: FloatArray, order: IntArray) -> FloatArray:
+    """Return the boxes' corners (leaves, 3) in the `order` of leaves; NaN, never hit, if empty."""
     return np.where(order[:, None] < 0, np.nan, corners[order])
 
 
-def _combine_levels(leaves: FloatArray, combine: Callable[[Any, Any], Any]) -> FloatArray:
-    """Return the corners (2 · leaves, 3) of all nodes; those of node 0, which is unused, are 0."""
+def _combine_node_corners(leaves: FloatArray, combine: Callable[[Any, Any], Any]) -> FloatArray:
+    """Return the boxes' corners (2 · leaves, 3) of all nodes of a tree, from those of its `leaves`.
+
+    `combine` is np.fmin for lower corners and np.fmax for upper ones. Node 0 is not used.
+    """
     levels = [leaves]
     while len(levels[0]) > 1:
         levels.insert(0, combine(levels[0][::2], levels[0][1::2]))

@@ -1,23 +1,23 @@
-"""Closing of holes in a piece of a mesh, each by a fan of triangles, unless it is an opening."""
+"""Closing of holes in a piece of a mesh by fans of triangles, except for intended openings."""
 
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, IntArray
 
-WIDE_HOLE = 0.3  # width over the longest side of the mesh above which it may be an opening
-COVERED = 0.75  # winding number in the middle of a hole above which the mesh surrounds it
+WIDE_HOLE = 0.3  # a hole wider than this share of the mesh's longest side may be an opening
+COVERED = 0.75  # smallest winding number in the middle of a hole that the mesh surrounds
 
 
 def close_holes(points: FloatArray, faces: IntArray, mesh: IntArray) -> tuple[FloatArray, IntArray]:
-    """Return the points and faces of a piece whose holes are closed from the mean of their corners.
+    """Close the holes of a piece of a mesh, each by triangles from the mean of its corners.
 
-    The triangles `faces` of the piece all face out; `mesh` (m, 3) are the faces of all pieces, with
-    the same points. A wide hole is closed where the mesh covers it, as the body of a teapot covers
-    the foot of its spout: in the middle of such a hole the winding number [Jacobson et al. 2013] is
-    1, at an opening 1/2. A piece stays as it is if it has an opening, or if two of its holes share
-    a corner.
+    Returns the points and faces of the piece, all of whose triangles `faces` have to face out.
+    `mesh` (m, 3) are the faces of all pieces, with the same points. A wide hole is closed only if
+    other pieces cover it, as the body of a teapot covers the foot of its spout: the winding number
+    [Jacobson et al. 2013] in its middle is then 1, but 1/2 at an opening. A piece is returned
+    unchanged if it has an opening, or if two of its holes share a corner.
     """
-    loops = _find_loops(faces)
+    loops = _find_hole_loops(faces)
     if not loops:
         return points, faces
     middles = np.array([points[loop].mean(axis=0) for loop in loops])
@@ -34,16 +34,16 @@ def close_holes(points: FloatArray, faces: IntArray, mesh: IntArray) -> tuple[Fl
 
 
 def _winding_number(points: FloatArray, faces: IntArray, at: FloatArray) -> FloatArray:
-    """Return how often the faces wind around each of the points `at` (n, 3)."""
+    """Return the winding number (n,) of a mesh's `faces` around each of the points `at` (n, 3)."""
     import igl
 
     return igl.winding_number(points, faces, at)
 
 
-def _find_loops(faces: IntArray) -> list[list[int]]:
-    """Return the corners around each hole, in the order of the triangles that close it.
+def _find_hole_loops(faces: IntArray) -> list[list[int]]:
+    """Return the numbers of the corners around each hole, in the order of triangles that close it.
 
-    There are none if the piece is closed, or if two holes share a corner.
+    The list is empty if the piece is closed, or if two holes share a corner.
     """
     edges = set(map(tuple, np.concatenate([faces[:, [i, (i + 1) % 3]] for i in range(3)]).tolist()))
     border = [(b, a) for a, b in edges if (b, a) not in edges]

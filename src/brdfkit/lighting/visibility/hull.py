@@ -1,4 +1,4 @@
-"""A convex part of a mesh: the hull of points, in a frame that makes it as round as possible."""
+"""A convex part of a mesh: the hull of points, and a frame in which it is as round as possible."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -17,7 +17,10 @@ from brdfkit.mitsuba_bridge.arrays import Rows
 
 
 class Frames:
-    """The frames of n parts, given by affine `maps` (n, 3, 4) from the world."""
+    """The unit frames of n convex parts in Mitsuba's memory, to transform rays to them.
+
+    `maps` (n, 3, 4) are the affine maps from the world to the frames.
+    """
 
     def __init__(self, maps: ArrayLike) -> None:
         self.rows = Rows(np.reshape(maps, (-1, 4)))
@@ -25,9 +28,9 @@ class Frames:
     def transform_ray(
         self, number: JitInt, ray: MitsubaObject, active: JitMask = True
     ) -> tuple[JitVector, JitVector]:
-        """Return the origin and the direction of a ray in frame `number`.
+        """Return the origin and the direction of a ray in the frame with this `number`.
 
-        The direction is not normalised, so that distances along it are those along the ray.
+        The direction is not normalised, so that distances along the ray stay the same.
         """
         import drjit as dr
         import mitsuba as mi
@@ -38,17 +41,17 @@ class Frames:
         return mi.Vector3f(*origin), mi.Vector3f(*(dr.dot(a, ray.d) for a in linear))
 
 
-MIN_THICKNESS = 1e-4  # of a part over its longest extent; a thinner one encloses nothing
+MIN_THICKNESS = 1e-4  # ratio of a hull's volume to its area, relative to its longest side
 
 
 @dataclass(frozen=True)
 class Hull:
-    """The convex hull of points, and its planes in the unit frame.
+    """A convex hull in the coordinates of its mesh, and its planes in a unit frame.
 
-    `vertices` (n, 3) are the corners, in the coordinates of the mesh. `to_unit` is the affine map
-    (3, 4) from there to the unit frame, whose origin is inside the hull and whose unit sphere
-    encloses it. `planes` (m, 4) hold the unit normal n of each face, which points out, and its
-    distance d > 0 from the origin, both in the unit frame: n·x ≤ d inside.
+    `vertices` (n, 3) are the hull's corners. `to_unit` is the affine map (3, 4) from the mesh to
+    the unit frame, whose origin is inside the hull, and whose unit sphere encloses it. `planes`
+    (m, 4) are the faces in the unit frame: the normal n, which points out, and the distance d > 0
+    from the origin, so that n·x ≤ d inside.
     """
 
     vertices: FloatArray
@@ -57,17 +60,17 @@ class Hull:
 
     @property
     def radius(self) -> float:
-        """The distance of the farthest vertex from the frame's origin, in the mesh's unit."""
+        """The distance of the farthest vertex from the hull's centre, in the mesh's coordinates."""
         centre = -np.linalg.solve(self.to_unit[:, :3], self.to_unit[:, 3])
         return float(np.linalg.norm(self.vertices - centre, axis=1).max())
 
 
 def make_hull(points: ArrayLike) -> Hull | None:
-    """Return the `Hull` of `points` (n, 3), or None if they enclose no volume.
+    """Return the convex hull of `points` (n, 3), or None if they enclose no volume.
 
-    The unit frame has its origin in the centre of volume, and is stretched so that the hull's
-    extent is equal in all directions: a map of its faces by direction then has as many texels for
-    the ends of a long part as for its middle. Any affine map keeps planes and convexity.
+    The origin of its unit frame is the centre of volume. The frame is stretched so that the hull's
+    variance is equal in all directions: the ends of a long part then have as many texels in a plane
+    map as its middle. An affine map preserves planes and convexity.
 
     >>> corners = np.array(np.meshgrid([0, 4], [0, 1], [0, 1])).reshape(3, -1).T
     >>> make_hull(corners).planes[:, 3].round(3).tolist()    # a cube, in its unit frame
@@ -80,11 +83,11 @@ def make_hull(points: ArrayLike) -> Hull | None:
     size = np.max(high - low)
     try:
         solid = ConvexHull((points - low) / max(size, np.finfo(float).tiny))
-    except (QhullError, ValueError):  # flat, or fewer than four points
+    except (QhullError, ValueError):  # the points lie in a plane, or are fewer than four
         return None
     if solid.volume < MIN_THICKNESS * solid.area:
         return None
-    centre, covariance = _moments(solid)
+    centre, covariance = _compute_volume_moments(solid)
     vertices = solid.points[solid.vertices]
     stretch = np.linalg.inv(np.linalg.cholesky(covariance))
     stretch /= np.linalg.norm((vertices - centre) @ stretch.T, axis=1).max()
@@ -95,10 +98,10 @@ def make_hull(points: ArrayLike) -> Hull | None:
     )
 
 
-def _moments(solid: Any) -> tuple[FloatArray, FloatArray]:
+def _compute_volume_moments(solid: Any) -> tuple[FloatArray, FloatArray]:
     """Return the centre of volume (3,) and the covariance (3, 3) of a SciPy `ConvexHull`.
 
-    Both are sums over the tetrahedra from a point inside to each face.
+    Both are sums over tetrahedra between a point inside and each face.
     """
     inside = solid.points[solid.vertices].mean(axis=0)
     corners = solid.points[solid.simplices] - inside  # (faces, 3 corners, 3)
@@ -112,7 +115,10 @@ def _moments(solid: Any) -> tuple[FloatArray, FloatArray]:
 
 
 def _transform_planes(solid: Any, stretch: FloatArray, centre: FloatArray) -> FloatArray:
-    """Return the planes (m, 4) of a SciPy `ConvexHull` in the unit frame, without duplicates."""
+    """Return the planes (m, 4) of a SciPy `ConvexHull` in the unit frame, without duplicates.
+
+    The map to the unit frame is `stretch` (3, 3) times the difference from the `centre` (3,).
+    """
     normals, offsets = solid.equations[:, :3], solid.equations[:, 3]  # n·x + offset ≤ 0 inside
     planes = np.column_stack([normals @ np.linalg.inv(stretch), -offsets - normals @ centre])
     planes /= np.linalg.norm(planes[:, :3], axis=1, keepdims=True)

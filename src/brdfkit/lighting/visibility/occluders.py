@@ -1,4 +1,4 @@
-"""`Occluders`: objects of convex parts, which can be moved, and tests of the rays they block."""
+"""`Occluders`: movable objects that consist of convex parts, to test whether they block rays."""
 
 from typing import Any
 
@@ -12,20 +12,18 @@ from brdfkit.lighting.visibility.hull import Frames, Hull
 from brdfkit.lighting.visibility.plane_map import RasterisedPlaneMap
 from brdfkit.mitsuba_bridge.arrays import Rows
 
-RESOLUTION = 128  # texels along a side of the largest part's map
-CLEARANCE = 0.03  # over half of the longest side of an object: as far as hulls bulge by default
+RESOLUTION = 128  # texels along a side of the plane map of the largest part
+CLEARANCE = 0.03  # share of half an object's longest side by which hulls bulge out at most
 
 
 class Occluders:
-    """The convex parts of objects, their plane maps, and a tree over the parts of all objects.
+    """Objects that cast shadows by their convex parts, and that can be moved.
 
-    `objects` maps names to lists of parts; there is at least one part in all. `resolution` is the
-    side of the plane map of the largest part [texels]. A part that a ray enters nearer than the
-    `clearance`, a share of half the longest side of its object's bounding box, does not block it.
-
-    A hull bulges out of the mesh where that is hollow, and would shade the mesh beside it: without
-    the clearance, dark lines follow the seams between the parts. Moving an object changes its
-    transform and the tree; its plane maps stay as they are.
+    `objects` maps names to lists of parts; there must be at least one part. `resolution` is the
+    side of the plane map of the largest part [texels]. A part that a ray enters at a distance below
+    the `clearance`, a share of half the longest side of its object's bounding box, does not block
+    it. The reason is that a hull bulges out of its mesh where that is hollow, and would shade the
+    mesh beside it, in dark lines along the seams of parts.
     """
 
     def __init__(
@@ -50,12 +48,12 @@ class Occluders:
         self._to_world = np.tile(np.eye(4), (len(self.hulls), 1, 1))
         self.maps = RasterisedPlaneMap(self.hulls, resolution)
         self.clearance = Rows(
-            np.repeat([clearance * _half_length(p) for p in objects.values()], lengths)
+            np.repeat([clearance * _half_longest_side(p) for p in objects.values()], lengths)
         )
         self._update_tree()
 
     def move(self, name: str, to_world: Any) -> None:
-        """Place the object `name` by a matrix (4, 4), from its original place to its new one.
+        """Move the object `name` from its original position by the matrix `to_world` (4, 4).
 
         Raises `BrdfkitError` for an unknown object, and for a matrix that cannot be inverted.
         """
@@ -68,7 +66,7 @@ class Occluders:
         self._update_tree()
 
     def _update_tree(self) -> None:
-        """Compute the tree and the frames, which depend on where the objects are."""
+        """Compute the tree and the unit frames of parts for the current transforms of objects."""
         world = self._to_world[self._vertex_part]
         placed = np.einsum("nij,nj->ni", world[:, :3, :3], self._vertices) + world[:, :3, 3]
         low = np.minimum.reduceat(placed, self._starts)
@@ -77,22 +75,23 @@ class Occluders:
         to_unit = np.stack([hull.to_unit for hull in self.hulls])
         self.frames = Frames(to_unit @ np.linalg.inv(self._to_world))
 
-    def blocked(self, ray: MitsubaObject, active: JitMask = True) -> tuple[JitMask, JitInt]:
-        """Return whether a part lies before the ray's `maxt`, and the number of plane look-ups.
+    def is_blocked(self, ray: MitsubaObject, active: JitMask = True) -> tuple[JitMask, JitInt]:
+        """Return whether a part blocks a ray before its `maxt`, and the number of plane look-ups.
 
-        A part that contains the ray's origin does not block it: the origin lies on a surface.
+        A part that contains the ray's origin does not block it, since the origin is a point on the
+        surface of that part.
         """
 
-        def test(part: JitInt, active: JitMask) -> tuple[JitMask, JitInt]:
-            t, entered, reads = self._enter(ray, part, active)
+        def test_part(part: JitInt, active: JitMask) -> tuple[JitMask, JitInt]:
+            t, entered, reads = self._find_part_entry(ray, part, active)
             return entered & (t >= self.clearance.at(part, active=active)) & (t < ray.maxt), reads
 
-        return self.tree.any_hit(ray, test, active)
+        return self.tree.find_any_hit(ray, test_part, active)
 
-    def _enter(
+    def _find_part_entry(
         self, ray: MitsubaObject, part: JitInt, active: JitMask
     ) -> tuple[JitFloat, JitMask, JitInt]:
-        """Return what `find_entry` does, with the distance in the ray's own unit."""
+        """Find where a ray in world coordinates enters a part, by `find_entry`."""
         import drjit as dr
         import mitsuba as mi
 
@@ -102,7 +101,7 @@ class Occluders:
         return t / length, entered, count
 
 
-def _half_length(parts: list[Hull]) -> float:
-    """Return half of the longest side of the bounding box of `parts`; 0 if there are none."""
+def _half_longest_side(parts: list[Hull]) -> float:
+    """Return half of the longest side of the bounding box of convex `parts`; 0 for none."""
     vertices = np.concatenate([hull.vertices for hull in parts]) if parts else np.zeros((1, 3))
     return float(np.ptp(vertices, axis=0).max() / 2)

@@ -1,8 +1,8 @@
-"""Splitting of a mesh into the solids that it consists of, whichever way its triangles are turned.
+"""Splitting of a mesh into its connected, closed pieces, with all triangles turned outwards.
 
-A modelled object often consists of several surfaces that run into each other: the spout of a teapot
-ends within its body. Cutting them as one confuses coacd, and so do triangles that face in: it then
-makes a thousand splinters, or does not end within minutes.
+A modelled object often consists of several surfaces that intersect each other: the spout of a
+teapot ends within its body. coacd cannot cut them as one mesh, nor a mesh with triangles that face
+inwards: it makes a thousand splinters, or does not end within minutes.
 """
 
 import numpy as np
@@ -15,14 +15,14 @@ from brdfkit.lighting.visibility.holes import close_holes
 def split_solids(
     points: FloatArray, faces: IntArray
 ) -> tuple[list[tuple[FloatArray, IntArray]], IntArray]:
-    """Return the closed pieces of a welded mesh, as (points, faces), and the faces of the others.
+    """Split a welded mesh into its closed pieces, and the faces of the pieces that are not closed.
 
-    A piece is connected by edges that two triangles share. Its triangles are turned so that all
-    face out, and its holes are closed. A shell within another, the wall of a cavity, is a solid of
-    its own: the cavity is filled, since no light enters it from outside. Raises `BrdfkitError` if
-    libigl is not installed.
+    A closed piece is (points, faces). The triangles of a piece are connected by shared edges, and
+    are turned so that all face out; its holes are closed. The wall of a cavity within a solid is a
+    piece of its own, so that the cavity counts as filled; no light enters it from outside. Raises
+    `BrdfkitError` if libigl is not installed.
     """
-    faces, piece = _turn_outwards(points, faces)
+    faces, piece = _orient_outwards(points, faces)
     closed, others = [], []
     for number in range(piece.max() + 1):
         mine = faces[piece == number]
@@ -35,22 +35,23 @@ def split_solids(
 
 
 def is_closed(faces: IntArray) -> bool:
-    """Return whether every edge of the welded `faces` (m, 3) belongs to two of them."""
+    """Return whether a welded mesh is closed: every edge of its `faces` (m, 3) belongs to two."""
     edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     _, count = np.unique(edges, axis=0, return_counts=True)
     return bool(np.all(count == 2))
 
 
-def _turn_outwards(points: FloatArray, faces: IntArray) -> tuple[IntArray, IntArray]:
-    """Turn each piece so that it encloses a positive volume; return the faces and their pieces.
+def _orient_outwards(points: FloatArray, faces: IntArray) -> tuple[IntArray, IntArray]:
+    """Turn the triangles of each connected piece of a mesh outwards.
 
-    A piece with holes counts as closed from the mean of its corners.
+    Returns the faces (m, 3), and the number of each face's piece (m,). A piece is turned if it
+    encloses a negative volume; its holes count as closed from the mean of its corners.
     """
     try:
         import igl
     except ImportError as error:
         raise BrdfkitError(
-            "Meshes are taken apart by libigl, which is not installed; pip install "
+            "Meshes are split into pieces by libigl, which is not installed; pip install "
             "'brdfkit[visibility]'."
         ) from error
     faces, piece = igl.bfs_orient(np.ascontiguousarray(faces, np.int64))
@@ -62,6 +63,6 @@ def _turn_outwards(points: FloatArray, faces: IntArray) -> tuple[IntArray, IntAr
 
 
 def _drop_unused_points(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
-    """Return the mesh without the points that belong to no face."""
+    """Return the points and faces of a mesh without the points that belong to no face."""
     used, faces = np.unique(faces, return_inverse=True)
     return points[used], faces.reshape(-1, 3)

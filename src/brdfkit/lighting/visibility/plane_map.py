@@ -1,7 +1,7 @@
-"""Plane maps: the plane of the face through which a ray from inside leaves a convex part.
+"""Plane maps store, for each direction from the centre of a convex part, the plane of the face.
 
-A part lies behind each of its planes n·x = d. Seen from the origin of its unit frame, a direction D
-leaves the part through the face with the largest n·D / d. [Ergun 2015, section 7.1]
+A part lies behind each of its planes n·x = d. A ray from the origin of its unit frame, with the
+direction D, leaves the part through the face with the largest n·D / d. [Ergun 2015, section 7.1]
 """
 
 from typing import Protocol
@@ -13,37 +13,37 @@ from brdfkit.core.geometry import dual_paraboloid
 from brdfkit.lighting.visibility.hull import Hull
 from brdfkit.mitsuba_bridge.arrays import Integers, Rows, find_cell
 
-SMALLEST_SIDE = 8  # texels
-CHUNK = 1024  # texels that are computed at once
+SMALLEST_SIDE = 8  # texels along a side of the map of a small part
+CHUNK = 1024  # texels that are computed at once, to save memory
 
 
 class PlaneMap(Protocol):
-    """The planes of convex parts by direction."""
+    """A look-up of the planes of convex parts by direction, as `find_entry` needs it."""
 
-    def at(
+    def look_up_plane(
         self, part: JitInt, direction: JitVector, active: JitMask = True
     ) -> tuple[JitVector, JitFloat]:
         """Return the normal and the distance of a part's plane in a unit `direction`."""
 
 
 class RasterisedPlaneMap:
-    """The faces of each part of `hulls` in an atlas of dual-paraboloid maps, nearest texel.
+    """The plane maps of convex parts, the `hulls`, as dual-paraboloid pictures of nearest texels.
 
-    `resolution` is the side of the map of the largest part [texels]; a smaller part has a smaller
-    map. The atlas is a list of texels, the map of one part after another, each with the square of
-    z ≥ 0 before that of z < 0.
+    `resolution` is the side of the map of the largest part [texels]; smaller parts have smaller
+    maps. All texels are stored in one list, map after map, with the square of the hemisphere z ≥ 0
+    before that of z < 0.
     """
 
     def __init__(self, hulls: list[Hull], resolution: int) -> None:
         radii = np.array([hull.radius for hull in hulls])
         sides = np.ceil(resolution * radii / radii.max()).astype(int)
         sides = np.clip(sides, min(SMALLEST_SIDE, resolution), resolution)
-        maps = [rasterise(hull, side) for hull, side in zip(hulls, sides, strict=True)]
+        maps = [rasterise_planes(hull, side) for hull, side in zip(hulls, sides, strict=True)]
         self.sides = Integers(sides)
         self.first = Integers(np.cumsum([0, *(2 * sides**2)]))
         self.atlas = Rows(np.concatenate([texels.reshape(-1, 4) for texels in maps]))
 
-    def at(
+    def look_up_plane(
         self, part: JitInt, direction: JitVector, active: JitMask = True
     ) -> tuple[JitVector, JitFloat]:
         """Return the normal and the distance of a part's plane in a unit `direction`."""
@@ -58,8 +58,8 @@ class RasterisedPlaneMap:
         return mi.Vector3f(plane.x, plane.y, plane.z), plane.w
 
 
-def rasterise(hull: Hull, side: int) -> FloatArray:
-    """Return the plane map (2, side, side, 4) of a hull: z ≥ 0 and z < 0, rows along t."""
+def rasterise_planes(hull: Hull, side: int) -> FloatArray:
+    """Return the plane map (2, side, side, 4) of a hull, for the hemispheres z ≥ 0 and z < 0."""
     centres = (np.arange(side) + 0.5) * 2 / side - 1
     t, s = np.meshgrid(centres, centres, indexing="ij")
     both = [np.stack(dual_paraboloid.from_disc(s, t, sign), axis=-1) for sign in (1, -1)]

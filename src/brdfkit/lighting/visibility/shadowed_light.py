@@ -1,4 +1,4 @@
-"""Shadows in filtered light: how much of a lobe, and of the irradiance, a point of a scene sees."""
+"""Shadows in filtered light: the visible shares of lobes and of the irradiance at points."""
 
 import math
 from collections.abc import Callable
@@ -10,16 +10,15 @@ from brdfkit.lighting.filtering.filtered_light import Light, LightDirections
 Visible: TypeAlias = Callable[[JitVector], JitMask]
 
 GOLDEN_ANGLE = math.pi * (3 - math.sqrt(5))
-RAYS = 4  # per lobe
+RAYS = 4  # shadow rays per lobe
 
 
 class ShadowedLight:
-    """A filtered `light` times its visible share, for each lobe and for the irradiance.
+    """Filtered light with shadows: look-ups of a `light` are multiplied by their visible shares.
 
-    `si` are the points, a `mitsuba.SurfaceInteraction3f`, and `visible` returns whether light from
-    a direction reaches them. `directions` are those from which the light comes: they count by
-    their light, so that a shadow is that of the lamp that is hidden. Directions below the surface
-    do not count.
+    `si` are the lit points, a `mi.SurfaceInteraction3f`, and `visible(direction)` returns whether
+    light from a direction reaches them. `directions` sample the light in proportion to its
+    brightness, so that hidden lamps cast shadows in the irradiance.
     """
 
     def __init__(
@@ -27,37 +26,37 @@ class ShadowedLight:
     ) -> None:
         self.light, self.si, self.visible, self.directions = light, si, visible, directions
 
-    def mean_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
-        """Return the mean visible radiance over a von Mises-Fisher lobe, linear sRGB."""
+    def mean_radiance_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
+        """Return the mean visible radiance, in linear sRGB, over a von Mises-Fisher lobe."""
         import drjit as dr
 
         normal = self.si.to_world(type(axis)(0, 0, dr.sign(self.si.wi.z)))
 
-        def weight(direction: JitVector) -> JitColour:
-            radiance = self.light.mean_over_lobe(direction, kappa * RAYS)
+        def weigh_direction(direction: JitVector) -> JitColour:
+            radiance = self.light.mean_radiance_over_lobe(direction, kappa * RAYS)
             return dr.select(dr.dot(direction, normal) > 0, radiance, 0)
 
-        share = visible_share(self.visible, axis, kappa, weight, RAYS)
-        return self.light.mean_over_lobe(axis, kappa) * share
+        share = visible_share(self.visible, axis, kappa, weigh_direction, RAYS)
+        return self.light.mean_radiance_over_lobe(axis, kappa) * share
 
     def irradiance(self, normal: JitVector) -> JitColour:
-        """Return the radiance of a white matte surface of this `normal`, linear sRGB."""
+        """Return the visible irradiance for this `normal` divided by π, in linear sRGB."""
         import drjit as dr
         import mitsuba as mi
 
         ray = dr.arange(mi.UInt32, dr.width(normal)) % self.directions.rays
 
-        def add(
+        def add_direction(
             i: JitInt, seen: JitColour, total: JitColour
         ) -> tuple[JitInt, JitColour, JitColour]:
-            direction, power = self.directions.at(i, ray)
+            direction, power = self.directions.get_direction(i, ray)
             received = power * dr.maximum(dr.dot(direction, normal), 0)
             return i + 1, seen + dr.select(self.visible(direction), received, 0), total + received
 
         _, seen, total = dr.while_loop(
             (mi.UInt32(0), mi.Color3f(0), mi.Color3f(0)),
             lambda i, seen, total: i < self.directions.per_ray,
-            add,
+            add_direction,
         )
         return self.light.irradiance(normal) * dr.select(total > 0, seen / total, 1)
 
@@ -69,21 +68,22 @@ def visible_share(
     weight: Callable[[JitVector], JitColour],
     rays: int = 16,
 ) -> JitColour:
-    """Return the visible share (0 to 1, by channel) of lobes, to an accuracy of about 1 / rays.
+    """Return the visible share (0 to 1, by channel) of von Mises-Fisher lobes.
 
-    The share is ∫ g(ω; μ, κ) L(ω) V(ω) dω / ∫ g(ω; μ, κ) L(ω) dω, with the von Mises-Fisher lobe g
-    of axes μ and concentrations κ > 0, the visibility V (`visible`) and the weight L (`weight`),
-    both functions of directions in the world. Where the weight is 0, all is visible. `rays`
-    directions sample each lobe, the same for every point: a spiral with equal probability between
-    its points.
+    It is ∫ g(ω; μ, κ) L(ω) V(ω) dω / ∫ g(ω; μ, κ) L(ω) dω, with the lobe g of axis μ and
+    concentration κ > 0, the visibility V (`visible`) and the weight L (`weight`), both functions of
+    directions in the world; or 1 where the weight is 0. It is estimated by as many shadow rays as
+    `rays`, on a spiral of equal probabilities, with an error of about 1 / rays.
     """
     import drjit as dr
     import mitsuba as mi
 
     frame = mi.Frame3f(axes)
 
-    def add(i: JitInt, seen: JitColour, total: JitColour) -> tuple[JitInt, JitColour, JitColour]:
-        # The inverse of the lobe's distribution of cosθ, at the middles of equal parts
+    def add_ray(
+        i: JitInt, seen: JitColour, total: JitColour
+    ) -> tuple[JitInt, JitColour, JitColour]:
+        # The inverse of the lobe's distribution of cosθ, at the middles of equal probabilities
         x = (mi.Float(i) + 0.5) / rays
         cos = 1 + dr.log(x + (1 - x) * dr.exp(-2 * kappa)) / kappa
         sin = dr.safe_sqrt(1 - cos * cos)
@@ -95,6 +95,6 @@ def visible_share(
     count = mi.UInt32(rays)
     dr.make_opaque(count)
     _, seen, total = dr.while_loop(
-        (mi.UInt32(0), mi.Color3f(0), mi.Color3f(0)), lambda i, seen, total: i < count, add
+        (mi.UInt32(0), mi.Color3f(0), mi.Color3f(0)), lambda i, seen, total: i < count, add_ray
     )
     return dr.select(total > 0, seen / total, 1)

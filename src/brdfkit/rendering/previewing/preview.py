@@ -160,7 +160,7 @@ def _render_preview(
         described = describe_preview(built, light, integrator, spp, ground=shadows)
         loaded = load_by_mitsuba(mi.load_dict, described, name)
         if shadows:
-            integrator.casters.set(loaded, None, shape.casters)
+            integrator.casters.set_casters(loaded, None, shape.casters)
         mask = find_material_mask(loaded, material) if mask is None else mask
         with raise_first_cause():
             pictures[name] = to_rgb(integrator.render(loaded, seed=0, spp=spp)).astype(np.float32)

@@ -23,7 +23,7 @@ VEIL = 0.85  # opacity of the transfer function's colours over the histogram whe
 PLANES = (("x", "y", "z"), ("x", "z", "y"), ("y", "z", "x"))  # axes to the right, up, and normal
 
 
-def draw(summary: VolumeSummary, transfer: TransferFunction | None = None) -> Figure:
+def draw_summary(summary: VolumeSummary, transfer: TransferFunction | None = None) -> Figure:
     """Draw a `VolumeSummary` as a matplotlib `Figure`, with an optional `TransferFunction`."""
     if transfer is not None:
         transfer = _scale_to_volume(transfer, summary.data)

@@ -142,22 +142,22 @@ class VolumeSummary(Shown):
 
         >>> summarise(volumes.load("smoke")).picture().savefig("smoke.png")    # doctest: +SKIP
         """
-        from brdfkit.volumes.summary.picture import draw  # imports matplotlib: slow
+        from brdfkit.volumes.summary.picture import draw_summary  # imports matplotlib: slow
 
-        return draw(self, transfer)
+        return draw_summary(self, transfer)
 
     def document(self) -> Document:
         """Return the summary with its picture as a `Document`, for terminals and notebooks."""
         return Document(
             self.name,
             (
-                Picture(self._draw, f"{self.name}: three slices and two histograms", WIDTH),
+                Picture(self._draw_png, f"{self.name}: three slices and two histograms", WIDTH),
                 Table(tuple(self.rows().items())),
                 *(Paragraph(finding, BAD) for finding in self.findings()),
             ),
         )
 
-    def _draw(self) -> bytes:
+    def _draw_png(self) -> bytes:
         """Return the picture as the bytes of a PNG file."""
         from brdfkit.core.figures import to_png  # imports matplotlib: slow
 
