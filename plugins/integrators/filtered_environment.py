@@ -102,7 +102,7 @@ def define(mi: MitsubaModule) -> type:
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             environment = _require_one_environment(mi, scene)
-            unshadowed = self.light.update(environment)
+            unshadowed = self.light.filter_if_changed(environment)
             light: Light = unshadowed
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             hit = active & si.is_valid()

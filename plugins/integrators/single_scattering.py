@@ -123,7 +123,7 @@ def define(mi: MitsubaModule) -> type:
                 radiance += throughput * light
                 throughput *= weight
                 radiance += throughput * scatter_direct_light(scene, self.medium, vertex, sampler)
-                wo, weight, density = vertex.sample(sampler)
+                wo, weight, density = vertex.sample_direction(sampler)
                 ray = dr.select(vertex.active, vertex.interaction.spawn_ray(wo), ray)
                 throughput = apply_roulette(depth, throughput * weight, sampler)
                 return depth + 1, ray, throughput, radiance, density, sampler

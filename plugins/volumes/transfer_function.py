@@ -58,7 +58,7 @@ from brdfkit.volumes.transfer.block_bounds import bound_piecewise_linear, find_b
 from brdfkit.volumes.transfer.lookup import TransferLookup
 from brdfkit.volumes.transfer.preintegration import has_narrow_peaks
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
-from brdfkit.volumes.transfer.windows import scale_to_values
+from brdfkit.volumes.transfer.windows import scale_transfer_to_values
 
 CHANNELS = {1: "values alone", 2: "values and gradient magnitudes"}
 PARAMETERS = {
@@ -208,7 +208,7 @@ def read_function(transfer: str, values: MitsubaObject) -> TransferFunction:
             f"the volume's number of channels is {count}; it should be {channels}."
         )
     data = read_grid_values(values)
-    return function if data is None else scale_to_values(function, data)
+    return function if data is None else scale_transfer_to_values(function, data)
 
 
 def example() -> dict[str, Any]:

@@ -16,8 +16,8 @@ def falling(n=300):
     return shares / shares.sum()
 
 
-LAWS = {law.__name__: law.fit(falling()) for law in (Hyperbolic, Steps)}
-LAWS["of one block"] = Steps.fit(np.ones(1))
+LAWS = {law.__name__: law.fit_to_shares(falling()) for law in (Hyperbolic, Steps)}
+LAWS["of one block"] = Steps.fit_to_shares(np.ones(1))
 
 
 def test_the_hyperbola_s_numbers():
@@ -27,16 +27,16 @@ def test_the_hyperbola_s_numbers():
     assert p.sum() == pytest.approx(1)
     np.testing.assert_allclose(p[[0, 1, 255]], [0.0460980, 0.0389753, 0.000970593], rtol=1e-6)
     np.testing.assert_allclose(
-        law.inverse(np.array([0.1, 0.25, 0.5, 0.75, 0.9])),
+        law.inverse_cumulative(np.array([0.1, 0.25, 0.5, 0.75, 0.9])),
         [2.425694, 8.439640, 31.124784, 92.100816, 170.741147],
         rtol=1e-6,
     )
 
 
 def test_a_hyperbola_s_parameter_is_found():
-    assert Hyperbolic.fit(Hyperbolic(256, 5.0).probability(np.arange(256))).u == pytest.approx(
-        5, rel=1e-4
-    )
+    assert Hyperbolic.fit_to_shares(
+        Hyperbolic(256, 5.0).probability(np.arange(256))
+    ).u == pytest.approx(5, rel=1e-4)
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
@@ -45,8 +45,12 @@ def test_a_law_is_a_distribution(law):
     p = law.probability(i)
     assert p.min() >= 0
     assert p.sum() == pytest.approx(1)
-    np.testing.assert_allclose(law.cumulative(i + 1) - law.cumulative(i), p, atol=1e-12)
-    np.testing.assert_allclose(law.cumulative(law.inverse(xi)), xi, atol=1e-9)
+    np.testing.assert_allclose(
+        law.cumulative_probability(i + 1) - law.cumulative_probability(i), p, atol=1e-12
+    )
+    np.testing.assert_allclose(
+        law.cumulative_probability(law.inverse_cumulative(xi)), xi, atol=1e-9
+    )
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
@@ -62,9 +66,9 @@ def test_the_renderer_chooses_by_the_law(law, llvm_variant):
     x, y, density = (
         np.array(a) for a in blocks.sample(mi.Point2f(mi.Float(xi), mi.Float(0.5)), True)
     )
-    i = np.minimum(np.floor(law.inverse(xi.astype(float))), law.n - 1).astype(int)
+    i = np.minimum(np.floor(law.inverse_cumulative(xi.astype(float))), law.n - 1).astype(int)
     x0, x1, y0, y1 = tree.blocks[i].T  # the shares are equal: sorted as they are
-    rest = (xi - law.cumulative(i)) / law.probability(i)
+    rest = (xi - law.cumulative_probability(i)) / law.probability(i)
     expected = x0 + rest.clip(0, 1) * (x1 - x0)
     off = np.abs(x - expected) > 0.01 * (x1 - x0)
     assert off.mean() < 5e-3

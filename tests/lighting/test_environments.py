@@ -249,8 +249,8 @@ def test_compass(maps, make):
     [
         ({"source": "blendr"}, "no convention of maps 'blendr'; did you mean blender?"),
         ({"target": "latlong:+x+x+z"}, "should be the axes to the right, up and ahead"),
-        ({"target": "latlong:+y+x+z"}, "each once, up y or z"),
-        ({"source": "cross"}, "sky: the map has 256×128 pixels, and its layout 1.33 times"),
+        ({"target": "latlong:+y+x+z"}, "each once, and y or z up"),
+        ({"source": "cross"}, "sky: the map has 256×128 pixels, but its layout 1.33 times"),
         ({"target": "cross", "height": 100}, "height = 100 should be a multiple of 3"),
         ({"turn": np.nan}, "turn = nan should be a number"),
         ({"path": "sky.png"}, r"sky\.png: maps are written as \.exr"),

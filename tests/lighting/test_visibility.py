@@ -20,7 +20,7 @@ from scipy.spatial import ConvexHull, Delaunay
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.lighting.visibility import decomposition
-from brdfkit.lighting.visibility.convex_ray import find_entry
+from brdfkit.lighting.visibility.convex_ray import find_ray_entry
 from brdfkit.lighting.visibility.decomposition import decompose
 from brdfkit.lighting.visibility.hierarchy import Hierarchy
 from brdfkit.lighting.visibility.hull import MIN_THICKNESS, make_hull
@@ -73,7 +73,9 @@ def clipped(found, o, d):
 def entered(mi, found, planes, o, d):
     """By Algorithm 3: (where rays enter, whether they do, look-ups), for rays in the unit frame."""
     ray = ray_of(mi, o, d)
-    return (np.array(x) for x in find_entry(mi, mi.Vector3f(ray.o), ray.d, planes, mi.UInt32(0)))
+    return (
+        np.array(x) for x in find_ray_entry(mi, mi.Vector3f(ray.o), ray.d, planes, mi.UInt32(0))
+    )
 
 
 def in_unit_frame(found):

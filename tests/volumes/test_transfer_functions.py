@@ -96,12 +96,12 @@ def test_opacity_of_a_layer_becomes_extinction():
         at = np.setdiff1d(np.linspace(0, 5, 4001), values)
         sigma = function.extinction * function(at)[:, 3]
         given = TF(values, rgba, colour="emission")
-        exact = opacity.to_extinction(given(at)[:, 3], distance)
+        exact = opacity.opacity_to_extinction(given(at)[:, 3], distance)
         assert np.abs(sigma - exact).max() <= 1.001e-5 * function.extinction
         np.testing.assert_allclose(function(at)[:, :3], given(at)[:, :3], atol=1e-9)
         sample = 0.1  # VTK: 1 - (1 - a)^(s / d)
         vtk = 1 - (1 - np.minimum(given(at)[:, 3], opacity.OPAQUE)) ** (sample / distance)
-        np.testing.assert_allclose(opacity.to_opacity(exact, sample), vtk, rtol=1e-9)
+        np.testing.assert_allclose(opacity.extinction_to_opacity(exact, sample), vtk, rtol=1e-9)
     half = TF.from_opacity([0, 1], [[1, 1, 1, 0.5]] * 2, unit_distance=2)
     assert half.extinction == pytest.approx(np.log(2) / 2)
     assert len(half.values) == 2

@@ -8,7 +8,7 @@ from brdfkit.core.colours import to_srgb
 from brdfkit.rendering.volumes import defaults
 from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.summary.summary import summarise
-from brdfkit.volumes.transfer.windows import find_window, scale_to_values
+from brdfkit.volumes.transfer.windows import find_window, scale_transfer_to_values
 
 pytestmark = pytest.mark.quick
 RNG = np.random.default_rng(29)
@@ -152,10 +152,10 @@ def test_functions_are_drawn_over_histograms(name):
     volume = Volume(np.where(BALL, TISSUE, NOISE), axes="RAS", unit="µm")
     preset = TransferFunction.load(name)
     figure = summarise(volume).picture(preset)
-    joint = next(a for a in figure.axes if a.get_ylabel().startswith("gradient"))
-    veil = joint.images[-1].get_array()
-    low, high, _, steepest = joint.images[-1].get_extent()
-    whole = scale_to_values(preset, volume.values).per("µm")
+    histogram = next(a for a in figure.axes if a.get_ylabel().startswith("gradient"))
+    veil = histogram.images[-1].get_array()
+    low, high, _, steepest = histogram.images[-1].get_extent()
+    whole = scale_transfer_to_values(preset, volume.values).per("µm")
     at = low + (high - low) * 300 / 399, steepest * 120 / 399
     a = whole(*(at if whole.gradients is not None else at[:1]))[3]
     assert veil[120, 300, 3] == pytest.approx(0.85 * a, abs=1e-6)

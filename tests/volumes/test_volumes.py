@@ -301,8 +301,8 @@ def test_a_summary_of_a_known_volume():
     assert (found.least, found.largest, found.mean, found.different) == (0, 200, 100, 2)
     assert found.steepest == pytest.approx(25)
     assert found.counts[0] == found.counts[-1] == 500
-    assert found.joint.sum() == 1000
-    assert found.joint[-1].sum() == 200
+    assert found.joint_histogram.sum() == 1000
+    assert found.joint_histogram[-1].sum() == 200
     assert found.directions == ("+x", "+y", "+z")
     assert any("perhaps labels" in finding for finding in found.findings())
     assert any("4 times as long as wide" in finding for finding in found.findings())

@@ -28,7 +28,10 @@ def run(sources, report):
     grid, noise = drawn.subplots((len(maps) + 1) // 2, 2, squeeze=False), {}
     for done, ((name, rgb), axes) in enumerate(zip(maps.items(), grid.flat, strict=False)):
         shares = sorted_shares(cell_power(luminance(rgb)))
-        laws = {"hyperbolic": Hyperbolic.fit(shares), "steps": Steps.fit(shares)}
+        laws = {
+            "hyperbolic": Hyperbolic.fit_to_shares(shares),
+            "steps": Steps.fit_to_shares(shares),
+        }
         noise[name] = {label: added_variance(shares, law) for label, law in laws.items()}
         draw(axes, name, shares, laws)
         report(done + 1, len(maps))
@@ -59,7 +62,7 @@ def law_claim():
     """C2: the probabilities sum to 1, and F⁻¹ is the inverse of F."""
     law, xi = Hyperbolic(256, 5.0), np.linspace(0, 1, 1001)[:-1]
     off = abs(law.probability(np.arange(256)).sum() - 1)
-    back = np.abs(law.cumulative(law.inverse(xi)) - xi).max()
+    back = np.abs(law.cumulative_probability(law.inverse_cumulative(xi)) - xi).max()
     return Claim(
         "The law's probabilities sum to 1, and its inverse is a closed form.",
         "eqs. 6.3-6.5",

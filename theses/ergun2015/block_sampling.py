@@ -158,7 +158,7 @@ def time_claim(maps):
 def _prepare_blocks(power):
     boxes = tree.build_tree(power, BLOCKS, "sse").blocks
     shares = np.sort(tree.block_sums(power, boxes))[::-1]
-    Hyperbolic.fit(shares / shares.sum())
+    Hyperbolic.fit_to_shares(shares / shares.sum())
 
 
 def _prepare_sums(power):

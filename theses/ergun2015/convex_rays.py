@@ -4,7 +4,7 @@ import numpy as np
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.lighting.visibility.convex_ray import find_entry
+from brdfkit.lighting.visibility.convex_ray import find_ray_entry
 from brdfkit.lighting.visibility.hull import Hull, make_hull
 from brdfkit.lighting.visibility.plane_map import RasterisedPlaneMap
 from brdfkit.mitsuba_bridge.arrays import Integers, Rows
@@ -120,7 +120,7 @@ def entered(found, planes, o, d):
     import mitsuba as mi
 
     o, d = mi.Vector3f(o.T.astype(np.float32)), mi.Vector3f(d.T.astype(np.float32))
-    _, hit, lookups = find_entry(mi, o, d, planes, mi.UInt32(0))
+    _, hit, lookups = find_ray_entry(mi, o, d, planes, mi.UInt32(0))
     return np.array(hit), np.array(lookups)
 
 

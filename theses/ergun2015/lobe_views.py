@@ -38,11 +38,11 @@ def run(sources, report):
     pictures, views = {}, None
     for kind, method in KINDS.items():
         integrator = mi.load_dict({"type": "filtered_environment", "method": method})
-        lobes = integrator.shading.fit(bsdf)
+        lobes = integrator.shading.fit_lobes(bsdf)
         views = nearest(scene, lobes.step) if views is None else views
         if "nearest" in kind:
-            lobes.around = find_nearest_view(lobes.around)
-        integrator.shading.fit = lambda bsdf, lobes=lobes: lobes
+            lobes.find_surrounding_views = find_nearest_view(lobes.find_surrounding_views)
+        integrator.shading.lobes.make = lambda bsdf, lobes=lobes: lobes
         pictures[kind] = render(made, light, integrator)[0]
     psnrs = {kind: decibels(reference, p, seen)[0] for kind, p in pictures.items()}
     jumps = {kind: jump(p - reference, views, seen) for kind, p in pictures.items()}
@@ -71,12 +71,12 @@ def run(sources, report):
     return Section("Between views", TEXT, claims, pictures=[picture])
 
 
-def find_nearest_view(around):
-    """A function as `ViewedLobes.around`, whose views all count as the nearest of them."""
+def find_nearest_view(find_surrounding_views):
+    """A function like `ViewedLobes.find_surrounding_views`, which finds only the nearest view."""
     import drjit as dr
 
     def found(wo):
-        ((low, share), (high, _)), sin, cos = around(wo)
+        ((low, share), (high, _)), sin, cos = find_surrounding_views(wo)
         return [(dr.select(share > 0.5, low, high), 1.0)], sin, cos
 
     return found

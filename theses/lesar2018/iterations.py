@@ -9,7 +9,7 @@ import numpy as np
 
 from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.volumes import TransferFunction
-from brdfkit.volumes.made import make
+from brdfkit.volumes.made import make_volume
 
 FOV = 30  # degrees
 DISTANCE = 3.95
@@ -49,7 +49,7 @@ LEVEL = 0.35
 @cache
 def smoke(voxels):
     """The smoke."""
-    return make("smoke", (voxels,) * 3)
+    return make_volume("smoke", (voxels,) * 3)
 
 
 def cloud(renderer, voxels):

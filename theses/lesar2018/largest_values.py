@@ -7,7 +7,7 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 from brdfkit.theses.page import Picture, Section
-from brdfkit.volumes.made import make
+from brdfkit.volumes.made import make_volume
 from brdfkit.volumes.rays.search import find_distance_of_maximum
 
 SECONDS = 3
@@ -24,7 +24,7 @@ nearer, once. The truth is by {DENSE:,} points."""
 def run(sources, report):
     """How much is missing over iterations, and the claims on it."""
     use_variant()
-    volume = make("smoke", (VOXELS,) * 3)
+    volume = make_volume("smoke", (VOXELS,) * 3)
     rng = np.random.default_rng(0)
     ends = rng.normal(size=(2, RAYS, 3))
     o, d = 0.3 * ends[0], ends[1] / np.linalg.norm(ends[1], axis=1, keepdims=True)

@@ -9,7 +9,7 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 from brdfkit.theses.page import Picture, Section, Table
-from brdfkit.volumes.made import make
+from brdfkit.volumes.made import make_volume
 
 SECONDS = 2
 COSINES = (-1, -0.5, 0, 0.5, 1)
@@ -93,7 +93,7 @@ def integral_of_bsdf():
     import mitsuba as mi
 
     grey = {"type": "diffuse", "reflectance": {"type": "rgb", "value": ALBEDO}}
-    density = make("slab", (8, 8, 8)).scene_dict()
+    density = make_volume("slab", (8, 8, 8)).scene_dict()
     entries = {"type": "bsdf_phase", "bsdf": grey, "density": density}
     phase = mi.load_dict(entries, parallel=False)
     it = mi.MediumInteraction3f()

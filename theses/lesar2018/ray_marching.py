@@ -6,7 +6,7 @@ from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.theses.claims import Claim, verdict
 from brdfkit.theses.page import Section, Table
-from brdfkit.volumes.made import make
+from brdfkit.volumes.made import make_volume
 
 SECONDS = 8
 DEPTH, BEHIND, EXACT = 2.0, 0.7, 0.567472  # of the known volume; EXACT by quadrature
@@ -88,7 +88,7 @@ def bias(report):
 
     smoke = {
         "type": "gridvolume",
-        "grid": mi.VolumeGrid((DENSE * make("smoke", (SMOKE,) * 3).values)[..., None]),
+        "grid": mi.VolumeGrid((DENSE * make_volume("smoke", (SMOKE,) * 3).values)[..., None]),
         "raw": True,
     }
     camera = mi.ScalarTransform4f().look_at([0.5, 0.5, 5], [0.5, 0.5, 0], [0, 1, 0]).scale(0.4)

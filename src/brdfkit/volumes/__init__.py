@@ -1,10 +1,10 @@
-"""Volumes: values on a grid of voxels, from files or synthetic, and what they mean to light.
+"""Volumes: values on a grid of voxels, from files or synthetic, and their rendering.
 
-`volume.py` is one volume. `loading.py` reads it from a file (`formats/`), with fewer voxels if the
-user wishes (`downsampling.py`), or makes it (`made/`). `transfer/` has the transfer functions that
-give its values colour and extinction, and `scene_dictionary.py` writes both for Mitsuba. `summary/`
-describes a volume for `brdfkit info`. For renderers, `rays/` finds values, crossings and largest
-values along rays, and `light/` finds where light collides in a medium.
+`volume.py` defines the class `Volume`. `loading.py` reads a volume from a file (`formats/`), with
+fewer voxels if the user wishes (`downsampling.py`), or makes a synthetic one (`made/`). `transfer/`
+has transfer functions, which map values to colour and extinction. `scene_dictionary.py` converts
+both to dictionaries for Mitsuba. `summary/` describes a volume for `brdfkit info`. For renderers,
+`rays/` finds isosurfaces and largest values along rays, and `light/` collisions of light.
 """
 
 import lazy_loader

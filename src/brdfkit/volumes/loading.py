@@ -81,7 +81,10 @@ def load(
     marschner_lobb: 41×41×41 voxels of 0.04878×0.04878×0.04878 units, float32, 4.4e-05 to 0.999956
     """
     downsample = to_whole_number("downsample", downsample, 1)
-    voxels, steps = _parse_triple("size", size, int), _parse_triple("spacing", spacing, float)
+    voxels, steps = (
+        _parse_three_numbers("size", size, int),
+        _parse_three_numbers("spacing", spacing, float),
+    )
     offset = None if offset is None else to_whole_number("offset", offset, 0)
     try:
         text = os.fspath(path)
@@ -98,7 +101,7 @@ def load(
             raise BrdfkitError(f"{text} is synthetic: it takes only size and downsample.")
         if voxels is not None:
             _require_memory_to_make(place, voxels)
-        volume = made.make(place, voxels)
+        volume = made.make_volume(place, voxels)
         return volume if downsample == 1 else volume.resized(downsample)
     file = VolumeFile(place, part, voxels, dtype, offset)
     with np.errstate(all="ignore"):  # `require_transform` checks the numbers of damaged headers
@@ -231,7 +234,7 @@ def _make_volume_name(file: VolumeFile) -> str:
     return f"{stem}#{file.part}" if file.part else stem
 
 
-def _parse_triple(what: str, given: Any, kind: type[int | float]) -> Any:
+def _parse_three_numbers(what: str, given: Any, kind: type[int | float]) -> Any:
     """Convert a user's setting, one or three numbers above 0, to three of the type `kind`.
 
     None stays None. Errors call the setting `what`.

@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.volumes.transfer.transfer_function import TransferFunction, TransferLike
-from brdfkit.volumes.transfer.windows import scale_to_values
+from brdfkit.volumes.transfer.windows import scale_transfer_to_values
 
 Volume = Any  # the class in `volume.py`, which imports this file
 
@@ -25,7 +25,7 @@ def make_scene_dict(volume: Volume, transfer: TransferLike | None) -> dict[str, 
         transfer = TransferFunction.load(transfer)
     if volume.unit and transfer.length_unit:
         transfer = transfer.per(volume.unit)
-    transfer = scale_to_values(transfer, volume.values)
+    transfer = scale_transfer_to_values(transfer, volume.values)
     if volume.labels and transfer.gradients is None:
         volume, transfer = _renumber_labels(volume, transfer)
     channels = [volume.values]

@@ -17,8 +17,8 @@ from brdfkit.volumes.rays import reconstruction
 from brdfkit.volumes.transfer import windows
 from brdfkit.volumes.transfer.transfer_function import TransferLike
 
-LARGEST_COORDINATE = 1e15  # of a transform, so that products of squares fit into float32
-LARGEST_VALUE = 1e30  # also of 1 / (range of values), because renderers compute in float32
+LARGEST_COORDINATE = 1e15  # limit of a transform's numbers, so that products fit into float32
+LARGEST_VALUE = 1e30  # limit of values, and of 1 / (their range), for renderers in float32
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -31,7 +31,7 @@ BLOCKS = 4096  # blocks in the plot of probabilities, the default of `kdtree_env
 DRAWN_BLOCKS = 256  # blocks whose outlines are drawn on the map
 DRAWN_ROWS = 1024  # approximate number of rows to which a larger map is thinned before drawing
 CURVE_POINTS = 1000  # points along the curve of the shares of light
-COLOUR = "#0072b2"  # of the curves of exact values
+COLOUR = "#0072b2"  # colour of the curves of exact values
 LAW_COLOURS = {"hyperbolic": "#d55e00", "steps": "#009e73"}
 SIDES = ("−z", "+x", "+z", "−x", "−z")  # directions along the horizon, at the ticks of the map
 
@@ -106,7 +106,7 @@ def _draw_block_probabilities(axes: "Axes", power: FloatArray) -> None:
     lit = share > 0
     axes.plot(rank[lit] + 1, share[lit], color=COLOUR, label="the blocks' own")
     for name, colour in LAW_COLOURS.items():
-        fitted = LAWS[name].fit(share).probability(rank)
+        fitted = LAWS[name].fit_to_shares(share).probability(rank)
         axes.plot(rank[lit] + 1, fitted[lit], color=colour, linewidth=1, label=f"{name} law")
     axes.set(yscale="log", ylim=(share[lit].min() / 2, min(1, 3 * share[0])))
     axes.legend(frameon=False)

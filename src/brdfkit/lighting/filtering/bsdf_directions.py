@@ -46,7 +46,7 @@ class Directions:
         self.count = rays * self.per_ray
         self.points = Rows(spread_cube_points(self.count))
 
-    def find_index(self, i: JitInt, si: MitsubaObject) -> JitInt:
+    def find_direction_index(self, i: JitInt, si: MitsubaObject) -> JitInt:
         """Return the index of the `i`-th direction of each ray among all directions of its pixel.
 
         The rays of a pixel must be adjacent in the surface interactions `si`.

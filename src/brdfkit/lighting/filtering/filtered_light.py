@@ -54,7 +54,7 @@ class FilteredLight:
         self.source: tuple[MitsubaObject, bytes] | None = None  # emitter, digest of its parameters
         self.directions: LightDirections | None = None
 
-    def update(self, emitter: MitsubaObject) -> FilteredLight:
+    def filter_if_changed(self, emitter: MitsubaObject) -> FilteredLight:
         """Filter the `emitter` unless it is unchanged since the last call; return this object."""
         source = emitter, _digest_parameters(emitter)
         if self.source != source:
@@ -68,7 +68,7 @@ class FilteredLight:
     def get_light_directions(self, rays: int) -> LightDirections:
         """Return directions drawn by the emitter, shared by the `rays` of a pixel, for shadows."""
         if self.directions is None or self.directions.rays != rays:
-            assert self.source is not None, "call update first"
+            assert self.source is not None, "call filter_if_changed first"
             self.directions = LightDirections(self.source[0], LIGHT_DIRECTIONS, rays)
         return self.directions
 

@@ -10,9 +10,9 @@ from brdfkit.lighting.filtering.filtered_light import Light
 from brdfkit.lighting.filtering.scene_bsdfs import (
     CacheByValues,
     has_separate_diffuse_part,
-    is_one_of,
     is_uniform_over_surface,
     list_distinct_bsdfs,
+    points_to_one_of,
 )
 from brdfkit.lighting.filtering.view_directions import ViewDirections
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
@@ -55,7 +55,7 @@ class FilteredSampling:
         for separate in (True, False):
             group = [bsdf for bsdf in others if has_separate_diffuse_part(bsdf) == separate]
             if group:
-                here = active & is_one_of(si.bsdf(), group)
+                here = active & points_to_one_of(si.bsdf(), group)
                 shown = self._estimate_radiance_at_points(si, light, here, separate, directions)
                 total = dr.select(here, shown, total)
         return total
@@ -79,7 +79,7 @@ class FilteredSampling:
         c, types, constant = split_off_constant(bsdf, si, active, separate)
 
         def add_direction(i: JitInt, total: JitColour) -> tuple[JitInt, JitColour]:
-            index = directions.find_index(i, si)
+            index = directions.find_direction_index(i, si)
             wo, kappa, weight = directions.draw_direction(index, bsdf, si, types, constant, active)
             mean = spectrum(light.mean_radiance_over_lobe(si.to_world(wo), kappa), si)
             return i + 1, total + weight * mean

@@ -96,27 +96,33 @@ class ViewedLobes:
         import mitsuba as mi
 
         side = dr.sign(si.wi.z)
-        corners, sin_phi, cos_phi = self.find_views(mi.Vector3f(si.wi.x, si.wi.y, dr.abs(si.wi.z)))
+        corners, sin_phi, cos_phi = self.find_surrounding_views(
+            mi.Vector3f(si.wi.x, si.wi.y, dr.abs(si.wi.z))
+        )
 
-        def interpolate(rows: Rows, kind: type, lobe: JitInt = 0, count: int = 1) -> JitVector:
+        def interpolate_views(
+            rows: Rows, kind: type, lobe: JitInt = 0, count: int = 1
+        ) -> JitVector:
             return sum(share * rows.at(view * count + lobe, kind) for view, share in corners)
 
         def add_lobe(k: JitInt, total: JitColour) -> tuple[JitInt, JitColour]:
-            weight = interpolate(self.weights, mi.Vector4f, k, self.count)
-            axis = interpolate(self.axes, mi.Vector4f, k, self.count)
+            weight = interpolate_views(self.weights, mi.Vector4f, k, self.count)
+            axis = interpolate_views(self.axes, mi.Vector4f, k, self.count)
             x, y = cos_phi * axis.x - sin_phi * axis.y, sin_phi * axis.x + cos_phi * axis.y
             axis = si.to_world(dr.normalize(mi.Vector3f(x, y, axis.z * side)))
             mean = light.mean_radiance_over_lobe(axis, weight.w)
             return k + 1, total + mi.Color3f(weight.x, weight.y, weight.z) * mean
 
         irradiance = light.irradiance(si.to_world(mi.Vector3f(0, 0, side)))
-        matte = interpolate(self.diffuse, mi.Color3f) * irradiance
+        matte = interpolate_views(self.diffuse, mi.Color3f) * irradiance
         _, total = dr.while_loop(
             (mi.UInt32(0), mi.Color3f(matte)), lambda k, total: active & (k < self.count), add_lobe
         )
         return dr.select(active, total, 0)
 
-    def find_views(self, wo: JitVector) -> tuple[list[tuple[JitInt, JitFloat]], JitFloat, JitFloat]:
+    def find_surrounding_views(
+        self, wo: JitVector
+    ) -> tuple[list[tuple[JitInt, JitFloat]], JitFloat, JitFloat]:
         """Find the stored views around `wo`, to interpolate the lobes between them.
 
         Returns them as (number, weight), and the sine and cosine of the azimuth of `wo`, by which

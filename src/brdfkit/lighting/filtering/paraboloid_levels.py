@@ -71,7 +71,10 @@ def mip_level(kappa: JitFloat, z: JitFloat, side: int, coverage: float = COVERAG
 
 
 def cap_solid_angle(kappa: JitFloat, coverage: float) -> JitFloat:
-    """Return the solid angle [sr] of the cap with the share `coverage` of a lobe."""
+    """Return the solid angle [sr] of the spherical cap with the share `coverage` of a lobe.
+
+    The cap lies about the axis of the von Mises-Fisher lobe with the concentration `kappa`.
+    """
     return -2 * math.pi * math.log(1 - coverage) / kappa
 
 

@@ -10,7 +10,7 @@ from brdfkit.core.geometry.directions import rotate_z
 from brdfkit.mitsuba_bridge.bsdf.from_dictionary import eval_bsdf
 
 TOLERANCE = 1e-3  # differences below this share of the largest value count as rounding
-CACHED_BSDFS = 16  # results that `CacheByValues` keeps
+CACHED_BSDFS = 16  # number of results that `CacheByValues` keeps
 
 
 def _make_direction_pairs(count: int = 64) -> FloatArray:
@@ -38,7 +38,7 @@ def list_distinct_bsdfs(scene: MitsubaObject) -> list[MitsubaObject]:
     return list(dict.fromkeys(shape.bsdf() for shape in scene.shapes()))
 
 
-def is_one_of(bsdf: MitsubaObject, others: Iterable[MitsubaObject]) -> JitMask:
+def points_to_one_of(bsdf: MitsubaObject, others: Iterable[MitsubaObject]) -> JitMask:
     """Return a mask of the elements of a `mi.BSDFPtr` that point to one of the BSDFs `others`."""
     import mitsuba as mi
 

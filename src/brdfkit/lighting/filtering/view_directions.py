@@ -30,7 +30,10 @@ ADJACENT = 5  # number of adjacent polar angles over which outliers of weights a
 
 
 class ViewDirections:
-    """The directions that a BSDF draws for a grid of views of its front, and of its back if any."""
+    """The directions that a BSDF draws for a grid of views, stored to light pictures without it.
+
+    The views see the front of the surface, and the back if the BSDF has one.
+    """
 
     def __init__(self, bsdf: MitsubaObject, directions: Directions) -> None:
         import drjit as dr
@@ -87,7 +90,7 @@ class ViewDirections:
         sin, cos = dr.sincos(dr.atan2(si.wi.y, si.wi.x) if self.azimuths == 1 else mi.Float(0))
 
         def add_direction(i: JitInt, total: JitColour) -> tuple[JitInt, JitColour]:
-            index = view * directions.count + directions.find_index(i, si)
+            index = view * directions.count + directions.find_direction_index(i, si)
             lobe, weight = (
                 rows.at(index, mi.Vector4f, active) for rows in (self.lobes, self.weights)
             )

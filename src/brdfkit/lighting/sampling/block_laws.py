@@ -2,9 +2,10 @@
 
 A law approximates the shares of the map's power of n blocks, which are sorted from the largest to
 the smallest; a rank is a block's number in this order. `probability(i)` is the law's probability
-P̂(i) of rank i, `cumulative(x)` the cumulative distribution F, and `inverse(xi)` its inverse. They
-use the functions of `maths`: NumPy, or Dr.Jit in the renderer. Estimates are unbiased by any law,
-because they are divided by P̂, not by the block's share. [Ergun 2015, section 6.3]
+P̂(i) of rank i, `cumulative_probability(x)` its cumulative distribution F, and
+`inverse_cumulative(xi)` the inverse of F. They use the functions of `maths`: NumPy, or Dr.Jit in
+the renderer. Estimates are unbiased by any law, because they are divided by P̂, not by the block's
+share. [Ergun 2015, section 6.3]
 """
 
 from __future__ import annotations
@@ -39,11 +40,12 @@ class Hyperbolic:
     maths: ModuleType = np
 
     @classmethod
-    def fit(cls, shares: FloatArray) -> Hyperbolic:
+    def fit_to_shares(cls, shares: FloatArray) -> Hyperbolic:
         """Return the law with the maximum likelihood Σ P log P̂ for the sorted `shares` P (n,).
 
-        >>> Hyperbolic.fit(Hyperbolic(256, 5.0).probability(np.arange(256))).u    # doctest: +SKIP
-        5.000
+        >>> shares = Hyperbolic(256, 5.0).probability(np.arange(256))
+        >>> round(Hyperbolic.fit_to_shares(shares).u, 3)
+        5.0
         """
         from scipy.optimize import minimize_scalar
 
@@ -57,7 +59,7 @@ class Hyperbolic:
         minimum = minimize_scalar(loss, bounds=(-10, np.log(n) + 10), method="bounded")
         return cls(n, float(np.exp(minimum.x)))
 
-    def cumulative(self, x: JitFloat) -> JitFloat:
+    def cumulative_probability(self, x: JitFloat) -> JitFloat:
         """Return the probability F(x) of all blocks before the rank `x`, by eq. 6.4."""
         log = self.maths.log
         return log(1 + x / self.u) / log(1 + self.n / self.u)
@@ -67,7 +69,7 @@ class Hyperbolic:
         log = self.maths.log
         return log(1 + 1 / (self.u + i)) / log(1 + self.n / self.u)
 
-    def inverse(self, xi: JitFloat) -> JitFloat:
+    def inverse_cumulative(self, xi: JitFloat) -> JitFloat:
         """Return the rank F⁻¹(ξ) below which blocks have the probability `xi`, by eq. 6.5."""
         return self.u * ((1 + self.n / self.u) ** xi - 1)
 
@@ -87,7 +89,7 @@ class Steps:
     maths: ModuleType = np
 
     @classmethod
-    def fit(cls, shares: FloatArray) -> Steps:
+    def fit_to_shares(cls, shares: FloatArray) -> Steps:
         """Return the law with the maximum likelihood Σ P log P̂ for the sorted `shares` P (n,).
 
         Dynamic programming finds the edges.
@@ -115,14 +117,14 @@ class Steps:
         return cls(n, tuple(np.append(0, edges[at[:-1]]).tolist()), tuple(share.tolist()))
 
     def _list_steps(self) -> Iterator[tuple[Any, Any, Any, Any]]:
-        """Yield (first rank, number of blocks, probability before, own probability) of each step."""
+        """Yield each step: first rank, number of blocks, probability before, own probability."""
         below = 0
         ends = (*self.edges[1:], self.n)
         for first, end, share in zip(self.edges, ends, self.shares, strict=True):
             yield first, end - first, below, share
             below = below + share
 
-    def cumulative(self, x: JitFloat) -> JitFloat:
+    def cumulative_probability(self, x: JitFloat) -> JitFloat:
         """Return the probability F(x) of all blocks before the rank `x`."""
         clip = self.maths.clip
         return sum(share * clip((x - first) / n, 0, 1) for first, n, _, share in self._list_steps())
@@ -135,7 +137,7 @@ class Steps:
             for first, n, _, share in self._list_steps()
         )
 
-    def inverse(self, xi: JitFloat) -> JitFloat:
+    def inverse_cumulative(self, xi: JitFloat) -> JitFloat:
         """Return the rank F⁻¹(ξ) below which blocks have the probability `xi`."""
         clip, maximum = self.maths.clip, self.maths.maximum
         return sum(
@@ -160,7 +162,7 @@ class SortedBlocks:
         order = np.argsort(-shares, kind="stable")
         x0, x1, y0, y1 = tree.blocks[order].T
         self.cells, areas = tree.boxes[0, 1] * tree.boxes[0, 3], (x1 - x0) * (y1 - y0)
-        self.law = law.fit(shares[order])
+        self.law = law.fit_to_shares(shares[order])
         self.densities = np.empty(len(order))  # in the order of `Tree.blocks`
         self.densities[order] = self.law.probability(np.arange(len(order))) * self.cells / areas
         self.in_renderer = _convert_to_drjit(self.law)
@@ -174,9 +176,9 @@ class SortedBlocks:
         import mitsuba as mi
 
         law = self.in_renderer
-        i = dr.minimum(dr.floor(law.inverse(u.x)), law.n - 1)
+        i = dr.minimum(dr.floor(law.inverse_cumulative(u.x)), law.n - 1)
         probability = law.probability(i)
-        remainder = (u.x - law.cumulative(i)) / dr.maximum(probability, 1e-30)
+        remainder = (u.x - law.cumulative_probability(i)) / dr.maximum(probability, 1e-30)
         box = self.boxes.at(mi.UInt32(i), mi.Vector4f, active)
         slope = self.slopes.at(mi.UInt32(i), mi.Vector2f, active)
         s, t = (
@@ -189,7 +191,7 @@ class SortedBlocks:
 
 
 def _convert_to_drjit(law: Law) -> Law:
-    """Return the law with the functions and numbers of Dr.Jit, for the renderer."""
+    """Return a law of block probabilities that computes with Dr.Jit, for the renderer."""
     import drjit as dr
 
     numbers = {f.name: getattr(law, f.name) for f in dataclasses.fields(law) if f.name != "maths"}

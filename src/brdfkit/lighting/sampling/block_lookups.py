@@ -148,7 +148,7 @@ class TreeWalk:
         import drjit as dr
         import mitsuba as mi
 
-        def descend(node: JitVector, box: JitVector, u: JitVector) -> tuple[JitVector, ...]:
+        def descend_to_part(node: JitVector, box: JitVector, u: JitVector) -> tuple[JitVector, ...]:
             # Choose a part, and stretch the random number of the cut's axis to 0 to 1 again
             down, share = node.y > 0, node.w
             along = dr.select(down, u.y, u.x)
@@ -159,7 +159,9 @@ class TreeWalk:
             return *self._get_child_node(node, box, second, active), u
 
         start = *self._get_root_node(active), mi.Vector2f(u)
-        node, box, u = dr.while_loop(start, lambda node, box, u: (node.z > 0) & active, descend)
+        node, box, u = dr.while_loop(
+            start, lambda node, box, u: (node.z > 0) & active, descend_to_part
+        )
         s, t = sample_line_density(u.x, node.y), sample_line_density(u.y, node.w)
         density = node.x * line_density(s, node.y) * line_density(t, node.w)
         return dr.lerp(box.x, box.y, s), dr.lerp(box.z, box.w, t), density
@@ -170,11 +172,11 @@ class TreeWalk:
 
         x, y = dr.detach(x), dr.detach(y)
 
-        def descend(node: JitVector, box: JitVector) -> tuple[JitVector, JitVector]:
+        def descend_to_part(node: JitVector, box: JitVector) -> tuple[JitVector, JitVector]:
             return self._get_child_node(node, box, dr.select(node.y > 0, y, x) >= node.x, active)
 
         start = self._get_root_node(active)
-        node, box = dr.while_loop(start, lambda node, box: (node.z > 0) & active, descend)
+        node, box = dr.while_loop(start, lambda node, box: (node.z > 0) & active, descend_to_part)
         s, t = (x - box.x) / (box.y - box.x), (y - box.z) / (box.w - box.z)
         s, t = dr.clip(s, 0, 1), dr.clip(t, 0, 1)
         return node.x * line_density(s, node.y) * line_density(t, node.w)

@@ -42,8 +42,8 @@ MAP_PARAMETERS = {
         False, "sample only what is brighter than the mean; surfaces do the rest"
     ),
 }
-ENVIRONMENT_DISTANCE = 1e7  # of samples, since a plugin cannot find the size of the scene
-SMALLEST_SINE = 1e-4  # of the polar angle, so that densities at the poles are not divided by 0
+ENVIRONMENT_DISTANCE = 1e7  # distance of samples, since a plugin cannot find the scene's size
+SMALLEST_SINE = 1e-4  # lower limit of the polar angle's sine, by which densities are divided
 
 
 def derive_environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]) -> Any:

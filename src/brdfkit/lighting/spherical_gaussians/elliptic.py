@@ -38,7 +38,7 @@ def fit_anisotropic_gaussian(x: FloatArray, weights: FloatArray) -> tuple[FloatA
     plane = np.array(tangents(axis))
     flat = x @ plane.T
     moments = (weights[:, None] * flat).T @ flat / weights.sum()
-    bandwidths, directions = np.linalg.eigh(np.linalg.inv(2 * moments))  # <x²> = 1 / 2λ
+    bandwidths, directions = np.linalg.eigh(np.linalg.inv(2 * moments))
     return np.array([*directions.T @ plane, axis]), bandwidths
 
 
@@ -49,7 +49,7 @@ def _spread_over_ellipse(one: OneView, n: int) -> ViewLobes:
     frame, bandwidths = fit_anisotropic_gaussian(x, weights * share)
     light = one.energy.sum(axis=0)
     variances = 1 / (2 * bandwidths)  # along the lobe's x and y
-    # Round lobes have half the variance of a circular ellipse, and less for a narrow one
+    # The variance of a round lobe is half of the ellipse's, but less than that across the ellipse
     kernel = min(np.sqrt(variances.prod()) / 2, 0.9 * variances.min())
     # The symmetric root of the remaining variance changes smoothly from view to view, even where
     # the longer axis of the ellipse becomes the shorter one

@@ -17,8 +17,8 @@ from brdfkit.lighting.spherical_gaussians import mixture
 from brdfkit.lighting.spherical_gaussians.mixture import Mixture
 from brdfkit.lighting.spherical_gaussians.one_view import OneView, ViewLobes
 
-SMALLEST_COSINE = 0.01  # of the angle between view and half vector, so that κ is not divided by 0
-STEPS = 20  # of a fit from a neighbouring view's lobes; more steps hardly improve it
+SMALLEST_COSINE = 0.01  # lower limit of the cosine between view and half vector, which divides κ
+STEPS = 20  # steps of a fit that starts from a neighbouring view; more hardly improve it
 
 
 def convert_to_light_lobes(
@@ -126,7 +126,7 @@ def fit_channel_weights(lobes: Mixture, one: OneView, steps: int = 5) -> FloatAr
         weights = lobes.weights * energy.sum()
         for _ in range(steps):
             lit = Mixture(np.maximum(weights, mixture.SMALLEST_WEIGHT), lobes.axes, lobes.kappa)
-            weights = lit.lobe_shares(one.means)[0] @ energy
+            weights = lit.lobe_shares(one.mean_directions)[0] @ energy
         return weights
 
     return np.stack([fit_channel(energy) for energy in one.energy.T], axis=1)

@@ -67,13 +67,13 @@ class LobeTable:
         shape = len(self.theta_o), len(self.phi_o)
         shares = [(to_flat_index(nodes, shape), share) for nodes, share in list_corners(brackets)]
 
-        def interpolate(values: FloatArray) -> FloatArray:
+        def interpolate_views(values: FloatArray) -> FloatArray:
             each = (-1,) + (1,) * (values.ndim - 1)
             return np.sum([values[view] * np.reshape(s, each) for view, s in shares], axis=0)
 
-        axes = rotate_z(normalize(interpolate(self.axes)), phi[:, None])
-        diffuse, weights = interpolate(self.diffuse), interpolate(self.weights)
-        return diffuse, weights, axes, interpolate(self.kappa)
+        axes = rotate_z(normalize(interpolate_views(self.axes)), phi[:, None])
+        diffuse, weights = interpolate_views(self.diffuse), interpolate_views(self.weights)
+        return diffuse, weights, axes, interpolate_views(self.kappa)
 
     def eval(self, wi: FloatArray, wo: FloatArray) -> FloatArray:
         """Evaluate BRDF × cosine (n, channels) [sr⁻¹] by the lobes, for direction pairs (n, 3)."""

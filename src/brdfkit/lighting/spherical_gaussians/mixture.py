@@ -19,7 +19,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.lighting.spherical_gaussians import von_mises_fisher as vmf
 
-SMALLEST_WEIGHT = 1e-12  # of a lobe, because its logarithm has to be finite
+SMALLEST_WEIGHT = 1e-12  # lower limit of a lobe's weight, whose logarithm has to be finite
 
 
 @dataclass(frozen=True)

@@ -50,7 +50,7 @@ class OneView:
         return self.glossy * self.solid_angle[:, None]
 
     @property
-    def means(self) -> FloatArray:
+    def mean_directions(self) -> FloatArray:
         """The mean vectors (n, 3) of spherical caps about the directions, for fits of lobes.
 
         A cap has the solid angle Ω that its direction represents, and its mean the length
@@ -67,7 +67,7 @@ class OneView:
         weights = self.energy.mean(axis=1) + 1e-9 * self.directions[:, 2] * self.solid_angle
         order = weights.argsort()
         kept = order[weights[order].cumsum() > OMITTED_LIGHT * weights.sum()]
-        return self.means[kept], weights[kept]
+        return self.mean_directions[kept], weights[kept]
 
 
 def sample_view(brdf: Brdf, theta: float, phi: float) -> OneView:

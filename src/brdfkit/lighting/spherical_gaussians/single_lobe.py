@@ -20,7 +20,7 @@ from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 from brdfkit.lighting.spherical_gaussians import von_mises_fisher as vmf
 from brdfkit.lighting.spherical_gaussians.one_view import OneView, ViewLobes
 
-STEPS = 50  # of expectation maximisation
+STEPS = 50  # steps of expectation maximisation
 
 
 def fit_warped_lobes(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
@@ -97,7 +97,7 @@ def split_lobe(mu: ArrayLike, kappa: ArrayLike, n: int) -> tuple[FloatArray, Any
 
 
 def estimate_concentration(kappa: ArrayLike, n: int) -> AnyArray:
-    """Return the concentration of a kernel density estimate from `n` points of a lobe."""
+    """Return the κ of the kernel density estimate from `n` points of a lobe with κ `kappa`."""
     kappa = np.asarray(kappa, float)
     mean = vmf.spread_lobe_points(np.array([0.0, 0.0, 1.0]), kappa, n).mean(axis=-2)
     # The estimate is a convolution, whose mean cosine is the product of the two mean cosines
@@ -106,7 +106,10 @@ def estimate_concentration(kappa: ArrayLike, n: int) -> AnyArray:
 
 
 def _sharpen_lobe(kappa: AnyArray, n: int) -> AnyArray:
-    """Return the concentration of a sharper lobe, from `n` points of which an estimate has κ."""
+    """Return the κ of a sharper lobe, whose kernel density estimate is as wide as a given lobe.
+
+    The estimate is from `n` points of the sharper lobe, and `kappa` is the given concentration.
+    """
     sharper = kappa * (1 + n ** (-1 / 3))
     for _ in range(10):  # converges, since both concentrations are nearly proportional
         sharper = sharper * kappa / estimate_concentration(sharper, n)

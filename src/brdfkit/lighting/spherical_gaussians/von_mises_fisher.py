@@ -16,7 +16,7 @@ from scipy.special import exprel
 
 from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 
-LARGEST_KAPPA = 1e8  # of a lobe as narrow as a ten-thousandth of a radian
+LARGEST_KAPPA = 1e8  # κ of a lobe as narrow as a ten-thousandth of a radian
 
 
 def density(x: FloatArray, mu: ArrayLike, kappa: ArrayLike) -> AnyArray:

@@ -6,7 +6,7 @@ import numpy as np
 
 from brdfkit.core.array_types import JitMask, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.lighting.visibility.decomposition import decompose, weld
+from brdfkit.lighting.visibility.decomposition import decompose, weld_vertices
 from brdfkit.lighting.visibility.hull import Hull
 from brdfkit.lighting.visibility.occluders import Occluders
 from brdfkit.lighting.visibility.pieces import is_closed
@@ -97,7 +97,7 @@ def _decompose_mesh(mesh: MitsubaObject, concavity: float) -> list[Hull]:
     points = np.array(buffers["vertex_positions"], float).reshape(-1, 3)
     faces = np.array(buffers["faces"], int).reshape(-1, 3)
     parts = decompose(points, faces, concavity)
-    if parts and not is_closed(weld(points, faces)[1]):
+    if parts and not is_closed(weld_vertices(points, faces)[1]):
         mi.Log(  # type: ignore[operator]  # an object in Mitsuba's stub
             mi.LogLevel.Warn,
             f"{mesh.id()}: the mesh is not closed; its holes were closed, or it was replaced by a "

@@ -21,7 +21,7 @@ LOOKUP_LIMIT = 32  # look-ups of a plane after which the search ends
 GOING, HIT, MISSED = 0, 1, 2  # states of the search
 
 
-def find_entry(
+def find_ray_entry(
     mi: MitsubaModule,
     o: JitVector,
     d: JitVector,

@@ -64,7 +64,7 @@ def decompose(
         raise BrdfkitError(f"concavity = {concavity:g} should be between 0.01 and 1.")
     if not 8 <= hull_vertices <= 10_000:
         raise BrdfkitError(f"hull_vertices = {hull_vertices} should be between 8 and 10000.")
-    points, faces = weld(points, faces)
+    points, faces = weld_vertices(points, faces)
     if make_hull(points) is None:
         return []
     settings = SEARCH | {"threshold": float(concavity), "max_ch_vertex": int(hull_vertices)}
@@ -100,7 +100,7 @@ def cache_folder() -> Path:
     return Path(pooch.os_cache("brdfkit")) / "convex_parts"
 
 
-def weld(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
+def weld_vertices(points: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
     """Merge a mesh's vertices that are equal in single precision, and drop faces that collapse.
 
     `points` (n, 3) are the vertices, and `faces` (m, 3) the vertex numbers of triangles.

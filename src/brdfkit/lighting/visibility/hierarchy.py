@@ -29,7 +29,7 @@ class Hierarchy:
 
         order = _sort_boxes(low, high)
         self.leaves = mi.UInt32(len(order))
-        dr.make_opaque(self.leaves)  # so that any number of boxes has the same kernel
+        dr.make_opaque(self.leaves)  # otherwise each number of boxes would have its own kernel
         self.order = Integers(np.maximum(order, 0))
         self.low = Rows(_combine_node_corners(_arrange_corners(low, order), np.fmin))
         self.high = Rows(_combine_node_corners(_arrange_corners(high, order), np.fmax))
@@ -48,7 +48,7 @@ class Hierarchy:
         import drjit as dr
         import mitsuba as mi
 
-        def visit(node: JitInt, hit: JitInt, reads: JitInt) -> tuple[JitInt, JitInt, JitInt]:
+        def visit_leaf(node: JitInt, hit: JitInt, reads: JitInt) -> tuple[JitInt, JitInt, JitInt]:
             leaf, number = self._find_next_leaf(node, ray)
             hit_here, more = test(number, leaf != END)
             hit_here = hit_here & (leaf != END)
@@ -60,7 +60,7 @@ class Hierarchy:
             _, hit, reads = dr.while_loop(
                 (start, mi.UInt32(0), mi.UInt32(0)),
                 lambda node, hit, reads: (node != END) & (hit == 0),
-                visit,
+                visit_leaf,
             )
         return hit == 1, reads
 

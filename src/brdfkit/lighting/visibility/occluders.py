@@ -6,7 +6,7 @@ import numpy as np
 
 from brdfkit.core.array_types import JitFloat, JitInt, JitMask, MitsubaObject
 from brdfkit.core.errors import BrdfkitError, no_such_error
-from brdfkit.lighting.visibility.convex_ray import find_entry
+from brdfkit.lighting.visibility.convex_ray import find_ray_entry
 from brdfkit.lighting.visibility.hierarchy import Hierarchy
 from brdfkit.lighting.visibility.hull import Frames, Hull
 from brdfkit.lighting.visibility.plane_map import RasterisedPlaneMap
@@ -91,13 +91,13 @@ class Occluders:
     def _find_part_entry(
         self, ray: MitsubaObject, part: JitInt, active: JitMask
     ) -> tuple[JitFloat, JitMask, JitInt]:
-        """Find where a ray in world coordinates enters a part, by `find_entry`."""
+        """Find where a ray in world coordinates enters a part, by `find_ray_entry`."""
         import drjit as dr
         import mitsuba as mi
 
         o, d = self.frames.transform_ray(part, ray, active)
         length = dr.select(active, dr.norm(d), 1)
-        t, entered, count = find_entry(mi, o, d / length, self.maps, part, active)
+        t, entered, count = find_ray_entry(mi, o, d / length, self.maps, part, active)
         return t / length, entered, count
 
 

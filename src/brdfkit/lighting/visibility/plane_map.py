@@ -18,7 +18,7 @@ CHUNK = 1024  # texels that are computed at once, to save memory
 
 
 class PlaneMap(Protocol):
-    """A look-up of the planes of convex parts by direction, as `find_entry` needs it."""
+    """A look-up of the planes of convex parts by direction, as `find_ray_entry` needs it."""
 
     def look_up_plane(
         self, part: JitInt, direction: JitVector, active: JitMask = True

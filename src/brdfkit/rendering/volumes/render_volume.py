@@ -23,7 +23,7 @@ from brdfkit.rendering.volumes import defaults
 from brdfkit.rendering.volumes.scene import RENDERERS, UNLIT, describe_scene
 from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.transfer_function import TransferLike
-from brdfkit.volumes.transfer.windows import scale_to_values
+from brdfkit.volumes.transfer.windows import scale_transfer_to_values
 
 SPP, UNLIT_SPP = 64, 8  # samples per pixel by default, for renderers with light and without
 MOST_SPP = 16_384  # largest number of samples per pixel, if a noise floor or a time is requested
@@ -185,7 +185,7 @@ def _choose_transfer_function(
         transfer = defaults.choose_transfer_function(volume, renderer)
     elif not isinstance(transfer, TransferFunction):
         transfer = TransferFunction.load(transfer)
-    transfer = scale_to_values(transfer, volume.values)  # the camera is placed by the opaque voxels
+    transfer = scale_transfer_to_values(transfer, volume.values)  # the camera is placed by the opaque voxels
     if volume.unit and transfer.length_unit:
         transfer = transfer.per(volume.unit)
     return replace(transfer, extinction=density * transfer.extinction)

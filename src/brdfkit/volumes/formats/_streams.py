@@ -28,7 +28,7 @@ LARGEST_PACKING = {"gzip": 1032, "zlib": 1032, "bz2": 2**21}
 CUT_SHORT = "the data are cut short or damaged; fetch the file again"
 
 
-def require_bytes(
+def require_enough_bytes(
     file: VolumeFile, path: Path, offset: int, shape: Shape, dtype: Any, packing: str = ""
 ) -> None:
     """Raise `BrdfkitError` if the file at `path` cannot contain voxels of this `shape` and `dtype`.

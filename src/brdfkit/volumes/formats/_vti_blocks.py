@@ -18,7 +18,7 @@ from xml.etree.ElementTree import Element
 
 import numpy as np
 
-from brdfkit.volumes.formats._streams import DType, Opener, parse_numbers, require_bytes
+from brdfkit.volumes.formats._streams import DType, Opener, parse_numbers, require_enough_bytes
 from brdfkit.volumes.formats._volume_file import Shape, VolumeFile
 
 ZLIB = "vtkZLibDataCompressor"
@@ -68,7 +68,7 @@ def make_opener(
     """
     is_text = encoding.form == "ascii"
     smallest = np.dtype(np.uint8) if is_text else dtype  # a number has at least one digit
-    require_bytes(file, file.path, start, shape, smallest, "zlib" if encoding.packed else "")
+    require_enough_bytes(file, file.path, start, shape, smallest, "zlib" if encoding.packed else "")
 
     @contextmanager
     def open_stream() -> Iterator[Any]:

@@ -13,7 +13,7 @@ from brdfkit.volumes.formats._streams import (
     make_opener,
     make_text_opener,
     read_layers,
-    require_bytes,
+    require_enough_bytes,
 )
 from brdfkit.volumes.formats._volume_file import (
     LPS_TO_RAS,
@@ -68,14 +68,14 @@ def read_header(file: VolumeFile) -> StoredVolume:
     dtype = np.dtype((">" if big_endian else "<") + code)
     path, start = _find_voxel_file(file, fields["ElementDataFile"], start)
     if not _is_field_true(fields, "BinaryData", default="True"):
-        require_bytes(file, path, start, shape, np.uint8)
+        require_enough_bytes(file, path, start, shape, np.uint8)
         stream = make_text_opener(path, start, dtype)
     else:
         packed = _is_field_true(fields, "CompressedData")
         if skip == -1 and not packed and path.exists():  # -1 puts the voxels at the file's end
             start, skip = path.stat().st_size - int(np.prod(shape)) * dtype.itemsize, 0
         start = max(start + max(skip, 0), 0)
-        require_bytes(file, path, start, shape, dtype, "zlib" if packed else "")
+        require_enough_bytes(file, path, start, shape, dtype, "zlib" if packed else "")
         stream = make_opener(path, start, "zlib" if packed else "")
     return StoredVolume(
         shape=shape,

@@ -4,7 +4,7 @@ import struct
 
 import numpy as np
 
-from brdfkit.volumes.formats._streams import make_opener, read_layers, require_bytes
+from brdfkit.volumes.formats._streams import make_opener, read_layers, require_enough_bytes
 from brdfkit.volumes.formats._volume_file import StoredVolume, VolumeFile, make_grid_transform
 
 NAME = "Mitsuba's grid"
@@ -35,7 +35,7 @@ def read_header(file: VolumeFile) -> StoredVolume:
     if min(nx, ny, nz) < 1:
         raise file.error(f"its header states {nx}×{ny}×{nz} voxels; it is damaged")
     shape, dtype = (nz, ny, nx), np.dtype("<f4")
-    require_bytes(file, file.path, HEADER.size, shape, dtype)
+    require_enough_bytes(file, file.path, HEADER.size, shape, dtype)
     low, high = np.reshape(box, (2, 3))
     spacing = (high - low) / (nx, ny, nz)
     open_stream = make_opener(file.path, HEADER.size)

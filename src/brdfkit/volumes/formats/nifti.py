@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray
-from brdfkit.volumes.formats._streams import make_opener, read_layers, require_bytes
+from brdfkit.volumes.formats._streams import make_opener, read_layers, require_enough_bytes
 from brdfkit.volumes.formats._volume_file import Shape, StoredVolume, VolumeFile
 
 NAME = "NIfTI"
@@ -51,7 +51,7 @@ def read_header(file: VolumeFile) -> StoredVolume:
     path = Path(image.file_map["image"].filename)
     packed = path.suffix.lower() == ".gz"
     volume = prod(shape) * dtype.itemsize
-    require_bytes(
+    require_enough_bytes(
         file, path, 0 if packed else start + number * volume, shape, dtype, "gzip" if packed else ""
     )
     start += number * volume

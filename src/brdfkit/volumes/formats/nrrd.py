@@ -17,7 +17,7 @@ from brdfkit.volumes.formats._streams import (
     make_opener,
     make_text_opener,
     read_layers,
-    require_bytes,
+    require_enough_bytes,
 )
 from brdfkit.volumes.formats._volume_file import (
     Shape,
@@ -127,7 +127,9 @@ def _make_voxel_opener(
     if int(header.get("line skip", header.get("lineskip", 0))):
         raise file.error("its header has a line skip, which is not read; remove these lines")
     if encoding in TEXT:
-        require_bytes(file, path, start, shape, np.uint8)  # the text has a digit or more per voxel
+        require_enough_bytes(
+            file, path, start, shape, np.uint8
+        )  # the text has a digit or more per voxel
         return make_text_opener(path, start, dtype)
     if encoding not in PACKINGS:
         raise file.error(f"its encoding {encoding!r} is not read; save it as raw or gzip")
@@ -136,7 +138,7 @@ def _make_voxel_opener(
         start, skip = path.stat().st_size - int(np.prod(shape)) * dtype.itemsize, 0
     if skip < 0 or start < 0:
         raise file.error("its byte skip is not possible: the file is cut short; fetch it again")
-    require_bytes(file, path, start + (0 if packing else skip), shape, dtype, packing)
+    require_enough_bytes(file, path, start + (0 if packing else skip), shape, dtype, packing)
     if packing:
         return make_opener(path, start, packing, skip)
     return make_opener(path, start + skip)

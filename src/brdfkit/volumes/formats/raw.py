@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.volumes.formats._streams import DType, make_opener, read_layers, require_bytes
+from brdfkit.volumes.formats._streams import DType, make_opener, read_layers, require_enough_bytes
 from brdfkit.volumes.formats._volume_file import StoredVolume, VolumeFile
 
 NAME = "raw voxels"
@@ -43,7 +43,7 @@ def read_header(file: VolumeFile) -> StoredVolume:
             else "has no header; give its size=(nx, ny, nz) and dtype, such as 'uint16' or '>i2'"
         )
     shape, dtype, offset = (size[2], size[1], size[0]), _parse_dtype(file, dtype), file.offset or 0
-    require_bytes(file, file.path, offset, shape, dtype)
+    require_enough_bytes(file, file.path, offset, shape, dtype)
     expected = offset + int(np.prod(shape)) * dtype.itemsize
     present = file.path.stat().st_size
     if present != expected:

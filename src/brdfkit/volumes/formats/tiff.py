@@ -15,7 +15,7 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray
 from brdfkit.volumes.formats import _volume_file
-from brdfkit.volumes.formats._streams import make_opener, read_layers, require_bytes
+from brdfkit.volumes.formats._streams import make_opener, read_layers, require_enough_bytes
 from brdfkit.volumes.formats._volume_file import StoredVolume, VolumeFile, make_grid_transform
 
 NAME = "TIFF"
@@ -52,7 +52,7 @@ def _read_file(file: VolumeFile, tifffile: Any) -> StoredVolume:
     if start is None:
         stack = _read_pages(file, tifffile, [file.path], shape[1:])
     else:  # ImageJ may list only the first page of pixels that lie in one piece
-        require_bytes(file, file.path, start, shape, dtype)
+        require_enough_bytes(file, file.path, start, shape, dtype)
         stack = read_layers(file, make_opener(file.path, start), shape, dtype)
     return StoredVolume(
         shape, dtype, lambda: stack, make_grid_transform(np.eye(3), spacing, np.zeros(3)), unit=unit
@@ -138,7 +138,9 @@ def _read_spacing(tiff: Any) -> tuple[list[float], str]:
     if "spacing" not in metadata and "unit" not in metadata:
         return [1, 1, 1], ""
     tags = tiff.pages[0].tags
-    resolutions = [tags[name].value for name in ("XResolution", "YResolution")]  # pixels per unit
+    resolutions = [
+        tags[name].value for name in ("XResolution", "YResolution")
+    ]  # (numerator, denominator) of pixels per unit
     x, y = (below / max(above, 1e-12) for above, below in resolutions)
     unit = str(metadata.get("unit", ""))
     return [x, y, float(metadata.get("spacing", 1))], "µm" if unit in MICRONS else unit

@@ -46,7 +46,7 @@ class Vertex:
     def eval_pdf(self, wo: JitVector) -> tuple[JitColour, JitFloat]:
         """Evaluate the phase function, or BSDF × cosine, for the direction `wo`, and its density.
 
-        The density is that with which `sample` draws `wo`, per solid angle.
+        The density is that with which `sample_direction` draws `wo`, per solid angle.
         """
         import mitsuba as mi
 
@@ -59,7 +59,7 @@ class Vertex:
             phase[1], bsdf[1]
         )
 
-    def sample(self, sampler: MitsubaObject) -> tuple[JitVector, JitColour, JitFloat]:
+    def sample_direction(self, sampler: MitsubaObject) -> tuple[JitVector, JitColour, JitFloat]:
         """Draw a scattered direction; return it with its weight and its density.
 
         The weight is the scattered share of light over the density, and has derivatives; the

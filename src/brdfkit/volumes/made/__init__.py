@@ -25,7 +25,7 @@ def estimate_memory(name: str, size: tuple[int, int, int]) -> int:
     return math.prod(size) * int(_load_module(name).BYTES)
 
 
-def make(name: str, size: tuple[int, int, int] | None = None) -> Volume:
+def make_volume(name: str, size: tuple[int, int, int] | None = None) -> Volume:
     """Make the synthetic volume `name`, with `size` (nx, ny, nz) voxels or its default size."""
     module = _load_module(name)
     volume: Volume = module.make(size or (module.SIZE,) * 3)

@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, MitsubaObject
 
 COMPARED_VOXELS = 1_000_000  # approximate number of voxels that are compared, evenly spread
-SHARE = 0.25  # of the way from one voxel to the next, at which `is_trilinear` evaluates the volume
+SHARE = 0.25  # `is_trilinear` evaluates the volume at this share of the way between two voxels
 
 
 def rms_neighbour_difference(data: AnyArray) -> float:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from brdfkit.core.colours import to_srgb
 from brdfkit.volumes.summary.histograms import PARTS
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
-from brdfkit.volumes.transfer.windows import scale_to_values
+from brdfkit.volumes.transfer.windows import scale_transfer_to_values
 
 VolumeSummary = Any  # the class in `summary.py`, which imports this file
 Reach = tuple[float, float, float, float]  # first and last value, first and last gradient
@@ -26,7 +26,7 @@ PLANES = (("x", "y", "z"), ("x", "z", "y"), ("y", "z", "x"))  # axes to the righ
 def draw_summary(summary: VolumeSummary, transfer: TransferFunction | None = None) -> Figure:
     """Draw a `VolumeSummary` as a matplotlib `Figure`, with an optional `TransferFunction`."""
     if transfer is not None:
-        transfer = _scale_to_volume(transfer, summary.data)
+        transfer = _scale_transfer_to_volume(transfer, summary.data)
     figure = Figure(figsize=SIZE, layout="constrained")
     above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.3, 1))[:, 0]
     for axes, (across, up, through) in zip(above.subplots(1, 3), PLANES, strict=True):
@@ -91,12 +91,12 @@ def _draw_gradient_histogram(
     """Draw the joint histogram of values and gradient magnitudes, and a transfer function on it."""
     unit = f" per {summary.unit}" if summary.unit else ""
     axes.set(xlabel="value", ylabel=f"gradient magnitude{unit}")
-    if not summary.joint.max() > 0 or summary.least == summary.largest:
+    if not summary.joint_histogram.max() > 0 or summary.least == summary.largest:
         return
     reach = (summary.least, summary.largest, 0, summary.steepest or 1)
     picture = axes.imshow(
-        np.ma.masked_equal(summary.joint, 0),
-        norm=LogNorm(1, max(int(summary.joint.max()), 2)),
+        np.ma.masked_equal(summary.joint_histogram, 0),
+        norm=LogNorm(1, max(int(summary.joint_histogram.max()), 2)),
         origin="lower",
         extent=reach,
         aspect="auto",
@@ -107,9 +107,9 @@ def _draw_gradient_histogram(
         _draw_transfer_function(axes, transfer, reach)
 
 
-def _scale_to_volume(transfer: TransferFunction, volume: Any) -> TransferFunction:
+def _scale_transfer_to_volume(transfer: TransferFunction, volume: Any) -> TransferFunction:
     """Convert a transfer function to the volume's values and unit of length, as renderers do."""
-    transfer = scale_to_values(transfer, volume.values)
+    transfer = scale_transfer_to_values(transfer, volume.values)
     return transfer.per(volume.unit) if volume.unit and transfer.length_unit else transfer
 
 

@@ -85,7 +85,7 @@ class VolumeSummary(Shown):
     data: Volume = field(repr=False, compare=False)
 
     @cached_property
-    def joint(self) -> IntArray:
+    def joint_histogram(self) -> IntArray:
         """The joint histogram (m, n) of gradient magnitudes and values, both from low to high."""
         return histograms.count_voxels_by_gradient(self.data, self.steepest)
 
@@ -107,7 +107,7 @@ class VolumeSummary(Shown):
         }
         if self.labels:
             return rows | {"labels": f"{self.different} different ones, never interpolated"}
-        steps = self.joint.reshape(LINES, STEPS // LINES, PARTS).sum(axis=1)
+        steps = self.joint_histogram.reshape(LINES, STEPS // LINES, PARTS).sum(axis=1)
         for i in reversed(range(LINES)):
             reach = f"{i / LINES * self.steepest:.3g} to {(i + 1) / LINES * self.steepest:.3g}"
             rows[f"gradients {reach}"] = f"|{format_shades(steps[i])}|"
@@ -171,7 +171,7 @@ def summarise(volume: Volume) -> VolumeSummary:
     ('+x', '+y', '+z')
     """
     values, (low, high) = volume.values, volume.bounds
-    directions, turned = find_directions(volume)
+    directions, turned = find_axis_directions(volume)
     return VolumeSummary(
         name=volume.name,
         size=volume.size,
@@ -194,7 +194,7 @@ def summarise(volume: Volume) -> VolumeSummary:
     )
 
 
-def find_directions(volume: Volume) -> tuple[tuple[str, ...], float]:
+def find_axis_directions(volume: Volume) -> tuple[tuple[str, ...], float]:
     """Name the direction of the world in which each of the grid's axes points, such as "+x".
 
     Also returns the largest angle [°] between an axis of the grid and the world's nearest axis.

@@ -12,8 +12,8 @@ from brdfkit.core.array_types import AnyArray, FloatArray, JitColour, JitFloat, 
 from brdfkit.volumes.transfer.preintegration import Preintegration
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
-MIN_STEPS = 2**12  # of a table over values, in which a jump of the function is one step wide
-MAX_STEPS = 2**15  # the search for a number of steps starts here at most, and ends at twice this
+MIN_STEPS = 2**12  # smallest number of steps of a table; a jump of the function is one step wide
+MAX_STEPS = 2**15  # a table has at most twice this number of steps
 
 
 @dataclass(init=False, eq=False)  # `dr.freeze` finds the arrays of a dataclass
@@ -86,7 +86,7 @@ class TransferLookup:
     def integrate_to_value(self, value: JitFloat) -> tuple[JitFloat, JitVector, JitVector]:
         """Return the integrals of the function up to a value, for `mean_between` two values."""
         low, scale, _ = self.axes[0]
-        return self.integrals.integrate_to((value - low) * scale * (self.integrals.steps + 1))
+        return self.integrals.integrate_up_to((value - low) * scale * (self.integrals.steps + 1))
 
     def mean_between(self, front: Any, back: Any) -> tuple[JitColour, JitFloat]:
         """Return the means of A · RGB and of A between two values on a ray.
@@ -95,7 +95,7 @@ class TransferLookup:
         """
         import mitsuba as mi
 
-        r, g, b, a = self.integrals.mean(front, back)
+        r, g, b, a = self.integrals.mean_between(front, back)
         return mi.Color3f(r, g, b), a
 
     def reduce_table_to_values(self) -> AnyArray:

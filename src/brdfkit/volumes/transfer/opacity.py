@@ -19,16 +19,16 @@ OPAQUE = 0.9999  # larger opacities count as this one, since 1 would need an inf
 TOLERANCE = 1e-5  # largest error of σ_t between control points, relative to the largest σ_t
 
 
-def to_extinction(opacity: ArrayLike, distance: float) -> AnyArray:
+def opacity_to_extinction(opacity: ArrayLike, distance: float) -> AnyArray:
     """Return the extinction [1/unit of length] of a layer of thickness `distance` by its `opacity`.
 
-    >>> float(to_extinction(0.5, 2.0))
+    >>> float(opacity_to_extinction(0.5, 2.0))
     0.34657359027997264
     """
     return -np.log1p(-np.minimum(opacity, OPAQUE)) / distance
 
 
-def to_opacity(sigma: ArrayLike, distance: float) -> AnyArray:
+def extinction_to_opacity(sigma: ArrayLike, distance: float) -> AnyArray:
     """Return the opacity of a layer of thickness `distance` with the extinction `sigma`."""
     return -np.expm1(-np.asarray(sigma) * distance)
 
@@ -55,7 +55,7 @@ def _refine_points(function: Any, distance: float) -> tuple[FloatArray, FloatArr
     h² d / 8, for the `distance` d.
     """
     values, rgba, opacities = function.values, function.rgba, function.rgba[:, 3]
-    sigma = to_extinction(opacities, distance)
+    sigma = opacity_to_extinction(opacities, distance)
     longest = math.sqrt(8 * TOLERANCE * sigma.max() / distance) or 1.0
     points, rows = [values[:1]], [np.append(rgba[0, :3], sigma[0])]
     for i in range(len(values) - 1):
@@ -64,7 +64,7 @@ def _refine_points(function: Any, distance: float) -> tuple[FloatArray, FloatArr
         shares, steps = np.ones(1), sigma[i + 1 : i + 2]
         if parts > 1 and values[i] < values[i + 1]:  # a flat segment or a jump stays as it is
             steps = np.linspace(sigma[i], sigma[i + 1], parts + 1)
-            shares = np.clip((to_opacity(steps, distance) - a) / (b - a), 0, 1)
+            shares = np.clip((extinction_to_opacity(steps, distance) - a) / (b - a), 0, 1)
             shares, steps = np.append(shares, 1), np.append(steps, sigma[i + 1])
         points.append(values[i] + shares * (values[i + 1] - values[i]))
         s = shares[:, None]

@@ -38,18 +38,20 @@ class Preintegration:
         import mitsuba as mi
 
         flat, place = table.array, dr.arange(mi.UInt32, len(table.array))
-        alpha = dr.gather(mi.Float, flat, place | 3)  # the A of each number's row
+        alpha = dr.gather(
+            mi.Float, flat, place | 3
+        )  # the A of the row to which each number belongs
         self.steps = table.shape[0] - 1
         self.rows = dr.select((place & 3) == 3, alpha, flat * alpha)
         first = dr.gather(mi.Float, self.rows, place & 3)
         self.sums = dr.custom(Cumulative, self.rows) - (self.rows + first) / 2  # trapezoids
         dr.make_opaque(self.rows, self.sums)
 
-    def integrate_to(self, x: JitFloat) -> tuple[JitFloat, JitVector, JitVector]:
+    def integrate_up_to(self, x: JitFloat) -> tuple[JitFloat, JitVector, JitVector]:
         """Integrate the table up to `x`, a value in steps from the first one; return (x, row, S).
 
-        `row` are the A·RGB and A at x, and S their integrals; `mean` takes two such results. Beyond
-        the ends of the table, row and S are those of the end.
+        `row` are the A·RGB and A at x, and S their integrals; `mean_between` takes two results.
+        Beyond the ends of the table, row and S are those of the end.
         """
         import mitsuba as mi
 
@@ -63,8 +65,8 @@ class Preintegration:
         row = dr.lerp(low, high, share)
         return x, row, before + share * (low + row) / 2
 
-    def mean(self, front: Any, back: Any) -> JitVector:
-        """Return the means (4) of A·RGB and A between two values, results of `integrate_to`.
+    def mean_between(self, front: Any, back: Any) -> JitVector:
+        """Return the means (4) of A·RGB and A between two values, results of `integrate_up_to`.
 
         If the values are less than a step apart, it is the mean of both rows, since the difference
         of the integrals would be lost in rounding.

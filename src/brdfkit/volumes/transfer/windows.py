@@ -33,7 +33,7 @@ def find_window(values: AnyArray) -> tuple[float, float]:
     return (low, high) if low < high else (min(low, 0.0), max(high, 0.0))
 
 
-def scale_to_values(transfer: TransferFunction, values: AnyArray) -> TransferFunction:
+def scale_transfer_to_values(transfer: TransferFunction, values: AnyArray) -> TransferFunction:
     """Scale a transfer function over shares of a range to a volume's `values` (nz, ny, nx).
 
     Such functions, for data without a unit, have WINDOW_SHARES or RANGE_SHARES as their
