@@ -104,7 +104,7 @@ def convolve_with_lobes(picture: FloatArray, side: float) -> list[FloatArray]:
 
 @lru_cache(CACHED_PICTURES)
 def _convolve_with_lobes(pixels: bytes, shape: tuple[int, ...], side: float) -> list[FloatArray]:
-    """Do the work of `convolve_with_lobes`, for a picture as bytes of doubles, a key of the cache."""
+    """Do the work of `convolve_with_lobes`; the cache needs the picture as bytes of doubles."""
     picture: FloatArray = np.frombuffer(pixels).reshape(shape)
     kappa, levels = sharpest_kappa(side), []
     while kappa > SMALLEST_KAPPA:

@@ -185,7 +185,8 @@ def _choose_transfer_function(
         transfer = defaults.choose_transfer_function(volume, renderer)
     elif not isinstance(transfer, TransferFunction):
         transfer = TransferFunction.load(transfer)
-    transfer = scale_transfer_to_values(transfer, volume.values)  # the camera is placed by the opaque voxels
+    # The camera is placed by the opaque voxels, which depend on this scale
+    transfer = scale_transfer_to_values(transfer, volume.values)
     if volume.unit and transfer.length_unit:
         transfer = transfer.per(volume.unit)
     return replace(transfer, extinction=density * transfer.extinction)
