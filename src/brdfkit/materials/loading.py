@@ -118,7 +118,7 @@ def save(material: Measured | Fit | Model, path: str | Path) -> None:
 
 
 def save_and_read(obj: Measured, path: str | Path) -> Measured:
-    """Save a measured material, and return what `load` reads from the file.
+    """Save a measured material, and return what `load` reads from the file, to compare the two.
 
     Raises `BrdfkitError`, and leaves no file, where the file cannot be read again.
 

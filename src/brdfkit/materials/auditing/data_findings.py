@@ -83,7 +83,7 @@ def _describe_findings(data: Measured) -> dict[str, str]:
 
 
 def _describe_backward_highlight(data: Measured, samples: Samples) -> str:
-    """Warn of a highlight at the light: of retroreflection, or azimuths that are off by 180°."""
+    """Return a warning of retroreflection, or of azimuths that are off by 180°, or ""."""
     ratio, near_light = compute_backward_ratio(samples), compute_retroreflection_ratio(samples)
     mendable = can_mend(data, "mirror_azimuth")
     beginning = ""
@@ -115,7 +115,7 @@ def _describe_backward_highlight(data: Measured, samples: Samples) -> str:
 
 
 def _describe_cosine(data: Measured) -> str:
-    """Warn of values that seem to be the BRDF times cos theta_o."""
+    """Return a warning of values that seem to be the BRDF times cos theta_o, or ""."""
     why = explain_suspected_cosine(data)
     if not why:
         return ""
@@ -126,7 +126,7 @@ def _describe_cosine(data: Measured) -> str:
 
 
 def _describe_reciprocity(data: Measured) -> str:
-    """Warn of values that are not reciprocal, where they differ by more than their noise."""
+    """Return a warning of values that are not reciprocal to within their noise, or ""."""
     difference = compare_reciprocal(data)
     if difference.pairs < FEWEST_PAIRS or not difference.median > RECIPROCITY_ERROR:
         return ""
@@ -140,7 +140,7 @@ def _describe_reciprocity(data: Measured) -> str:
 
 
 def _describe_horizon(samples: Samples) -> str:
-    """Warn of values that fall towards the horizon, as those of few surfaces do."""
+    """Return a warning of values that fall towards the horizon, which is rare, or ""."""
     ratio = compute_grazing_ratio(samples)
     if not ratio < GRAZING_BELOW:
         return ""
@@ -152,7 +152,7 @@ def _describe_horizon(samples: Samples) -> str:
 
 
 def _describe_plane(samples: Samples) -> str:
-    """Warn of samples that all lie in the plane of incidence, which needs oblique directions."""
+    """Return a warning of samples that all lie in the plane of incidence, or ""."""
     oblique = (samples.wi[:, 2] < ALONG_NORMAL) & (samples.wo[:, 2] < ALONG_NORMAL)
     oblique &= samples.valid
     if not oblique.any() or not is_in_plane(samples):
@@ -164,7 +164,7 @@ def _describe_plane(samples: Samples) -> str:
 
 
 def _describe_single_incidence(samples: Samples) -> str:
-    """Warn of samples that all have the same angle of incidence."""
+    """Return a warning of samples that all have the same angle of incidence, or ""."""
     angles = np.degrees(np.arccos(np.clip(samples.wi[samples.valid, 2], -1, 1)))
     if len(angles) < 2 or np.ptp(angles) > SAME_ANGLE:
         return ""
@@ -175,7 +175,7 @@ def _describe_single_incidence(samples: Samples) -> str:
 
 
 def _describe_zeros(samples: Samples) -> str:
-    """Warn of samples that are 0 in all channels, which no surface is."""
+    """Return a warning of samples that are 0 in all channels, which no surface is, or ""."""
     share = (samples.values[samples.valid] == 0).all(axis=1).mean()
     if not share > ZERO_SHARE:
         return ""
@@ -184,7 +184,7 @@ def _describe_zeros(samples: Samples) -> str:
 
 
 def _describe_sentinel(samples: Samples) -> str:
-    """Warn of a negative whole number in many samples, such as -9999, a mark for missing values."""
+    """Return a warning of a mark for missing values, such as many values of -9999, or ""."""
     values = samples.values[samples.valid]
     whole = (values < 0) & (values == np.round(values))
     below, counts = np.unique(values[whole], return_counts=True)
@@ -198,7 +198,7 @@ def _describe_sentinel(samples: Samples) -> str:
 
 
 def _describe_unit(data: Measured) -> str:
-    """Warn of a wrong unit, if the albedo is above 1 or far below that of the blackest paints."""
+    """Return a warning of a wrong unit, if the albedo is above 1 or nearly 0, or ""."""
     albedo = data.rgb.albedo
     angles = zip(albedo.theta_i, albedo.means, strict=False)
     shares = {angle: share for angle, share in angles if angle < OBLIQUE and share > 0}

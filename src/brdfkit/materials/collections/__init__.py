@@ -1,5 +1,5 @@
-"""Public collections of measured materials: which there are, and how to download their files.
+"""Public collections of measured materials, such as MERL's, and how to download their files.
 
 `public.py` lists the collections that `data/measured/index.toml` describes. `downloading.py`
-downloads a file and verifies its checksum. `remote_file.py` reads parts of a file on a server.
+downloads a file, or a part of a zip archive, and verifies its checksum.
 """

@@ -21,9 +21,13 @@ import requests
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.collections import public
 from brdfkit.materials.collections.public import PART, Collection, ListedFile
-from brdfkit.materials.collections.remote_file import BLOCK, PARTIAL, PLAIN, TIMEOUT, RemoteFile
 
 CHUNK = 2**18  # bytes that are written at once
+BLOCK = 2**22  # bytes per request; small blocks need many requests, whose number servers limit
+TIMEOUT = 30  # seconds to wait for an answer
+PARTIAL = 206  # HTTP status of an answer with a part of the file
+# Ask for bytes without compression, because positions count the bytes of the file
+PLAIN = {"Accept-Encoding": "identity"}
 RANGE_NOT_SATISFIABLE = 416  # HTTP status where the requested part begins at the file's end
 
 # A function that is called with the number of bytes done, and of all bytes if that is known
@@ -59,7 +63,7 @@ def download(name: str, progress: Report | None = None) -> Path:
 
 @contextmanager
 def _explain_errors(listed: ListedFile, owner: Collection) -> Iterator[None]:
-    """Turn the errors of a download into a `BrdfkitError` that says what to do."""
+    """Turn errors of downloading the file `listed` into a `BrdfkitError` that says what to do."""
     by_hand = owner.explain_manual_download(listed.file)
     host = urlsplit(listed.url).hostname
     try:
@@ -81,7 +85,7 @@ def _explain_errors(listed: ListedFile, owner: Collection) -> Iterator[None]:
         raise BrdfkitError(
             f"{listed.name}: {host} does not give this file of its archive; {by_hand}."
         ) from error
-    except ValueError as error:  # pooch's, about the checksum
+    except ValueError as error:  # pooch raises it where the checksum differs
         raise BrdfkitError(
             f"{listed.name}: what {host} sent is not the file that was published (its "
             f"checksum differs), and was removed; run the command again, or {by_hand}."
@@ -94,9 +98,9 @@ def _explain_errors(listed: ListedFile, owner: Collection) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class _Download:
-    """Fetches one file; pooch calls it as its `downloader`, with a URL and the file to write.
+    """Downloads one file; pooch calls it as its `downloader`, with a URL and the file to write.
 
-    `listed`: the file's entry in the index; `progress`: as for `download`.
+    `listed`: entry of the file in the index; `progress`: function that reports the bytes done.
     """
 
     listed: ListedFile
@@ -139,3 +143,51 @@ class _Download:
                 while chunk := source.read(CHUNK):
                     stream.write(chunk)
                     self.progress(stream.tell(), total)
+
+
+class RemoteFile(io.RawIOBase):
+    """A binary stream of the file at `url`, which requests only the parts that are read.
+
+    `zipfile` reads it through an `io.BufferedReader`. Raises the errors of `requests`, and
+    `BadZipFile` where the server sends whole files only.
+    """
+
+    def __init__(self, url: str) -> None:
+        self.url, self.position = url, 0
+        _, content_range = self._read_range(0, 0)
+        self.size = int(content_range.rpartition("/")[2])
+
+    def _read_range(self, first: int, last: int) -> tuple[bytes, str]:
+        """Request the bytes `first` to `last`, both included, from the server.
+
+        The second result is the answer's header Content-Range, which states the file's size.
+        """
+        headers = PLAIN | {"Range": f"bytes={first}-{last}"}
+        with requests.get(self.url, headers=headers, stream=True, timeout=TIMEOUT) as answer:
+            answer.raise_for_status()
+            if answer.status_code != PARTIAL:  # the whole archive would come, perhaps gigabytes
+                raise BadZipFile("the server sends no parts")
+            return answer.content, answer.headers["Content-Range"]
+
+    def readable(self) -> bool:
+        return True
+
+    def seekable(self) -> bool:
+        return True
+
+    def tell(self) -> int:
+        return self.position
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        origin = {io.SEEK_SET: 0, io.SEEK_CUR: self.position, io.SEEK_END: self.size}[whence]
+        self.position = origin + offset
+        return self.position
+
+    def readinto(self, buffer: Any) -> int:
+        count = min(len(buffer), self.size - self.position)
+        if count <= 0:
+            return 0
+        data, _ = self._read_range(self.position, self.position + count - 1)
+        buffer[: len(data)] = data
+        self.position += len(data)
+        return len(data)

@@ -28,7 +28,7 @@ UNITS = {"", *DEGREES, *RADIANS, *PER_STERADIAN, "nm"}
 WHOLE = re.compile(r"[-+]?[0-9]*([eE][-+]?[0-9]+)?")
 MISSING = {"", "na", "n/a", "#n/a", "-"}  # texts in place of a number that was not measured
 NUMERIC = re.compile(r"[-+0-9.,;eE\s]+")
-Lines = list[tuple[int, str]]  # (number of the line, text)
+Lines = list[tuple[int, str]]  # pairs of the number of a line and its text
 
 
 def detect_delimiter(head: bytes) -> str | None:

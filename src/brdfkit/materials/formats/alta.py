@@ -77,7 +77,7 @@ PARAM_IN: dict[str, tuple[tuple[float, ...], Callable[..., Directions]]] = {
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a line of `head` states the dimensions, such as ``#DIM 3 1``."""
+    """Return whether a file that begins with `head` is ALTA's: has a line such as ``#DIM 3 1``."""
     return re.search(rb"^#DIM\s+\d", head, re.MULTILINE) is not None
 
 
@@ -102,7 +102,7 @@ def read(source: Source) -> Measured:
     # Convert to directions, BRDF values and standard errors
     wi, wo = to_directions(*where.T)
     factor, valid, notes = _find_value_factor(source, header, wo)
-    with np.errstate(over="ignore", invalid="ignore"):  # values that are not finite are masked
+    with np.errstate(over="ignore", invalid="ignore"):  # values that overflow are masked later
         values = values / factor
         errors = _halve_intervals(ends / factor, intervals)
     return source.make_measured_from_directions(
@@ -118,7 +118,7 @@ def read(source: Source) -> Measured:
 
 
 def write(obj: object, stream: IO[bytes]) -> None:
-    """Write the valid samples of a `Measured`, in linear sRGB or achromatic, with all digits."""
+    """Write the valid samples of a `Measured` to an ALTA file, in linear sRGB or achromatic."""
     data = require_measured(obj, NAME, anisotropic=True).rgb
     samples, valid = data.samples.at(data.samples.valid), data.samples.valid
     theta_l, phi_l, theta_v, phi_v = where = compute_angles(samples)
@@ -130,7 +130,7 @@ def write(obj: object, stream: IO[bytes]) -> None:
     channels = len(data.channels)
     columns, interval = [*where, *samples.values.T], "0"
     errors = None if data.standard_error is None else data.standard_error[valid]
-    # A reader would mask the values with errors that are not finite
+    # Errors that are not finite are not written, because a reader would mask their values
     if errors is not None and np.isfinite(errors).all():
         columns += [*errors.T]
         interval = " ".join(["1"] * channels)

@@ -37,11 +37,11 @@ KNOWN_CHANNELS = "R,G,B or wavelengths such as 550nm, or a single channel"
 MINI_DIFF = "Mini-Diff"
 MINI_DIFF_CHANNELS = ("630nm", "525nm", "465nm")  # read as R, G, B
 MINI_DIFF_LIMIT = np.radians(75) + 1e-6
-Lines = list[tuple[int, str]]  # (number of the line, text)
+Lines = list[tuple[int, str]]  # pairs of the number of a line and its text
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a line of `head` begins with VARS."""
+    """Return whether a file that begins with `head` is in this format: has a line VARS."""
     return re.search(rb"^VARS\s", head, re.MULTILINE) is not None
 
 
@@ -81,7 +81,7 @@ def read(source: Source) -> Measured:
 
 
 def write(obj: object, stream: IO[bytes]) -> None:
-    """Write the valid samples of a `Measured`, in its own channels, with all digits."""
+    """Write the valid samples of a `Measured` to an ASTM file, in its own channels."""
     data = require_measured(obj, NAME)
     if not _are_writable_channels(data.channels):
         raise make_channel_error(data, NAME, KNOWN_CHANNELS)

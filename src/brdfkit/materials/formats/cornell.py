@@ -30,7 +30,10 @@ MOST_WAVELENGTHS = 4096
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether the comments of `head` are followed by a whole number and a wavelength."""
+    """Return whether a file that begins with `head` is Cornell's.
+
+    A whole number and a plausible wavelength follow its comments.
+    """
     lines = [line for line in head.split(b"\n") if line.strip() and not line.startswith(b"#")]
     tokens = b" ".join(lines[:3]).split()
     try:
@@ -59,7 +62,7 @@ def read(source: Source) -> Measured:
 
 
 def write(obj: object, stream: IO[bytes]) -> None:
-    """Write the valid samples of a spectral `Measured`, with all digits."""
+    """Write the valid samples of a spectral `Measured` to a Cornell file."""
     data = require_measured(obj, NAME)
     try:
         nanometres = wavelengths(data)

@@ -66,7 +66,7 @@ CONVENTION = (
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` has a line of column names of BRDF samples, not separated by tabs."""
+    """Return whether a file that begins with `head` is a table of BRDF samples without tabs."""
     return detect_delimiter(head) not in (None, "\t")
 
 

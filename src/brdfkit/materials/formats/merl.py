@@ -31,7 +31,7 @@ NOT_MEASURED = -1.0
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` begins with plausible numbers of cells, in either byte order."""
+    """Return whether a file that begins with `head` is MERL's: has plausible numbers of cells."""
     return len(head) >= HEADER and any(map(_is_plausible_shape, _read_dimensions(head)))
 
 
@@ -64,7 +64,7 @@ def read(source: Source) -> Measured:
 
 
 def write(obj: object, stream: IO[bytes]) -> None:
-    """Write a `Measured` as a table in linear sRGB; an achromatic one has equal R, G and B.
+    """Write a `Measured` to a MERL file in linear sRGB; an achromatic one has equal R, G and B.
 
     Samples are interpolated to the database's 90×90×180 cells, which other programs require.
     Negative values are written as 0, because they would mark cells that were not measured.

@@ -53,7 +53,7 @@ HEADER = re.compile(
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` begins a zip archive whose first member is ``about.npy``."""
+    """Return whether a file that begins with `head` is a zip archive that brdfkit wrote."""
     return head.startswith(b"PK\x03\x04") and head[30:39] == b"about.npy"
 
 

@@ -12,7 +12,7 @@ SUFFIXES = (".tsv",)
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` has a line of column names of BRDF samples, separated by tabs."""
+    """Return whether a file that begins with `head` is a table of BRDF samples with tabs."""
     return detect_delimiter(head) == "\t"
 
 

@@ -33,7 +33,7 @@ SIZE = 3 * 8 * 288 * 288  # size of a file in bytes
 
 
 def sniff(head: bytes) -> bool:
-    """Return False: a file has no header, so it is recognised by its suffix alone."""
+    """Return False: a UTIA file has no header, so it is recognised by its suffix alone."""
     return False
 
 
@@ -62,7 +62,7 @@ def read(source: Source) -> Measured:
 
 
 def write(obj: object, stream: IO[bytes]) -> None:
-    """Write a `Measured` in linear sRGB; an achromatic one has equal R, G and B.
+    """Write a `Measured` to a UTIA file in linear sRGB; an achromatic one has equal R, G and B.
 
     It is interpolated, unless it was measured in exactly the directions of the format.
     """

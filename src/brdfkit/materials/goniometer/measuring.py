@@ -32,7 +32,7 @@ from brdfkit.model.samples import Table
 ISOTROPIC = (30, 30, 60)
 ANISOTROPIC = (16, 20, 12, 24)
 PILOT_SAMPLES = 64  # number of samples per cell in the pilot run
-FEWEST_SAMPLES = 256  # per cell; with fewer, the standard error is itself too uncertain
+FEWEST_SAMPLES = 256  # samples per cell; with fewer, the standard error is too uncertain
 # The samples are drawn in this many passes over all cells: if Ctrl-C ends the measurement, each
 # cell has the same share of its samples
 PASSES = 8

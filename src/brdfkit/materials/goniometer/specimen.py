@@ -186,10 +186,7 @@ def _import_mitsuba() -> MitsubaModule:
 
 
 def _load_facets(facets: dict[str, Any]) -> MitsubaObject:
-    """Load the BSDF of the facets; raise `BrdfkitError` for a mirror, or if it lets light through.
-
-    The shadow rays towards a directional light would miss both.
-    """
+    """Load the BSDF of facets; raise `BrdfkitError` for a mirror, or if it lets light through."""
     import mitsuba as mi
 
     try:

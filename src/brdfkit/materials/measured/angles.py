@@ -44,10 +44,7 @@ def to_radians(
 def _refuse_ambiguous_units(
     names: Iterable[str], angles: Mapping[str, FloatArray], origin: Origin
 ) -> None:
-    """Raise `BrdfkitError` if the angles with these `names`, which state no unit, are ambiguous.
-
-    They are if all of them are so small that they might be in degrees or in radians.
-    """
+    """Raise `BrdfkitError` if the angles with these `names` might be in degrees or in radians."""
     largest = {name: np.abs(angles[name]).max(initial=0) for name in names}
     thetas = {name: angle for name, angle in largest.items() if name.startswith("theta")}
     # Large azimuths, surely in degrees, do not prove that the thetas are in degrees, too

@@ -79,10 +79,7 @@ def is_surface_turned(
 def _collect_unit_vectors(
     name: str, coordinates: Mapping[str, FloatArray], origin: Origin
 ) -> FloatArray:
-    """Return the vectors (n, 3) whose components are `name`_x, `name`_y and `name`_z.
-
-    Raises `BrdfkitError` unless they are unit vectors above the surface.
-    """
+    """Return the directions (n, 3) with the components `name`_x, _y, _z, checked for errors."""
     vectors = np.stack([coordinates[f"{name}_{axis}"] for axis in "xyz"], axis=1)
     with np.errstate(over="ignore"):
         lengths = np.linalg.norm(vectors, axis=1)

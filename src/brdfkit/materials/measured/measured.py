@@ -63,7 +63,7 @@ class Measured(Shown, FromAngles):
 
     @cached_in_turn
     def table(self) -> Table:
-        """The BRDF as a `Table` over half and difference angles, interpolated if it has samples."""
+        """The BRDF as a `Table` over half and difference angles, to which samples are resampled."""
         if self._table is not None:
             return self._table
         if isinstance(self._lookup, Table):

@@ -33,7 +33,7 @@ LONGEST_DESCRIPTION = 1000  # number of bytes of the field `description` that ar
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether `head` begins as a tensor file of Mitsuba's, the container of RGL's files."""
+    """Return whether a file that begins with `head` is a tensor file, the container of RGL's."""
     return head.startswith(tensor_file.MAGIC)
 
 
@@ -99,7 +99,8 @@ def write(obj: Any, stream: IO[bytes]) -> None:
 def _choose_colour_fields(obj: Any, values: FloatArray) -> dict[str, FloatArray]:
     """Return the field `rgb`, or the fields `wavelengths` and `spectra`, for the BRDF of `obj`.
 
-    `values` (a, b, channels, y, x) is the table of its BRDF.
+    `values` (a, b, channels, y, x) is the table of its BRDF for a azimuths and b polar angles of
+    incidence.
     """
     spectral: Sequence[float] = getattr(obj, "wavelengths", ())
     channels = obj.channels if isinstance(obj, Measured) else spectral or RGB
@@ -131,9 +132,9 @@ def _describe_material(obj: Any) -> str:
 
 
 def _to_density(luminance: FloatArray) -> FloatArray:
-    """Convert the file's luminance (a, b, y, x) to a density from which directions can be drawn.
+    """Convert the field `luminance` (a, b, y, x) to a density from which directions can be drawn.
 
-    Negative values become 0. At an incidence where all are 0, the density is uniform.
+    Negative values become 0. At an incidence [a, b] where all are 0, the density is uniform.
     """
     density = np.maximum(luminance, 0)
     density[~density.any(axis=(2, 3))] = 1

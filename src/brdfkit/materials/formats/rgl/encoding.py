@@ -93,7 +93,7 @@ def build_parameterisation(f: Lookup, quarters: int, size: Resolution) -> Parame
     phi_i = np.linspace(0, quarters * np.pi / 2, quarters * size.phi_i + 1)
     if quarters:
         phi_i -= np.pi
-    theta_i = GRAZING * (1 - np.linspace(1, 0, size.theta_i) ** 1.5)  # denser towards grazing
+    theta_i = GRAZING * (1 - np.linspace(1, 0, size.theta_i) ** 1.5)  # dense near grazing angles
     # Place the normals by their distribution D, to which a density is added
     ndf, sigma = _compute_microfacets(f, size)
     m = make_even_grid(size.grid)
@@ -102,7 +102,7 @@ def build_parameterisation(f: Lookup, quarters: int, size: Resolution) -> Parame
     # that reflect light below the surface
     wi, normals = from_angles(theta_i, phi_i[:, None]), from_angles(*map_from_square(m))
     cosines = wi @ normals.T
-    height = 2 * cosines * normals[:, 2] - wi[..., 2:]  # cosθ_o
+    height = 2 * cosines * normals[:, 2] - wi[..., 2:]  # the cosine of wo to the normal
     visible = np.where(cosines > 0, cosines + GRAZING_DENSITY, 0)
     visible *= np.clip(1 + height / LARGEST_DEPTH, 0.02, 1)
     vndf = (visible * density).reshape(*cosines.shape[:2], size.grid, size.grid)

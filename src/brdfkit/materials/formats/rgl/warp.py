@@ -35,10 +35,11 @@ def make_even_grid(n: int) -> FloatArray:
 
 
 def find_slices(nodes: Sequence[FloatArray], values: Sequence[FloatArray]) -> Slices:
-    """Return which slices of a table to interpolate between, with their weights (n,), in pairs.
+    """Return the slices of a table between which to interpolate, in pairs with their weights (n,).
 
-    `nodes` has the increasing nodes of each parameter, and `values` n values of each parameter,
-    which are clamped to the nodes. Slices are numbered with the last parameter running fastest.
+    A slice is the part of a table for one combination of its parameters' nodes. `nodes` has the
+    increasing nodes of each parameter, and `values` n values of each, which are clamped to the
+    nodes. Slices are numbered with the last parameter running fastest.
     """
     brackets, shape = [], []
     for axis, x in zip(nodes, values, strict=True):
@@ -101,12 +102,12 @@ class Warp:
         ty = _invert_line_integral(u[:, 1] - rows[y], along[y, -1], along[y + 1, -1])
 
         # Find x by the distribution along the row at this y
-        row = _interpolate_linearly(along[y], along[y + 1], ty[:, None])
+        row = _lerp(along[y], along[y + 1], ty[:, None])
         share = u[:, 0] * row[:, -1]
         x = np.clip((row < share[:, None]).sum(axis=1) - 1, 0, row.shape[1] - 2)
         before = np.take_along_axis(row, x[:, None], axis=1)[:, 0]
-        left = _interpolate_linearly(density[y, x], density[y + 1, x], ty)
-        right = _interpolate_linearly(density[y, x + 1], density[y + 1, x + 1], ty)
+        left = _lerp(density[y, x], density[y + 1, x], ty)
+        right = _lerp(density[y, x + 1], density[y + 1, x + 1], ty)
         tx = _invert_line_integral(share - before, left, right)
         return np.stack([(x + tx) / (row.shape[1] - 1), (y + ty) / (len(rows) - 1)], axis=1)
 
@@ -128,20 +129,20 @@ class Warp:
         x, _, tx = _find_grid_bracket(u[:, 0], density.shape[2])
         y, _, ty = _find_grid_bracket(u[:, 1], density.shape[1])
 
-        def at(table: FloatArray, *index: Any) -> Any:
+        def mix_slices(table: FloatArray, *index: Any) -> Any:
             """Interpolate between the slices of a table, at one `index` within each slice."""
             return sum(weight * table[(slice_, *index)] for slice_, weight in slices)
 
         # Integrate along the row at y, up to x
-        left = _interpolate_linearly(at(density, y, x), at(density, y + 1, x), ty)
-        right = _interpolate_linearly(at(density, y, x + 1), at(density, y + 1, x + 1), ty)
-        before = _interpolate_linearly(at(along, y, x), at(along, y + 1, x), ty)
-        lower, upper = at(along, y, -1), at(along, y + 1, -1)
-        row = _interpolate_linearly(lower, upper, ty)
+        left = _lerp(mix_slices(density, y, x), mix_slices(density, y + 1, x), ty)
+        right = _lerp(mix_slices(density, y, x + 1), mix_slices(density, y + 1, x + 1), ty)
+        before = _lerp(mix_slices(along, y, x), mix_slices(along, y + 1, x), ty)
+        lower, upper = mix_slices(along, y, -1), mix_slices(along, y + 1, -1)
+        row = _lerp(lower, upper, ty)
         share = before + _integrate_line(left, right, tx)
         x = np.divide(share, row, out=np.zeros_like(share), where=row > 0)
         # Integrate the marginal distribution up to y
-        return np.stack([x, at(rows, y) + _integrate_line(lower, upper, ty)], axis=1)
+        return np.stack([x, mix_slices(rows, y) + _integrate_line(lower, upper, ty)], axis=1)
 
 
 def _find_grid_bracket(u: FloatArray, n: int) -> Any:
@@ -159,7 +160,7 @@ def _cumulate(values: FloatArray) -> FloatArray:
     return np.concatenate([np.zeros_like(values[..., :1]), np.cumsum(steps, axis=-1)], axis=-1)
 
 
-def _interpolate_linearly(a: Any, b: Any, t: FloatArray) -> Any:
+def _lerp(a: Any, b: Any, t: FloatArray) -> Any:
     """Interpolate linearly from a, at t = 0, to b, at t = 1."""
     return (1 - t) * a + t * b
 
