@@ -4,8 +4,8 @@
 
 N, L and V are the normal and the directions of light and view. The distribution of normals D is
 given by [Walter et al. 2007], Smith's height-correlated shadowing G₂ by [Heitz 2014], the Fresnel
-reflectance F by Schlick. With its long tails it suits most metals, paints and plastics. It has no
-retro-reflection and no scattering between facets.
+reflectance F by Schlick. It suits most metals, paints and plastics, because its tails are long. It
+has no retro-reflection and no scattering between facets.
 """
 
 from brdfkit.core.array_types import JitFloat, JitVector

@@ -4,9 +4,9 @@
 
 The option `models` names the models, as in "ggx+ggx" or "lambert+ward+cook_torrance"; such a sum
 may stand wherever brdfkit takes the name of a model. The first model gives the diffuse term. The
-parameters of the j-th model are named after the model and j, such as ggx_2_alpha_u. Two lobes fit
-metals and glossy plastics better than one; measurements seldom distinguish three. [Ngan et al.
-2005]; [Kurt 2007, eqs. 3.12, 3.30].
+parameters of the j-th model are named after the model and j, such as ggx_2_alpha_u. It suits metals
+and glossy plastics, which two lobes fit better than one; measurements seldom distinguish three.
+[Ngan et al. 2005]; [Kurt 2007, eqs. 3.12, 3.30].
 """
 
 from dataclasses import replace

@@ -53,7 +53,7 @@ def test_the_true_model_is_recommended(name):
     assert [row.model for row in found.rows if row.tied] == [name]
     assert found.rows[0].error == pytest.approx(NOISE, rel=0.1)
     assert found.reason.startswith(f"{name} is recommended: no other model has a lesser error or a")
-    assert f"{name}: Shows " in str(found)
+    assert f"{name}: Suits " in str(found)
 
 
 def test_ties_are_said_as_ties():

@@ -12,7 +12,7 @@ from pathlib import Path
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.references import Reference, find_cited_works
 
-SHOWS = re.compile(r"\b(?:It s|S)(hows .*?\.)(?=\s|$)")
+SUITS = re.compile(r"\bIt suits (.*?\.)(?=\s|$)")
 
 
 @dataclass(frozen=True)
@@ -27,10 +27,10 @@ class Page:
         return "\n".join([f"{self.title}: {self.sentence}", *self.lines])
 
     @property
-    def shown_materials(self) -> str:
-        """The sentence on the materials that a BRDF model can show and cannot show, or ""."""
-        match = SHOWS.search(" ".join(self.lines))
-        return f"S{match.group(1)}" if match else ""
+    def suitable_materials(self) -> str:
+        """The sentence on the materials that a BRDF model suits, or "" if its page has none."""
+        match = SUITS.search(" ".join(self.lines))
+        return f"Suits {match.group(1)}" if match else ""
 
     @property
     def references(self) -> list[Reference]:

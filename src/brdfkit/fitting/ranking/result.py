@@ -75,7 +75,7 @@ class Ranking(Shown):
     @property
     def suits(self) -> str:
         """A sentence on the materials for which the recommended model is meant, or "" for none."""
-        sentence = read_page(labels.model(self.best)).shown_materials
+        sentence = read_page(labels.model(self.best)).suitable_materials
         return f"{self.best}: {sentence}" if sentence else ""
 
     @property
