@@ -1,9 +1,10 @@
-"""Times rays that meet distance fields, beside Mitsuba's `sdfgrid` on the same values.
+"""Compares the time of rays in distance fields with Mitsuba's `sdfgrid` on the same values.
 
 python benchmarks/distance_fields.py
 
-Camera rays, and the same in random order, to a grid of 64³ values: ratios of the least of several
-times in one run, taken in turns, so that other work on the machine weighs on all alike.
+The rays of a camera, and the same in random order, meet a grid of 64³ values. Ratios are of the
+least of several times in one run. The methods take turns, so that other work on the machine affects
+all of them alike.
 """
 
 from functools import partial
@@ -14,26 +15,26 @@ from brdfkit import distance_fields as df
 
 SIDE = 1024  # pixels
 TURNS = 7
-BAR = 1.5
+BAR = 1.5  # the ratio that is to be reached
 
 
-def camera_rays(mi):
-    """Rays of a camera that looks at the unit cube from outside."""
+def make_camera_rays(mi):
+    """Return the rays of a camera that looks at the unit cube from outside."""
     film = {"type": "hdrfilm", "width": SIDE, "height": SIDE}
     view = mi.ScalarTransform4f().look_at([1.6, 1.9, 1.5], [0.5, 0.5, 0.5], [0, 0, 1])
     camera = mi.load_dict({"type": "perspective", "fov": 30, "to_world": view, "film": film})
-    return camera.sample_ray(0, 0.5, pixel_centres(mi), mi.Point2f(0.5))[0]
+    return camera.sample_ray(0, 0.5, make_pixel_centres(mi), mi.Point2f(0.5))[0]
 
 
-def pixel_centres(mi):
+def make_pixel_centres(mi):
     import drjit as dr
 
     index = dr.arange(mi.UInt32, SIDE * SIDE)
     return (mi.Point2f(mi.Float(index % SIDE), mi.Float(index // SIDE)) + 0.5) / SIDE
 
 
-def shuffled(mi, ray):
-    """The same rays in random order."""
+def shuffle_rays(mi, ray):
+    """Return the same rays in random order."""
     import drjit as dr
     import numpy as np
 
@@ -41,8 +42,8 @@ def shuffled(mi, ray):
     return mi.Ray3f(dr.gather(mi.Point3f, ray.o, order), dr.gather(mi.Vector3f, ray.d, order))
 
 
-def least_times(calls):
-    """The least time [s] of each of `calls`, taken in turns; the first of each is not counted."""
+def measure_least_times(calls):
+    """Return the least time [s] of each of `calls`, which take turns; the first call compiles."""
     import drjit as dr
 
     best = {}
@@ -68,8 +69,8 @@ def main():
     values = mi.TensorXf(grid.values[..., None].astype(np.float32))
     scene = mi.load_dict({"type": "scene", "sdf": {"type": "sdfgrid", "grid": values}})
     print(f"{grid}, L = {grid.lipschitz:.2f}; {SIDE}² rays; times faster than sdfgrid")
-    rays = camera_rays(mi)
-    for name, ray in {"camera": rays, "shuffled": shuffled(mi, rays)}.items():
+    rays = make_camera_rays(mi)
+    for name, ray in {"camera": rays, "shuffled": shuffle_rays(mi, rays)}.items():
         dr.eval(ray)
         ours = {
             f"precision {precision:g}": partial(
@@ -78,7 +79,7 @@ def main():
             for precision in (1e-3, 1e-4, 1e-5)
         }
         theirs = {"sdfgrid": partial(scene.ray_intersect_preliminary, ray)}
-        times = least_times(theirs | ours)
+        times = measure_least_times(theirs | ours)
         expected = np.array(theirs["sdfgrid"]().t)
         for what, call in ours.items():
             hit, ratio = call(), times["sdfgrid"] / times[what]

@@ -1,10 +1,11 @@
-"""Samplers of environment maps beside Mitsuba's `envmap`: noise, time, memory, build, gradient.
+"""Compares samplers of environment maps with Mitsuba's `envmap`: noise, time, memory, gradient.
 
 python benchmarks/environment_samplers.py [MAP ...]    # writes docs/environment_samplers.md
 
-A sky with a sun is made by the program; maps on the command line come besides. All ratios are of
-one run; times are of the processor, the least of several. The samplers take turns, each alone, and
-the whole is repeated, so that the page can say how far its figures may be off. Some ten minutes.
+The program generates a sky with a sun; maps on the command line are used as well. All ratios are of
+one run; times are processor times, the least of several. The samplers take turns, each alone, and
+the whole is repeated, so that the page can state the uncertainty of its numbers. It takes some ten
+minutes.
 """
 
 import argparse
@@ -39,8 +40,10 @@ SAMPLERS = {
     "`alias`, compensated": OTHERS | {"sampler": "alias", "compensated": True},
 }
 SIZE, SPP = 24, 36
-PICTURES = 6  # whose variance is taken in a repeat, for each of Mitsuba's two samplers
-ROUNDS = 2  # of which the least time is taken, in a repeat
+# In a repeat: pictures whose variance is computed for each of Mitsuba's two samplers, and runs of
+# which the least time counts
+PICTURES = 6
+ROUNDS = 2
 
 HEAD = """# Environment samplers
 
@@ -82,8 +85,8 @@ TAIL = """
 """
 
 
-def sky():
-    """A clouded sky with a sun over dark ground, 1024 × 2048, as a `mi.Bitmap`."""
+def make_sky():
+    """Return a `mi.Bitmap` (1024 × 2048) of a cloudy sky with a sun over dark ground."""
     import mitsuba as mi
 
     v, u = np.meshgrid(np.linspace(0, 1, 1024), (np.arange(2048) + 0.5) / 2048, indexing="ij")
@@ -100,16 +103,16 @@ def sky():
     return mi.Bitmap((colour + sun[..., None]).astype(np.float32))
 
 
-def maps(files):
-    """Name → `mi.Bitmap` in floats."""
+def load_maps(files):
+    """Return the maps as `mi.Bitmap` of floats, by name."""
     import mitsuba as mi
 
     kind = mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False
-    return {"sky": sky()} | {Path(f).stem: mi.Bitmap(str(f)).convert(*kind) for f in files}
+    return {"sky": make_sky()} | {Path(f).stem: mi.Bitmap(str(f)).convert(*kind) for f in files}
 
 
-def scene(emitter, sampler="independent", integrator="path"):
-    """A matt and a glossy ball on ground that fills the picture."""
+def make_scene(emitter, sampler="independent", integrator="path"):
+    """Return a scene of a matt and a glossy ball on a ground that fills the picture."""
     import mitsuba as mi
 
     to = mi.ScalarTransform4f()
@@ -138,19 +141,19 @@ def scene(emitter, sampler="independent", integrator="path"):
     )
 
 
-def noise(emitter, sampler, repeat):
-    """The variance of pixels over the square of their means, in the mean over the picture."""
+def measure_noise(emitter, sampler, repeat):
+    """Return the variance of pixels over their squared means, averaged over the picture."""
     import mitsuba as mi
 
-    loaded = scene(emitter, sampler)
+    loaded = make_scene(emitter, sampler)
     seeds = range(PICTURES * repeat, PICTURES * (repeat + 1))
     pictures = (np.array(mi.render(loaded, spp=SPP, seed=seed)) for seed in seeds)
     found = np.array([luminance(picture) for picture in pictures])
     return float((found.var(axis=0, ddof=1) / found.mean(axis=0) ** 2).mean())
 
 
-def least_seconds(function, rounds=ROUNDS):
-    """The least processor time of a function, after a first call that compiles its kernels."""
+def measure_least_seconds(function, rounds=ROUNDS):
+    """Return the least processor time of a function, after a first call that compiles kernels."""
     function(0)
     seconds = []
     for round_ in range(rounds):
@@ -160,23 +163,24 @@ def least_seconds(function, rounds=ROUNDS):
     return min(seconds)
 
 
-def picture(emitter):
-    """A function that renders a picture."""
+def make_picture_function(emitter):
+    """Return a function of a seed that renders a picture with an emitter."""
     import mitsuba as mi
 
-    loaded = scene(emitter)
+    loaded = make_scene(emitter)
     return lambda seed: np.array(mi.render(loaded, spp=8 * SPP, seed=seed))
 
 
-def gradient(emitter):
-    """A function that renders a picture and sums the derivatives of its mean by the map.
+def make_gradient_function(emitter):
+    """Return a function of a seed that sums the derivatives of a picture's mean by the map.
 
-    By a leaf of our own: where that of Mitsuba's `envmap` is enabled, its first gradient is 0.
+    Gradients of the map are enabled on a new array, because the first gradient of Mitsuba's
+    `envmap` is 0 if they are enabled on its own one.
     """
     import drjit as dr
     import mitsuba as mi
 
-    loaded = scene(emitter, integrator="prb")
+    loaded = make_scene(emitter, integrator="prb")
     parameters = mi.traverse(loaded)
     key = next(k for k in parameters.keys() if k.endswith("data"))  # noqa: SIM118
     leaf = mi.TensorXf(dr.detach(parameters[key]))
@@ -187,28 +191,30 @@ def gradient(emitter):
     def derivatives(seed):
         dr.set_grad(leaf, 0)
         mean = dr.mean(mi.render(loaded, parameters, spp=SPP, seed=seed), axis=None)
-        dr.backward(mean, flags=dr.ADFlag.ClearInterior)  # the edges serve the next picture too
+        dr.backward(mean, flags=dr.ADFlag.ClearInterior)  # keep the graph for the next picture
         return np.array(dr.grad(leaf), float).sum()
 
     return derivatives
 
 
-def numpy_cdf(power):
-    """A 2-D CDF of cells: their sums along rows, and those of the rows."""
+def make_numpy_cdf(power):
+    """Return a 2-D cumulative distribution: sums of cells along rows, and sums of the rows."""
     rows = np.cumsum(power, axis=1)
     totals = np.cumsum(rows[:, -1])
     return rows / np.maximum(rows[:, -1:], 1e-30), totals / totals[-1]
 
 
-def measure(bitmap, repeat):
-    """Sampler → its figures on a map; `envmap`'s are 1 where they are ratios."""
+def measure_samplers(bitmap, repeat):
+    """Return the measurements of each sampler on a map, as ratios to `envmap` where possible."""
     pixels = luminance(np.array(bitmap, float))
     power = cell_power(pixels)
-    found = {n: figures(entries | {"bitmap": bitmap}, repeat) for n, entries in SAMPLERS.items()}
+    found = {
+        n: measure_sampler(entries | {"bitmap": bitmap}, repeat) for n, entries in SAMPLERS.items()
+    }
     first = found["`envmap`"]
-    cdf = least_seconds(lambda _: numpy_cdf(power))
+    cdf = measure_least_seconds(lambda _: make_numpy_cdf(power))
     tables = {name: own["memory"] for name, own in found.items()}
-    tables["`envmap`"] = tables["`mip`"]  # it has the same
+    tables["`envmap`"] = tables["`mip`"]  # its tables are equal to those of `mip`
     noise_x_time = first["noise"] * first["time"]
     return {
         name: {
@@ -227,48 +233,54 @@ def measure(bitmap, repeat):
     }
 
 
-def figures(entries, repeat):
-    """One emitter's own figures. Kernels contain every emitter that is alive, so it is alone."""
+def measure_sampler(entries, repeat):
+    """Return the measurements of one emitter.
+
+    No other emitter exists at that time, because kernels would contain it, too.
+    """
     import mitsuba as mi
 
     gc.collect()
     emitter = mi.load_dict(entries)
-    derivatives = gradient(emitter)
+    derivatives = make_gradient_function(emitter)
     seeds = range(ROUNDS * repeat, ROUNDS * (repeat + 1))
     ours = hasattr(emitter, "points")
     bright = luminance(np.array(entries["bitmap"], float))
     return {
-        "noise": noise(emitter, "independent", repeat),
-        "jittered": noise(emitter, "multijitter", repeat),
-        "time": least_seconds(picture(emitter)),
-        "build": least_seconds(lambda _: emitter.make_sampler(bright)) if ours else np.nan,
-        "load": least_seconds(lambda _: mi.load_dict(entries)),
+        "noise": measure_noise(emitter, "independent", repeat),
+        "jittered": measure_noise(emitter, "multijitter", repeat),
+        "time": measure_least_seconds(make_picture_function(emitter)),
+        "build": measure_least_seconds(lambda _: emitter.make_sampler(bright)) if ours else np.nan,
+        "load": measure_least_seconds(lambda _: mi.load_dict(entries)),
         "memory": emitter.map_sampler.nbytes if ours else np.nan,
         "sum": sum(derivatives(seed) for seed in seeds),
-        "backward": least_seconds(derivatives),
+        "backward": measure_least_seconds(derivatives),
     }
 
 
-def table(head, rows):
-    """A Markdown table."""
+def make_table(head, rows):
+    """Return a Markdown table; `head`: texts of its columns, `rows`: texts of cells."""
     lines = ["| " + " | ".join(cells) + " |" for cells in (head, ["---"] * len(head), *rows)]
     return "\n".join(lines) + "\n"
 
 
-def number(value):
-    """Three digits, nothing for what was not measured."""
+def format_number(value):
+    """Return a number as text with three digits; "" for NaN, a missing measurement."""
     return "" if np.isnan(value) else f"{value:.2f}" if value < 10 else f"{value:.0f}"
 
 
-def page(found, sizes):
-    """The page, of the repeats' figures map → sampler → column → numbers (repeats,)."""
+def make_page(found, sizes):
+    """Return the text of the page.
+
+    `found`: numbers (repeats,) by map, sampler and column; `sizes`: sizes of the maps [pixels].
+    """
     columns = list(next(iter(next(iter(found.values())).values())))
     repeats = len(found[next(iter(found))]["blocks"]["time"])
     of_column = {
         c: np.array([[by[s][c] for by in found.values()] for s in SAMPLERS]) for c in columns
     }  # (samplers, maps, repeats)
     means = {c: values.mean(axis=2) for c, values in of_column.items()}
-    off = {c: standard_error(values) for c, values in of_column.items()}
+    off = {c: estimate_standard_error(values) for c, values in of_column.items()}
 
     text = HEAD.format(
         maps=", ".join(f"{n} ({w} × {h})" for n, (w, h) in sizes.items()),
@@ -282,9 +294,12 @@ def page(found, sizes):
         "## In the mean over the maps\n\nGeometric means of ratios; per cent are plain means.\n\n"
     )
     over = [v.mean(axis=1) if "[%]" in c else np.exp(np.log(v).mean(1)) for c, v in means.items()]
-    rows = [[name, *map(number, row)] for name, row in zip(SAMPLERS, np.array(over).T, strict=True)]
-    rows.append(["±", *(percent(value / np.sqrt(len(found))) for value in off.values())])
-    text += table(["", *columns], rows)
+    rows = [
+        [name, *map(format_number, row)]
+        for name, row in zip(SAMPLERS, np.array(over).T, strict=True)
+    ]
+    rows.append(["±", *(format_percent(value / np.sqrt(len(found))) for value in off.values())])
+    text += make_table(["", *columns], rows)
     of = {
         "Noise": "noise",
         "Noise with stratified numbers": "noise, multijitter",
@@ -294,21 +309,28 @@ def page(found, sizes):
         "Gradient's sum": "gradient's sum",
     }
     for title, column in of.items():
-        rows = [[s, *map(number, row)] for s, row in zip(SAMPLERS, means[column], strict=True)]
-        text += f"\n## {title}\n\nEach ± {percent(off[column])}.\n\n" + table(["", *found], rows)
+        rows = [
+            [s, *map(format_number, row)] for s, row in zip(SAMPLERS, means[column], strict=True)
+        ]
+        text += f"\n## {title}\n\nEach ± {format_percent(off[column])}.\n\n" + make_table(
+            ["", *found], rows
+        )
     return text + TAIL
 
 
-def standard_error(values):
-    """Of means over repeats, relative; pooled over samplers and maps (samplers, maps, repeats)."""
+def estimate_standard_error(values):
+    """Return the relative standard error of means over repeats, pooled over samplers and maps.
+
+    `values`: measurements (samplers, maps, repeats).
+    """
     relative = values.std(axis=2, ddof=1) / values.mean(axis=2)
     relative = relative[np.isfinite(relative)]
-    varying = relative[relative > 0]  # `envmap`'s own ratios are 1 each time
+    varying = relative[relative > 0]  # the ratios of `envmap` to itself are always 1
     return np.sqrt((varying**2).mean() / values.shape[2]) if len(varying) else 0.0
 
 
-def percent(value):
-    """A share as per cent."""
+def format_percent(value):
+    """Return a share as text in per cent."""
     return f"{100 * value:.1f} %"
 
 
@@ -321,21 +343,23 @@ def main():
         parser.error("--repeats: give 2 or more; one measurement has no known error.")
 
     llvm.use_variant()
-    assert bk.check(make_example("kdtree_envmap"), only=["weights"])  # and Mitsuba is awake
+    assert bk.check(
+        make_example("kdtree_envmap"), only=["weights"]
+    )  # the check also initialises Mitsuba
     out = Console(stderr=True)
     found, sizes = {}, {}
     with threads.use_two_threads():
-        for name, bitmap in maps(arguments.maps).items():
+        for name, bitmap in load_maps(arguments.maps).items():
             out.print(f"{name} ...")
-            repeats = [measure(bitmap, repeat) for repeat in range(arguments.repeats)]
-            found[name], sizes[name] = joined(repeats), tuple(bitmap.size())
-    PAGE.write_text(page(found, sizes), encoding="utf-8")
+            repeats = [measure_samplers(bitmap, repeat) for repeat in range(arguments.repeats)]
+            found[name], sizes[name] = join_repeats(repeats), tuple(bitmap.size())
+    PAGE.write_text(make_page(found, sizes), encoding="utf-8")
     out.print(f"written: {PAGE}")
     return 0
 
 
-def joined(repeats):
-    """Sampler → column → numbers (repeats,), of the figures of each repeat."""
+def join_repeats(repeats):
+    """Return the measurements of all repeats as arrays (repeats,), by sampler and column."""
     return {
         name: {column: np.array([r[name][column] for r in repeats]) for column in figures}
         for name, figures in repeats[0].items()

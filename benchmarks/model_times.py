@@ -1,9 +1,10 @@
-"""Figures for release notes: `make bench`. Ratios within one run; seconds are of this machine.
+"""Measures sample weights, albedo and times of all models, for release notes: `make bench`.
 
-Per model: the spread of its sample weights at five list_incidences, its greatest albedo to 85°, the
-time of a rendering in units of Mitsuba's roughplastic, the seconds that the first rendering of a
-tiny scene takes longer than the next (compiled anew where DRJIT_CACHE_DIR is an empty folder), and
-those of a warm fit of a full MERL table.
+For each model it prints the spread of its sample weights at five angles of incidence, its largest
+albedo up to 85°, and the time of a rendering in units of Mitsuba's roughplastic. Further columns
+are the seconds that the first rendering of a tiny scene takes longer than the next, for compilation
+if DRJIT_CACHE_DIR is an empty folder, and the seconds of a warm fit of a full MERL table. Ratios
+are of one run; seconds are of this machine.
 """
 
 import sys
@@ -23,12 +24,12 @@ from brdfkit.model.samples import Table
 MERL = (90, 90, 180)
 ROUNDS = 5
 SIZE, SPP = 256, 64
-# The models of Kurt 2007; the others are of later papers
+# The models of [Kurt 2007]; the other models come from later papers
 THESIS = [n for n, m in bk.models().items() if n != "mixture" and "[Kurt 2007" in str(read_page(m))]
 
 
-def full_table():
-    """A shipped material at the resolution of a MERL file."""
+def make_full_table():
+    """Return a material that comes with brdfkit, at the resolution of a MERL file."""
     table = Table(np.full((*MERL, 3), np.nan))
     wi, wo = table.directions()
     above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
@@ -36,14 +37,14 @@ def full_table():
     return bk.Measured.from_table(table.values, name="car_paint, full size")
 
 
-def fit_seconds(name, data, loss):
-    """Seconds of a warm fit."""
+def time_fit(name, data, loss):
+    """Return the seconds of a warm fit, the least of two."""
     bk.fit(data, name, loss=loss)
     return min(bk.fit(data, name, loss=loss).seconds for _ in range(2))
 
 
-def render_seconds(materials):
-    """Least seconds of a warm rendering by material."""
+def time_renderings(materials):
+    """Return the least seconds of a warm rendering, by material."""
     import mitsuba as mi
 
     from brdfkit.rendering.scenes.ball import ball
@@ -52,11 +53,11 @@ def render_seconds(materials):
     best = dict.fromkeys(scenes, np.inf)
     for round_ in range(ROUNDS + 1):
         for name, scene in scenes.items():
-            best[name] = min(best[name], _rendered(scene, round_))
+            best[name] = min(best[name], _time_rendering(scene, round_))
     return best
 
 
-def _rendered(scene, seed):
+def _time_rendering(scene, seed):
     import mitsuba as mi
 
     began = time.perf_counter()
@@ -64,8 +65,8 @@ def _rendered(scene, seed):
     return time.perf_counter() - began
 
 
-def compile_seconds(bsdfs):
-    """Seconds to compile one scene with a small ball of each of these BSDFs."""
+def time_compilation(bsdfs):
+    """Return the seconds to compile one scene with a small ball of each of some BSDFs."""
     import mitsuba as mi
 
     balls = {
@@ -81,21 +82,23 @@ def compile_seconds(bsdfs):
         "light": {"type": "constant"},
     }
     loaded = mi.load_dict(scene | balls)
-    first = _rendered(loaded, 0)
-    return first - _rendered(loaded, 1)
+    first = _time_rendering(loaded, 0)
+    return first - _time_rendering(loaded, 1)
 
 
 def main():
     llvm.use_variant()
     out = Console(width=160)
-    compile_seconds([{"type": "diffuse"}])  # what is done once in a process
+    time_compilation(
+        [{"type": "diffuse"}]
+    )  # so that work of the first scene in a process is not counted
     materials = {"roughplastic": {"type": "roughplastic", "alpha": 0.2}}
     materials |= {name: model().scene_dict() for name, model in bk.models().items()}
     materials["measured_table"] = bk.load("car_paint").scene_dict()
-    compiled = {name: compile_seconds([bsdf]) for name, bsdf in materials.items()}
-    twelve = compile_seconds([bk.models()[name]().scene_dict() for name in THESIS])
-    seconds = render_seconds(materials)
-    data = full_table()
+    compiled = {name: time_compilation([bsdf]) for name, bsdf in materials.items()}
+    twelve = time_compilation([bk.models()[name]().scene_dict() for name in THESIS])
+    seconds = time_renderings(materials)
+    data = make_full_table()
     columns = [f"std {d}°" for d in INCIDENCES]
     losses = [f"fit {loss} [s]" for loss in bk.losses.named.by_sample]
     table = Printed("model", *columns, "albedo", "time", "compile [s]", *losses)
@@ -107,7 +110,7 @@ def main():
         subject = Subject(bk.models()[name]())
         spreads = [f"{compute_weight_spread(subject, degrees):.2f}" for degrees in INCIDENCES]
         brightest = max(bk.albedo(subject.material, wi).max() for _, wi in list_incidences())
-        fits = [f"{fit_seconds(name, data, loss):.2f}" for loss in bk.losses.named.by_sample]
+        fits = [f"{time_fit(name, data, loss):.2f}" for loss in bk.losses.named.by_sample]
         table.add_row(name, *spreads, f"{brightest:.3f}", *row, *fits)
     out.print(table)
     one = np.mean([compiled[name] for name in THESIS])

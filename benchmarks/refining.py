@@ -1,10 +1,12 @@
-"""`refine` held against known truths: `python benchmarks/refining.py [TABLE ...]` prints the tables
-`gradients`, `steps`, `bounces` and `starts`, the last in some twenty minutes.
+"""Compares results of `refine` with known truths.
 
-`starts`: five materials in a corner that throws light back, from random starts within the bounds of
-all that is searched; pictures of 24 × 24 pixels have noise of 1 % in proportion. A start comes back
-if every number is within 3 of its own standard errors of the truth. `bounces`: measured materials,
-which no model is quite, beside fits by the loss "picture".
+    python benchmarks/refining.py [TABLE ...]
+
+It prints the tables `gradients`, `steps`, `bounces` and `starts`; the last one takes some twenty
+minutes. `starts`: five materials in a corner with indirect light, from random starts within the
+bounds of all parameters; pictures of 24 × 24 pixels have relative noise of 1 %. A start succeeds if
+every number is within 3 of its own standard errors of the truth. `bounces`: measured materials,
+which no model meets exactly, compared with fits by the loss "picture".
 """
 
 import sys
@@ -38,14 +40,14 @@ TRUTHS = {
 FRONT, SIDE = ([0, -4, 1.8], [0.8, -1.2, 2.5]), ([-2.4, -3.2, 1.2], [-0.6, -1.6, 2.6])
 
 
-def bsdf(model, values):
-    """The dictionary of a `model` with values, numbers or colours."""
+def make_bsdf(model, values):
+    """Return the Mitsuba dictionary of a `model`; `values`: numbers or colours by parameter."""
     colours = {k: {"type": "rgb", "value": v} for k, v in values.items() if isinstance(v, tuple)}
     return {"type": model, **values, **colours}
 
 
-def corner(material, size=SIZE, depth=4, view=FRONT):
-    """A ball of a `material` before a red wall, under a lamp; `view`: where camera and lamp are."""
+def make_corner(material, size=SIZE, depth=4, view=FRONT):
+    """Return a scene of a ball before a red wall; `view`: positions of camera and lamp."""
     import mitsuba as mi
 
     at, (camera, lamp) = mi.ScalarTransform4f().look_at, view
@@ -79,29 +81,29 @@ def corner(material, size=SIZE, depth=4, view=FRONT):
     }
 
 
-def picture(scene, spp=4096):
-    """A scene's picture (height, width, 3)."""
+def render_picture(scene, spp=4096):
+    """Return the picture (height, width, 3) of a scene."""
     import mitsuba as mi
 
     return np.array(mi.render(mi.load_dict(scene), spp=spp, seed=99), float)
 
 
-def views_of(model, truth, reached, size=SIZE):
-    """`Views` of the corner at the truth, beside the picture that is `reached`."""
+def make_views(model, truth, reached, size=SIZE):
+    """Return the `Views` of the scene at the truth, to compare with the picture `reached`."""
     import mitsuba as mi
 
-    scene = load_scene(corner(bsdf(model, truth), size), (size, size))
+    scene = load_scene(make_corner(make_bsdf(model, truth), size), (size, size))
     names = mi.traverse(scene)
     unknowns = choose_unknowns(names, [f"ball.bsdf.{name}" for name in truth])
     return Views(scene, make_integrator(scene), read_targets(reached), names, unknowns)
 
 
-def gradients():
-    """Derivatives beside differences of the same samples, along the pictures of differences."""
+def compare_gradients():
+    """Print the ratios of derivatives to finite differences of the same samples."""
     print("derivatives over differences of the same samples, by tangent")
     spp, step = 8192, 0.01
     for model, truth in TRUTHS.items():
-        views = views_of(model, truth, picture(corner(bsdf(model, truth)), 256))
+        views = make_views(model, truth, render_picture(make_corner(make_bsdf(model, truth)), 256))
         x, shares = views.start, {}
         found = compute_derivatives(views, x, spp, 3)
         for group in group_tangents(views):
@@ -114,14 +116,16 @@ def gradients():
         print(f"{model:18} {shares}", flush=True)
 
 
-def steps():
-    """The time of a step, derivatives and the trial, in pictures of as many samples."""
+def time_steps():
+    """Print the time of a search step over the time of a picture with as many samples."""
     print("the time of a step, over that of a picture of as many samples")
     size, spp = 128, 128
     for model, truth in TRUTHS.items():
-        views = views_of(model, truth, picture(corner(bsdf(model, truth), size), 64), size)
+        views = make_views(
+            model, truth, render_picture(make_corner(make_bsdf(model, truth), size), 64), size
+        )
         seconds = []
-        for _ in range(3):  # the first compiles
+        for _ in range(3):  # the first run compiles the kernels
             times = [time.perf_counter()]
             views.render_residuals(views.start, spp, 7)
             times.append(time.perf_counter())
@@ -139,38 +143,46 @@ def steps():
         )
 
 
-def shown(pixels, white):
-    """Pixels as a screen shows them, by sRGB's curve."""
+def to_screen(pixels, white):
+    """Return linear pixels on the tone curve of sRGB; `white`: the value that becomes 1."""
     x = np.clip(pixels / white, 0, 1)
     return np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)
 
 
-def bounces():
-    """PSNR [dB] of a ggx, found three ways: on the picture that `refine` saw, and from the side."""
+def compare_bounces():
+    """Print the PSNR [dB] of a ggx that was found in three ways.
+
+    It is evaluated on the picture that `refine` used, and on one with another camera and lamp.
+    """
     print("PSNR [dB] as a screen shows it, of the picture that refine saw / under another light")
     for name in ("satin_plastic", "car_paint", "blasted_gold"):
         measured = bk.load(name)
         by_picture = bk.fit(measured, "ggx", loss="picture")
         for said, depth in (("direct light", 2), ("light bounces", 6)):
-            truth = [picture(corner(measured.scene_dict(), 48, depth, v)) for v in (FRONT, SIDE)]
+            truth = [
+                render_picture(make_corner(measured.scene_dict(), 48, depth, v))
+                for v in (FRONT, SIDE)
+            ]
             found = {'fit, "picture"': by_picture}
             for how, assumed in (("refine, direct light", 2), ("refine", depth)):
-                begin = corner(bsdf("ggx", by_picture.values), 48, assumed)
+                begin = make_corner(make_bsdf("ggx", by_picture.values), 48, assumed)
                 found[how] = bk.refine(begin, truth[0], starts=1, spp=512).fit
             row = []
             for how, fit in found.items():
                 pair = []
                 for view, known in zip((FRONT, SIDE), truth, strict=True):
-                    own = picture(corner(bsdf("ggx", fit.values), 48, depth, view), 1024)
+                    own = render_picture(
+                        make_corner(make_bsdf("ggx", fit.values), 48, depth, view), 1024
+                    )
                     white = np.quantile(known, 0.99)
-                    error = np.mean((shown(own, white) - shown(known, white)) ** 2)
+                    error = np.mean((to_screen(own, white) - to_screen(known, white)) ** 2)
                     pair.append(-10 * np.log10(error))
                 row.append(f"{how}: {pair[0]:.1f} / {pair[1]:.1f}")
             print(f"{name:15} {said:14} {'   '.join(row)}", flush=True)
 
 
-def random_start(model, truth, rng):
-    """Values of the parameters in `truth`, anywhere within their bounds; weights from 0 to 1."""
+def draw_start(model, truth, rng):
+    """Return random values of the parameters in `truth` within their bounds, weights up to 1."""
     found = {}
     for name in truth:
         declared = labels.model(model).parameters[name]
@@ -184,16 +196,19 @@ def random_start(model, truth, rng):
     return found
 
 
-def starts():
-    """How many random starts come back to the truth; z: errors over standard errors."""
+def count_recoveries():
+    """Print how many random starts reach the truth; z: errors over standard errors."""
     print("random starts that come back within 3 standard errors")
     for model, truth in TRUTHS.items():
-        clean, names = picture(corner(bsdf(model, truth))), [f"ball.bsdf.{name}" for name in truth]
+        clean, names = (
+            render_picture(make_corner(make_bsdf(model, truth))),
+            [f"ball.bsdf.{name}" for name in truth],
+        )
         away, results = [], []
         for number in range(STARTS):
             rng = np.random.default_rng([number, len(model)])
             noisy = clean * (1 + NOISE * rng.standard_normal(clean.shape))
-            scene = corner(bsdf(model, random_start(model, truth, rng)))
+            scene = make_corner(make_bsdf(model, draw_start(model, truth, rng)))
             result = bk.refine(scene, noisy, parameters=names, seed=10_000 * number)
             results.append(result)
             away.append(
@@ -220,4 +235,9 @@ def starts():
 if __name__ == "__main__":
     use_variant()
     for table in sys.argv[1:] or ("gradients", "steps", "bounces", "starts"):
-        {"gradients": gradients, "steps": steps, "bounces": bounces, "starts": starts}[table]()
+        {
+            "gradients": compare_gradients,
+            "steps": time_steps,
+            "bounces": compare_bounces,
+            "starts": count_recoveries,
+        }[table]()

@@ -1,12 +1,12 @@
-"""How often `refine` is right with its own defaults, and whether it says so where it is not: 100
-runs against known truths, some 20 minutes.
+"""Measures how often `refine` is right with its defaults, and whether it warns when it is wrong.
 
     python benchmarks/refining_runs.py [SCENE ...] [--samples N] [--seeds 0 1 ...] [-o runs.json]
 
-Five scenes, four guesses of the width of a lobe, five seeds; pictures of 24 × 24 pixels have noise
-of 1 %. A run is right if every number is within 3 of its own standard errors of the truth, and
-warned if it did not converge, ended on a bound, or a note says that something is wrong. Each run is
-a line; the last lines are the table that `docs/tools/make_refining.py` puts on its page.
+It makes 100 runs with known truths in some 20 minutes: five scenes, four guesses of the width of a
+lobe, five seeds; pictures of 24 × 24 pixels have relative noise of 1 %. A run is right if every
+number is within 3 of its own standard errors of the truth. It is warned if it did not converge,
+ended on a bound, or has a note that something is wrong. A line is printed for each run; the last
+lines are the table that `docs/tools/make_refining.py` puts on its page.
 """
 
 import argparse
@@ -23,13 +23,13 @@ from brdfkit.rendering.scenes.knot import make_knot_tube
 
 FILE = Path(__file__).with_suffix(".json")
 SIZE, NOISE = 24, 0.01
-RIGHT = 3  # standard errors
+RIGHT = 3  # largest error of a right run, in standard errors
 SEEDS = range(5)
 WARNINGS = "are not noise", "not determined", "twice the samples"
 RED, GREY, GREEN = (0.5, 0.15, 0.1), (0.3, 0.3, 0.3), (0.15, 0.4, 0.2)
-WIDTHS = 0.5, 0.9, 0.05, 0.01  # guesses of a roughness
+WIDTHS = 0.5, 0.9, 0.05, 0.01  # guesses of a roughness from which searches start
 
-# Name → shape, light, model, the truth of what is searched, what else is known, the guesses
+# By name: shape, light, model, true values of the searched parameters, known values, guesses
 SCENES = {
     "plastic knot, small lamp": (
         "knot",
@@ -74,8 +74,11 @@ SCENES = {
 }
 
 
-def scene(shape, light, model, values, size=SIZE):
-    """The dictionary of a shape under a light, of a `model` with values, numbers or colours."""
+def make_scene(shape, light, model, values, size=SIZE):
+    """Return the Mitsuba scene of a shape under a light.
+
+    `values`: numbers or colours of the `model`'s parameters; `size`: side of the picture [pixels].
+    """
     import mitsuba as mi
 
     colours = {k: {"type": "rgb", "value": list(v)} for k, v in values.items() if np.ndim(v)}
@@ -94,9 +97,9 @@ def scene(shape, light, model, values, size=SIZE):
     sun = {"type": "directional", "direction": [-0.4, 0.6, -1], "irradiance": 3.0}
     wide = at().look_at(place, [0, 0, 0.8], [0, 1, 0]).scale(0.6)
     lights = {
-        "small lamp": sphere_lamp(place, 0.05, 3000.0),
+        "small lamp": make_sphere_lamp(place, 0.05, 3000.0),
         "point light": {"type": "point", "position": place, "intensity": 30.0},
-        "wide lamp": {"type": "rectangle", "to_world": wide, "emitter": lamp(20.0)},
+        "wide lamp": {"type": "rectangle", "to_world": wide, "emitter": make_emitter(20.0)},
         "sun": sun,
         "sun and sky": sun,
     }
@@ -118,40 +121,43 @@ def scene(shape, light, model, values, size=SIZE):
     }
 
 
-def sphere_lamp(place, radius, radiance):
-    """A lamp that is a ball."""
-    return {"type": "sphere", "center": place, "radius": radius, "emitter": lamp(radiance)}
+def make_sphere_lamp(place, radius, radiance):
+    """Return a lamp in the shape of a ball."""
+    return {"type": "sphere", "center": place, "radius": radius, "emitter": make_emitter(radiance)}
 
 
-def lamp(radiance):
-    """What makes a shape a lamp."""
+def make_emitter(radiance):
+    """Return the emitter that makes a shape a lamp."""
     return {"type": "area", "radiance": radiance}
 
 
-def photograph(name, size=SIZE, spp=2**16):
-    """The picture of a scene at the truth."""
+def render_truth(name, size=SIZE, spp=2**16):
+    """Return the picture of a scene with the true values, almost without noise."""
     import mitsuba as mi
 
     shape, light, model, truth, known, _ = SCENES[name]
-    loaded = mi.load_dict(scene(shape, light, model, truth | known, size))
+    loaded = mi.load_dict(make_scene(shape, light, model, truth | known, size))
     return np.array(mi.render(loaded, spp=spp, seed=99), float)
 
 
-def with_noise(picture, *seed):
-    """A picture with noise in proportion."""
+def add_noise(picture, *seed):
+    """Return a picture with relative noise."""
     rng = np.random.default_rng(seed)
     return picture * (1 + NOISE * rng.standard_normal(picture.shape))
 
 
-def begin(name, guess, size=SIZE):
-    """(the scene where a search begins, the names of what is searched)."""
+def make_start(name, guess, size=SIZE):
+    """Return the scene at which a search starts, and the names of the searched parameters."""
     shape, light, model, truth, known, _ = SCENES[name]
     values = {k: (0.4, 0.4, 0.4) if np.ndim(v) else guess for k, v in truth.items()}
-    return scene(shape, light, model, values | known, size), [f"ball.bsdf.{k}" for k in truth]
+    return make_scene(shape, light, model, values | known, size), [f"ball.bsdf.{k}" for k in truth]
 
 
-def judge(name, found):
-    """(by how many of its standard errors the worst number is off; right, warned or silent)."""
+def judge_run(name, found):
+    """Return the largest error of a run in standard errors, and its outcome.
+
+    The outcome is "right", "warned" (wrong with a warning) or "silent" (wrong without one).
+    """
     away = []
     for key, true in SCENES[name][3].items():
         error = np.asarray(found.standard_errors[f"ball.bsdf.{key}"])
@@ -162,18 +168,18 @@ def judge(name, found):
     return off, "right" if off < RIGHT else "warned" if warned else "silent"
 
 
-def run(names, seeds, samples):
-    """A line, and a dictionary, for each run."""
+def run_searches(names, seeds, samples):
+    """Make all runs, print a line for each, and return a dictionary for each."""
     rows = []
     how = {} if samples is None else {"spp": samples}
     for name in names:
-        clean = photograph(name)
+        clean = render_truth(name)
         for number, guess in enumerate(SCENES[name][5]):
             for seed in seeds:
-                start, searched = begin(name, guess)
-                picture = with_noise(clean, number, seed)
+                start, searched = make_start(name, guess)
+                picture = add_noise(clean, number, seed)
                 found = bk.refine(start, picture, parameters=searched, seed=seed, **how)
-                off, verdict = judge(name, found)
+                off, verdict = judge_run(name, found)
                 row = {"scene": name, "guess": guess, "seed": seed, "off": off, "ends": verdict}
                 rows.append(row | {"width": found.values[searched[0]], "cost": found.cost})
                 print(
@@ -185,8 +191,8 @@ def run(names, seeds, samples):
     return rows
 
 
-def count(rows):
-    """Cells of a table: for each scene, and for all, how many runs end how."""
+def count_outcomes(rows):
+    """Return the cells of a table with the outcomes of runs, for each scene and for all."""
     cells = []
     for name in (*dict.fromkeys(row["scene"] for row in rows), "all"):
         own = [row for row in rows if name in (row["scene"], "all")]
@@ -205,8 +211,8 @@ if __name__ == "__main__":
     parser.add_argument("-o", "--output", type=Path, default=FILE)
     given = parser.parse_args()
     use_variant()
-    rows = run(given.scenes or list(SCENES), given.seeds, given.samples)
-    for cells in count(rows):
+    rows = run_searches(given.scenes or list(SCENES), given.seeds, given.samples)
+    for cells in count_outcomes(rows):
         print(" | ".join(cells))
     given.output.write_text(json.dumps(rows, indent=0), encoding="utf-8")
     sys.exit(0)

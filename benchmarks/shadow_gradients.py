@@ -1,4 +1,4 @@
-"""Derivatives of soft shadows in five scenes, beside differences of them and of the truth."""
+"""Compares derivatives of soft shadows in five scenes with finite differences."""
 
 import drjit as dr
 from drjit.llvm.ad import Array3f64 as P
@@ -9,50 +9,57 @@ from brdfkit.distance_fields.shadows.marches import compute_linear_shadow
 from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
 from brdfkit.distance_fields.shadows.split import compute_split_shadow
 
+# First radius of the cone, steps of differences of a method and of the truth, rays of the truth
 BALL, STEP, TRUE_STEP, TRUE_RAYS = 0.02, 0.005, 0.05, 20_000
 
 
-def sphere(p, centre, radius):
+def sphere_distance(p, centre, radius):
     return dr.norm(p - centre) - radius
 
 
-def box(p, centre, half):
+def box_distance(p, centre, half):
     q = dr.abs(p - centre) - half
     return dr.safe_sqrt(dr.squared_norm(dr.maximum(q, 0))) + dr.minimum(dr.max(q), 0)
 
 
-def still(p):
-    return sphere(p, P(0.35, 0, 2.5), 0.3)
+def fixed_sphere_distance(p):
+    return sphere_distance(p, P(0.35, 0, 2.5), 0.3)
 
 
-# Name → the parameter's value, and the light's centre, its radius and the field by the parameter
+# By name: the value of a parameter, and a function from it to the light's centre and radius, and
+# the field
 SCENES = {
-    "light moves": (0.2, lambda x: (P(x, 0, 6), Float(1), still)),
-    "light grows": (1.0, lambda x: (P(0, 0, 6), x, still)),
+    "light moves": (0.2, lambda x: (P(x, 0, 6), Float(1), fixed_sphere_distance)),
+    "light grows": (1.0, lambda x: (P(0, 0, 6), x, fixed_sphere_distance)),
     "sphere grows": (
         0.27,
-        lambda x: (P(0, 0, 6), Float(1), lambda p: sphere(p, P(0.35, 0, 2.5), x)),
+        lambda x: (P(0, 0, 6), Float(1), lambda p: sphere_distance(p, P(0.35, 0, 2.5), x)),
     ),
     "box grows": (
         3.1,
-        lambda x: (P(0, 0.1, 6), Float(1), lambda p: box(p, P(-3, 0, 3), P(x, 4, 0.6))),
+        lambda x: (P(0, 0.1, 6), Float(1), lambda p: box_distance(p, P(-3, 0, 3), P(x, 4, 0.6))),
     ),
-    "sphere rises": (2.8, lambda x: (P(0, 0, 6), Float(2), lambda p: sphere(p, P(0.5, 0, x), 0.4))),
+    "sphere rises": (
+        2.8,
+        lambda x: (P(0, 0, 6), Float(2), lambda p: sphere_distance(p, P(0.5, 0, x), 0.4)),
+    ),
 }
 
 
-def measure():
-    """Name → the derivatives of both methods, and their finite differences."""
+def measure_gradients():
+    """Return the derivatives of both methods and their finite differences, by scene."""
     found = {}
     for name, (at, scene) in SCENES.items():
 
         def share(method, x, *settings, scene=scene):
+            """Return the visible share of the light at the value `x` of the parameter."""
             light, radius, field = scene(Float(x))
             return method(
                 field, make_light_cone(P(0, 0, 0), light, radius, BALL), *settings
             ).visible
 
         def difference(method, step, *settings, at=at, share=share):
+            """Return the derivative of the share by a finite difference."""
             both = (share(method, at + s, *settings)[0] for s in (step, -step))
             return float(next(both) - next(both)) / (2 * step)
 

@@ -1,11 +1,12 @@
 # ruff: noqa: I001, for brdfkit comes first: it chooses the LLVM that Dr.Jit loads
-"""Measures soft shadows from a single ray: their errors, evaluations and times, beside hard rays.
+"""Measures errors, evaluations and times of soft shadows from a single ray.
 
     python benchmarks/single_ray_shadows.py          # minutes on two cores
 
-Each part is kept in `single_ray_shadows.json` as soon as it is measured, and the same command goes
-on from there; delete the file to measure anew. It then writes docs/single_ray_shadows.md and .png.
-Times are compared within a part, where methods take turns; they are of all threads.
+Each part is stored in `single_ray_shadows.json` as soon as it is measured, so that the same command
+continues an interrupted run; delete the file to measure again. Then it writes
+docs/single_ray_shadows.md and .png. Times are compared within a part, where methods take turns;
+they are processor times of all threads.
 """
 
 import json
@@ -30,9 +31,11 @@ from brdfkit.theses.balint2019.dense import dense
 from brdfkit.theses.balint2019.rivals import aaltonen, base, discrete, quilez
 
 RESULTS = Path(__file__).with_suffix(".json")
-DIGITS = 4  # of numbers in it
-LANES, TRUE_RAYS, HIT = 4096, 2048, 1e-4  # random scenes of a kind, and rays of the truth
-SIZE, FRAME_RAYS = 160, 512  # pixels along a side of a frame, and rays of its truth
+DIGITS = 4  # significant digits of the numbers in the JSON
+# Random scenes of a kind, rays of the true shadow, and distance at which such a ray hits
+LANES, TRUE_RAYS, HIT = 4096, 2048, 1e-4
+# Pixels along a side of a frame, and rays of its true shadows
+SIZE, FRAME_RAYS = 160, 512
 RAYS = 1, 2, 4, 8, 16, 32, 64, 128
 MARCHES = {
     "base": base,
@@ -43,8 +46,8 @@ MARCHES = {
 REPEATS = 8
 
 
-def methods():
-    """Label → the function of a field and a cone."""
+def list_methods():
+    """Return the methods by label; each is a function of a field and a cone of light."""
     found = {f"{n} 1/20": partial(m, epsilon=1 / 20) for n, m in MARCHES.items()}
     found |= {"linear 1/10": partial(compute_linear_shadow, epsilon=1 / 10)}
     found |= {"linear 1/256": partial(compute_linear_shadow, epsilon=1 / 256)}
@@ -54,10 +57,10 @@ def methods():
     return found | {f"monte_carlo {n}": partial(compute_monte_carlo_shadow, rays=n) for n in RAYS}
 
 
-def timed(calls):
-    """Label → (values, evaluations, seconds) of calls that take turns; the least of some times."""
+def time_calls(calls):
+    """Return (values, evaluations, least seconds) of calls that take turns, by label."""
     found = {label: [None, None, np.inf] for label in calls}
-    for turn in range(1 + REPEATS):  # the first one compiles
+    for turn in range(1 + REPEATS):  # the first turn compiles the kernels
         for label, call in calls.items():
             start = time.process_time()
             shadow = call()
@@ -69,65 +72,74 @@ def timed(calls):
     return found
 
 
-def errors(values, truth):
+def compute_errors(values, truth):
     return {
         "rmse": float(np.sqrt(np.mean((values - truth) ** 2))),
         "bias": float(np.mean(values - truth)),
     }
 
 
-def compare(field, cone, truth, calls=None):
-    """Errors, evaluations and times of all methods in these cones."""
-    calls = {label: partial(m, field, cone) for label, m in (calls or methods()).items()}
+def compare_methods(field, cone, truth, calls=None):
+    """Return errors, evaluations and times of all methods for cones with known true values."""
+    calls = {label: partial(m, field, cone) for label, m in (calls or list_methods()).items()}
     rows = {}
-    for label, (values, evaluations, seconds) in timed(calls).items():
-        rows[label] = {**errors(values, truth), "evaluations": evaluations, "seconds": seconds}
+    for label, (values, evaluations, seconds) in time_calls(calls).items():
+        rows[label] = {
+            **compute_errors(values, truth),
+            "evaluations": evaluations,
+            "seconds": seconds,
+        }
     return rows
 
 
 def measure_occluder(kind):
-    """A kind of occluder: all methods against the true light, and against τ(r_min)."""
+    """Measure all methods for one kind of occluder, compared with the true share of the light.
+
+    They are also compared with τ(r_min), the model of one straight edge that they approach.
+    """
     lanes = occluders.Lanes(LANES, seed=0)
     field = kind(lanes)
     if kind is occluders.half_plane:
-        truth = np.array(lit_disc_share(dr.llvm.Float(lanes.edge)))  # in closed form
+        truth = np.array(
+            lit_disc_share(dr.llvm.Float(lanes.edge))
+        )  # the true share has a closed form
     else:
         truth = np.array(compute_monte_carlo_shadow(field, lanes.cone, TRUE_RAYS, HIT).visible)
     model = np.array(dense(field, lanes.cone).visible)
-    rows = compare(field, lanes.cone, truth)
+    rows = compare_methods(field, lanes.cone, truth)
     for name, march in MARCHES.items():
         from_model = 20 * (np.array(march(field, lanes.cone, 1 / 20).visible) - model)
         rows[f"{name} 1/20"]["from model"] = [float(from_model.min()), float(from_model.max())]
-    rows["τ(r_min)"] = errors(model, truth) | {"evaluations": None, "seconds": None}
+    rows["τ(r_min)"] = compute_errors(model, truth) | {"evaluations": None, "seconds": None}
     return rows
 
 
 def measure_frame(scene, radius):
-    """A frame of shadows on the ground: all methods against the true light."""
-    field, cone = scene(), ground_scenes.ground(SIZE, radius)
-    return compare(
+    """Measure all methods on a frame of shadows on the ground, compared with true shadows."""
+    field, cone = scene(), ground_scenes.make_light_cones(SIZE, radius)
+    return compare_methods(
         field, cone, np.array(compute_monte_carlo_shadow(field, cone, FRAME_RAYS, HIT).visible)
     )
 
 
-def parts():
-    """Name → what measures it."""
+def list_parts():
+    """Return the functions that measure the parts of the benchmark, by name of the part."""
     found = {f"occluder {k.__name__}": partial(measure_occluder, k) for k in occluders.KINDS}
     for scene in (ground_scenes.cube, ground_scenes.simple, ground_scenes.complicated):
         for radius in (0.2, 1.0):
             found[f"frame {scene.__name__} {radius}"] = partial(measure_frame, scene, radius)
-    return found | {"gradients": shadow_gradients.measure}
+    return found | {"gradients": shadow_gradients.measure_gradients}
 
 
 def main():
-    """Measure what is not measured yet, and write the page."""
+    """Measure all parts without results, and write the page."""
     results = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
-    for name, measure in parts().items():
+    for name, measure in list_parts().items():
         if name not in results:
             print(name, flush=True)
             results[name] = round_numbers(measure(), DIGITS)
             RESULTS.write_text(json.dumps(results, indent=1, ensure_ascii=False) + "\n")
-    page.write(results)
+    page.write_page(results)
 
 
 if __name__ == "__main__":

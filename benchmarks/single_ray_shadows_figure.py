@@ -1,4 +1,4 @@
-"""The figure of `single_ray_shadows.py`: errors over evaluations, and the shadows of a frame."""
+"""Draws the figure of `single_ray_shadows.py`: errors over evaluations, and some shadows."""
 
 import ground_scenes
 import numpy as np
@@ -19,8 +19,8 @@ PICTURES = {
 }
 
 
-def draw(results):
-    """The figure."""
+def draw_figure(results):
+    """Return the figure with both parts, from the results by part."""
     page = figure(11, 8.2)
     above, below = page.subfigures(2, 1, height_ratios=(1, 1.15))
     draw_errors(above, [v for k, v in results.items() if k.startswith("occluder")])
@@ -29,7 +29,7 @@ def draw(results):
 
 
 def draw_errors(part, kinds):
-    """Means over the kinds of occluders: errors over evaluations, by families of methods."""
+    """Plot errors over evaluations by family of methods, as means over the kinds of occluders."""
     axes = part.subplots()
     labels = [label for label in kinds[0] if label != "τ(r_min)"]
     for family, colour in zip(FAMILIES, COLOURS, strict=True):
@@ -55,8 +55,8 @@ def draw_errors(part, kinds):
 
 
 def draw_shadows(part):
-    """The ground of the simple scene from above, and how far it is from the first picture."""
-    field, cone = ground_scenes.simple(), ground_scenes.ground(SIZE, RADIUS, half=2.6)
+    """Draw the shadows of the simple scene from above, and their differences from the first."""
+    field, cone = ground_scenes.simple(), ground_scenes.make_light_cones(SIZE, RADIUS, half=2.6)
     pictures = {name: method(field, cone).visible for name, method in PICTURES.items()}
     pictures = {name: np.array(p).reshape(SIZE, SIZE) for name, p in pictures.items()}
     first = next(iter(pictures.values()))

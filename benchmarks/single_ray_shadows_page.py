@@ -1,4 +1,4 @@
-"""The page of `single_ray_shadows.py`."""
+"""Writes the page of `single_ray_shadows.py` from its results."""
 
 from pathlib import Path
 
@@ -66,72 +66,74 @@ differences of the true light over a wider step.
 """
 
 
-def write(results):
-    """Write the page and its figure."""
+def write_page(results):
+    """Write the page and its figure from the `results` by part."""
     parts = [
-        INTRODUCTION,
-        OCCLUDERS, occluders(results), MODEL, model(results), FRAMES, frames(results),
-        EQUAL, equal(results), GRADIENTS, gradients(results),
+        INTRODUCTION, OCCLUDERS, make_occluders_table(results), MODEL, make_model_table(results),
+        FRAMES, make_frames_table(results), EQUAL, make_equal_error_table(results), GRADIENTS,
+        make_gradients_table(results),
     ]  # fmt: skip
     PAGE.write_text("\n".join(parts), encoding="utf-8")
-    figure.draw(results).savefig(PAGE.with_suffix(".png"), dpi=90)
+    figure.draw_figure(results).savefig(PAGE.with_suffix(".png"), dpi=90)
 
 
-def table(head, rows):
-    """Markdown of cells that are text."""
+def make_table(head, rows):
+    """Return a Markdown table; `head`: texts of its columns, `rows`: texts of cells."""
     lines = [head, ["---"] * len(head), *rows]
     return "".join(f"| {' | '.join(map(str, line))} |\n" for line in lines)
 
 
-def named(results, kind):
-    """The parts of a kind by the rest of their names."""
+def select_parts(results, kind):
+    """Return the results of parts of one `kind`, by the rest of their names."""
     return {name.split(" ", 1)[1]: p for name, p in results.items() if name.startswith(kind + " ")}
 
 
-def occluders(results):
-    kinds = named(results, "occluder")
+def make_occluders_table(results):
+    kinds = select_parts(results, "occluder")
 
-    def cell(row):
+    def format_cell(row):
         n = row["evaluations"]
         return f"{row['rmse']:.3f}" + (f" ({n:.0f})" if n else "")
 
-    rows = [[label, *(cell(k[label]) for k in kinds.values())] for label in (*SHOWN, "τ(r_min)")]
-    return table(["", *(name.replace("_", " ") for name in kinds)], rows)
+    rows = [
+        [label, *(format_cell(k[label]) for k in kinds.values())] for label in (*SHOWN, "τ(r_min)")
+    ]
+    return make_table(["", *(name.replace("_", " ") for name in kinds)], rows)
 
 
-def model(results):
-    kinds = named(results, "occluder")
+def make_model_table(results):
+    kinds = select_parts(results, "occluder")
 
-    def cell(row):
+    def format_cell(row):
         return "{:.2f} to {:.2f}".format(*(v + 0.0 for v in row["from model"]))
 
-    rows = [[m, *(cell(k[f"{m} 1/20"]) for k in kinds.values())] for m in MARCHES]
-    return table(["", *(name.replace("_", " ") for name in kinds)], rows)
+    rows = [[m, *(format_cell(k[f"{m} 1/20"]) for k in kinds.values())] for m in MARCHES]
+    return make_table(["", *(name.replace("_", " ") for name in kinds)], rows)
 
 
-def frames(results):
-    found = named(results, "frame")
+def make_frames_table(results):
+    found = select_parts(results, "frame")
 
-    def cell(rows, label):
+    def format_cell(rows, label):
         times = rows[label]["seconds"] / rows["monte_carlo 1"]["seconds"]
         return f"{rows[label]['rmse']:.4f} ({times:.1f})"
 
-    rows = [[label, *(cell(f, label) for f in found.values())] for label in SHOWN]
-    return table(["", *found], rows)
+    rows = [[label, *(format_cell(f, label) for f in found.values())] for label in SHOWN]
+    return make_table(["", *found], rows)
 
 
-def equal(results):
-    found = named(results, "frame") | named(results, "occluder")
+def make_equal_error_table(results):
+    found = select_parts(results, "frame") | select_parts(results, "occluder")
     shown = [label for label in SHOWN if not label.startswith(("monte", "quilez", "aaltonen"))]
     rows = [
-        [n.replace("_", " "), *(times_faster(f, label) for label in shown)]
+        [n.replace("_", " "), *(compute_speedup(f, label) for label in shown)]
         for n, f in found.items()
     ]
-    return table(["", *shown], rows)
+    return make_table(["", *shown], rows)
 
 
-def times_faster(rows, label):
-    """The time of rays with the error of this method, over its time."""
+def compute_speedup(rows, label):
+    """Return how many times as long as a method rays take with its error, as text."""
     rays = [row for name, row in rows.items() if name.startswith("monte_carlo")]
     error, seconds = (np.log([row[key] for row in rays]) for key in ("rmse", "seconds"))
     own = rows[label]
@@ -140,7 +142,9 @@ def times_faster(rows, label):
     return f"{beyond}{np.exp(at) / own['seconds']:.1f}"
 
 
-def gradients(results):
+def make_gradients_table(results):
     columns = ["linear", "linear, difference", "split", "split, difference", "truth"]
     found = results["gradients"]
-    return table(["", *columns], [[n, *(f"{g[c]:.4f}" for c in columns)] for n, g in found.items()])
+    return make_table(
+        ["", *columns], [[n, *(f"{g[c]:.4f}" for c in columns)] for n, g in found.items()]
+    )

@@ -1,10 +1,11 @@
 # ruff: noqa: I001, for brdfkit comes first: it chooses the LLVM that Dr.Jit loads
-"""Renders the conformance set of volumes in several programs, beside its exact pictures.
+"""Renders the conformance set of volumes in several programs, to compare with exact pictures.
 
     python benchmarks/volume_programs.py          # minutes on two cores
 
 It writes docs/volume_programs.md and .png. PyVista, VTK, K3D and Playwright with a Chromium have to
-be installed: `pip install pyvista k3d playwright`. One file of `volume_programs/` is one program.
+be installed: `pip install pyvista k3d playwright`. Each file of `volume_programs/` is for one
+program.
 """
 
 import brdfkit  # noqa: F401
@@ -24,12 +25,12 @@ def main():
     for program in PROGRAMS:
         for name in NAMES:
             for setting in program.SETTINGS:
-                picture = program.picture(Case(name), setting)
+                picture = program.draw_case(Case(name), setting)
                 if picture is not None:
                     pictures[name, program.NAME, setting] = picture
-                    rms, most = page.errors(picture, Case(name).exact)
+                    rms, most = page.compute_errors(picture, Case(name).exact)
                     print(f"{name}, {program.NAME}, {setting}: {rms:.2e}, {most:.2e}", flush=True)
-    page.write(PROGRAMS, pictures)
+    page.write_page(PROGRAMS, pictures)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The figure of `volume_programs.py`: exact pictures, the programs', and differences × 10."""
+"""Draws the figure of `volume_programs.py`: pictures of programs, and their differences."""
 
 import numpy as np
 from volume_programs.case import NAMES, Case
@@ -6,7 +6,7 @@ from volume_programs.case import NAMES, Case
 from brdfkit.core.colours import to_srgb
 from brdfkit.theses.drawing import figure
 
-TIMES = 10
+TIMES = 10  # factor of the differences
 SHOWN = (
     ("brdfkit", "defaults"),
     ("VTK", "typed in"),
@@ -17,38 +17,38 @@ SHOWN = (
 )
 
 
-def draw(pictures):
-    """The figure, of pictures (case, program, setting) → RGB and opacity."""
+def draw_figure(pictures):
+    """Return the figure; `pictures`: RGB and opacity by (case, program, setting)."""
     page = figure(13, 11.5)
     axes = page.subplots(len(NAMES), 1 + 2 * len(SHOWN))
     for a in axes.flat:
         a.set_axis_off()
     for row, name in zip(axes, NAMES, strict=True):
         exact = Case(name).exact
-        show(row[0], exact[..., :3])
+        show_linear(row[0], exact[..., :3])
         row[0].set_title(name, size=9)
         for k, (program, setting) in enumerate(SHOWN):
             found = pictures.get((name, program, setting))
             if found is None:
                 continue
-            part = channels(found)
-            show(row[1 + 2 * k], found[..., part])
-            row[2 + 2 * k].imshow(grey(0.5 + TIMES * (found - exact)[..., part]))
+            part = choose_channels(found)
+            show_linear(row[1 + 2 * k], found[..., part])
+            row[2 + 2 * k].imshow(to_three_channels(0.5 + TIMES * (found - exact)[..., part]))
             if name == NAMES[0]:
                 row[1 + 2 * k].set_title(f"{program},\n{setting}", size=9)
                 row[2 + 2 * k].set_title(f"× {TIMES}", size=9)
     return page
 
 
-def channels(picture):
-    """RGB, or the opacity where there is no RGB."""
+def choose_channels(picture):
+    """Return the slice of a picture's channels to compare: RGB, or opacity without RGB."""
     return slice(3) if np.isfinite(picture[..., 0]).all() else slice(3, 4)
 
 
-def show(axes, linear):
-    axes.imshow(grey(to_srgb(np.clip(linear, 0, 1))))
+def show_linear(axes, linear):
+    axes.imshow(to_three_channels(to_srgb(np.clip(linear, 0, 1))))
 
 
-def grey(pixels):
-    """Three channels between 0 and 1."""
+def to_three_channels(pixels):
+    """Return pixels as three channels between 0 and 1."""
     return np.clip(np.broadcast_to(pixels, (*pixels.shape[:2], 3)), 0, 1)

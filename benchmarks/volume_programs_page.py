@@ -1,4 +1,4 @@
-"""Writes what `volume_programs.py` found out: docs/volume_programs.md and its figure."""
+"""Writes docs/volume_programs.md and its figure, from the pictures of `volume_programs.py`."""
 
 from pathlib import Path
 
@@ -63,58 +63,65 @@ SETTINGS = """## Settings
 """
 
 
-def write(programs, pictures):
-    """The page and its figure, of pictures (case, program, setting) → RGB and opacity."""
-    deviation, paths = noise(programs)
+def write_page(programs, pictures):
+    """Write the page and its figure; `pictures`: RGB and opacity by (case, program, setting)."""
+    deviation, paths = estimate_noise(programs)
     findings = FINDINGS.format(noise=f"{100 * deviation:.1g}", paths=paths)
     settings = [
-        f"- {p.NAME} {p.version()}, {setting}: {words}"
+        f"- {p.NAME} {p.find_version()}, {setting}: {words}"
         for p in programs
         for setting, words in p.SETTINGS.items()
     ]
-    parts = [INTRODUCTION, ERRORS, table(programs, pictures), findings, cases(), SETTINGS]
+    parts = [
+        INTRODUCTION,
+        ERRORS,
+        make_errors_table(programs, pictures),
+        findings,
+        list_cases(),
+        SETTINGS,
+    ]
     PAGE.write_text("\n".join(parts + settings) + "\n", encoding="utf-8")
-    figure.draw(pictures).savefig(PAGE.with_suffix(".png"), dpi=90)
+    figure.draw_figure(pictures).savefig(PAGE.with_suffix(".png"), dpi=90)
 
 
-def table(programs, pictures):
-    """Errors: a row for a case, a column for a setting of a program."""
+def make_errors_table(programs, pictures):
+    """Return the table of errors with a row for each case and a column for each setting."""
     columns = [(p.NAME, setting) for p in programs for setting in p.SETTINGS]
 
-    def cell(name, column):
+    def format_cell(name, column):
         found = pictures.get((name, *column))
         if found is None:
             return ""
-        rms, most = errors(found, Case(name).exact)
-        return f"{percent(rms)} ({percent(most)})"
+        rms, most = compute_errors(found, Case(name).exact)
+        return f"{format_percent(rms)} ({format_percent(most)})"
 
     head = ["", *(f"{program}, {setting}" for program, setting in columns)]
-    rows = [[name, *(cell(name, column) for column in columns)] for name in NAMES]
+    rows = [[name, *(format_cell(name, column) for column in columns)] for name in NAMES]
     lines = [head, ["---"] * len(head), *rows]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
-def percent(share):
+def format_percent(share):
     if share < 1e-4:
         return "< 0.01"
     return f"{100 * share:.{0 if share > 0.0995 else 1 if share > 0.00995 else 2}f}"
 
 
-def cases():
-    """What the cases are."""
+def list_cases():
+    """Return the section that describes the cases."""
     told = [f"- `{name}`: {INDEX[name]['what']}" for name in NAMES]
     return "## Cases\n\n" + "\n".join(told) + "\n"
 
 
-def errors(picture, exact):
-    """Root mean square and largest difference, of RGB, or of the opacity where there is no RGB."""
-    part = figure.channels(picture)
+def compute_errors(picture, exact):
+    """Return the root mean square and the largest error of RGB, or of the opacity without RGB."""
+    part = figure.choose_channels(picture)
     difference = (picture - exact)[..., part]
     return float(np.sqrt(np.mean(difference**2))), float(np.abs(difference).max())
 
 
-def noise(programs):
-    """The root mean square of the noise of Mitsuba's paths, of which each is absorbed or not."""
+def estimate_noise(programs):
+    """Return the root mean square noise of Mitsuba's paths, and the number of paths per pixel."""
     samples = next(p.SAMPLES for p in programs if hasattr(p, "SAMPLES"))
     seen = [n for n in NAMES if INDEX[n]["renderer"] == "emission_absorption"]
     a = np.stack([Case(n).exact[..., 3] for n in seen])

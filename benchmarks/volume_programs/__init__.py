@@ -1,6 +1,7 @@
-"""The conformance set in several programs: one file is one program, which draws a case.
+"""Draws the conformance set of volumes in several programs; each file is for one program.
 
-Each has NAME, `version()`, SETTINGS (what is set: name → words), and `picture(case, setting)`: RGB
-and opacity (height, width, 4) in linear numbers, NaN where the program has no such channel; None
-where it cannot draw the case. `case.py` is a case.
+A file defines NAME, `find_version()`, SETTINGS (descriptions of settings by name), and
+`draw_case(case, setting)`. This returns RGB and opacity (height, width, 4) in linear numbers, NaN
+in a channel that the program does not have, or None if it cannot draw the case. `case.py` reads a
+case.
 """

@@ -1,4 +1,4 @@
-"""brdfkit: its integrators and transfer functions."""
+"""Draws the conformance set in brdfkit, by its integrators and transfer functions."""
 
 import mitsuba as mi
 import numpy as np
@@ -14,24 +14,24 @@ SETTINGS = {
 }
 
 
-def version():
+def find_version():
     return brdfkit.__version__
 
 
-def picture(case, setting="defaults"):
-    """RGB (height, width, 4), of rays through the middles of pixels."""
+def draw_case(case, setting="defaults"):
+    """Return RGB (height, width, 4) of rays through the centres of pixels; opacity is NaN."""
     integrator = {"type": case.renderer, **INTEGRATORS[case.renderer](case)}
     if setting == "careful":
         integrator["steps"] = 2048
     light = {"type": "constant", "radiance": BEHIND}
-    towards = case.eye[0].tolist()
+    towards = case.view_axes[0].tolist()
     if case.renderer == "isosurface":
         light = {"type": "directional", "direction": towards, "irradiance": float(np.pi)}
-    return render(case, {"type": "scene", "integrator": integrator, "light": light})
+    return render_scene(case, {"type": "scene", "integrator": integrator, "light": light})
 
 
-def render(case, scene, samples=1):
-    """RGB (height, width, 4) of a scene of Mitsuba's, the mean of some samples; no opacity."""
+def render_scene(case, scene, samples=1):
+    """Return RGB (height, width, 4) of a Mitsuba scene, the mean of some samples per pixel."""
     loaded = mi.load_dict(scene)
     together = min(samples, 256)
     o, d = (np.tile(x.T, together).astype(np.float32) for x in case.rays)
@@ -46,27 +46,27 @@ def render(case, scene, samples=1):
 
 
 def emission_absorption(case):
-    return {"extinction": coloured(case)}
+    return {"extinction": make_coloured_volume(case)}
 
 
 def maximum_intensity(case):
-    return {"volume": coloured(case), "jitter": False}
+    return {"volume": make_coloured_volume(case), "jitter": False}
 
 
 def isosurface(case):
     matte = {"type": "diffuse", "reflectance": {"type": "rgb", "value": case.told["albedo"]}}
-    return {"volume": volume(case).scene_dict(), "level": case.told["level"], "bsdf": matte}
+    return {"volume": make_volume(case).scene_dict(), "level": case.told["level"], "bsdf": matte}
 
 
 INTEGRATORS = {f.__name__: f for f in (emission_absorption, maximum_intensity, isosurface)}
 
 
-def coloured(case):
-    """The volume with its transfer function."""
-    return volume(case).scene_dict(function(case))
+def make_coloured_volume(case):
+    """Return the Mitsuba dictionary of a case's volume with its transfer function."""
+    return make_volume(case).scene_dict(make_transfer_function(case))
 
 
-def function(case):
+def make_transfer_function(case):
     given = case.transfer
     if "opacity_unit_distance" in given:
         return brdfkit.volumes.TransferFunction.from_opacity(
@@ -78,8 +78,8 @@ def function(case):
     )
 
 
-def volume(case):
-    """The volume, in the cube from -1 to 1."""
+def make_volume(case):
+    """Return a case's `Volume` in the cube from -1 to 1."""
     spacing = case.spacing
     to_world = np.diag([*spacing, 1.0])
     to_world[:3, 3] = spacing / 2 - 1

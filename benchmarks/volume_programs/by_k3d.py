@@ -1,8 +1,7 @@
-"""K3D-jupyter: `k3d.volume`, drawn by WebGL in Chromium.
+"""Draws the conformance set in K3D-jupyter, by `k3d.volume` and WebGL in Chromium.
 
-It has no parallel rays: the eye is very far away. It lights every volume by its gradients, without
-a switch for that: pictures are compared by their opacity, by what a white background adds to a
-black one.
+K3D has no parallel rays, so the eye is very far away. It always lights a volume by its gradients.
+So only opacities are compared: the difference of pictures before a white and a black background.
 """
 
 import io
@@ -22,27 +21,27 @@ SETTINGS = {
     "right unit": "opacity 1 - exp(-σ_t d), `alpha_coef` = the box's edge / d; 2048 samples",
 }
 FIELD_OF_VIEW = 1.0  # degrees
-LOADED = 3000  # ms, until a page has drawn
+LOADED = 3000  # time until a page has drawn its picture [ms]
 GPU = "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"
-EDGE = 2  # of the cube
+EDGE = 2  # length of the cube's edges
 
 
-def version():
+def find_version():
     return k3d.__version__
 
 
-def picture(case, setting):
-    """The opacity alone (height, width, 4)."""
+def draw_case(case, setting):
+    """Return a picture (height, width, 4) with only the opacity; RGB is NaN."""
     if case.renderer != "emission_absorption" or "gradients" in case.transfer:
         return None  # others are lit, too, and opaque; there is no function of gradients
-    black, white = (shown(plot(case, setting, colour)) for colour in (0, 0xFFFFFF))
+    black, white = (take_screenshot(make_plot(case, setting, colour)) for colour in (0, 0xFFFFFF))
     found = np.full((PIXELS, PIXELS, 4), np.nan)
     found[..., 3] = 1 - (white - black).mean(axis=-1)
     return found
 
 
-def plot(case, setting, background):
-    v, rgb, sigma = case.sampled(512)
+def make_plot(case, setting, background):
+    v, rgb, sigma = case.sample_transfer(512)
     a, settings = np.interp(v, case.values, case.rgba[:, 3]), {}
     if setting == "right unit":
         unit = 1 / sigma.max()
@@ -71,15 +70,15 @@ def plot(case, setting, background):
         height=PIXELS,
     )
     page += volume
-    towards, _, up = case.eye
+    towards, _, up = case.view_axes
     distance = case.told["half"] / np.tan(np.radians(FIELD_OF_VIEW / 2))
     page.camera = [*(-distance * towards), 0, 0, 0, *up]
     return page.get_snapshot()
 
 
-def shown(html):
-    """The picture (height, width, 3) of a page."""
-    page = browser().new_page(viewport={"width": PIXELS, "height": PIXELS})
+def take_screenshot(html):
+    """Return a screenshot (height, width, 3) of an HTML page."""
+    page = start_browser().new_page(viewport={"width": PIXELS, "height": PIXELS})
     page.set_content(html)
     page.wait_for_timeout(LOADED)
     taken = page.screenshot()
@@ -88,7 +87,7 @@ def shown(html):
 
 
 @cache
-def browser():
-    """The system's Chromium, or else Playwright's, until the program ends."""
+def start_browser():
+    """Return a browser, the system's Chromium or Playwright's, open until the program ends."""
     chromium = sync_playwright().start().chromium
     return chromium.launch(executable_path=shutil.which("chromium"), args=list(GPU))

@@ -1,15 +1,15 @@
-"""Mitsuba: `volpath` through a heterogeneous medium that only absorbs.
+"""Draws the conformance set in Mitsuba, by `volpath` through a medium that only absorbs.
 
-It has no transfer functions and no media that glow, so that the light behind the volume is all that
-there is to see: pictures are compared by their opacity. σ_t is looked up at the voxels, and then
-interpolated; or, by brdfkit's plugin `transfer_function`, the other way round.
+Mitsuba has no transfer functions and no media that glow, so only opacities are compared: how much
+the volume dims the light behind it. The extinction σ_t is looked up at the voxels and then
+interpolated, or with brdfkit's plugin `transfer_function` interpolated first.
 """
 
 import mitsuba as mi
 import numpy as np
 
 from . import by_brdfkit
-from .by_brdfkit import render
+from .by_brdfkit import render_scene
 
 NAME = "Mitsuba"
 SAMPLES = 1024
@@ -19,21 +19,21 @@ SETTINGS = {
 }
 
 
-def version():
+def find_version():
     return mi.__version__
 
 
-def picture(case, setting):
-    """The opacity alone (height, width, 4)."""
+def draw_case(case, setting):
+    """Return a picture (height, width, 4) with only the opacity; RGB is NaN."""
     if case.renderer != "emission_absorption":
         return None
-    extinction = by_brdfkit.coloured(case)
+    extinction = by_brdfkit.make_coloured_volume(case)
     if setting == "gridvolume":
         if "gradients" in case.transfer:
             return None
-        v, _, sigma = case.sampled()
+        v, _, sigma = case.sample_transfer()
         grid = np.interp(case.voxels, v, sigma).astype(np.float32)[..., None]
-        extinction = by_brdfkit.volume(case).scene_dict() | {"grid": mi.VolumeGrid(grid)}
+        extinction = by_brdfkit.make_volume(case).scene_dict() | {"grid": mi.VolumeGrid(grid)}
     cube = {
         "type": "cube",
         "bsdf": {"type": "null"},
@@ -45,7 +45,7 @@ def picture(case, setting):
         "cube": cube,
         "light": {"type": "constant", "radiance": 1.0},
     }
-    found = render(case, scene, SAMPLES)
+    found = render_scene(case, scene, SAMPLES)
     found[..., 3] = 1 - found[..., 0]
     found[..., :3] = np.nan
     return found

@@ -1,10 +1,10 @@
-"""PyVista: `Plotter.add_volume`, which draws by VTK, with 256 colours and opacities."""
+"""Draws the conformance set in PyVista, by `Plotter.add_volume` with 256 colours and opacities."""
 
 import numpy as np
 import pyvista
 from matplotlib.colors import ListedColormap
 
-from .by_vtk import aim, image_data
+from .by_vtk import aim_camera, make_image_data
 from .case import BEHIND, PIXELS
 
 NAME = "PyVista"
@@ -17,17 +17,17 @@ SETTINGS = {
 BLENDING = {"emission_absorption": "composite", "maximum_intensity": "maximum"}
 
 
-def version():
+def find_version():
     return pyvista.__version__
 
 
-def picture(case, setting):
-    """RGB (height, width, 4)."""
+def draw_case(case, setting):
+    """Return RGB (height, width, 4); the opacity is NaN."""
     if case.renderer == "isosurface" or "gradients" in case.transfer:
-        return None  # isosurfaces are VTK's; there is no function of gradients
+        return None  # PyVista leaves isosurfaces to VTK, and has no gradient opacity
     low, high = case.values[[0, -1]]
     at = np.linspace(low, high, COLOURS)
-    v, rgb, sigma = case.sampled()
+    v, rgb, sigma = case.sample_transfer()
     unit = case.transfer.get("opacity_unit_distance")
     a = np.interp(at, case.values, case.rgba[:, 3])
     if setting != "typed in" and case.renderer == "emission_absorption":
@@ -37,7 +37,7 @@ def picture(case, setting):
     plotter = pyvista.Plotter(off_screen=True, window_size=(PIXELS, PIXELS))
     plotter.set_background([BEHIND] * 3)
     actor = plotter.add_volume(
-        pyvista.wrap(image_data(case.voxels, case.spacing)),
+        pyvista.wrap(make_image_data(case.voxels, case.spacing)),
         cmap=ListedColormap(colours),
         opacity=255 * a,
         clim=(low, high),
@@ -47,7 +47,7 @@ def picture(case, setting):
     )
     if setting == "careful" and not case.told["labels"]:
         actor.prop.interpolation_type = "linear"
-    aim(plotter.camera, case)
+    aim_camera(plotter.camera, case)
     plotter.render_window.SetMultiSamples(0)
     shown = plotter.screenshot(return_img=True)[..., :3] / 255
     plotter.close()

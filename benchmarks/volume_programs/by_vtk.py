@@ -1,7 +1,7 @@
-"""VTK: `vtkGPUVolumeRayCastMapper`, drawn without a screen, in 8 bits per channel.
+"""Draws the conformance set in VTK, by `vtkGPUVolumeRayCastMapper` in 8 bits per channel.
 
-Numbers of colours go in as they are and are read back as they are: VTK blends whatever numbers it
-is given, here linear ones. The opacity of the whole is from pictures before black and before white.
+VTK blends the numbers of colours without any conversion, so linear ones go in and come out. The
+opacity follows from pictures before a black and before a white background.
 """
 
 import numpy as np
@@ -20,27 +20,29 @@ SETTINGS = {
 SAMPLE_DISTANCE = 2 / 250
 
 
-def version():
+def find_version():
     return vtk.vtkVersion.GetVTKVersion()
 
 
-def picture(case, setting):
-    """RGB and opacity (height, width, 4)."""
+def draw_case(case, setting):
+    """Return RGB and opacity (height, width, 4) of a case."""
     careful = setting == "careful"
     padding = 1 if careful else 0
-    image = image_data(np.pad(case.voxels, padding, mode="edge"), case.spacing, padding)
+    image = make_image_data(np.pad(case.voxels, padding, mode="edge"), case.spacing, padding)
     if case.renderer == "isosurface":
-        actor = surface(image, case) if careful else volume(image, case, setting)
+        actor = make_isosurface(image, case) if careful else make_volume(image, case, setting)
     else:
-        actor = volume(image, case, setting)
+        actor = make_volume(image, case, setting)
     found = np.full((PIXELS, PIXELS, 4), np.nan)
-    found[..., :3] = shown(actor, case, BEHIND)
-    found[..., 3] = 1 - (shown(actor, case, 1.0) - shown(actor, case, 0.0)).mean(axis=-1)
+    found[..., :3] = render_actor(actor, case, BEHIND)
+    found[..., 3] = 1 - (render_actor(actor, case, 1.0) - render_actor(actor, case, 0.0)).mean(
+        axis=-1
+    )
     return found
 
 
-def image_data(voxels, spacing, padding=0):
-    """VTK's points are the centres of voxels."""
+def make_image_data(voxels, spacing, padding=0):
+    """Return the VTK image of some voxels, whose points are the centres of voxels."""
     image = vtk.vtkImageData()
     image.SetDimensions(voxels.shape[::-1])
     image.SetSpacing(spacing)
@@ -49,13 +51,13 @@ def image_data(voxels, spacing, padding=0):
     return image
 
 
-def volume(image, case, setting):
+def make_volume(image, case, setting):
     mapper = vtk.vtkGPUVolumeRayCastMapper()
     mapper.SetInputData(image)
     if setting == "careful":
         mapper.SetAutoAdjustSampleDistances(False)
         mapper.SetSampleDistance(SAMPLE_DISTANCE)
-        clip(mapper)
+        clip_to_cube(mapper)
     looks = vtk.vtkVolumeProperty()
     looks.SetInterpolationTypeToLinear()
     if case.told["labels"]:
@@ -76,8 +78,8 @@ def volume(image, case, setting):
     return actor
 
 
-def clip(mapper):
-    """To the cube."""
+def clip_to_cube(mapper):
+    """Clip a volume to the cube from -1 to 1."""
     for normal in np.vstack([np.eye(3), -np.eye(3)]):
         plane = vtk.vtkPlane()
         plane.SetOrigin(-normal)
@@ -86,7 +88,7 @@ def clip(mapper):
 
 
 def set_transfer(looks, case, setting):
-    v, rgb, a, unit = opacities(case, setting)
+    v, rgb, a, unit = compute_opacities(case, setting)
     colour, opacity = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
     for x, c, o in zip(v, rgb, a, strict=True):
         colour.AddRGBPoint(x, *c)
@@ -96,14 +98,14 @@ def set_transfer(looks, case, setting):
     looks.SetScalarOpacityUnitDistance(unit)
     if "gradients" in case.transfer:
         ramp = vtk.vtkPiecewiseFunction()
-        unit = case.spacing.mean() if setting == "careful" else 1  # VTK's own
+        unit = case.spacing.mean() if setting == "careful" else 1  # VTK's default
         for gradient, factor in zip(case.transfer["gradients"], (0, 1), strict=True):
             ramp.AddPoint(gradient * unit, factor)
         looks.SetGradientOpacity(ramp)
 
 
-def opacities(case, setting):
-    """Values (n,), RGB (n, 3), opacities (n,) and the unit distance."""
+def compute_opacities(case, setting):
+    """Return values (n,), RGB (n, 3), opacities (n,) and the unit distance of opacities."""
     if case.renderer == "isosurface":
         return case.values, np.tile(case.told["albedo"], (len(case.values), 1)), np.ones(2), 1.0
     if setting == "typed in" or case.renderer == "maximum_intensity":
@@ -111,13 +113,13 @@ def opacities(case, setting):
         v = case.values.copy()
         v[:-1][np.diff(v) == 0] -= 1e-6
         return v, case.rgba[:, :3], case.rgba[:, 3], unit
-    v, rgb, sigma = case.sampled()
+    v, rgb, sigma = case.sample_transfer()
     unit = 1 / sigma.max()
     return v, rgb, -np.expm1(-sigma * unit), unit
 
 
-def surface(image, case):
-    """The isosurface as a mesh, with normals of the gradients."""
+def make_isosurface(image, case):
+    """Return the actor of an isosurface as a mesh, with normals along the gradients."""
     contour = vtk.vtkFlyingEdges3D()
     contour.SetInputData(image)
     contour.SetValue(0, case.told["level"])
@@ -136,8 +138,8 @@ def surface(image, case):
     return actor
 
 
-def shown(actor, case, background):
-    """The picture (height, width, 3) before a background."""
+def render_actor(actor, case, background):
+    """Return the picture (height, width, 3) of an actor before a grey `background`."""
     renderer = vtk.vtkRenderer()
     renderer.AddViewProp(actor)
     renderer.SetBackground([background] * 3)
@@ -146,7 +148,7 @@ def shown(actor, case, background):
     window.SetMultiSamples(0)
     window.SetSize(PIXELS, PIXELS)
     window.AddRenderer(renderer)
-    aim(renderer.GetActiveCamera(), case)
+    aim_camera(renderer.GetActiveCamera(), case)
     window.Render()
     pixels = vtk.vtkUnsignedCharArray()
     window.GetPixelData(0, 0, PIXELS - 1, PIXELS - 1, 0, pixels, 0)
@@ -155,8 +157,8 @@ def shown(actor, case, background):
     return found
 
 
-def aim(camera, case):
-    towards, _, up = case.eye
+def aim_camera(camera, case):
+    towards, _, up = case.view_axes
     camera.ParallelProjectionOn()
     camera.SetParallelScale(case.told["half"])
     camera.SetPosition(-DISTANCE * towards)

@@ -1,9 +1,9 @@
-"""Turns formulas of docstrings, plain lines such as `f = k_d / π`, into TeX for the pages.
+"""Converts formulas of docstrings, plain lines such as `f = k_d / π`, to TeX for the pages.
 
-A docstring is read in a terminal, where TeX is no help; a page shows set formulas. In a line,
-juxtaposed factors bind closer than ` / `, which divides all factors before it by the one group
-after it: `k_s (n + 2) / 2π c` is k_s (n + 2) / (2π) times c. A `/` without spaces divides the
-symbols that touch it.
+Docstrings are read in a terminal, where TeX would be unreadable. In a line, factors side by side
+bind closer than ` / `, which divides all factors before it by the one group after it:
+`k_s (n + 2) / 2π c` is k_s (n + 2) / (2π) times c. A `/` without spaces divides the symbols that
+touch it.
 """
 
 import re
@@ -19,7 +19,7 @@ LOWERED = dict(zip("₀₁₂₃₄₅₆₇₈₉₊₋", "0123456789+-", stric
 FUNCTIONS = "exp", "tan", "cos", "sin", "max", "min", "log"
 CLOSING = {"(": ")", "[": "]", "{": "}"}
 OPERATORS = "+-=<>,≈→≤≥"
-NAMES = f"(?:{'|'.join(FUNCTIONS)})(?![a-z]{{2}})"  # as in `cos`, not in `cosine`
+NAMES = f"(?:{'|'.join(FUNCTIONS)})(?![a-z]{{2}})"  # matches `cos`, but not the start of `cosine`
 TOKEN = re.compile(
     rf"\s+|{NAMES}|d(?=[a-zω]\b)|(?!{NAMES})[A-Za-z]{{2,}}(?: (?:a|(?!{NAMES})[a-z]{{2,}})\b)*"
     rf"|\d+(?:\.\d+)?|[{''.join(RAISED)}]+|[{''.join(LOWERED)}]+|_[A-Za-z0-9α-ω]*|."
@@ -28,7 +28,7 @@ BLOCK = re.compile(r"(?:^    .*\n?)+", re.MULTILINE)
 
 
 def set_formulas(text):
-    """A docstring's text, its indented formulas as `$$ TeX $$`; indented code stays as it is."""
+    """Return a docstring's text with indented formulas as `$$ TeX $$`, and code unchanged."""
     return BLOCK.sub(_set_block, text)
 
 
@@ -41,11 +41,11 @@ def _set_block(match):
     ):
         return match[0]
     end = match[0][len(block) :]
-    return "\n\n".join(f"$$\n{_row(line)}\n$$" for line in _join_continuations(block)) + end
+    return "\n\n".join(f"$$\n{_set_line(line)}\n$$" for line in _join_continuations(block)) + end
 
 
 def _join_continuations(block):
-    """The lines of a block, with those that go on with an operator joined to the line before."""
+    """Return the lines of a block, each joined to the last one if it begins with an operator."""
     rows = []
     for line in block.splitlines():
         if rows and re.match(r"\s*[/·+\-]", line):
@@ -55,8 +55,8 @@ def _join_continuations(block):
     return rows
 
 
-def _row(line):
-    """The TeX of a line: an optional label of the form of a model, and formulas beside it."""
+def _set_line(line):
+    """Return the TeX of a line: an optional label, and formulas separated by two spaces or more."""
     label, formula = re.fullmatch(r"(?:([\w=]+)\s{2,})?(.*)", line).groups()
     parts = [
         rf"\text{{({part})}}" if re.fullmatch("[a-z_ ]{4,}", part) else to_tex(part)
@@ -66,16 +66,20 @@ def _row(line):
 
 
 def to_tex(formula):
-    r"""The TeX of one formula.
+    r"""Return the TeX of one formula.
 
     >>> print(to_tex("f = k_d / π + k_s / 2π (cos α)ⁿ"))
     f = \frac{k_d}{\pi} + \frac{k_s}{2\pi}\, \left(\cos \alpha\right)^{n}
     """
-    return _Reader(TOKEN.findall(formula)).sum()
+    return _Reader(TOKEN.findall(formula)).read_sum()
 
 
 class _Reader:
-    """Reads the tokens of a formula from left to right; each method returns the TeX it read."""
+    """A parser that reads the tokens of a formula from left to right.
+
+    Each method removes the tokens that it reads from the list, and returns their TeX. A group ends
+    at the token `closing`.
+    """
 
     def __init__(self, tokens):
         self.tokens = tokens
@@ -83,8 +87,8 @@ class _Reader:
     def peek(self):
         return self.tokens[0] if self.tokens else ""
 
-    def sum(self, closing=""):
-        """Products and the operators between them, up to `closing`."""
+    def read_sum(self, closing=""):
+        """Return the TeX of products and the operators between them, up to `closing`."""
         parts = []
         while self.tokens and self.peek() != closing:
             if self.peek() in OPERATORS:
@@ -93,12 +97,12 @@ class _Reader:
             elif self.peek().isspace():
                 self.tokens.pop(0)
             else:
-                parts.append(self.product(closing))
+                parts.append(self.read_product(closing))
         text = " ".join(parts).replace(" ,", ",")
         return re.sub(r"(^|\\left[(\[]|[=,]) *- ", r"\1 -", text).strip()
 
-    def product(self, closing):
-        """Factors side by side, with fractions where ` / ` stands between them."""
+    def read_product(self, closing):
+        """Return the TeX of factors side by side, with a fraction where ` / ` is between them."""
         done, factors = [], []
         while self.tokens and self.peek() != closing and self.peek() not in OPERATORS:
             token = self.peek()
@@ -110,21 +114,21 @@ class _Reader:
                     done += [*factors, r"\cdot"]
                 else:
                     self.skip_space()
-                    done.append(_fraction(r"\, ".join(factors), self.group(closing)))
+                    done.append(_make_fraction(r"\, ".join(factors), self.read_group(closing)))
                 factors = []
             elif token in "Σ∫":
-                done += [*factors, self.group(closing)]
+                done += [*factors, self.read_group(closing)]
                 factors = []
             else:
-                factors.append(self.group(closing))
+                factors.append(self.read_group(closing))
         return r"\, ".join(done + factors).replace(r"\, \cdot\,", r" \cdot")
 
     def skip_space(self):
         while self.peek().isspace():
             self.tokens.pop(0)
 
-    def group(self, closing):
-        """Atoms that touch each other."""
+    def read_group(self, closing):
+        """Return the TeX of atoms without a space between them."""
         text = ""
         while self.tokens and self.peek() != closing and not self.peek().isspace():
             token = self.peek()
@@ -132,32 +136,32 @@ class _Reader:
                 break
             if token == "/":
                 self.tokens.pop(0)
-                return _fraction(text, self.group(closing))
-            text = _touch(text, self.atom())
+                return _make_fraction(text, self.read_group(closing))
+            text = _join_pieces(text, self.read_atom())
             text += " " if token in FUNCTIONS else ""
             if token in FUNCTIONS and self.peek().isspace():
                 self.skip_space()
         return text.strip()
 
-    def atom(self):
-        """A symbol, a number, a word or a bracket, with what is raised or lowered at it."""
+    def read_atom(self):
+        """Return the TeX of a symbol, number, word or bracket, with its sub- and superscripts."""
         token = self.tokens.pop(0)
         if token in CLOSING:
-            inner = self.sum(CLOSING[token])
+            inner = self.read_sum(CLOSING[token])
             self.tokens.pop(0)
             braces = (r"\{", r"\}") if token == "{" else (token, CLOSING[token])
             text = rf"\left{braces[0]}{inner}\right{braces[1]}"
         elif token == "√":
-            text = rf"\sqrt{{{_without_brackets(self.atom())}}}"
+            text = rf"\sqrt{{{_strip_brackets(self.read_atom())}}}"
         elif token in FUNCTIONS:
             text = rf"\{token}"
         elif len(token) > 1 and token[:2].isalpha():
             text = rf"\text{{{token}}}" if token.isupper() else rf"\text{{ {token} }}"
         else:
             text = SYMBOLS.get(token, token) + (" " if token in SYMBOLS else "")
-        return text.strip(" ") + self.scripts()
+        return text.strip(" ") + self.read_scripts()
 
-    def scripts(self):
+    def read_scripts(self):
         text = ""
         while self.tokens:
             token = self.peek()
@@ -166,53 +170,53 @@ class _Reader:
             elif token[0] in RAISED:
                 text += f"^{{{''.join(RAISED[c] for c in token)}}}"
             elif token[0] == "_":
-                text += _lowered(token[1:]) if token != "_" else ""
+                text += _make_subscript(token[1:]) if token != "_" else ""
                 if token == "_":  # _{...}
                     self.tokens[:2] = []
-                    text += f"_{{{self.sum('}')}}}"
+                    text += f"_{{{self.read_sum('}')}}}"
             elif token == "^":
                 self.tokens.pop(0)
                 minus = self.tokens.pop(0) if self.peek() == "-" else ""
-                text += f"^{{{minus}{_without_brackets(self.atom_alone())}}}"
+                text += f"^{{{minus}{_strip_brackets(self.read_exponent())}}}"
                 continue
             else:
                 break
             self.tokens.pop(0)
         return text
 
-    def atom_alone(self):
-        """An exponent: one bracket or one symbol."""
+    def read_exponent(self):
+        """Return the TeX of an exponent, which is one bracket or one symbol."""
         if self.peek() == "{":
             self.tokens.pop(0)
-            inner = self.sum("}")
+            inner = self.read_sum("}")
             self.tokens.pop(0)
             return inner
         if self.peek() in CLOSING:
-            return self.atom()
+            return self.read_atom()
         token = self.tokens.pop(0)
-        self.tokens[:0] = list(token[1:])  # of letters that touch, the first alone is raised
+        self.tokens[:0] = list(token[1:])  # only the first of several letters is the exponent
         return SYMBOLS.get(token[0], token[0])
 
 
-def _touch(left, right):
-    """Two pieces of TeX side by side, with a space where a command would run into a letter."""
+def _join_pieces(left, right):
+    """Return two pieces of TeX joined, with a space if a command would run into a letter."""
     runs_on = re.search(r"\\[a-zA-Z]+$", left) and right[:1].isalpha()
     return left + (" " if runs_on else "") + right
 
 
-def _lowered(name):
+def _make_subscript(name):
     name = re.sub("|".join(map(re.escape, SYMBOLS)), lambda m: SYMBOLS[m[0]] + " ", name).strip()
     if len(name) == 1:
         return f"_{name}"
     return rf"_{{\text{{{name}}}}}" if len(name) > 4 and name.isalpha() else f"_{{{name}}}"
 
 
-def _fraction(numerator, denominator):
-    return rf"\frac{{{_without_brackets(numerator)}}}{{{_without_brackets(denominator)}}}"
+def _make_fraction(numerator, denominator):
+    return rf"\frac{{{_strip_brackets(numerator)}}}{{{_strip_brackets(denominator)}}}"
 
 
-def _without_brackets(text):
-    """`text` without the round brackets around all of it."""
+def _strip_brackets(text):
+    """Return TeX without round brackets that enclose all of it."""
     if not (text.startswith(r"\left(") and text.endswith(r"\right)")):
         return text
     depth = 0

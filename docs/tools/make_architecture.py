@@ -1,10 +1,10 @@
-"""Draw `docs/architecture.png`, the layers of the library with their imports.
+"""Draws `docs/architecture.png`, the layers of the library with their imports.
 
 python docs/tools/make_architecture.py
 
-The layers are those that `make lint` holds (pyproject.toml), the arrows the imports that the code
-has, at the top of a file or within a function. An import that other arrows lead to as well is left
-out. A room is the wider the more lines it has.
+The layers are those that `make lint` checks (pyproject.toml). A box is a part of the package, a
+file or a folder, and is wider the more lines it has. An arrow is an import at the top of a file or
+within a function. Imports that a chain of other arrows implies are left out.
 """
 
 import tomllib
@@ -17,10 +17,10 @@ from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "src" / "brdfkit"
-ROW, GAP = 0.74, 0.2  # inches
-LABELS = 2.5  # inches for what a row is for
+ROW, GAP = 0.74, 0.2  # height of a row, and space between boxes [inches]
+LABELS = 2.5  # width of the labels of rows [inches]
 PAPER, INK, LINE = "#f5f1e8", "#2b2b2b", "#8a5a2b"
-GROUPS = {  # what a row of rooms is for, by one of them
+GROUPS = {  # labels of rows, by one of the parts in the row
     "cli": "what people type",
     "inverse": "numbers from pictures; reports",
     "checks": "verbs: what people call",
@@ -33,22 +33,22 @@ GROUPS = {  # what a row of rooms is for, by one of them
 }
 
 
-def layers():
-    """The rooms of each layer, from the top."""
+def read_layers():
+    """Return the names of the parts in each layer, from the top."""
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]
     rows = contracts["contracts"][0]["layers"]
-    return [[room.strip() for room in row.replace(":", "|").split("|")] for row in rows]
+    return [[part.strip() for part in row.replace(":", "|").split("|")] for row in rows]
 
 
-def lines(room):
-    """Lines of a room, a file or a folder."""
-    folder = PACKAGE / room
+def count_lines(part):
+    """Return the number of lines of a part, a file or a folder."""
+    folder = PACKAGE / part
     files = folder.rglob("*.py") if folder.is_dir() else [folder.with_suffix(".py")]
     return sum(len(file.read_text(encoding="utf-8").splitlines()) for file in files)
 
 
-def imports():
-    """The pairs (room, room) of which a file of the one imports one of the other."""
+def find_imports():
+    """Return the pairs of parts (importing, imported) between whose files there is an import."""
     graph = grimp.build_graph("brdfkit", cache_dir=None)
     found = set()
     for file in graph.modules:
@@ -59,41 +59,42 @@ def imports():
     return sorted(found)
 
 
-def direct(found):
-    """The imports that no chain of others implies."""
+def remove_implied_imports(found):
+    """Return the pairs of parts without those that a chain of other pairs implies."""
     below = {}
-    for room, other in found:
-        below.setdefault(room, set()).add(other)
+    for part, other in found:
+        below.setdefault(part, set()).add(other)
 
-    def reaches(room, goal):
-        return any(o == goal or reaches(o, goal) for o in below.get(room, ()))
+    def reaches(part, goal):
+        """Return whether a chain of imports leads from one part to another."""
+        return any(o == goal or reaches(o, goal) for o in below.get(part, ()))
 
     return [(a, b) for a, b in found if not any(reaches(o, b) for o in below[a] - {b})]
 
 
-def draw():
-    """The picture as a matplotlib `Figure`."""
-    rows = layers()
-    width_of = {room: _width(room) for rooms in rows for room in rooms}
-    long = [sum(width_of[room] + GAP for room in rooms) for rooms in rows]
+def draw_architecture():
+    """Return the picture as a matplotlib `Figure`."""
+    rows = read_layers()
+    width_of = {part: _compute_width(part) for parts in rows for part in parts}
+    long = [sum(width_of[part] + GAP for part in parts) for parts in rows]
     whole = LABELS + max(long)
     figure = Figure(figsize=(whole, ROW * len(rows) + 0.7), facecolor="white")
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(0, whole), ylim=(0, ROW * len(rows) + 0.7))
     axes.set_axis_off()
     places = {}
-    for number, rooms in enumerate(rows):
+    for number, parts in enumerate(rows):
         y = ROW * (len(rows) - number) - 0.1
         x = (LABELS + whole - long[number]) / 2
-        for room in rooms:
-            places[room] = (x + width_of[room] / 2, y, width_of[room])
-            x += width_of[room] + GAP
-        label = next((text for room, text in GROUPS.items() if room in rooms), "")
+        for part in parts:
+            places[part] = (x + width_of[part] / 2, y, width_of[part])
+            x += width_of[part] + GAP
+        label = next((text for part, text in GROUPS.items() if part in parts), "")
         axes.text(0.2, y, label, va="center", size=9, color="0.45", style="italic")
-    for room, other in direct(imports()):
-        _arrow(axes, places[room], places[other])
-    for room, (x, y, width) in places.items():
-        _room(axes, room, x, y, width)
+    for part, other in remove_implied_imports(find_imports()):
+        _draw_arrow(axes, places[part], places[other])
+    for part, (x, y, width) in places.items():
+        _draw_part(axes, part, x, y, width)
     axes.text(
         0.2,
         ROW * len(rows) + 0.42,
@@ -105,23 +106,30 @@ def draw():
     return figure
 
 
-def _width(room):
-    """The width of a room [inches], which its name fits into."""
-    return max(0.6 + 0.022 * np.sqrt(lines(room)), 0.3 + 0.08 * len(room))
+def _compute_width(part):
+    """Return the width of a part's box [inches], by its lines, at least that of its name."""
+    return max(0.6 + 0.022 * np.sqrt(count_lines(part)), 0.3 + 0.08 * len(part))
 
 
-def _room(axes, room, x, y, width):
+def _draw_part(axes, part, x, y, width):
     box = (x - width / 2, y - 0.2), width, 0.4
     style = {"boxstyle": "round,pad=0.02", "facecolor": PAPER, "edgecolor": LINE, "zorder": 3}
     axes.add_patch(FancyBboxPatch(*box, linewidth=1.0, **style))
-    name = f"{room}/" if (PACKAGE / room).is_dir() else room
+    name = f"{part}/" if (PACKAGE / part).is_dir() else part
     axes.text(x, y + 0.05, name, ha="center", va="center", size=9, color=INK, zorder=4)
     axes.text(
-        x, y - 0.12, f"{lines(room):,}", ha="center", va="center", size=6.5, color="0.5", zorder=4
+        x,
+        y - 0.12,
+        f"{count_lines(part):,}",
+        ha="center",
+        va="center",
+        size=6.5,
+        color="0.5",
+        zorder=4,
     )
 
 
-def _arrow(axes, start, end):
+def _draw_arrow(axes, start, end):
     (x0, y0, _), (x1, y1, _) = start, end
     far = y0 - y1 > 1.5 * ROW
     bend = (0.22 if x1 >= x0 else -0.22) if far else 0.0
@@ -131,4 +139,4 @@ def _arrow(axes, start, end):
 
 
 if __name__ == "__main__":
-    draw().savefig(Path(__file__).parents[1] / "architecture.png", dpi=110)
+    draw_architecture().savefig(Path(__file__).parents[1] / "architecture.png", dpi=110)

@@ -1,10 +1,10 @@
-"""Makes `docs/distance_fields.md`, a gallery of surfaces given by distance functions.
+"""Makes `docs/distance_fields.md`, a gallery of surfaces that distance functions define.
 
     python docs/tools/make_distance_fields.py     # a quarter of an hour on two cores
 
-A scene (`distance_field_gallery/scenes.py`) that has a picture keeps it: delete the picture to draw
-it anew. Lessons (`distance_field_gallery/lessons.py`), which are small pictures beside each other,
-are drawn and measured each time.
+The picture of a scene (`distance_field_gallery/scenes.py`) is drawn only if it does not exist yet.
+Lessons (`distance_field_gallery/lessons.py`), small pictures next to each other, are drawn and
+measured each time.
 """
 
 import inspect
@@ -16,9 +16,9 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 from distance_field_gallery import lessons  # which imports brdfkit before Mitsuba
-from distance_field_gallery.highlights import SIZES, errors_by_roughness, highlights
+from distance_field_gallery.highlights import SIZES, compute_errors_by_roughness, highlights
 from distance_field_gallery.scenes import SCENES
-from make_models import paragraphs, table
+from make_models import join_paragraphs, make_table
 from PIL import Image, ImageDraw, ImageFont
 
 from brdfkit.core.colours import to_srgb
@@ -27,8 +27,9 @@ PAGE = Path(__file__).parents[1] / "distance_fields.md"
 FOLDER = PAGE.with_suffix("")
 GALLERY = Path(__file__).with_name("distance_field_gallery")
 GYROID, START = GALLERY / "gyroid.py", GALLERY / "start.py"
-SIZE, SPP = (720, 450), 16  # of a scene
-SMALL, SMALL_SPP, TURNS = (300, 225), 4, 3  # of a lesson; its time is the least of some turns
+SIZE, SPP = (720, 450), 16  # size [pixels] and samples per pixel of a scene's picture
+# Size and samples per pixel of a lesson's pictures, and number of renderings whose time is measured
+SMALL, SMALL_SPP, TURNS = (300, 225), 4, 3
 COLUMNS, LINE = 4, 22  # pictures in a row, pixels of a label
 INTRO = """A distance function says of each point how far the nearest surface is, negative inside.
 brdfkit combines such functions in Python and renders them by the Mitsuba integrator
@@ -93,21 +94,21 @@ shadows](single_ray_shadows.md). Derivatives through shadows: the notebook [Shad
 light](../notebooks/shadow_of_a_light.md)."""
 
 
-def page(figures):
-    """The text of the page; `figures`: what is said of the errors of a lesson, by its function."""
+def make_page(figures):
+    """Return the text of the page; `figures`: text on the errors of a lesson, by its function."""
     start = (
         BEGIN,
-        shown("distance_field_start", "A cut cube"),
-        code(START.read_text(encoding="utf-8")),
+        make_image_link("distance_field_start", "A cut cube"),
+        make_code_block(START.read_text(encoding="utf-8")),
     )
-    scenes = [text for make in SCENES for text in (f"### {title(make)}", *section(make))]
-    own = "The node of one's own:", code(GYROID.read_text(encoding="utf-8"))
+    scenes = [text for make in SCENES for text in (f"### {read_title(make)}", *make_section(make))]
+    own = "The node of one's own:", make_code_block(GYROID.read_text(encoding="utf-8"))
     compared = [
         text
         for make in lessons.LESSONS
-        for text in (f"## {title(make)}", *section(make), figures[make])
+        for text in (f"## {read_title(make)}", *make_section(make), figures[make])
     ]
-    return paragraphs(
+    return join_paragraphs(
         *("# Distance fields: a gallery", INTRO),
         *("## A quick look", LOOK),
         *("## What a field becomes", BECOMES),
@@ -119,36 +120,45 @@ def page(figures):
     )
 
 
-def title(make):
+def read_title(make):
     return inspect.getdoc(make).partition(": ")[0]
 
 
-def section(make):
-    """Sentences and picture by the docstring of a function, and the function itself."""
+def make_section(make):
+    """Return the text, picture and code for a scene; `make`: its function with a docstring."""
     _, _, text = inspect.getdoc(make).partition(": ")
     source = inspect.getsource(make).replace(f'    """{make.__doc__}"""\n', "")
-    return text[0].upper() + text[1:], shown(make.__name__, title(make)), code(source)
+    return (
+        text[0].upper() + text[1:],
+        make_image_link(make.__name__, read_title(make)),
+        make_code_block(source),
+    )
 
 
-def shown(name, title):
+def make_image_link(name, title):
     return f"![{title}](distance_fields/{name}.png)"
 
 
-def code(source):
+def make_code_block(source):
     return f"```python\n{source.strip()}\n```"
 
 
 def draw_scene(make):
-    """Draw the picture of a scene, if there is none."""
-    if not file(make.__name__).exists():
+    """Draw the picture of a scene, if it does not exist yet; `make`: function of the scene."""
+    if not find_picture_file(make.__name__).exists():
         print(make.__name__, flush=True)
-        write(image(mi.render(mi.load_dict(with_film(make(), SIZE)), spp=SPP)), make.__name__)
+        write_picture(
+            to_screen_image(mi.render(mi.load_dict(add_film(make(), SIZE)), spp=SPP)), make.__name__
+        )
 
 
 def draw_lesson(make):
-    """Draw the pictures of a lesson; return the table of their errors if one is the truth."""
-    found = {name: rendered(scene) for name, scene in make().items()}
-    write(sheet({name: image(picture) for name, (picture, _) in found.items()}), make.__name__)
+    """Draw the pictures of a lesson, and return the table of their errors if one is the truth."""
+    found = {name: render_timed(scene) for name, scene in make().items()}
+    write_picture(
+        make_sheet({name: to_screen_image(picture) for name, (picture, _) in found.items()}),
+        make.__name__,
+    )
     first, last = next(iter(found)), list(found)[-1]
     if last not in lessons.TRUTHS:
         return ""
@@ -158,24 +168,24 @@ def draw_lesson(make):
         for n, (p, s) in found.items()
     ]
     said = {"brightest": truth.max(), "truth": last, "rays": lessons.RAYS, "first": first}
-    more = by_roughness() if make is highlights else ""
-    return paragraphs(table("method, error, time", rows), FIGURES.format(**said), more)
+    more = describe_errors_by_roughness() if make is highlights else ""
+    return join_paragraphs(make_table("method, error, time", rows), FIGURES.format(**said), more)
 
 
-def by_roughness():
-    """What is said of the errors of highlights by roughness and by the size of the lamp."""
+def describe_errors_by_roughness():
+    """Return the text and table on errors of highlights, by roughness and size of the lamp."""
     rows = [
         (f"α = {alpha:g}", *(f"{100 * mean:+.0f} %, {rms:.2f}" for mean, rms in errors))
-        for alpha, *errors in errors_by_roughness()
+        for alpha, *errors in compute_errors_by_roughness()
     ]
     head = ", ".join(["radius / distance", *(f"{size:g}" for size in SIZES)])
-    return paragraphs(ROUGHNESSES, table(head, rows))
+    return join_paragraphs(ROUGHNESSES, make_table(head, rows))
 
 
-def rendered(scene):
-    """(linear picture, seconds of all threads) of a small scene, the first turn to compile."""
-    loaded, seconds = mi.load_dict(with_film(scene, SMALL)), []
-    for _ in range(1 + TURNS):
+def render_timed(scene):
+    """Return the linear picture of a scene and the processor seconds of its rendering."""
+    loaded, seconds = mi.load_dict(add_film(scene, SMALL)), []
+    for _ in range(1 + TURNS):  # the first rendering compiles the kernels
         began = time.process_time()
         picture = mi.render(loaded, spp=SMALL_SPP)
         dr.eval(picture)
@@ -184,13 +194,13 @@ def rendered(scene):
     return np.array(picture), min(seconds[1:])
 
 
-def with_film(scene, size):
+def add_film(scene, size):
     film = {"type": "hdrfilm", "width": size[0], "height": size[1], "pixel_format": "rgb"}
     return scene | {"sensor": scene["sensor"] | {"film": film}}
 
 
-def sheet(pictures):
-    """One image of all pictures, with their labels below."""
+def make_sheet(pictures):
+    """Return one image of all pictures (by label), each with its label below."""
     columns = min(COLUMNS, len(pictures))
     wide, high = SMALL[0], SMALL[1] + LINE
     page = Image.new("RGB", (columns * wide, -(-len(pictures) // columns) * high), "white")
@@ -202,23 +212,23 @@ def sheet(pictures):
     return page
 
 
-def image(linear):
+def to_screen_image(linear):
     return Image.fromarray((255 * to_srgb(np.array(linear)) + 0.5).astype(np.uint8))
 
 
-def file(name):
+def find_picture_file(name):
     return FOLDER / f"{name}.png"
 
 
-def write(picture, name):
-    picture.save(file(name), optimize=True)
+def write_picture(picture, name):
+    picture.save(find_picture_file(name), optimize=True)
 
 
 if __name__ == "__main__":
     mi.set_variant("llvm_ad_rgb")
     FOLDER.mkdir(exist_ok=True)
-    write(image(runpy.run_path(str(START))["picture"]), "distance_field_start")
+    write_picture(to_screen_image(runpy.run_path(str(START))["picture"]), "distance_field_start")
     for make in SCENES:
         draw_scene(make)
     figures = {make: draw_lesson(make) for make in lessons.LESSONS}
-    PAGE.write_text(page(figures), encoding="utf-8")
+    PAGE.write_text(make_page(figures), encoding="utf-8")

@@ -1,9 +1,9 @@
-"""Draw `docs/entrance.jpg`, the picture of the README: a measured material, its fit, their errors.
+"""Draws `docs/entrance.jpg`, the picture of the README: a measured material, its fit, their errors.
 
 python docs/tools/make_entrance.py           # some minutes
 
-Two balls are path-traced in the same light; the third shows their difference as an eye sees it.
-The curves are the measured and the fitted values in the plane of incidence.
+Two balls are path-traced in the same light; the third picture shows their colour difference. The
+curves are the measured and the fitted values in the plane of incidence.
 """
 
 from pathlib import Path
@@ -19,12 +19,13 @@ from brdfkit.images.errors.colour_difference import ciede2000
 MATERIAL, MODEL, LOSS = "car_paint", "ggx+ggx", "cbrt"
 PICTURE = Path(__file__).parents[1] / "entrance.jpg"
 SIZE, SPP, SEED = 320, 400, 1
-LARGEST_DIFFERENCE = 5.0  # ΔE₀₀ of the brightest colour
-INCIDENCES = {15: "#0072b2", 45: "#d55e00", 70: "#009e73"}  # θ_i in degrees: the curve's colour
+LARGEST_DIFFERENCE = 5.0  # colour difference ΔE₀₀ at the bright end of the colour map
+# Colours of the curves by angle of incidence [degrees]
+INCIDENCES = {15: "#0072b2", 45: "#d55e00", 70: "#009e73"}
 
 
-def draw():
-    """The picture as a matplotlib `Figure`."""
+def draw_entrance():
+    """Return the picture as a matplotlib `Figure`."""
     paint = bk.load(MATERIAL)
     fit = bk.fit(paint, MODEL, loss=LOSS)
     rendering = bk.render([paint, fit], spp=SPP, size=SIZE, seed=SEED)
@@ -33,9 +34,9 @@ def draw():
     noise = ciede2000(measured, rendering.other_seed)
     figure = Figure(figsize=(13, 3.5), dpi=110, facecolor="white", layout="constrained")
     axes = figure.subplots(1, 4, width_ratios=[1, 1, 1.12, 1.3])
-    show(axes[0], to_srgb(measured), f"measured: {paint.name}")
-    show(axes[1], to_srgb(fitted), f"fitted: {MODEL}")
-    image = show(axes[2], difference, "difference ΔE₀₀", vmax=LARGEST_DIFFERENCE)
+    show_picture(axes[0], to_srgb(measured), f"measured: {paint.name}")
+    show_picture(axes[1], to_srgb(fitted), f"fitted: {MODEL}")
+    image = show_picture(axes[2], difference, "difference ΔE₀₀", vmax=LARGEST_DIFFERENCE)
     figure.colorbar(image, ax=axes[2], fraction=0.046, pad=0.03)
     typical = [np.median(values[rendering.mask]) for values in (difference, noise)]
     axes[2].set_xlabel("median {:.1f}, of which the noise has {:.1f}".format(*typical))
@@ -43,14 +44,17 @@ def draw():
     return figure
 
 
-def show(axes, picture, title, vmax=None):
+def show_picture(axes, picture, title, vmax=None):
     axes.set_title(title)
     axes.set(xticks=[], yticks=[])
     return axes.imshow(picture, cmap="magma", vmin=0 if vmax else None, vmax=vmax)
 
 
 def plot_lobes(axes, paint, fit):
-    """Measured values as points and fitted ones as lines, over θ_o; behind the normal it is < 0."""
+    """Plot measured values as points and fitted ones as lines, over the outgoing angle θ_o.
+
+    θ_o is negative on the side of the light.
+    """
     angle = np.linspace(-80, 80, 161)
     wo = from_angles(np.radians(np.abs(angle)), np.where(angle < 0, 0.0, np.pi))
     for theta_i, colour in INCIDENCES.items():
@@ -61,7 +65,7 @@ def plot_lobes(axes, paint, fit):
     errors = fit.standard_errors
     words = [
         f"α of lobe {number}: {fit.values[name]:.4f} ± {errors[name]:.5f}"
-        for number, name in enumerate(shapes(fit), 1)
+        for number, name in enumerate(find_lobe_widths(fit), 1)
     ]
     axes.text(0.02, 0.97, "\n".join(words), transform=axes.transAxes, va="top", size=8)
     axes.set_title("BRDF [sr⁻¹]: measured ○, fitted —")
@@ -71,11 +75,11 @@ def plot_lobes(axes, paint, fit):
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def shapes(fit):
-    """The widths of the lobes, without those that follow another one."""
+def find_lobe_widths(fit):
+    """Return the names of the fit's lobe widths, without parameters that follow another one."""
     parameters = fit.model.parameters.items()
     return [name for name, p in parameters if name.endswith("alpha_u") and not p.follows]
 
 
 if __name__ == "__main__":
-    draw().savefig(PICTURE, pil_kwargs={"quality": 90})
+    draw_entrance().savefig(PICTURE, pil_kwargs={"quality": 90})

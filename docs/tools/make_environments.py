@@ -1,5 +1,6 @@
-"""Makes `docs/environments.md`, a page of the environment maps that brdfkit brings, with pictures;
-and the picture of the compass for the how-to.
+"""Makes `docs/environments.md`, a page of the environment maps that come with brdfkit.
+
+It also draws the picture of that page, and the map of a compass for a how-to.
 
 python docs/tools/make_environments.py           # some minutes
 """
@@ -7,7 +8,7 @@ python docs/tools/make_environments.py           # some minutes
 from pathlib import Path
 
 import numpy as np
-from make_models import paragraphs, table
+from make_models import join_paragraphs, make_table
 from PIL import Image, ImageDraw, ImageFont
 
 import brdfkit as bk
@@ -34,19 +35,19 @@ light is spread.
 others, free ones too, says `brdfkit data`."""
 
 
-def page():
-    """The text of the page."""
+def make_page():
+    """Return the text of the page."""
     rows = []
     for name in SHOWN:
         map, found = catalogue.list_environments()[name], bk.environments.audit(name)
         share, stops = found.brightest_share, np.log2(found.largest / found.median)
         rows.append((f"`{name}`", map.what, f"{share:.0%}".replace("%", " %"), f"{stops:.0f}"))
-    figures = table("map, what it is, light in 1 %, stops from median to max", rows)
-    return paragraphs("# The environments", TEXT, PICTURE, figures, BELOW)
+    figures = make_table("map, what it is, light in 1 %, stops from median to max", rows)
+    return join_paragraphs("# The environments", TEXT, PICTURE, figures, BELOW)
 
 
-def picture():
-    """The maps, and beside each the balls that it lights."""
+def draw_maps_and_balls():
+    """Return a picture of the maps, each next to balls that it lights."""
     wide = 2 * HEIGHT + len(BALLS) * (HEIGHT + GAP)
     sheet = Image.new("RGB", (wide, len(SHOWN) * (HEIGHT + GAP + LINE)), "white")
     draw, font = ImageDraw.Draw(sheet), ImageFont.load_default(18)
@@ -55,20 +56,20 @@ def picture():
         draw.text((4, top + LINE // 2), name, "black", font, anchor="lm")
         rgb = read_map(catalogue.find_environment_file(name))
         exposure = 0.18 / np.exp(np.log(luminance(rgb) + 1e-4).mean())
-        sheet.paste(image(rgb * exposure).resize((2 * HEIGHT, HEIGHT)), (0, top + LINE))
+        sheet.paste(to_screen_image(rgb * exposure).resize((2 * HEIGHT, HEIGHT)), (0, top + LINE))
         balls = bk.render(BALLS, spp=SPP, size=HEIGHT, environment=name).pictures.values()
         for column, ball in enumerate(balls):
             place = 2 * HEIGHT + GAP + column * (HEIGHT + GAP), top + LINE
-            sheet.paste(image(ball), place)
+            sheet.paste(to_screen_image(ball), place)
     return sheet
 
 
-def image(linear):
+def to_screen_image(linear):
     return Image.fromarray((255 * to_srgb(linear) + 0.5).astype(np.uint8))
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page(), encoding="utf-8")
-    picture().save(PAGE.with_suffix(".jpg"), quality=88, optimize=True)
-    compass = image(read_map(catalogue.find_environment_file("compass")))
+    PAGE.write_text(make_page(), encoding="utf-8")
+    draw_maps_and_balls().save(PAGE.with_suffix(".jpg"), quality=88, optimize=True)
+    compass = to_screen_image(read_map(catalogue.find_environment_file("compass")))
     compass.resize((768, 384), Image.Resampling.NEAREST).save(COMPASS, quality=90, optimize=True)

@@ -1,8 +1,8 @@
-"""Makes `docs/formats/`: a page of each file format, and a table of what each can hold.
+"""Makes `docs/formats/`: a page of each file format, and a table of what each format can store.
 
 python docs/tools/make_formats.py         # one minute
 
-What a format holds is found out by writing small materials and reading them again.
+The program finds out what a format can store by writing small materials and reading them again.
 """
 
 import re
@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from make_models import paragraphs, table
+from make_models import join_paragraphs, make_table
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
@@ -28,8 +28,8 @@ of yours. To add a format:
 HOLDS = "## What it holds\n\nEach was written and read again."
 
 
-def materials():
-    """A small material of each kind, by what is asked of a format."""
+def make_materials():
+    """Return small materials by the property that a format has to store."""
     wi, wo = random_pairs(300, seed=0, max_degrees=75)
     grey = bk.models()["ggx"](**FORMULA).eval(wi, wo)
     brushed = bk.models()["ggx"](alpha_v=0.6, **FORMULA).eval(wi, wo)
@@ -48,8 +48,11 @@ def materials():
     }
 
 
-def outcome(module, material):
-    """What becomes of a material in a format: `yes`, `changed` or `no`, and the words of it."""
+def try_round_trip(module, material):
+    """Return what a format does to a material: a verdict and an explanation.
+
+    The verdict is "yes", "changed" or "no", or "" for a format that brdfkit cannot write.
+    """
     if not hasattr(module, "write"):
         return "", "brdfkit does not write this format"
     with TemporaryDirectory() as folder:
@@ -62,55 +65,61 @@ def outcome(module, material):
     return ("changed", "; ".join(changes)) if changes else ("yes", "nothing lost")
 
 
-def file_name(module):
+def make_page_name(module):
     return f"{module.__name__.rpartition('.')[2]}.md"
 
 
-def suffixes(module):
+def list_suffixes(module):
     return ", ".join(f"`{suffix}`" for suffix in module.SUFFIXES)
 
 
-def prose(module):
-    """The first sentence and the other lines of a format's docstring."""
+def split_docstring(module):
+    """Return the first sentence and the other text of a format's docstring."""
     first, _, rest = module.__doc__.strip().partition("\n\n")
     return first, re.sub(r"``(.+?)``", r"`\1`", rest)
 
 
-def page(module, found):
-    """The text of a format's page; `found`: the outcomes by material."""
-    first, rest = prose(module)
+def make_page(module, found):
+    """Return the text of a format's page; `found`: verdicts and explanations by property."""
+    first, rest = split_docstring(module)
     can = "read and written" if hasattr(module, "write") else "read"
     folder = "../../src/brdfkit/materials/formats"
     source = f"{folder}/rgl/__init__.py" if hasattr(module, "__path__") else None
-    source = source or f"{folder}/{file_name(module).replace('.md', '.py')}"
+    source = source or f"{folder}/{make_page_name(module).replace('.md', '.py')}"
     rows = [(name, words) for name, (_, words) in found.items()]
     cited = "\n".join(f"- {work}" for work in find_cited_works(module.__doc__))
-    return paragraphs(
+    return join_paragraphs(
         f"# {module.NAME}",
         first,
-        f"Suffix {suffixes(module)}; {can}.",
+        f"Suffix {list_suffixes(module)}; {can}.",
         rest,
-        *((HOLDS, table("given, what came back", rows)) if hasattr(module, "write") else ()),
+        *((HOLDS, make_table("given, what came back", rows)) if hasattr(module, "write") else ()),
         cited and f"## References\n\n{cited}",
         f"[The source]({source}) · [all formats](README.md)",
     )
 
 
-def pages():
-    """File name → text of all pages."""
-    given = materials()
-    found = {m: {name: outcome(m, thing) for name, thing in given.items()} for m in list_formats()}
+def make_pages():
+    """Return the text of each page by its file name."""
+    given = make_materials()
+    found = {
+        m: {name: try_round_trip(m, thing) for name, thing in given.items()} for m in list_formats()
+    }
     rows = [
-        (f"[{m.NAME}]({file_name(m)})", suffixes(m), *(verdict for verdict, _ in cells.values()))
+        (
+            f"[{m.NAME}]({make_page_name(m)})",
+            list_suffixes(m),
+            *(verdict for verdict, _ in cells.values()),
+        )
         for m, cells in found.items()
     ]
-    index = table(f"format, suffix, {', '.join(given)}", rows)
-    return {"README.md": paragraphs("# The file formats", INDEX, index)} | {
-        file_name(m): page(m, cells) for m, cells in found.items()
+    index = make_table(f"format, suffix, {', '.join(given)}", rows)
+    return {"README.md": join_paragraphs("# The file formats", INDEX, index)} | {
+        make_page_name(m): make_page(m, cells) for m, cells in found.items()
     }
 
 
 if __name__ == "__main__":
     FOLDER.mkdir(exist_ok=True)
-    for name, text in pages().items():
+    for name, text in make_pages().items():
         (FOLDER / name).write_text(text, encoding="utf-8")

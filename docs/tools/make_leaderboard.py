@@ -1,10 +1,10 @@
-"""Makes `docs/leaderboard.md` and its figure: every model, fitted to every measurement at hand.
+"""Makes `docs/leaderboard.md` and its figure: every model, fitted to every available measurement.
 
     BRDFKIT_DATA=FOLDER python docs/tools/make_leaderboard.py --cache CACHE  # 15 minutes
 
-FOLDER holds third-party measurements. CACHE keeps each fit as soon as it is finished, and the same
-command goes on from there; the page is written after each part of the plan. The errors are computed
-by `leaderboard/truth.py`, and made into tables and words by `leaderboard/page.py`.
+FOLDER contains third-party measurements. CACHE stores each fit as soon as it is finished, so that
+the same command continues an interrupted run. The page is written again after each sweep. The
+errors are computed by `leaderboard/truth.py`, and the text is in `leaderboard/page.py`.
 """
 
 import argparse
@@ -30,7 +30,7 @@ from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.search.levenberg_marquardt import levenberg_marquardt
 
 SEED = 0
-# Cells of the reconstructions that are fitted, of a MERL table, and of one to be searched often
+# Numbers of cells of the fitted reconstructions, of a MERL table, and of a table for many searches
 SHAPE, FULL, COARSE = (60, 30, 60), (90, 90, 180), (30, 24, 48)
 FEW = (
     "gold-metallic-paint",
@@ -39,8 +39,8 @@ FEW = (
     "specular-violet-phenolic",
     "light-brown-fabric",
 )
-# The main sums, and more of them and of other forms, which are fitted by the log loss only. They
-# did best of all pairs of models, on a few materials, and of their variants
+# The main sums of models, and further models, which are fitted by the log loss only. In trials on a
+# few materials they had the least errors of all pairs of models, and of their variants
 SUMS = "ggx+ggx", "abc+ggx", "abc+student_t"
 MORE = (
     "abc+student_t:fresnel=coloured",
@@ -48,10 +48,10 @@ MORE = (
     "ggx:fresnel=coloured",
     "student_t:fresnel=coloured",
 )
-# How many random starts the search is held to
+# Number of random starts with which the search is compared
 RESTARTS = 50
-# What is fitted to measurements and by other losses, too, and checked on a few reconstructions:
-# against full tables, and against random starts on coarse ones
+# Models that are also fitted to measurements and by other losses, and checked on the materials FEW:
+# with full tables, and with random starts on coarse tables
 SOME = "ggx", "student_t", "ggx+ggx", "abc+student_t"
 NETWORKS, MERL = "nbrdf_derived/merl_nbrdf.npz", "neural reconstruction"
 COLLECTIONS = {
@@ -61,8 +61,8 @@ COLLECTIONS = {
 }
 
 
-def plan():
-    """What is fitted: (collection, loss, labels of models), the most telling first."""
+def list_sweeps():
+    """Yield the sweeps (collection, loss, labels of models), the most important first."""
     main = (*(name for name in bk.models() if name != "mixture"), *SUMS)
     yield MERL, "log", main
     yield MERL, "log", MORE
@@ -72,8 +72,8 @@ def plan():
     yield MERL, "cbrt", SOME
 
 
-def reconstructions(networks, cache, shape, names=None):
-    """The files in `cache` of neural reconstructions, as tables of `shape`."""
+def make_reconstructions(networks, cache, shape, names=None):
+    """Write tables of a `shape` of neural reconstructions to the cache, and return their files."""
     folder = cache / "materials" / "x".join(map(str, shape))
     folder.mkdir(parents=True, exist_ok=True)
     files = [folder / f"{name}.npz" for name in names or sorted(networks)]
@@ -84,15 +84,16 @@ def reconstructions(networks, cache, shape, names=None):
     return files
 
 
-def sweep(files, models, loss, output, workers):
-    """The finished sweep of some files, each fit of which is kept in `output`."""
+def run_sweep(files, models, loss, output, workers):
+    """Fit some models to some files, and return the finished sweep; `output` stores each fit."""
 
-    def tell(done, total):
+    def show_progress(done, total):
+        """Print the number of finished fits."""
         print(f"{output.name}: {done} of {total} fits", end="\r", file=sys.stderr)
 
     settings = {"loss": loss, "seed": SEED, "max_angle": MAX_ANGLE}
     found = bk.sweep(
-        files, models, settings=settings, folder=output, workers=workers, progress=tell
+        files, models, settings=settings, folder=output, workers=workers, progress=show_progress
     )
     print(f"{output.name}: {found.summary}", *found.problems, sep="\n", file=sys.stderr)
     if len(found.rows) < found.requested:
@@ -100,8 +101,8 @@ def sweep(files, models, loss, output, workers):
     return found
 
 
-def restart(file, model):
-    """(E of the fit, the least E of `RESTARTS` searches from random points on all samples)."""
+def compare_with_random_starts(file, model):
+    """Return the loss of a fit, and the least loss of `RESTARTS` searches from random points."""
     data, model = bk.load(file), labels.model(model)
     samples = select_samples(data, MAX_ANGLE)
     space = Space.for_model(model, {}, model.determine_parameters(samples), data.anisotropic)
@@ -111,32 +112,32 @@ def restart(file, model):
         start = problem.estimate_weights(u)
         found = levenberg_marquardt(problem.expand, u, start, problem.least, 200, 1e-9).ends
         ends.append(float(np.sqrt(found.error[0])))
-    # without the term for its albedo, which a fit may have
+    # `regress` has no term for the albedo, unlike `bk.fit`, so that the losses are comparable
     return regress(model, samples, bk.losses.named["log"], seed=SEED).loss, min(ends)
 
 
-class Kept:
-    """Results in a JSON file, by key, so that each is computed once."""
+class ResultCache:
+    """Results in a JSON file by key, so that each is computed only once."""
 
     def __init__(self, file):
         self.file = file
         self.results = json.loads(file.read_text()) if file.is_file() else {}
 
     def __call__(self, key, compute, *arguments):
-        """The result of `key`, computed where it is not kept."""
+        """Return the result of `key`; compute it by `compute(*arguments)` if it is not there."""
         if key not in self.results:
             self.results[key] = compute(*arguments)
         return self.results[key]
 
     def write(self):
-        """Write the file."""
+        """Write the results to the file."""
         with write_safely(self.file) as beside:
             beside.write_text(json.dumps(self.results))
 
 
 @dataclass(frozen=True)
 class Score:
-    """One fit: `error` in the page's metric, `own` in the loss that it minimised."""
+    """The score of a fit; `error`: error in the page's metric, `own`: the loss it minimised."""
 
     collection: str
     material: str
@@ -148,7 +149,7 @@ class Score:
 
 
 def time_fits(file, models, kept):
-    """Model → seconds of the processor that a fit to a file takes, the least of two."""
+    """Return the processor seconds of a fit to a file by model, the least of two runs."""
     data = bk.load(file)
 
     def measure(model):
@@ -162,16 +163,16 @@ def time_fits(file, models, kept):
     return {model: kept(f"seconds/{file.stem}/{model}", measure, model) for model in models}
 
 
-def judge(rows, collection, networks, kept):
-    """Yield the `Score` of every row of a sweep whose fit succeeded."""
+def compute_scores(rows, collection, networks, kept):
+    """Yield the `Score` of every successful fit in the rows of a sweep."""
     asked = {}
 
     def error(row):
         file = Path(row.file)
         if file not in asked:
-            asked.clear()  # one at a time: rows come by file
+            asked.clear()  # keep one in memory, because rows are sorted by file
             asked[file] = Truth(file, networks)
-        return asked[file].error(row.fit)
+        return asked[file].compute_error(row.fit)
 
     for row in rows:
         if row.fit:
@@ -181,9 +182,11 @@ def judge(rows, collection, networks, kept):
     kept.write()
 
 
-def start(description):
-    """The arguments of the command line, the folder of measurements, and the networks in it, of a
-    program that its docstring describes."""
+def read_arguments(description):
+    """Return the arguments of the command line, the folder of measurements, and its networks.
+
+    `description`: docstring of the program.
+    """
     parser = argparse.ArgumentParser(description=description.partition("\n")[0])
     parser.add_argument("--cache", type=Path, required=True, help="folder for the fits")
     parser.add_argument("--workers", type=int, help="processes; default: one for each core")
@@ -198,28 +201,28 @@ def start(description):
 
 
 def main():
-    """Fit what is not fitted, judge all fits, and write the page."""
-    given, folder, networks = start(__doc__)
-    kept = Kept(given.cache / "errors.json")
+    """Make all fits that the cache does not contain, compute their errors, and write the page."""
+    given, folder, networks = read_arguments(__doc__)
+    kept = ResultCache(given.cache / "errors.json")
 
-    files = {MERL: reconstructions(networks, given.cache, SHAPE)}
+    files = {MERL: make_reconstructions(networks, given.cache, SHAPE)}
     files |= {name: sorted(folder.glob(pattern)) for name, pattern in COLLECTIONS.items()}
     shape = "×".join(map(str, SHAPE))
     facts = {"merl": MERL, "pairs": PAIRS, "angle": MAX_ANGLE, "seed": SEED, "shape": shape}
     scores, full, restarts, seconds = [], [], [], {}
     timed = next(file for file in files[MERL] if file.stem == FEW[0])
-    for collection, loss, models in plan():
-        rows = sweep(files[collection], models, loss, given.cache / loss, given.workers).rows
-        scores += judge(rows, collection, networks, kept)
+    for collection, loss, models in list_sweeps():
+        rows = run_sweep(files[collection], models, loss, given.cache / loss, given.workers).rows
+        scores += compute_scores(rows, collection, networks, kept)
         seconds |= time_fits(timed, models, kept)
         write_page(scores, seconds, full, restarts, facts)
     # A few materials in full, and from random starts
-    few = reconstructions(networks, given.cache, FULL, FEW)
-    rows = sweep(few, SOME, "log", given.cache / "full", given.workers).rows
-    full += judge(rows, MERL, networks, kept)
-    for file in reconstructions(networks, given.cache, COARSE, FEW):
+    few = make_reconstructions(networks, given.cache, FULL, FEW)
+    rows = run_sweep(few, SOME, "log", given.cache / "full", given.workers).rows
+    full += compute_scores(rows, MERL, networks, kept)
+    for file in make_reconstructions(networks, given.cache, COARSE, FEW):
         for model in SOME:
-            found = kept(f"restarts/{file.stem}/{model}", restart, file, model)
+            found = kept(f"restarts/{file.stem}/{model}", compare_with_random_starts, file, model)
             restarts.append((file.stem, model, *found))
     kept.write()
     write_page(scores, seconds, full, restarts, facts)

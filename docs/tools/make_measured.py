@@ -1,8 +1,8 @@
-"""Makes `docs/measured.md` and its sheet of balls: every measurement at hand, audited and rendered.
+"""Makes `docs/measured.md`: every available measurement, audited and rendered on a ball.
 
     BRDFKIT_DATA=FOLDER python docs/tools/make_measured.py [FILE...]    # six seconds a material
 
-The folder holds third-party files, which are shown and not shipped; brdfkit's own come first.
+FOLDER contains third-party files, which brdfkit does not ship; its own materials come first.
 """
 
 import math
@@ -25,7 +25,7 @@ from brdfkit.rendering.scenes.ball import ball
 
 PAGE = Path(__file__).parents[1] / "measured.md"
 SIZE, SPP, COLUMNS = 128, 121, 10
-CAPTION, FONT, LETTERS = 32, 11, 18  # heights [pixels] of the label and its font; a line's length
+CAPTION, FONT, LETTERS = 32, 11, 18  # heights of label and font [pixels], characters in a line
 SAMPLES = 200_000
 TEXT = """# Measured materials
 
@@ -44,8 +44,8 @@ in units of an analytic Ward's. *doubts*: how many things `brdfkit info` finds t
 """
 
 
-def files(folder):
-    """What `brdfkit.load` takes, of every measurement."""
+def list_measurements(folder):
+    """Return the arguments of `brdfkit.load` for all measurements, names and paths."""
     names = list(catalogue.list_materials())
     for path in sorted(p for p in Path(folder).rglob("*") if p.is_file()):
         suffix = path.name.removesuffix(".xz").rpartition(".")[2]
@@ -56,8 +56,8 @@ def files(folder):
     return names
 
 
-def pictured(bsdf):
-    """(linear picture, seconds) of a ball."""
+def render_ball(bsdf):
+    """Return the linear picture of a ball with a BSDF, and the seconds of its rendering."""
     import mitsuba as mi
 
     scene = mi.load_dict(ball(bsdf, (SIZE, SIZE), SPP))
@@ -69,8 +69,11 @@ def pictured(bsdf):
     return picture, min(seconds)
 
 
-def row(name, ward):
-    """(name, row of the page, picture) of a measurement; `ward`: what its time is compared to."""
+def measure_material(name, ward):
+    """Return the name, the row of the table and the picture of a measurement.
+
+    `ward`: the BSDF whose rendering time is the unit.
+    """
     began = time.perf_counter()
     measured = bk.load(name)
     material = measured.rgb
@@ -79,8 +82,8 @@ def row(name, ward):
     seconds = time.perf_counter() - began
     stds = " ".join(f"{compute_weight_spread(subject, d, SAMPLES):.2f}" for d in INCIDENCES)
     albedos = [bk.albedo(material, from_angles(np.radians(d), 0.0)).mean() for d in (0, 60)]
-    picture, took = pictured(bsdf)
-    _, unit = pictured(ward)  # anew: the machine may be busier than before
+    picture, took = render_ball(bsdf)
+    _, unit = render_ball(ward)  # measured again, because the load of the machine may change
     kind = "table" if measured.is_table else "samples"
     doubts = len(bk.audit(measured).findings())
     cells = measured.name, kind, len(measured.channels), len(measured.values), stds
@@ -88,8 +91,8 @@ def row(name, ward):
     return measured.name, "| " + " | ".join(map(str, cells)) + " |", picture
 
 
-def sheet(pictures):
-    """One image of all pictures, with names."""
+def make_sheet(pictures):
+    """Return one image of all pictures (by name) with their names."""
     rows = math.ceil(len(pictures) / COLUMNS)
     page = Image.new("RGB", (COLUMNS * SIZE, rows * (SIZE + CAPTION)), "white")
     draw, font = ImageDraw.Draw(page), ImageFont.load_default(FONT)
@@ -99,12 +102,12 @@ def sheet(pictures):
         page.paste(
             Image.fromarray((to_srgb(linear) * 255 + 0.5).astype(np.uint8)), (x, y + CAPTION)
         )
-        draw.text((x + 3, y + 3), label(name), "black", font)
+        draw.text((x + 3, y + 3), wrap_name(name), "black", font)
     return page
 
 
-def label(name):
-    """The whole name, in two lines where it is long: most names differ at their ends."""
+def wrap_name(name):
+    """Return a name, broken into lines if it is long, because most names differ at their ends."""
     return "\n".join(textwrap.wrap(name, LETTERS))
 
 
@@ -118,9 +121,9 @@ def main():
     mi.set_variant("llvm_ad_rgb")
     ward = bk.models()["ward"]().scene_dict()
     lines, pictures = [], {}
-    for name in [*files(folder), *sys.argv[1:]]:
-        title, line, picture = row(name, ward)
-        while title in pictures:  # one material, two files
+    for name in [*list_measurements(folder), *sys.argv[1:]]:
+        title, line, picture = measure_material(name, ward)
+        while title in pictures:  # two files may have the same name
             title += "'"
         lines.append(line)
         pictures[title] = picture
@@ -137,7 +140,7 @@ def main():
         "doubts",
     ]
     table = ["| " + " | ".join(heads) + " |", "|" + " --- |" * len(heads), *lines]
-    sheet(pictures).save(PAGE.with_suffix(".jpg"), quality=90)
+    make_sheet(pictures).save(PAGE.with_suffix(".jpg"), quality=90)
     PAGE.write_text(TEXT + "\n".join(table) + "\n", encoding="utf-8")
     return 0
 

@@ -1,7 +1,7 @@
-"""Makes `docs/models/` of the models' files: a page each, with balls and lobes, and the index.
+"""Makes `docs/models/`: a page for each model, with balls and plots of lobes, and an index.
 
 python docs/tools/make_models.py              # pages and pictures, in two minutes
-python docs/tools/make_models.py --check      # exits 1 where a page is not what its model says
+python docs/tools/make_models.py --check      # exits with 1 if a page is not up to date
 """
 
 import json
@@ -47,143 +47,168 @@ bsdf = mi.load_dict(material)
 ```"""
 
 
-def pages():
-    """File name → text of all pages."""
+def make_pages():
+    """Return the text of each page by its file name."""
     rows = []
-    for name, model in models().items():
+    for name, model in find_shipped_models().items():
         options = "<br>".join(f"`{n}`: {format_choices(o)}" for n, o in model.options.items())
-        rows.append((f"[{name}]({name}.md)", docstring(model)[1], options, ball(model, SIZE // 2)))
-    index = paragraphs("# The models", INDEX, table("model, what it is, options, ball", rows))
-    return {"README.md": index} | {f"{name}.md": page(m) for name, m in models().items()}
+        rows.append(
+            (
+                f"[{name}]({name}.md)",
+                read_docstring(model)[1],
+                options,
+                make_ball_tag(model, SIZE // 2),
+            )
+        )
+    index = join_paragraphs(
+        "# The models", INDEX, make_table("model, what it is, options, ball", rows)
+    )
+    return {"README.md": index} | {
+        f"{name}.md": make_page(m) for name, m in find_shipped_models().items()
+    }
 
 
-def models():
-    """brdfkit's own models by name, without those of a user's that were loaded."""
+def find_shipped_models():
+    """Return brdfkit's own model classes by name, without a user's that were loaded."""
     found = bk.models().items()
     return {name: m for name, m in found if m.__module__.startswith("brdfkit.plugins.")}
 
 
-def page(model):
-    """The text of a model's page."""
-    name, (title, sentence, text), shown = model.type_name(), docstring(model), forms(model)
-    balls = table(", ".join(f"`{f.label()}`" for f in shown), [[ball(f, SIZE) for f in shown]])
-    values = ", ".join(f"`{n}` = {v}" for n, v in shown_values(model).items())
-    parameters = [parameter(*item) for item in model.parameters.items()]
+def make_page(model):
+    """Return the text of a model's page; `model`: its class."""
+    name, (title, sentence, text), shown = (
+        model.type_name(),
+        read_docstring(model),
+        list_forms(model),
+    )
+    balls = make_table(
+        ", ".join(f"`{f.label()}`" for f in shown), [[make_ball_tag(f, SIZE) for f in shown]]
+    )
+    values = ", ".join(f"`{n}` = {v}" for n, v in find_ball_values(model).items())
+    parameters = [make_parameter_row(*item) for item in model.parameters.items()]
     options = [
         (f"`{n}`", o.default, format_choices(o), o.meaning) for n, o in model.options.items()
     ]
-    return paragraphs(
+    return join_paragraphs(
         *(f"# {title}", sentence, balls, f"The ball has {values or 'the defaults'}.", text),
-        table("parameter, default, bounds, meaning, per channel", parameters),
+        make_table("parameter, default, bounds, meaning, per channel", parameters),
         EXPOSED,
-        options and table("option, default, choices, meaning", options),
+        options and make_table("option, default, choices, meaning", options),
         f"![Polar plots of {name} in the plane of incidence]({name}_lobes.png)",
-        *("## Use", use(model)),
-        references(model),
+        *("## Use", make_usage_example(model)),
+        list_references(model),
         f"[The source](../../plugins/bsdfs/{name}.py) · [all models](README.md)",
     )
 
 
-def paragraphs(*texts):
+def join_paragraphs(*texts):
     return "\n\n".join(filter(None, texts)) + "\n"
 
 
-def table(head, rows):
+def make_table(head, rows):
     lines = [head.split(", "), ["---"] * len(head.split(", ")), *rows]
     return "\n".join(
         "| " + " | ".join(str(c).replace("|", "∣") for c in line) + " |" for line in lines
     )
 
 
-def docstring(source):
-    """Title, sentence and the other lines of the page of a plugin's file or class."""
+def read_docstring(source):
+    """Return (title, first sentence, other text) of a plugin's docstring, with set formulas."""
     found = plugin_page(source)
     text = set_formulas("\n".join(found.lines).strip("\n"))
     return found.title, found.sentence[0].upper() + found.sentence[1:], text
 
 
-def references(source):
-    """The works that a page cites, in full."""
+def list_references(source):
+    """Return the section of a page with the works that the plugin's docstring cites."""
     found = plugin_page(source).references
     return found and "## References\n\n" + "\n".join(f"- {work}" for work in found)
 
 
-def parameter(name, p):
+def make_parameter_row(name, p):
     default = f"`{p.follows}`" if p.follows else f"{p.default:.4g}"
     bounds = "{:g} to {:g}".format(*p.bounds).replace("-", "−").replace("inf", "∞")
     return f"`{name}`", default, bounds, p.meaning, "yes" if p.linear else ""
 
 
-def forms(model):
-    """The model, and it with each word of an option that leaves the parameters as they are."""
+def list_forms(model):
+    """Return a model class and its forms by those options that do not change its parameters."""
     words = [(n, w) for n, o in model.options.items() for w in o.choices or () if w != o.default]
     others = [model.configured(**{name: word}) for name, word in words if isinstance(word, str)]
     return [model, *(other for other in others if other.parameters == model.parameters)]
 
 
-def ball(form, width):
-    return f'<img src="{picture(form)}" width="{width}" alt="A ball of {form.label()}">'
+def make_ball_tag(form, width):
+    return f'<img src="{make_picture_name(form)}" width="{width}" alt="A ball of {form.label()}">'
 
 
-def shown_values(form):
-    """The values of a form's ball: those of `PICTURE` in its file, else the defaults."""
+def find_ball_values(form):
+    """Return the parameters of the ball in a form's picture, from `PICTURE` in its file."""
     chosen = getattr(sys.modules[form.__module__], "PICTURE", {})
     return {name: value for name, value in chosen.items() if name in form.parameters}
 
 
-def picture(form):
+def make_picture_name(form):
     return "_".join([form.type_name(), *form.changed_options().values()]) + ".png"
 
 
-def use(model):
-    """Examples, with the first option where there is one."""
+def make_usage_example(model):
+    """Return examples for command line, Python and scene files, with the first option."""
     option = next(iter(model.options), None)
     form = labels.model(make_example_label(model, option)) if option else model
     entries = {"type": form.type_name()} | ({option: getattr(form, option)} if option else {})
     for name in [*form.weights()[:1], *form.shapes()[:1]]:
         entries[name] = form.parameters[name].default
     fits = [f"brdfkit fit FILE -m {name}" for name in dict.fromkeys([model.label(), form.label()])]
-    words = {"fits": "\n    ".join(fits), "entries": python(entries), "xml": xml(**entries)}
+    words = {
+        "fits": "\n    ".join(fits),
+        "entries": format_dictionary(entries),
+        "xml": make_xml_element(**entries),
+    }
     return USE.format(label=form.label(), **words)
 
 
-def python(entries):
-    """A dictionary as ruff formats it."""
+def format_dictionary(entries):
+    """Return a dictionary as Python code, in the format of ruff."""
     return json.dumps(entries, indent=4).replace("\n}", ",\n}")
 
 
-def xml(type, element="bsdf", **entries):
-    """A plugin in a scene file."""
+def make_xml_element(type, element="bsdf", **entries):
+    """Return the XML of a plugin in a scene file, with parameters as `entries`."""
     kinds = {str: "string", int: "integer", float: "float"}
     tags = [f'    <{kinds[v.__class__]} name="{n}" value="{v}"/>' for n, v in entries.items()]
     return "\n".join([f'<{element} type="{type}">', *tags, f"</{element}>"])
 
 
-def draw(model):
-    """Write a model's pictures."""
+def draw_pictures(model):
+    """Write the pictures of a model: balls of its forms, and a plot of its lobes."""
     import mitsuba as mi
 
-    shown = [form() for form in forms(model)]
-    posed = [form(**shown_values(form)) for form in forms(model)]
+    shown = [form() for form in list_forms(model)]
+    posed = [form(**find_ball_values(form)) for form in list_forms(model)]
     balls = bk.render(posed, spp=SPP, size=SIZE).pictures.values()
     for form, linear in zip(shown, balls, strict=True):
         bitmap = np.array(mi.util.convert_to_bitmap(linear))
-        write(Image.fromarray(bitmap), FOLDER / picture(form))
+        write_png(Image.fromarray(bitmap), FOLDER / make_picture_name(form))
     lobes = FOLDER / f"{model.type_name()}_lobes.png"
     bk.plot(shown, theta_i=(15, 45, 75)).savefig(lobes, dpi=100)
-    write(Image.open(lobes).convert("RGB"), lobes)
+    write_png(Image.open(lobes).convert("RGB"), lobes)
 
 
-def write(image, path):
-    """Write a PNG with a palette: less than half the bytes, and at most 4 of 255 off."""
+def write_png(image, path):
+    """Write an image as PNG with a palette: half the size, with errors of at most 4 of 255."""
     image.quantize(256, method=Image.Quantize.MAXCOVERAGE, kmeans=3).save(path, optimize=True)
 
 
-def problems():
-    """What is not as the models' files say, in words."""
-    made, files = pages(), {file.name for file in FOLDER.iterdir()}
-    pictures = {picture(form) for model in models().values() for form in forms(model)}
-    wanted = {*made, *pictures, *(f"{name}_lobes.png" for name in models())}
+def find_problems():
+    """Return sentences on pages and pictures that are missing, superfluous or not up to date."""
+    made, files = make_pages(), {file.name for file in FOLDER.iterdir()}
+    pictures = {
+        make_picture_name(form)
+        for model in find_shipped_models().values()
+        for form in list_forms(model)
+    }
+    wanted = {*made, *pictures, *(f"{name}_lobes.png" for name in find_shipped_models())}
     found = [f"{name} is missing" for name in sorted(wanted - files)]
     found += [f"{name} belongs to no model" for name in sorted(files - wanted)]
     read = {name: (FOLDER / name).read_text(encoding="utf-8") for name in made if name in files}
@@ -192,8 +217,8 @@ def problems():
 
 if __name__ == "__main__":
     if "--check" in sys.argv[1:]:
-        sys.exit("\n".join(problems()) or 0)
-    for name, text in pages().items():
+        sys.exit("\n".join(find_problems()) or 0)
+    for name, text in make_pages().items():
         (FOLDER / name).write_text(text, encoding="utf-8")
-    for model in models().values():
-        draw(model)
+    for model in find_shipped_models().values():
+        draw_pictures(model)

@@ -1,15 +1,15 @@
-"""Makes `docs/real_measurements.md`, its figures and its picture: fits of files as instruments give
-them, and of one material as five files.
+"""Makes `docs/real_measurements.md`, its figures and its picture.
 
     BRDFKIT_DATA=FOLDER python docs/tools/make_real_measurements.py [FILE...]  # minutes
 
-FOLDER holds third-party measurements, which brdfkit does not ship. What is measured is kept in
-`real_measurements.json`, and the same command goes on from there; where files or materials are
-named, they alone are measured, anew. `--only files`, `invariance`, `balls` or `page` makes one
-part. To measure everything anew, delete the JSON.
+The page shows fits of files as instruments give them, and fits of one material in five kinds of
+files. FOLDER contains third-party measurements, which brdfkit does not ship. Results are stored in
+`real_measurements.json`, so that the same command continues an interrupted run. Files and materials
+that are named are measured again, and nothing else. `--only files`, `invariance`, `balls` or `page`
+makes one part. To measure everything again, delete the JSON.
 
-The figures of files are those of `real_measurements/errors.py`; the five files are written by
-`real_measurements/files.py` and compared by `real_measurements/invariance.py`; the words are in
+`real_measurements/errors.py` computes the errors for files; `real_measurements/files.py` writes the
+five files, and `real_measurements/invariance.py` compares their fits; the text is in
 `real_measurements/page.py`.
 """
 
@@ -27,8 +27,8 @@ import numpy as np
 from brdfkit.theses.kurt2007.neural import decode_network
 from PIL import Image, ImageDraw, ImageFont
 from real_measurements import page
-from real_measurements.errors import MODELS, measure
-from real_measurements.files import FILES, read_again
+from real_measurements.errors import MODELS, measure_fits
+from real_measurements.files import FILES, save_and_load
 from real_measurements.invariance import LOSSES, Part, compare_files
 
 import brdfkit as bk
@@ -39,15 +39,16 @@ from brdfkit.core.jit.threads import set_thread_count
 from brdfkit.core.json_values import round_numbers
 
 RESULTS = Path(__file__).parents[1] / "real_measurements.json"
-DIGITS = 4  # of numbers in it
-# Where measurements lie in the folder; of CUReT's file of 61 samples every tenth
+DIGITS = 4  # significant digits of the numbers in the JSON
+# Files of measurements in the folder, and the samples of CUReT's file that are used
 COLLECTIONS = "rgl/*.bsdf", "minidiff_paints/*.astm.xz", "cornell/*.[ab]*", "alta_retro/*.dat.xz"
 CURET = "curet/abrdf.dat", range(1, 61, 10)
-# What is written as five files: reconstructions, beside the isotropic tables that brdfkit ships
+# Materials that are written as five kinds of files: these neural reconstructions of a network file,
+# and the isotropic tables that brdfkit ships
 NETWORKS = "nbrdf_derived/merl_nbrdf.npz"
 RECONSTRUCTIONS = "nickel", "red-fabric", "specular-blue-phenolic", "white-paint"
 SHAPE = 90, 45, 90
-# What the picture shows, and its size
+# Files that the picture shows
 SHOWN = (
     "rgl/satin_rosaline_rgb.bsdf",
     "rgl/cc_iris_purple_gem_rgb.bsdf",
@@ -62,21 +63,21 @@ BALLS = "ggx", "ggx+ggx"
 SIZE, SPP, CAPTION, FONT, COLUMNS = 150, 256, 20, 12, 2
 
 
-def measurements(folder):
-    """The names of the measured files in the folder, below it."""
+def list_measurements(folder):
+    """Return the paths of the measured files, relative to the folder."""
     found = [str(p.relative_to(folder)) for c in COLLECTIONS for p in sorted(folder.glob(c))]
     file, numbers = CURET
     return found + [f"{file}#{number}" for number in numbers if (folder / file).is_file()]
 
 
-def materials(folder):
-    """The names of what is written as five files."""
+def list_materials(folder):
+    """Return the names of the materials that are written as five kinds of files."""
     own = [name for name in catalogue.list_materials() if not bk.load(name).anisotropic]
     return own + list(RECONSTRUCTIONS) * (folder / NETWORKS).is_file()
 
 
-def table_of(name, folder):
-    """The table of a material, of half the cells of MERL's along theta_d and phi_d."""
+def make_table_of(name, folder):
+    """Return a material as a table with half as many cells as MERL's along θ_d and φ_d."""
     if name not in RECONSTRUCTIONS:
         return bk.Measured.from_table(bk.load(name).resampled(SHAPE).values, name=name)
     with np.load(folder / NETWORKS) as networks:
@@ -85,17 +86,17 @@ def table_of(name, folder):
 
 
 def measure_file(name, folder):
-    """The figures of one measured file."""
+    """Return the errors of fits to one measured file."""
     set_thread_count(1)
-    return measure(bk.load(str(folder / name)))
+    return measure_fits(bk.load(str(folder / name)))
 
 
 def measure_invariance(name, folder):
-    """Model → loss → how the fits of one material differ by the file that it is read from."""
+    """Return how the fits of one material differ between files, by model and loss."""
     set_thread_count(1)
-    table = table_of(name, folder)
+    table = make_table_of(name, folder)
     with tempfile.TemporaryDirectory() as beside:
-        files = {kind: read_again(kind, table, Path(beside)) for kind in FILES}
+        files = {kind: save_and_load(kind, table, Path(beside)) for kind in FILES}
     part = Part(files["table"])
     return {
         model: {loss: compare_files(files, model, loss, part) for loss in LOSSES}
@@ -103,8 +104,12 @@ def measure_invariance(name, folder):
     }
 
 
-def run(part, folder, results, given):
-    """Measure what is named, or else all that is not measured yet, each name in a process."""
+def run_missing(part, folder, results, given):
+    """Measure the names on the command line, or else all that have no results, in processes.
+
+    `part`: a key of `WORK`; `results`: results of all parts, which are stored after each name;
+    `given`: arguments of the command line.
+    """
     work, list_names = WORK[part]
     found, names = results.setdefault(part, {}), list_names(folder)
     missing = [n for n in names if (n in given.names if given.names else n not in found)]
@@ -114,7 +119,7 @@ def run(part, folder, results, given):
         for future in as_completed(futures):
             found[futures[future]] = round_numbers(future.result(), DIGITS)
             results[part] = {name: found[name] for name in names if name in found}
-            write(results)
+            write_results(results)
             done += 1
             seconds = time.perf_counter() - began
             print(
@@ -122,8 +127,8 @@ def run(part, folder, results, given):
             )
 
 
-def write(results):
-    """Write the results, a line for each name."""
+def write_results(results):
+    """Write the results to the JSON file, with a line for each name."""
     parts = []
     for part, found in results.items():
         lines = [f"{json.dumps(k)}: {json.dumps(v, ensure_ascii=False)}" for k, v in found.items()]
@@ -132,8 +137,8 @@ def write(results):
         beside.write_text("{\n" + ",\n".join(parts) + "\n}\n", encoding="utf-8")
 
 
-def balls(folder):
-    """One image of the balls: of each file that measured, and those of its fits."""
+def draw_balls(folder):
+    """Return an image with balls of some measured files, each next to balls of its fits."""
     shown = [name for name in SHOWN if (folder / name.partition("#")[0]).is_file()]
     width, height = SIZE * (1 + len(BALLS)), SIZE + CAPTION
     rows = -(-len(shown) // COLUMNS)
@@ -153,11 +158,14 @@ def balls(folder):
     return sheet
 
 
-WORK = {"files": (measure_file, measurements), "invariance": (measure_invariance, materials)}
+WORK = {
+    "files": (measure_file, list_measurements),
+    "invariance": (measure_invariance, list_materials),
+}
 
 
 def main():
-    """Measure what is asked for, and write the page."""
+    """Measure the parts that the command line asks for, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("names", nargs="*", help="files and materials that are measured anew")
     parser.add_argument("--only", choices=(*WORK, "balls", "page"), help="one part; default: all")
@@ -170,9 +178,9 @@ def main():
     results = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.is_file() else {}
     for part in WORK:
         if given.only in (part, None):
-            run(part, folder, results, given)
+            run_missing(part, folder, results, given)
     if given.only in ("balls", None) and not given.names:
-        balls(folder).save(page.PAGE.with_suffix(".jpg"), quality=90)
+        draw_balls(folder).save(page.PAGE.with_suffix(".jpg"), quality=90)
     page.write_page(results)
     return 0
 

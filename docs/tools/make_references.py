@@ -1,4 +1,4 @@
-"""Makes `docs/references.md`: all works that brdfkit cites.
+"""Makes `docs/references.md`, the list of all works that brdfkit cites.
 
 python docs/tools/make_references.py
 """
@@ -16,10 +16,10 @@ of [`references.toml`](../src/brdfkit/core/references.toml), of which `make docs
 """
 
 
-def text():
-    """The page."""
+def make_page():
+    """Return the text of the page."""
     return HEAD + "".join(f"- {reference}\n" for reference in read_references().values())
 
 
 if __name__ == "__main__":
-    PAGE.write_text(text(), encoding="utf-8")
+    PAGE.write_text(make_page(), encoding="utf-8")

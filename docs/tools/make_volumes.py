@@ -1,5 +1,6 @@
-"""Makes `docs/volumes.jpg`: volumes that brdfkit makes, by its renderers, as one would see them who
-changes nothing.
+"""Makes `docs/volumes.jpg`: volumes that brdfkit generates, drawn by each renderer.
+
+All settings are defaults.
 
 python docs/tools/make_volumes.py           # two minutes
 """
@@ -18,8 +19,8 @@ VOLUMES = ("smoke", "marschner_lobb")
 SIZE, VOXELS, SPP, LINE = 250, 128, 128, 28
 
 
-def picture():
-    """A row for each volume, a column for each renderer."""
+def draw_renderers():
+    """Return the picture with a row for each volume and a column for each renderer."""
     wide, high = len(RENDERERS) * SIZE, LINE + len(VOLUMES) * SIZE
     sheet = Image.new("RGB", (wide, high), "white")
     draw, font = ImageDraw.Draw(sheet), ImageFont.load_default(18)
@@ -37,4 +38,4 @@ def picture():
 
 
 if __name__ == "__main__":
-    picture().save(PICTURE, quality=88)
+    draw_renderers().save(PICTURE, quality=88)

@@ -1,12 +1,12 @@
-"""The page of `make_refining.py`, and its picture."""
+"""Writes the page of `make_refining.py` and its picture, from the measurements."""
 
 import json
 from pathlib import Path
 from runpy import run_path
 
 import numpy as np
-from leaderboard.page import made_with
-from make_models import paragraphs, table
+from leaderboard.page import describe_versions
+from make_models import join_paragraphs, make_table
 from PIL import Image, ImageDraw, ImageFont
 
 from brdfkit.core.colours import to_srgb
@@ -14,7 +14,7 @@ from brdfkit.core.colours import to_srgb
 PAGE = Path(__file__).parents[1] / "refining.md"
 RUNS = PAGE.parent.parent / "benchmarks" / "refining_runs.json"
 SIDE, LINE, GAP = 288, 30, 8
-CLEAR = 0.5  # difference that is clear [dB]
+CLEAR = 0.5  # a difference above it counts as clear [dB]
 INTRODUCTION = """`refine` finds numbers of a scene from pictures of it: materials, lamps,
 a camera's angle. It renders the whole scene, light that bounces and all, differentiates it, and
 says how certain the
@@ -140,36 +140,41 @@ them. Then
 - or use what is determined, their product; the picture is right whatever the share of each."""
 
 
-def write(rows, shown, by_adam, by_refine, timings, size, samples):
-    """Write the page and its picture; see `make_refining`."""
-    text = paragraphs(
+def write_page(rows, shown, by_adam, by_refine, timings, size, samples):
+    """Write the page and its picture.
+
+    `rows`, `shown`: result of `compare_with_fits`; `by_adam`, `by_refine`: result of
+    `race_with_adam`; `timings`: result of `measure_times`; `size`, `samples`: side of the pictures
+    and samples per pixel.
+    """
+    text = join_paragraphs(
         "# Refining on pictures",
         INTRODUCTION.format(),
         "## On a photograph of your own",
         HOW,
         "## How long it takes",
-        TIMES.format(times=times(timings)),
+        TIMES.format(times=make_times_table(timings)),
         "## How often it is right",
-        right_and_wrong(),
+        make_outcomes_text(),
         "## What trades off",
         TRADES,
         "## Thousands of numbers",
         MANY,
         "## Where it helps",
-        WHERE.format(size=size, samples=samples, versions=made_with()),
-        advice(rows),
+        WHERE.format(size=size, samples=samples, versions=describe_versions()),
+        describe_gains(rows),
         PICTURE,
         "## Beside the fit of the table",
-        comparison(rows),
+        make_comparison_table(rows),
         "## Beside Adam",
-        RACE.format(rows=race(by_adam, by_refine)),
+        RACE.format(rows=make_race_table(by_adam, by_refine)),
     )
     PAGE.write_text(text, encoding="utf-8")
-    picture(shown).save(PAGE.with_suffix(".jpg"), quality=88, optimize=True)
+    draw_picture(shown).save(PAGE.with_suffix(".jpg"), quality=88, optimize=True)
 
 
-def advice(rows):
-    """How often it helped, by scene."""
+def describe_gains(rows):
+    """Return sentences on how much refining improved the pictures of each scene."""
     said = []
     for scene in dict.fromkeys(row["scene"] for row in rows):
         gains = [r["refined"][0] - r["fit"][0] for r in rows if r["scene"] == scene]
@@ -184,10 +189,11 @@ def advice(rows):
     return "\n".join(said)
 
 
-def comparison(rows):
-    """The table of all materials and models."""
+def make_comparison_table(rows):
+    """Return the table of errors of all materials and models."""
 
-    def both(pair):
+    def format_errors(pair):
+        """Return PSNR and FLIP as text."""
         return f"{pair[0]:.1f} ({pair[1]:.3f})"
 
     cells = [
@@ -195,43 +201,43 @@ def comparison(rows):
             row["scene"],
             f"`{row['material']}`",
             f"`{row['model']}`",
-            both(row["fit"]),
-            both(row["refined"]),
-            both(row["noise"]),
+            format_errors(row["fit"]),
+            format_errors(row["refined"]),
+            format_errors(row["noise"]),
             str(row["steps"]),
             f"{row['seconds']:.0f} s",
         )
         for row in sorted(rows, key=lambda row: row["scene"], reverse=True)
     ]
-    return table("scene, material, model, fitted, refined, noise, steps, time", cells)
+    return make_table("scene, material, model, fitted, refined, noise, steps, time", cells)
 
 
-def times(timings):
-    """The table of times, and of the roughness's standard error, by size and samples."""
+def make_times_table(timings):
+    """Return the table of times and standard errors, by picture size and number of samples."""
     counts = list(dict.fromkeys(samples for _, samples, _, _ in timings))
     cells = {row[:2]: f"{row[2]:.0f} s (±{100 * row[3]:.2g} %)" for row in timings}
     sides = dict.fromkeys(side for side, *_ in timings)
     rows = [(f"{side} × {side}", *(cells[side, samples] for samples in counts)) for side in sides]
-    return table("pixels, " + ", ".join(f"spp={n}" for n in counts), rows)
+    return make_table("pixels, " + ", ".join(f"spp={n}" for n in counts), rows)
 
 
-def right_and_wrong():
-    """How many runs of `benchmarks/refining_runs.py` are right, as a table with its words."""
+def make_outcomes_text():
+    """Return the text and table on how many runs of `benchmarks/refining_runs.py` are right."""
     rows = json.loads(RUNS.read_text(encoding="utf-8"))
-    cells = run_path(str(RUNS.with_suffix(".py")))["count"](rows)
+    cells = run_path(str(RUNS.with_suffix(".py")))["count_outcomes"](rows)
     head = "scene, runs, right, warned, silent, off, cost"
-    return RIGHT.format(table=table(head, cells), before=BEFORE)
+    return RIGHT.format(table=make_table(head, cells), before=BEFORE)
 
 
-def race(by_adam, by_refine):
-    """The table of errors over time."""
+def make_race_table(by_adam, by_refine):
+    """Return the table of errors over time of Adam and `refine`."""
     cells = [(f"Adam, {s:.1f} s", f"{100 * error:.1f} %") for s, error in by_adam[1::2]]
     seconds, error = by_refine
-    return table("by, error", [(f"`refine`, {seconds:.1f} s", f"{100 * error:.1f} %"), *cells])
+    return make_table("by, error", [(f"`refine`, {seconds:.1f} s", f"{100 * error:.1f} %"), *cells])
 
 
-def picture(shown):
-    """Both cameras' pictures in two rows: the truth, fitted and refined."""
+def draw_picture(shown):
+    """Return an image with a row for each camera, of the true, fitted and refined pictures."""
     rows = len(next(iter(shown.values())))
     wide, high = len(shown) * (SIDE + GAP) - GAP, LINE + rows * (SIDE + GAP) - GAP
     sheet = Image.new("RGB", (wide, high), "white")

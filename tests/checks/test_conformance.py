@@ -89,7 +89,7 @@ def test_a_maximum_by_many_samples(make):
 def test_a_saddle_by_its_roots(make):
     """z + xy / 2 = 0 along rays: a parabola, met once from above; no ray is near the faces."""
     case = Case("saddle")
-    origins, d = case.rays[0][::97], case.eye[0]
+    origins, d = case.rays[0][::97], case.view_axes[0]
     found = make.exact.first_above(
         make.grid_of(case.voxels, case.told), make.exact.Rays(origins, d), 0
     )
@@ -108,7 +108,7 @@ def test_a_saddle_by_its_roots(make):
 def test_brdfkit_draws_the_exact_picture(llvm_variant, name):
     """In 2048 steps: to 2e-4 in the root mean square and 1e-4 in all pixels, or 2e-3 at jumps."""
     case = Case(name)
-    difference = (by_brdfkit.picture(case, "careful") - case.exact)[..., :3]
+    difference = (by_brdfkit.draw_case(case, "careful") - case.exact)[..., :3]
     assert np.sqrt(np.mean(difference**2)) < 2e-4
     assert np.abs(difference).max() < (2e-3 if name in SHARP else 1e-4)
 
@@ -117,7 +117,7 @@ def test_brdfkit_draws_the_exact_picture(llvm_variant, name):
 def test_the_default_steps_are_enough(llvm_variant, name):
     """To 2e-3 in the root mean square, and 2e-2 in all pixels: for a thin layer, too."""
     case = Case(name)
-    difference = (by_brdfkit.picture(case, "defaults") - case.exact)[..., :3]
+    difference = (by_brdfkit.draw_case(case, "defaults") - case.exact)[..., :3]
     assert np.sqrt(np.mean(difference**2)) < 2e-3
     assert np.abs(difference).max() < 2e-2
 
@@ -125,5 +125,5 @@ def test_the_default_steps_are_enough(llvm_variant, name):
 def test_too_few_steps_are_seen(llvm_variant):
     """Tissues, labels, of which a step crosses two: the set tells."""
     case = Case("labels")
-    difference = (by_brdfkit.picture(case, "defaults") - case.exact)[..., :3]
+    difference = (by_brdfkit.draw_case(case, "defaults") - case.exact)[..., :3]
     assert np.abs(difference).max() > 0.01

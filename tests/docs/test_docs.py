@@ -33,9 +33,11 @@ pytestmark = pytest.mark.quick
 def make():
     """The program that makes the models' pages."""
     module = import_module("make_models")
-    new = [name for name in module.models() if not (module.FOLDER / f"{name}.md").exists()]
+    new = [
+        name for name in module.find_shipped_models() if not (module.FOLDER / f"{name}.md").exists()
+    ]
     others = import_module("make_plugins")
-    new += [page for page in others.pages() if not (others.FOLDER / page).exists()]
+    new += [page for page in others.make_pages() if not (others.FOLDER / page).exists()]
     if new:  # a plugin is one file: its page is made of it when it is to be published
         pytest.skip(f"no page yet of {', '.join(new)}: make docs")
     return module
@@ -52,21 +54,21 @@ def copied(make, monkeypatch, tmp_path):
 
 def test_the_pages_are_what_the_models_say(make):
     """Otherwise: make docs"""
-    assert make.problems() == []
+    assert make.find_problems() == []
 
 
 def test_the_pages_are_what_the_plugins_say(make):
     """Otherwise: make docs"""
-    assert import_module("make_plugins").problems() == []
+    assert import_module("make_plugins").find_problems() == []
 
 
 def test_the_pages_of_materials_are_what_the_index_says():
     """Otherwise: python docs/tools/make_materials.py"""
     make = import_module("make_materials")
-    assert (make.FOLDER / "README.md").read_text(encoding="utf-8") == make.index()
+    assert (make.FOLDER / "README.md").read_text(encoding="utf-8") == make.make_index()
     for name, material in catalogue.list_materials().items():
         text = (make.FOLDER / f"{name}.md").read_text(encoding="utf-8")
-        assert text.startswith(make.head(material)), name
+        assert text.startswith(make.make_page_head(material)), name
 
 
 def test_the_gallery_of_distance_fields_shows_its_scenes_and_their_code():
@@ -74,16 +76,16 @@ def test_the_gallery_of_distance_fields_shows_its_scenes_and_their_code():
     make = import_module("make_distance_fields")
     page = make.PAGE.read_text(encoding="utf-8")
     for function in make.SCENES + make.lessons.LESSONS:
-        assert "\n\n".join(make.section(function)) in page, function.__name__
-        assert make.file(function.__name__).stat().st_size < 300e3, function.__name__
+        assert "\n\n".join(make.make_section(function)) in page, function.__name__
+        assert make.find_picture_file(function.__name__).stat().st_size < 300e3, function.__name__
 
 
 def test_the_pages_of_formats_are_what_their_docstrings_say():
     """Otherwise: make docs"""
     make = import_module("make_formats")
     for module in list_formats():
-        text = (make.FOLDER / make.file_name(module)).read_text(encoding="utf-8")
-        assert all(part in text for part in make.prose(module)), module.NAME
+        text = (make.FOLDER / make.make_page_name(module)).read_text(encoding="utf-8")
+        assert all(part in text for part in make.split_docstring(module)), module.NAME
 
 
 def test_every_cited_work_is_known_and_every_known_work_is_cited():
@@ -92,7 +94,7 @@ def test_every_cited_work_is_known_and_every_known_work_is_cited():
     listed = ROOT / "docs" / "references.md"
     texts = [f.read_text(encoding="utf-8") for f in files if f != listed and f.name != OWN]
     assert {key for text in texts for key in find_citations(text)} == set(read_references())
-    assert listed.read_text(encoding="utf-8") == import_module("make_references").text()
+    assert listed.read_text(encoding="utf-8") == import_module("make_references").make_page()
 
 
 CITING = {
@@ -108,7 +110,7 @@ def test_a_page_ends_with_the_works_that_it_cites(name):
 
 
 def test_every_model_has_a_page_and_two_pictures(make):
-    for plugin in make.models():
+    for plugin in make.find_shipped_models():
         for name in (f"{plugin}.md", f"{plugin}.png", f"{plugin}_lobes.png"):
             assert (make.FOLDER / name).stat().st_size > 0, name
 
@@ -118,7 +120,7 @@ def test_a_changed_a_missing_and_a_superfluous_file_are_found(make, copied):
         page.write("More.\n")
     (copied / "ggx_lobes.png").unlink()
     (copied / "velvet.md").write_text("# Velvet\n", encoding="utf-8")
-    assert make.problems() == [
+    assert make.find_problems() == [
         "ggx_lobes.png is missing",
         "velvet.md belongs to no model",
         "ward.md is not up to date",
@@ -183,7 +185,7 @@ def test_every_measured_material_has_its_whole_name_above_its_ball(measured):
     font = ImageFont.load_default(make.FONT)
     draw = ImageDraw.Draw(Image.new("RGB", (1, 1)))
     for name in measured:
-        label = make.label(name)
+        label = make.wrap_name(name)
         assert re.sub(r"\s", "", label) == re.sub(r"\s", "", name)
         _, _, right, bottom = draw.multiline_textbbox((3, 3), label, font)
         assert right <= make.SIZE, name

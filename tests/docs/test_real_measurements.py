@@ -25,7 +25,7 @@ def results(make):
 def test_the_page_is_what_its_figures_say(make, results, monkeypatch, tmp_path):
     """Otherwise: python docs/tools/make_real_measurements.py --only page"""
     text = make.page.PAGE.read_text(encoding="utf-8")
-    assert all(line in text for line in make.page.verdict(results))
+    assert all(line in text for line in make.page.write_verdict(results))
     monkeypatch.setattr(make.page, "PAGE", tmp_path / "again.md")
     make.page.write_page(results)
     again = make.page.PAGE.read_text(encoding="utf-8")
@@ -34,20 +34,20 @@ def test_the_page_is_what_its_figures_say(make, results, monkeypatch, tmp_path):
 
 
 def test_wrong_light_is_said(make, results):
-    rows = list(make.page.fits_of(results["files"]))
+    rows = list(make.page.iterate_fits(results["files"]))
     assert len(rows) > 500
     for found, fit, model, loss in rows:
         where = found["name"], model, loss
-        assert fit["said"] or not make.page.is_beyond(found, fit), where
+        assert fit["said"] or not make.page.is_light_wrong(found, fit), where
         assert fit["gain said"] or fit["most"] <= make.page.GAIN, where
 
 
 def test_a_table_and_its_rows_give_the_fit_of_the_page(make, results, tmp_path):
     """Random rows of a table, as .csv, and some of its cells, as .astm, by the default loss."""
     name, model, loss = "satin_plastic", "ggx", "cbrt"
-    table = make.table_of(name, tmp_path)
+    table = make.make_table_of(name, tmp_path)
     kinds = "table", "cells", "random"
-    files = {kind: make.read_again(kind, table, tmp_path) for kind in kinds}
+    files = {kind: make.save_and_load(kind, table, tmp_path) for kind in kinds}
     rows = make.compare_files(files, model, loss, make.Part(files["table"]))
     for kind in kinds[1:]:
         count, same, _, farthest, *albedos = rows[kind]["beside"]

@@ -486,4 +486,4 @@ def test_the_how_to_names_all_conventions():
 def test_the_page_of_the_maps_is_what_they_are():
     """Otherwise: python docs/tools/make_environments.py"""
     make = importlib.import_module("make_environments")
-    assert make.PAGE.read_text(encoding="utf-8") == make.page()
+    assert make.PAGE.read_text(encoding="utf-8") == make.make_page()

@@ -1,6 +1,5 @@
 # ruff: noqa: I001, for brdfkit comes first: it chooses the LLVM that Mitsuba loads
-"""Highlights of round lamps, and how far those of `shading="split"` are from right, for the page
-`distance_fields.md`."""
+"""Draws highlights of round lamps for the page `distance_fields.md`, and computes their errors."""
 
 from math import sqrt
 
@@ -10,7 +9,7 @@ import mitsuba as mi
 import numpy as np
 
 ROUGHNESSES = 0.05, 0.1, 0.2, 0.4  # α of GGX
-SIZES = 0.05, 0.1, 0.2  # of the lamp: its radius over its distance from the ball
+SIZES = 0.05, 0.1, 0.2  # sizes of the lamp: radius over distance from the ball
 EXACT = {"shading": "exact", "samples": 128}
 FILM = {"type": "hdrfilm", "width": 96, "height": 64, "pixel_format": "rgb"}
 SPP = 16
@@ -32,13 +31,13 @@ def highlights():
     return {n: scene(field, {"ball": "car_paint"}, lights, view, **s) for n, s in shadings.items()}
 
 
-def errors_by_roughness():
-    """Rows of α, and of the errors of `split` by the size of the lamp: (mean, root mean square)."""
-    return [(alpha, *(error(alpha, size) for size in SIZES)) for alpha in ROUGHNESSES]
+def compute_errors_by_roughness():
+    """Return a row for each roughness α: α, and the errors of `split` by the size of the lamp."""
+    return [(alpha, *(compute_error(alpha, size) for size in SIZES)) for alpha in ROUGHNESSES]
 
 
-def error(alpha, size):
-    """How far `split` is from `exact` with a metal ball on a ground of the same, over the mean."""
+def compute_error(alpha, size):
+    """Return the relative error (mean, root mean square) of `split` for a metal ball on metal."""
     field = sphere(1).at(0, 0, 1) | plane()
     distance = sqrt(2.5**2 + 1 + 2.5**2)
     lamp = {"lamp": bulb([2.5, 1, 3.5], size * distance, [1, 1, 1])}

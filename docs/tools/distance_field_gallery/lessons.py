@@ -1,5 +1,4 @@
-"""Small pictures beside each other, of which each group shows one thing, for the page
-`distance_fields.md`."""
+"""Defines groups of small pictures for the page `distance_fields.md`, each on one subject."""
 
 from math import pi
 

@@ -1,5 +1,7 @@
-"""Six scenes modelled as distance functions, with measured materials on them: the page
-`distance_fields.md` shows each function beside its picture."""
+"""Defines six scenes of distance functions with measured materials, for `distance_fields.md`.
+
+The page shows each function next to its picture.
+"""
 
 from math import pi
 

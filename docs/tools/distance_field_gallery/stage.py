@@ -1,12 +1,12 @@
 # ruff: noqa: I001, for brdfkit comes first: it chooses the LLVM that Mitsuba loads
-"""What the scenes of `distance_fields.md` are put on: materials, lamps, a camera, a ground."""
+"""Makes parts that the scenes of `distance_fields.md` share: materials, lamps, camera, ground."""
 
 from brdfkit.distance_fields import plane
 import mitsuba as mi
 
 
 def scene(field, materials, lights, camera, **settings):
-    """What Mitsuba renders; `materials`: of each part, a measured one by its name or a colour."""
+    """Return a Mitsuba scene; `materials`: measured materials or colours by part of the field."""
     bsdfs = {part: bsdf(material) for part, material in materials.items()}
     integrator = {"type": "distance_field", "field": field.to_json(), **bsdfs, **settings}
     return {"type": "scene", "integrator": integrator, "sensor": camera, **lights}
@@ -24,12 +24,12 @@ def camera(origin, target, fov):
 
 
 def bulb(centre, radius, radiance):
-    """A round lamp."""
+    """Return a lamp in the shape of a ball."""
     return {"type": "sphere", "center": centre, "radius": radius, "emitter": emitter(radiance)}
 
 
 def panel(centre, towards, half, radiance):
-    """A square lamp, whose edges are 2 `half` long."""
+    """Return a square lamp, whose edges are 2 `half` long."""
     to_world = mi.ScalarTransform4f().look_at(centre, towards, [0, 0, 1]).scale(half)
     return {"type": "rectangle", "to_world": to_world, "emitter": emitter(radiance)}
 
@@ -39,5 +39,5 @@ def emitter(radiance):
 
 
 def cove(depth):
-    """A ground that bends up into a wall."""
+    """Return a ground that bends up into a wall."""
     return plane() | plane((0, -1, 0)).at(0, depth, 0).k(depth)

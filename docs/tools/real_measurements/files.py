@@ -1,15 +1,16 @@
-"""One material as five files, by brdfkit's own writers: two grids and three lists of samples."""
+"""Writes one material as five kinds of files: two grids and three lists of samples."""
 
 import numpy as np
 
 import brdfkit as bk
 from brdfkit.core.geometry.directions import from_angles, from_half_difference
 
-# Steps of the goniometer's grid [degrees]: both polar angles below 80°, and azimuths that close in
-# on the mirror direction, by the square of their number
+# Steps of the goniometer's grid over the incident and outgoing polar angles [degrees], their limit,
+# and the number of azimuths, which become denser towards the mirror direction
 STEP_I, STEP_O, LAST, AZIMUTHS = 2.5, 1.25, 80, 72
+# Numbers of samples in the files "cells" and "random"
 CELLS, ROWS = 60_000, 20_000
-# Kind → suffix; the first is the one to which all others are held
+# Suffixes by kind of file; the fits of the first one are the reference for the others
 FILES = {
     "table": ".binary",
     "RGL grid": ".bsdf",
@@ -19,12 +20,12 @@ FILES = {
 }
 
 
-def read_again(kind, table, folder):
-    """The `Measured` that is read from a file of a `kind`, written of a measured `table`."""
+def save_and_load(kind, table, folder):
+    """Write a measured `table` to a file of a `kind`, and return the material read from it."""
     samples = {
-        "goniometer": goniometer_grid,
-        "cells": lambda: some_cells(table),
-        "random": random_pairs,
+        "goniometer": make_goniometer_grid,
+        "cells": lambda: draw_cells(table),
+        "random": draw_random_pairs,
     }
     thing = table
     if kind in samples:
@@ -35,8 +36,8 @@ def read_again(kind, table, folder):
     return bk.load(file)
 
 
-def goniometer_grid():
-    """Direction pairs (n, 3) of a grid over both polar angles and the azimuth between them."""
+def make_goniometer_grid():
+    """Return pairs of directions (n, 3) on a grid of polar angles and the azimuth between."""
     theta_i, theta_o = (np.arange(0, LAST, step) for step in (STEP_I, STEP_O))
     phi = 180 * (1 - (np.arange(AZIMUTHS) / (AZIMUTHS - 1)) ** 2)
     angles = np.meshgrid(theta_i, theta_o, phi, indexing="ij")
@@ -44,15 +45,15 @@ def goniometer_grid():
     return from_angles(theta_i, 0 * phi), from_angles(theta_o, phi)
 
 
-def some_cells(table):
-    """The direction pairs (n, 3) of `CELLS` cells of a table, drawn evenly."""
+def draw_cells(table):
+    """Return the pairs of directions (n, 3) of `CELLS` cells of a table, drawn uniformly."""
     rows = np.flatnonzero(table.samples.within(90.0))
     rows = np.random.default_rng(0).choice(rows, min(CELLS, len(rows)), replace=False)
     return table.samples.wi[rows], table.samples.wo[rows]
 
 
-def random_pairs():
-    """`ROWS` direction pairs (n, 3), even in the half and difference angles."""
+def draw_random_pairs():
+    """Return `ROWS` pairs of directions (n, 3), uniform in the half and difference angles."""
     angles = np.random.default_rng(0).random((3, 4 * ROWS)) * [[np.pi / 2], [np.pi / 2], [np.pi]]
     pair = from_half_difference(*angles)
     above = np.all([w[:, 2] > 0.01 for w in pair], axis=0)

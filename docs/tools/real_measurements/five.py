@@ -1,11 +1,11 @@
-"""The part of the page of real measurements on one material as five files."""
+"""Writes the part of the page of real measurements on one material in five kinds of files."""
 
 from collections import Counter
 from statistics import median
 
-from make_models import table
-from real_measurements.invariance import CAUSES, OF_ALL, SAME, SAME_ALBEDO, cause
-from real_measurements.reasons import percent
+from make_models import make_table
+from real_measurements.invariance import CAUSES, OF_ALL, SAME, SAME_ALBEDO, find_cause
+from real_measurements.reasons import format_percent
 
 DEFAULT = "cbrt"
 TEXT = f"""Does the fit depend on the file? Materials that are known everywhere, brdfkit's isotropic
@@ -28,8 +28,8 @@ the table, the error of the table's fit on the file, and fits of directions belo
 these that applies:"""
 
 
-def rows_of(materials):
-    """Yield (material, model, loss, kind of file, row) of all comparisons."""
+def iterate_comparisons(materials):
+    """Yield (material, model, loss, kind of file, results) for all comparisons."""
     for material, models in materials.items():
         for model, losses in models.items():
             for loss, kinds in losses.items():
@@ -37,48 +37,54 @@ def rows_of(materials):
                     yield material, model, loss, kind, row
 
 
-def shares(rows):
-    """The shares of parameters and of albedos that are the same, as texts."""
+def compute_same_shares(rows):
+    """Return the shares of parameters and albedos that are equal in two fits, as texts."""
     found = [row["beside"] for row in rows]
     parameters = sum(same for _, same, *_ in found) / sum(count for count, *_ in found)
     albedos = [abs(f - 1) <= SAME_ALBEDO for _, _, _, _, *factors in found for f in factors]
-    return [percent(share) for share in (parameters, sum(albedos) / len(albedos))]
+    return [format_percent(share) for share in (parameters, sum(albedos) / len(albedos))]
 
 
-def sameness(materials):
-    """How many parameters and albedos are the same, by model and loss, for each kind of file."""
+def make_sameness_table(materials):
+    """Return the table of shares of equal parameters and albedos, with a column for each file."""
     found = {}
-    for _, model, loss, kind, row in rows_of(materials):
+    for _, model, loss, kind, row in iterate_comparisons(materials):
         found.setdefault((model, loss), {}).setdefault(kind, []).append(row)
     kinds = list(next(iter(found.values())))
     rows = [
-        (f"`{model}`", f"`{loss}`", *("; ".join(shares(by_kind[kind])) for kind in kinds))
+        (
+            f"`{model}`",
+            f"`{loss}`",
+            *("; ".join(compute_same_shares(by_kind[kind])) for kind in kinds),
+        )
         for (model, loss), by_kind in found.items()
     ]
-    head = table(", ".join(["model", "loss", *kinds]), rows)
+    head = make_table(", ".join(["model", "loss", *kinds]), rows)
     return f"Parameters that are the same; and albedos; of {len(materials)} materials:\n\n{head}"
 
 
-def unrepresented(materials):
-    """What no sample stands for, and how many samples would tell as much, by kind of file."""
+def make_coverage_table(materials):
+    """Return the table of unrepresented directions and effective samples, by kind of file."""
     found = {}
-    for *_, loss, kind, row in rows_of(materials):
+    for *_, loss, kind, row in iterate_comparisons(materials):
         if loss == DEFAULT:
             found.setdefault(kind, []).append(row)
-    shares = [percent(max(row["unrepresented"] for row in rows), 1) for rows in found.values()]
+    shares = [
+        format_percent(max(row["unrepresented"] for row in rows), 1) for rows in found.values()
+    ]
     counts = [f"{median(row['effective'] for row in rows):,.0f}" for rows in found.values()]
     rows = (
         ("`unrepresented`, at most", *shares),
         ("`effective_samples`, in the median", *counts),
     )
-    return table(", ".join([f"by `{DEFAULT}`", *found]), rows)
+    return make_table(", ".join([f"by `{DEFAULT}`", *found]), rows)
 
 
-def causes(materials):
-    """How often fits differ by each cause, for each kind of file."""
+def make_causes_table(materials):
+    """Return the table of how often fits differ for each cause, by kind of file."""
     found = {}
-    for *_, kind, row in rows_of(materials):
-        found.setdefault(kind, Counter())[cause(row)] += 1
+    for *_, kind, row in iterate_comparisons(materials):
+        found.setdefault(kind, Counter())[find_cause(row)] += 1
     total = {key: sum(counts[key] for counts in found.values()) for key in CAUSES}
     rows = [
         (meaning, *(counts[key] or "" for counts in found.values()), total[key])
@@ -86,29 +92,33 @@ def causes(materials):
         if total[key]
     ]
     rows.append(
-        ("fits in all", *(sum(c.values()) for c in found.values()), len(list(rows_of(materials))))
+        (
+            "fits in all",
+            *(sum(c.values()) for c in found.values()),
+            len(list(iterate_comparisons(materials))),
+        )
     )
-    return f"{CAUSED}\n\n" + table(", ".join(["cause", *found, "all"]), rows)
+    return f"{CAUSED}\n\n" + make_table(", ".join(["cause", *found, "all"]), rows)
 
 
-def open_cases(materials):
-    """The fits that differ by no cause that was found."""
+def list_open_cases(materials):
+    """Return a list of the fits that differ without a known cause."""
     lines = [
         f"- {material}, `{model}` by `{loss}`, {kind}: "
         f"{row['beside'][2].replace('_', ' ')} {row['beside'][3]:+.0%}, the error on the table "
         f"{row['excess']:+.1%}.".replace("%", " %")
-        for material, model, loss, kind, row in rows_of(materials)
-        if cause(row) == "open"
+        for material, model, loss, kind, row in iterate_comparisons(materials)
+        if find_cause(row) == "open"
     ]
     return "What is left without a cause:\n\n" + "\n".join(lines) if lines else ""
 
 
-def verdict(materials):
-    """What came out, in lines with figures."""
-    rows = list(rows_of(materials))
-    every = shares([row for *_, row in rows])
-    own = shares([row for *_, loss, _, row in rows if loss == DEFAULT])
-    found = Counter(cause(row) for *_, row in rows)
+def write_verdict(materials):
+    """Return sentences that sum up the comparisons, with numbers."""
+    rows = list(iterate_comparisons(materials))
+    every = compute_same_shares([row for *_, row in rows])
+    own = compute_same_shares([row for *_, loss, _, row in rows if loss == DEFAULT])
+    found = Counter(find_cause(row) for *_, row in rows)
     return [
         f"- **One material, five files.** By the default loss {own[0]} of the parameters and "
         f"{own[1]} of the albedos are those of the fit to the MERL table, by all losses {every[0]} "

@@ -1,4 +1,4 @@
-"""Fits of one material as five files, held to the fit of the MERL table."""
+"""Compares fits of one material in five kinds of files with the fit of the MERL table."""
 
 from functools import cache, partial
 
@@ -12,18 +12,19 @@ from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.regression.losses.loss import sum_squared_differences
 
 LOSSES = "cosine", "log", "cbrt", "plain"
-# A parameter is the same within this share of it, or a lobe's albedo within that share of all light
+# A parameter counts as equal within the first share of its value; the albedo of a lobe also counts
+# as equal within the second share of all reflected light
 SAME, OF_ALL = 0.03, 0.01
-# An albedo is the same within this share of it
+# An albedo counts as equal within this share of its value
 SAME_ALBEDO = 0.02
-# Cells of the table on which fits are held beside each other
+# Number of cells of the table on which the losses of two fits are compared
 PART = 40_000
-# Where fits differ, they are made again of directions below this angle [degrees]
+# If fits differ, they are repeated with directions below this angle [degrees]
 INNER = 70
-# Angles [degrees] of the albedos of lobes
+# Angles of incidence [degrees] at which albedos of single lobes are compared
 LOBES = 5, 75
-# An excess of the error on the table by which it tells two fits apart, and an estimate of the error
-# of one and the same fit that is wrong
+# The loss on the table distinguishes two fits if it differs by more than the first share; a file's
+# estimate of the loss of a given fit counts as wrong if it is off by more than the second
 TOLD, ESTIMATED = 0.005, 0.02
 CAUSES = {
     "flat": "The loss hardly tells the two fits apart: on the table, their errors differ by less "
@@ -41,18 +42,19 @@ CAUSES = {
 
 
 class Numbers:
-    """The numbers by which two fits are compared: `parameters`, by name, and the `albedos` at 5°,
-    45° and 75°.
+    """The numbers of a fit by which it is compared with another: parameters and albedos.
 
-    The parameters are those of shape, and the albedos of each lobe at 5° and at 75°: these stand
-    for its weight and its Fresnel parameter, which trade off. Lobes of equal models are in the
-    order of their widths. `floors`: below which a parameter's differences do not count.
+    `parameters`: shape parameters by name, and albedos of each lobe at 5° and at 75°, which stand
+    for its weight and its Fresnel parameter, because these trade off; equal lobes are in the order
+    of their widths. `albedos`: albedos of the whole model at 5°, 45° and 75°. `floors`: limits of
+    parameters below which differences do not count.
     """
 
     def __init__(self, fit):
         model, weights = fit.model, to_weight_matrix(fit.model).mean(axis=1)
 
         def lobes(wi, wo):
+            """Return the values (n, lobes) of the weighted lobes."""
             return compute_lobe_values(model, wi, wo)[0] * weights
 
         left_out = (*model.weights(), "alpha_v", "f0", "ior")
@@ -64,11 +66,14 @@ class Numbers:
             named = {f"{n} at {angle}°": a for n, a in zip(model.weights(), light, strict=True)}
             found |= named
             self.floors |= dict.fromkeys(named, OF_ALL * all_)
-        self.parameters = _in_order(found)
+        self.parameters = _sort_lobes(found)
 
-    def beside(self, other):
-        """How this differs from another fit's: the number of parameters, how many of them are the
-        same, the one that is farthest and by what share, and the factors of the albedos."""
+    def compare_with(self, other):
+        """Return how these numbers differ from the numbers of another fit, as a list.
+
+        Its entries are the number of parameters, the number of equal ones, the name of the most
+        different one and its relative difference, and the ratios of the albedos.
+        """
         apart = {}
         for name, its in other.parameters.items():
             size = max(abs(its), other.floors[name] / SAME)
@@ -79,8 +84,8 @@ class Numbers:
         return [len(apart), int(same), worst, float(apart[worst]), *factors.tolist()]
 
 
-def _in_order(parameters):
-    """Parameters by name, in which the lobes of `ggx+ggx` are in the order of their widths."""
+def _sort_lobes(parameters):
+    """Return parameters by name with the lobes of `ggx+ggx` in the order of their widths."""
     first, second = "ggx_1_", "ggx_2_"
     if parameters.get(f"{first}alpha_u", 0) <= parameters.get(f"{second}alpha_u", 0):
         return parameters
@@ -89,15 +94,15 @@ def _in_order(parameters):
 
 
 class Part:
-    """A part of a table's cells, by which the loss of the whole is estimated."""
+    """A random part of a table's cells, on which the loss of fits is evaluated."""
 
     def __init__(self, table):
         samples = select_samples(table, 80.0)
         rows = np.random.default_rng(0).choice(len(samples.wi), PART, replace=False)
         self.samples = samples.at(np.sort(rows))
 
-    def error(self, fit):
-        """E of the loss that the fit minimised, on the part."""
+    def compute_error(self, fit):
+        """Return the loss E that the fit minimised, evaluated on this part of the table."""
         loss = bk.losses.named[fit.loss_name]
         values = fit.eval(self.samples.wi, self.samples.wo)
         return float(
@@ -108,40 +113,41 @@ class Part:
 
 
 def compare_files(files, model, loss, part):
-    """Kind of file → how the fit of it differs from that of the first, the table's.
+    """Return comparisons of the fits of some files with the fit of the table, by kind of file.
 
-    `beside`: see `Numbers.beside`. Of those that differ, figures that may explain it: `excess`, the
-    error of the fit on the table over that of the table's own fit, less 1; `estimate`, the error of
-    the table's fit on the file over that on the table, less 1; `again`, whether one of the two was
-    searched again for its light. Where the excess tells them apart and neither was searched again,
-    also comparisons of the `inner` fits, below 70°.
+    `files`: measured materials by kind, the table first; `part`: a part of the table. A comparison
+    has the entry `beside`, the result of `Numbers.compare_with`. If the fits differ, further
+    entries may explain it. `excess`: loss of the fit on the table over the loss of the table's own
+    fit, less 1; `estimate`: loss of the table's fit on the file over its loss on the table, less 1;
+    `again`: whether one of the fits was searched again for its albedo; `inner`: comparison of fits
+    below 70°, if the loss distinguishes the fits and `again` is False.
     """
     (table, *others), found = files, {}
     fit = partial(bk.fit, model=model, loss=loss)
     reference = fit(files[table])
     inner = cache(lambda: Numbers(fit(files[table], max_angle=INNER)))
-    own, error = Numbers(reference), part.error(reference)
+    own, error = Numbers(reference), part.compute_error(reference)
     for kind in others:
         data = files[kind]
         other = fit(data)
         row = found[kind] = {
-            "beside": Numbers(other).beside(own),
+            "beside": Numbers(other).compare_with(own),
             "effective": other.effective_samples,
             "unrepresented": other.unrepresented,
         }
         if is_same(row["beside"]):
             continue
-        row["excess"] = part.error(other) / error - 1
+        row["excess"] = part.compute_error(other) / error - 1
         row["estimate"] = bk.compare(data, reference).errors[reference.name][loss] / error - 1
         notes = (*reference.notes, *other.notes)
         row["again"] = any(note.startswith("by the loss alone") for note in notes)
         if row["excess"] >= TOLD and not row["again"]:
-            row["inner"] = Numbers(fit(data, max_angle=INNER)).beside(inner())
+            row["inner"] = Numbers(fit(data, max_angle=INNER)).compare_with(inner())
     return found
 
 
-def cause(row):
-    """Why a comparison differs, by its figures: a key of `CAUSES`, or None where it does not."""
+def find_cause(row):
+    """Return the key in `CAUSES` of why two fits differ, or None if they are equal."""
     if "excess" not in row:
         return None
     if abs(row["excess"]) < TOLD:
@@ -156,6 +162,6 @@ def cause(row):
 
 
 def is_same(beside):
-    """Whether all numbers of a comparison are the same."""
+    """Return whether all numbers of two fits are equal; `beside`: their comparison."""
     count, same, _, _, *factors = beside
     return count == same and all(abs(factor - 1) <= SAME_ALBEDO for factor in factors)

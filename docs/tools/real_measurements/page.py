@@ -1,15 +1,21 @@
-"""The page of real measurements: figures of `make_real_measurements.py`, in tables and words."""
+"""Writes the page of real measurements, from the results of `make_real_measurements.py`."""
 
 from pathlib import Path
 from statistics import median
 
-from leaderboard.page import made_with
-from make_models import paragraphs, table
+from leaderboard.page import describe_versions
+from make_models import join_paragraphs, make_table
 from real_measurements import five, reasons
-from real_measurements.reasons import DEFAULT, best, farthest, is_beyond, percent
+from real_measurements.reasons import (
+    DEFAULT,
+    find_best_picture,
+    find_largest_factor,
+    format_percent,
+    is_light_wrong,
+)
 
 PAGE = Path(__file__).parents[2] / "real_measurements.md"
-# A gain of light beyond the rounding of the quadrature
+# A fit with a larger albedo gains light; the quadrature has smaller errors
 GAIN = 1.005
 INTRODUCTION = """Whether a fit of a file, as an instrument gives it, is right: its light, its
 picture, and whether another file of the same material gives the same fit. Made by
@@ -54,83 +60,97 @@ BALLS = """![Eight of the files, measured and fitted](real_measurements.jpg)
 
 
 def write_page(results):
-    """Write the page of the results, of which a part may be missing."""
+    """Write the page of the `results`, of which a part may be missing."""
     files, materials = results.get("files"), results.get("invariance")
-    text = ["# Real measurements", INTRODUCTION.format(versions=made_with()), "## In short"]
-    text += ["\n".join(verdict(results)), LOSSES]
+    text = ["# Real measurements", INTRODUCTION.format(versions=describe_versions()), "## In short"]
+    text += ["\n".join(write_verdict(results)), LOSSES]
     if files:
-        text += ["## Files as instruments give them", FILES, light(files), PICTURES]
-        text += [pictures(files), "## Each file", EACH, each(files), BALLS]
+        text += ["## Files as instruments give them", FILES, make_light_table(files), PICTURES]
+        text += [make_pictures_table(files), "## Each file", EACH, make_files_table(files), BALLS]
         text += ["## Where it fails, and why", reasons.TEXT]
-        text += [reasons.failures(files), reasons.GRAZING, reasons.grazing(files)]
+        text += [
+            reasons.list_failures(files),
+            reasons.GRAZING,
+            reasons.list_grazing_failures(files),
+        ]
     if materials:
-        text += ["## The same material as five files", five.TEXT, five.sameness(materials)]
-        text += [five.unrepresented(materials)]
-        text += ["### What differs, and why", five.causes(materials), five.open_cases(materials)]
-    PAGE.write_text(paragraphs(*text), encoding="utf-8")
+        text += [
+            "## The same material as five files",
+            five.TEXT,
+            five.make_sameness_table(materials),
+        ]
+        text += [five.make_coverage_table(materials)]
+        text += [
+            "### What differs, and why",
+            five.make_causes_table(materials),
+            five.list_open_cases(materials),
+        ]
+    PAGE.write_text(join_paragraphs(*text), encoding="utf-8")
 
 
-def verdict(results):
-    """What came out, in lines with figures."""
+def write_verdict(results):
+    """Return sentences that sum up the results, with numbers."""
     files, materials = results.get("files"), results.get("invariance")
     lines = []
     if files:
-        rows = list(fits_of(files))
-        near = [not is_beyond(found, fit, angles=2) for found, fit, *_ in rows]
-        off = [fit["said"] for found, fit, *_ in rows if is_beyond(found, fit)]
+        rows = list(iterate_fits(files))
+        near = [not is_light_wrong(found, fit, angles=2) for found, fit, *_ in rows]
+        off = [fit["said"] for found, fit, *_ in rows if is_light_wrong(found, fit)]
         gains = [fit["gain said"] for _, fit, *_ in rows if fit["most"] > GAIN]
         default = [fit["psnr"] for _, fit, _, loss in rows if loss == DEFAULT]
-        top = [best(found)[1]["psnr"] for found in files.values()]
+        top = [find_best_picture(found)[1]["psnr"] for found in files.values()]
         lines += [
-            f"- **Light.** {percent(sum(near) / len(rows), 1)} of {len(rows)} fits to "
+            f"- **Light.** {format_percent(sum(near) / len(rows), 1)} of {len(rows)} fits to "
             f"{len(files)} files reflect within 25 % of what their data reflect, at 5° and at 45°.",
             f"- **Nothing unsaid.** {len(off)} fits are farther off at 5°, 45° or 75°, and "
-            f"{all_of(off)} say so; {len(gains)} reflect more than arrives at one of these "
-            f"angles, or at 30°, 60°, 80°, 85° or 89°, and {all_of(gains)} say so.",
+            f"{format_count(off)} say so; {len(gains)} reflect more than arrives at one of these "
+            f"angles, or at 30°, 60°, 80°, 85° or 89°, and {format_count(gains)} say so.",
             f"- **Pictures.** By the default loss a ball has a PSNR of {median(default):.1f} dB in "
             f"the median of all models, and {median(top):.1f} dB by the best model of each file.",
         ]
-    return lines + (five.verdict(materials) if materials else [])
+    return lines + (five.write_verdict(materials) if materials else [])
 
 
-def fits_of(files):
-    """Yield (figures of the file, those of a fit, model, loss) of all fits."""
+def iterate_fits(files):
+    """Yield (results of the file, results of the fit, model, loss) for all fits."""
     for found in files.values():
         for model, by_loss in found["fits"].items():
             for loss, fit in by_loss.items():
                 yield found, fit, model, loss
 
 
-def all_of(truths):
-    """How many of some are true, in words."""
+def format_count(truths):
+    """Return in words how many of some truth values are true, as "all" or "3 of 5"."""
     return "all" if truths and all(truths) else f"{sum(truths)} of {len(truths)}"
 
 
-def by_model(files):
-    """(model, loss) → [(figures of the file, those of the fit)]."""
+def group_by_model(files):
+    """Return lists of pairs (results of the file, of the fit) by (model, loss)."""
     found = {}
-    for about, fit, model, loss in fits_of(files):
+    for about, fit, model, loss in iterate_fits(files):
         found.setdefault((model, loss), []).append((about, fit))
     return found
 
 
-def light(files):
-    """How the light of fits is beside that of their data, by model and loss."""
+def make_light_table(files):
+    """Return the table on how well the albedos of fits agree with the data, by model and loss."""
     rows = []
-    for (model, loss), pairs in by_model(files).items():
-        near = [not is_beyond(found, fit, angles=2) for found, fit in pairs]
-        off = [fit["said"] for found, fit in pairs if is_beyond(found, fit)]
+    for (model, loss), pairs in group_by_model(files).items():
+        near = [not is_light_wrong(found, fit, angles=2) for found, fit in pairs]
+        off = [fit["said"] for found, fit in pairs if is_light_wrong(found, fit)]
         gains = [fit["gain said"] for _, fit in pairs if fit["most"] > GAIN]
         again = sum(fit["searched again"] for _, fit in pairs)
         counts = (f"{len(found)} ({sum(found)})" if found else "0" for found in (off, gains))
-        rows.append((f"`{model}`", f"`{loss}`", percent(sum(near) / len(near), 1), *counts, again))
-    return table("model, loss, near, off (said), gains (said), searched again", rows)
+        rows.append(
+            (f"`{model}`", f"`{loss}`", format_percent(sum(near) / len(near), 1), *counts, again)
+        )
+    return make_table("model, loss, near, off (said), gains (said), searched again", rows)
 
 
-def pictures(files):
-    """The PSNR of balls and the log errors, by model and loss."""
+def make_pictures_table(files):
+    """Return the table of the PSNR of balls and the log errors, by model and loss."""
     models = {}
-    for (model, loss), pairs in by_model(files).items():
+    for (model, loss), pairs in group_by_model(files).items():
         models.setdefault(model, {})[loss] = [fit for _, fit in pairs]
     losses, rows = list(next(iter(models.values()))), []
     for model, by_loss in models.items():
@@ -140,19 +160,19 @@ def pictures(files):
         )
         values = [[fit["log error"] for fit in by_loss[loss]] for loss in losses]
         rows.append((f"`{model}`", "log error", *(f"{median(v):.3f}" for v in values)))
-    return table(", ".join(["model", "median", *(f"`{loss}`" for loss in losses)]), rows)
+    return make_table(", ".join(["model", "median", *(f"`{loss}`" for loss in losses)]), rows)
 
 
-def each(files):
-    """The picture and the light of every file by the default loss."""
+def make_files_table(files):
+    """Return the table of each file's PSNR and albedo errors by the default loss."""
     rows = []
     for name, found in files.items():
         cells = []
         for by_loss in found["fits"].values():
             fit = by_loss[DEFAULT]
-            off = f" (×{farthest(found, fit):.2f})" if is_beyond(found, fit) else ""
+            off = f" (×{find_largest_factor(found, fit):.2f})" if is_light_wrong(found, fit) else ""
             cells.append(f"{fit['psnr']:.1f}{off}")
         albedo = " ".join(f"{a:.2f}" for a in found["albedo"])
         rows.append((found["name"], name.partition("/")[0], albedo, *cells))
     models = [f"`{model}`" for model in next(iter(files.values()))["fits"]]
-    return table(", ".join(["file", "folder", "albedo", *models]), rows)
+    return make_table(", ".join(["file", "folder", "albedo", *models]), rows)

@@ -1,4 +1,4 @@
-"""Where fits of real measurements fail, and why: sentences, by the figures of the files."""
+"""Writes sentences on where fits of real measurements fail, and why."""
 
 from collections import Counter
 from itertools import pairwise
@@ -8,17 +8,17 @@ from brdfkit.core.names import join_words
 
 DEFAULT = "cbrt"
 UNKNOWN = "No reason was found."
-# The model without a Fresnel term, whose albedo hardly depends on the angle
+# A model without a Fresnel term, whose albedo hardly depends on the angle of incidence
 FLAT = "ward_duer"
-# The factor by which the light of a fit is off, and a picture [dB] that differs visibly
+# A fit fails if its albedo is wrong by more than this factor, or its PSNR [dB] is lower than this
 OFF, POOR = 1.25, 30.0
-# The share of negative values that tells
+# A larger share of negative values is mentioned as a reason
 NEGATIVE = 0.05
-# By how much the share of a channel in a highlight moves away from an even one
+# A highlight changes its hue if a channel's share moves away from an equal share by more than this
 SHIFT = 0.06
-# The mean factor of brightness below which a fit is neither too bright nor too dark
+# Below this mean factor of brightness a fit counts as neither too bright nor too dark
 EVEN = 1.05
-# The findings of `brdfkit.audit` that explain a failure, by words in them
+# Words in findings of `brdfkit.audit` that explain a failure
 TELLING = "retroreflective", "spike", "not reciprocal", "more light leaves than arrives"
 REGIONS = {
     "mirror": "pairs whose half vector is within 10° of the normal",
@@ -34,28 +34,34 @@ GRAZING = """### Light at 75° alone
 Other files, on which fits are off at 75° alone, by what explains it."""
 
 
-def failures(files):
-    """The files on which fits fail, with the reasons."""
+def list_failures(files):
+    """Return a list of the files on which fits fail, with the reasons."""
     lines = []
     for found in files.values():
-        off = fits_off(found, angles=2)
-        model, fit = best(found)
+        off = find_wrong_fits(found, angles=2)
+        model, fit = find_best_picture(found)
         if off or fit["psnr"] < POOR:
-            what = [f"light of {_name(off)}"] if off else []
+            what = [f"light of {_format_wrong_fits(off)}"] if off else []
             what.append(f"{fit['psnr']:.1f} dB at best, by `{model}`")
-            sentences = [*why(found, off), where(found, model)]
+            sentences = [*explain_failure(found, off), locate_log_error(found, model)]
             lines.append(f"- **{found['name']}** ({'; '.join(what)}). {' '.join(sentences)}")
     return "\n".join(lines) or "There are none."
 
 
-def grazing(files):
-    """How the light of fits to other files is at 75°, by reasons."""
+def list_grazing_failures(files):
+    """Return a list of the files on which fits fail at 75° alone, grouped by reason."""
     groups = {}
     for found in files.values():
-        off = [row for row in fits_off(found, angles=3) if row[0] != FLAT]
-        if off and not fits_off(found, angles=2) and best(found)[1]["psnr"] >= POOR:
-            groups.setdefault(" ".join(why(found, off)), []).append((found["name"], off))
-    lines = [flat(files)]
+        off = [row for row in find_wrong_fits(found, angles=3) if row[0] != FLAT]
+        if (
+            off
+            and not find_wrong_fits(found, angles=2)
+            and find_best_picture(found)[1]["psnr"] >= POOR
+        ):
+            groups.setdefault(" ".join(explain_failure(found, off)), []).append(
+                (found["name"], off)
+            )
+    lines = [describe_flat_model(files)]
     for sentences, rows in groups.items():
         names = join_words([name for name, _ in rows])
         fits = [row for _, off in rows for row in off]
@@ -66,20 +72,23 @@ def grazing(files):
     return "\n".join(lines)
 
 
-def fits_off(found, angles):
-    """(model, loss, factor) of the fits to a file whose light is off at one of the first angles."""
+def find_wrong_fits(found, angles):
+    """Return (model, loss, factor) of the fits to a file whose albedo is wrong.
+
+    `found`: results of the file; `angles`: number of the first angles of incidence that count.
+    """
     return [
-        (model, loss, farthest(found, fit))
+        (model, loss, find_largest_factor(found, fit))
         for model, by_loss in found["fits"].items()
         for loss, fit in by_loss.items()
-        if is_beyond(found, fit, angles)
+        if is_light_wrong(found, fit, angles)
     ]
 
 
-def flat(files):
-    """How the light of the model without a Fresnel term is at 75°, in a sentence."""
+def describe_flat_model(files):
+    """Return a sentence on the albedo at 75° of the model without a Fresnel term."""
     fits = [(found, fit) for found in files.values() for fit in found["fits"][FLAT].values()]
-    off = [f for f, fit in fits if is_beyond(f, fit) and not is_beyond(f, fit, angles=2)]
+    off = [f for f, fit in fits if is_light_wrong(f, fit) and not is_light_wrong(f, fit, angles=2)]
     rise = median(found["albedo"][2] / found["albedo"][0] for found in off) if off else 1.0
     return (
         f"- **`{FLAT}`**, on any file ({len(off)} of its {len(fits)} fits). It has no Fresnel "
@@ -88,38 +97,41 @@ def flat(files):
     )
 
 
-def factors(found, fit, angles=3):
-    """The albedos of a fit over those of its data, at the first `angles` that the data tell."""
+def compute_light_factors(found, fit, angles=3):
+    """Return the ratios of a fit's albedos to the data's, at the first `angles` that are known."""
     rows = zip(found["albedo"], found["known"], fit["albedo"], strict=True)
     return [own / its for its, known, own in list(rows)[:angles] if known]
 
 
-def is_beyond(found, fit, angles=3):
-    """Whether the light of a fit is off at one of the first `angles`."""
-    return any(max(f, 1 / f) > OFF for f in factors(found, fit, angles))
+def is_light_wrong(found, fit, angles=3):
+    """Return whether the albedo of a fit is wrong at one of the first `angles`."""
+    return any(max(f, 1 / f) > OFF for f in compute_light_factors(found, fit, angles))
 
 
-def best(found):
-    """(model, fit) of the best picture by the default loss."""
+def find_best_picture(found):
+    """Return (model, results of its fit) with the best picture by the default loss."""
     fits = {model: by_loss[DEFAULT] for model, by_loss in found["fits"].items()}
     return max(fits.items(), key=lambda item: item[1]["psnr"])
 
 
-def farthest(found, fit):
-    """The factor by which the light of a fit is off, where it is farthest off."""
-    return max(factors(found, fit), key=lambda f: max(f, 1 / f), default=1.0)
+def find_largest_factor(found, fit):
+    """Return the ratio of a fit's albedo to the data's at the angle where it is farthest from 1."""
+    return max(compute_light_factors(found, fit), key=lambda f: max(f, 1 / f), default=1.0)
 
 
-def _name(off):
-    """The models whose light is off, with losses and factors."""
+def _format_wrong_fits(off):
+    """Return a text of the fits with a wrong albedo: models with losses and factors."""
     models = {}
     for model, loss, factor in off:
         models.setdefault(model, []).append(f"`{loss}` ×{factor:.2f}")
     return ", ".join(f"`{model}` by {join_words(losses)}" for model, losses in models.items())
 
 
-def why(found, off):
-    """The sentences on a file, some of whose fits are `off`: what in its data the models lack."""
+def explain_failure(found, off):
+    """Return sentences on properties of a file's data that explain why fits fail.
+
+    `found`: results of the file; `off`: its fits with a wrong albedo.
+    """
     sentences = [
         f"“{finding[0].upper()}{finding[1:].rstrip('.')}.”"
         for finding in found["findings"]
@@ -127,10 +139,10 @@ def why(found, off):
     ]
     if found["negative"] > NEGATIVE:
         sentences.append(
-            f"{percent(found['negative'])} of the values in linear sRGB are negative, of colours "
-            "that sRGB does not hold; weights are not negative, so that fits are paler."
+            f"{format_percent(found['negative'])} of the values in linear sRGB are negative, of "
+            "colours that sRGB does not hold; weights are not negative, so that fits are paler."
         )
-    if (turn := _turn(found["hues"])) is not None:
+    if (turn := _describe_hue_change(found["hues"])) is not None:
         sentences.append(
             f"Its highlight changes its hue: {turn}; a lobe has one colour, which grazing angles "
             "only make paler."
@@ -144,26 +156,29 @@ def why(found, off):
     return sentences
 
 
-def _turn(hues):
-    """How the hue of a highlight changes, in words; None where it only becomes paler."""
+def _describe_hue_change(hues):
+    """Return in words how the hue of a highlight changes, or None if it only becomes paler."""
     even = 1 / len(hues[0])
     for first, later in pairwise(hues):
         for channel, own, next_ in zip("RGB", first, later, strict=False):
             if abs(next_ - even) > abs(own - even) + SHIFT:
-                return f"the share of {channel} goes from {percent(own)} to {percent(next_)}"
+                before, after = format_percent(own), format_percent(next_)
+                return f"the share of {channel} goes from {before} to {after}"
     return None
 
 
-def where(found, model):
-    """Where the log error of the best picture's fit comes from, in a sentence."""
+def locate_log_error(found, model):
+    """Return a sentence on the region of directions with most of the fit's log error."""
     name, (share, factor) = max(found["regions"].items(), key=lambda item: item[1][0])
     size = max(factor, 1 / factor)
     how = f"{size:.2g} times too {'bright' if factor > 1 else 'dark'} in the mean"
     if size < EVEN:
         how = "too bright at some and too dark at others"
-    return f"{percent(share)} of the squares are of {REGIONS[name]}; there `{model}` is {how}."
+    return (
+        f"{format_percent(share)} of the squares are of {REGIONS[name]}; there `{model}` is {how}."
+    )
 
 
-def percent(share, digits=0):
-    """A share as text, with a space before the sign."""
+def format_percent(share, digits=0):
+    """Return a share as text in per cent, with a space before the sign."""
     return f"{share:.{digits}%}".replace("%", " %")

@@ -1,17 +1,17 @@
-"""The page of `make_shadow_map_gradients.py`, and its figure."""
+"""Writes the page of `make_shadow_map_gradients.py` and its figure, from the measurements."""
 
 from pathlib import Path
 
 import numpy as np
-from leaderboard.page import made_with
-from make_models import paragraphs, table
+from leaderboard.page import describe_versions
+from make_models import join_paragraphs, make_table
 
 from brdfkit.theses.drawing import COLOURS, figure, tidy
 
 PAGE = Path(__file__).parents[2] / "shadow_map_gradients.md"
 RESOLUTION = 512  # texels along a side of a map
 RESOLUTIONS = 128, 256, RESOLUTION, 1024
-# Name → the technique; those that average moments of depth first, then those that compare depths
+# Techniques by name: filters that average moments of depth, then filters that compare depths
 MOMENTS = {
     "variance": {"filter": "variance"},
     "moment": {"filter": "moment"},
@@ -32,30 +32,30 @@ PLAIN, HARD = ("box", "ring"), ("fence", "plates")
 BAR, BAR_IN_PERCENT = 0.05, "5 %"
 
 
-def write(by_dr_jit, by_differences, by_rays):
-    """Write the page; see `make_shadow_map_gradients.derivatives`."""
-    truth = max(off(*pair) for pair in by_rays.values())
+def write_page(by_dr_jit, by_differences, by_rays):
+    """Write the page from the three dictionaries of `measure_derivatives`."""
+    truth = max(compute_relative_error(*pair) for pair in by_rays.values())
     zero = max(np.abs(found).max() for key, (_, found) in by_dr_jit.items() if key[2] in COMPARE)
     if zero > 0:
         raise ValueError("filters that compare have derivatives: rewrite the page's words.")
-    text = paragraphs(
-        INTRODUCTION.format(truth=100 * truth, versions=made_with()),
+    text = join_paragraphs(
+        INTRODUCTION.format(truth=100 * truth, versions=describe_versions()),
         "## What to take",
-        advice(by_dr_jit),
+        write_advice(by_dr_jit),
         "## By filter and projection",
         PROJECTIONS,
-        by_projection(by_dr_jit),
+        make_projections_table(by_dr_jit),
         "## Where they go wrong",
         SCENES,
-        by_scene(by_dr_jit, by_differences),
+        make_scenes_table(by_dr_jit, by_differences),
         "## By the number of texels",
         TEXELS,
-        by_resolution(by_dr_jit),
+        make_resolutions_table(by_dr_jit),
         "## Filters without a derivative",
         ZERO,
     )
     PAGE.write_text(text, encoding="utf-8")
-    draw(by_dr_jit).savefig(PAGE.with_suffix(".png"), dpi=90)
+    draw_derivatives(by_dr_jit).savefig(PAGE.with_suffix(".png"), dpi=90)
 
 
 INTRODUCTION = """# Gradients of shadow maps, and their bias
@@ -105,67 +105,74 @@ although their pictures do change. To average more texels changes nothing of tha
 take any of them; for descents none."""
 
 
-def slope(true, found):
-    """Σ g·t / Σ t·t."""
+def compute_slope(true, found):
+    """Return the slope Σ g·t / Σ t·t of measured derivatives g over exact ones t."""
     return float((found * true).sum() / np.square(true).sum())
 
 
-def off(true, found):
-    """|g - t| / |t|."""
+def compute_relative_error(true, found):
+    """Return the relative error ‖g - t‖ / ‖t‖ of measured derivatives g from exact ones t."""
     return float(np.linalg.norm(found - true) / np.linalg.norm(true))
 
 
-def joined(found, scenes, *key):
-    """(exact, found) derivatives of `scenes` in all lights, all patches."""
+def join_patches(found, scenes, *key):
+    """Return the (exact, measured) derivatives of some `scenes` in all lights, joined.
+
+    `found`: pairs of derivatives by (scene, light, ...); `key`: the rest of their keys.
+    """
     pairs = [pair for its, pair in found.items() if its[0] in scenes and its[2:] == key]
     return tuple(np.concatenate(side) for side in zip(*pairs, strict=True))
 
 
-def cell(pair):
-    """Slope and off of (exact, found) derivatives."""
-    return f"{slope(*pair):.3f} ({100 * off(*pair):.0f})"
+def format_cell(pair):
+    """Return the slope and relative error of a pair (exact, measured) as text."""
+    return f"{compute_slope(*pair):.3f} ({100 * compute_relative_error(*pair):.0f})"
 
 
-def by_projection(found):
-    """A row for a projection, a column for a filter."""
+def make_projections_table(found):
+    """Return the table of errors with a row for each projection and a column for each filter."""
     projections = dict.fromkeys(key[3] for key in found)
     rows = [
-        (f"`{p}`", *(cell(joined(found, PLAIN, its, p, RESOLUTION)) for its in MOMENTS))
+        (
+            f"`{p}`",
+            *(format_cell(join_patches(found, PLAIN, its, p, RESOLUTION)) for its in MOMENTS),
+        )
         for p in projections
     ]
-    return table(", ".join(["projection", *MOMENTS]), rows)
+    return make_table(", ".join(["projection", *MOMENTS]), rows)
 
 
-def by_scene(found, differences):
-    """A row for a scene and filter."""
+def make_scenes_table(found, differences):
+    """Return the table of errors with a row for each scene and filter."""
     rows = []
     for scene in PLAIN + HARD:
         for its in MOMENTS:
-            derivative = joined(found, [scene], its, "focused", RESOLUTION)
-            picture = joined(differences, [scene], its)
-            rows.append((scene, its, cell(derivative), cell(picture)))
-    return table("scene, filter, derivative, picture", rows)
+            derivative = join_patches(found, [scene], its, "focused", RESOLUTION)
+            picture = join_patches(differences, [scene], its)
+            rows.append((scene, its, format_cell(derivative), format_cell(picture)))
+    return make_table("scene, filter, derivative, picture", rows)
 
 
-def by_resolution(found):
-    """A row for a number of texels, a column for a filter."""
+def make_resolutions_table(found):
+    """Return the table of errors with a row for each resolution and a column for each filter."""
     rows = [
-        (f"{n}²", *(cell(joined(found, PLAIN, its, "focused", n)) for its in MOMENTS))
+        (f"{n}²", *(format_cell(join_patches(found, PLAIN, its, "focused", n)) for its in MOMENTS))
         for n in RESOLUTIONS
     ]
-    return table(", ".join(["texels", *MOMENTS]), rows)
+    return make_table(", ".join(["texels", *MOMENTS]), rows)
 
 
-def advice(found):
-    """Which filters are within the bar, in words with figures."""
+def write_advice(found):
+    """Return sentences that recommend filters with small errors, with numbers."""
     lines, good = [], []
     for its in MOMENTS:
         plain = {
-            p: slope(*joined(found, PLAIN, its, p, RESOLUTION))
+            p: compute_slope(*join_patches(found, PLAIN, its, p, RESOLUTION))
             for p in dict.fromkeys(key[3] for key in found)
         }
         fence, plates = (
-            100 * off(*joined(found, [scene], its, "focused", RESOLUTION)) for scene in HARD
+            100 * compute_relative_error(*join_patches(found, [scene], its, "focused", RESOLUTION))
+            for scene in HARD
         )
         within = sum(abs(s - 1) <= BAR for s in plain.values())
         if within == len(plain):
@@ -183,12 +190,12 @@ def advice(found):
     return "\n".join([verdict, "", *lines])
 
 
-def draw(found):
-    """The figure: all derivatives over exact ones, of plain scenes and of hard ones."""
+def draw_derivatives(found):
+    """Return the figure of measured derivatives over exact ones, of plain and of hard scenes."""
     drawn = figure(11, 4.6)
     for axes, scenes in zip(drawn.subplots(1, 2), (PLAIN, HARD), strict=True):
         for its, colour in zip((*MOMENTS, "depth"), (*COLOURS[:5], "0.6"), strict=True):
-            true, by_map = joined(found, scenes, its, "focused", RESOLUTION)
+            true, by_map = join_patches(found, scenes, its, "focused", RESOLUTION)
             label = "all that compare depths" if its == "depth" else its
             axes.plot(true.ravel(), by_map.ravel(), ".", color=colour, label=label)
         most = 1.1 * np.abs(true).max()
