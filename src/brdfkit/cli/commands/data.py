@@ -134,7 +134,7 @@ def _print_collection(collection: Collection, console: Console) -> None:
         console.print_table(["material", ">size [MB]", ""], rows)
     console.output.print(str(collection))
     if not any(listed.url for listed in files.values()):
-        console.output.print(f"To use one, {collection.explain_manual_download()}.")
+        console.output.print(f"To use one, {collection.explain_manual_fetch()}.")
 
 
 def _print_files(

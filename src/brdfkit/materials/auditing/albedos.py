@@ -74,10 +74,7 @@ def compute_sample_albedo(data: Measured) -> Albedo | None:
 
 
 def _integrate_over_disc(samples: Samples) -> FloatArray | None:
-    """Integrate the BRDF over the unit disc of views, by samples at one incidence, (channels,).
-
-    The result is None where the samples are too few.
-    """
+    """Integrate the BRDF over the disc of views, (channels,); return None for too few samples."""
     from scipy.spatial import ConvexHull, Delaunay
 
     # The samples are too few where they lie on a line, or cover too little of the disc

@@ -36,7 +36,7 @@ def compute_turned_error_ratio(samples: Samples) -> float:
     inside = samples.within(MAX_ANGLE)
     if (
         inside.sum() < FEWEST_SAMPLES
-        or _correlate_with_mirror_direction(samples.at(inside)) > CLEAR_CORRELATION
+        or _correlate_with_mirror(samples.at(inside)) > CLEAR_CORRELATION
     ):
         return np.nan
     turned = replace(samples, wo=samples.wo * TURN)
@@ -44,11 +44,8 @@ def compute_turned_error_ratio(samples: Samples) -> float:
     return turned_error / error if error > 0 else np.nan
 
 
-def _correlate_with_mirror_direction(samples: Samples) -> float:
-    """Return the correlation of the values' logarithms with nearness to the mirror direction.
-
-    It is positive if values become larger towards the mirror direction.
-    """
+def _correlate_with_mirror(samples: Samples) -> float:
+    """Return the correlation of the values' logarithms with nearness to the mirror direction."""
     values = samples.values.mean(axis=1)
     rows = values > 0
     towards = -(samples.wi[rows, :2] * samples.wo[rows, :2]).sum(axis=1)

@@ -56,10 +56,7 @@ def _draw_title(figure: Figure, audit: Any) -> None:
 
 
 def _draw_slice(figure: Any, axes: Any, data: Measured) -> None:
-    """Draw a table's luminance over theta_h and theta_d, for phi_d ≈ 90°.
-
-    It is hatched and faint where it was not measured.
-    """
+    """Draw the luminance over theta_h and theta_d at phi_d ≈ 90°, hatched where not measured."""
     # Select the cells at phi_d ≈ 90°
     table = data.table
     across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
@@ -118,10 +115,7 @@ def make_colour_scale(values: FloatArray) -> Any:
 
 
 def _draw_albedo(axes: Any, audit: Any) -> None:
-    """Draw the albedo over the angle of incidence: lines for the interpolated BRDF, and circles.
-
-    The circles are albedos of the samples alone.
-    """
+    """Draw the albedo over theta_i: lines for the interpolated BRDF, circles for samples alone."""
     # Draw lines, dotted where the BRDF is extrapolated
     albedo, samples = audit.albedo, audit.albedo_of_samples
     measured = albedo.theta_i <= albedo.measured_to + 1

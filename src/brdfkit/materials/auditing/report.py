@@ -112,10 +112,7 @@ def _describe_reciprocity(audit: Any) -> str:
 
 
 def _describe_difference(difference: Difference, without: str) -> str:
-    """Describe how far values that should be equal differ.
-
-    `without` says why, where no values could be compared.
-    """
+    """Describe how far values that should be equal differ, or `without`, why none was compared."""
     if not difference:
         return f"not testable: {without}"
     return (

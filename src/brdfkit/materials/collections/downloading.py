@@ -64,7 +64,7 @@ def download(name: str, progress: Report | None = None) -> Path:
 @contextmanager
 def _explain_errors(listed: ListedFile, owner: Collection) -> Iterator[None]:
     """Turn errors of downloading the file `listed` into a `BrdfkitError` that says what to do."""
-    by_hand = owner.explain_manual_download(listed.file)
+    by_hand = owner.explain_manual_fetch(listed.file)
     host = urlsplit(listed.url).hostname
     try:
         yield

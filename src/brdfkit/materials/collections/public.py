@@ -75,7 +75,7 @@ class Collection:
             if f.is_file() and _is_material_file(f)
         }
 
-    def explain_manual_download(self, file: str = "") -> str:
+    def explain_manual_fetch(self, file: str = "") -> str:
         """Return words for an error: which file to fetch, from which page, and where to put it."""
         note = f", {self.note}" if self.note else ""
         return f"fetch {file or 'its file'} from {self.page} and put it into {self.folder}{note}"
@@ -117,11 +117,9 @@ def find_file(name: str) -> Path:
         if name in owner.list_files_on_disk():
             return owner.list_files_on_disk()[name]
         known = f"'brdfkit data list {owner.name}' names what is known, or " if owner.files else ""
-        raise BrdfkitError(f"{name}: is not known; {known}{owner.explain_manual_download()}.")
+        raise BrdfkitError(f"{name}: is not known; {known}{owner.explain_manual_fetch()}.")
     remedy = (
-        f"run 'brdfkit data get {name}'"
-        if listed.url
-        else owner.explain_manual_download(listed.file)
+        f"run 'brdfkit data get {name}'" if listed.url else owner.explain_manual_fetch(listed.file)
     )
     if not listed.path.is_file():
         raise BrdfkitError(f"{name}: is not downloaded yet; {remedy}.")
@@ -149,10 +147,7 @@ def _name_material(collection: str, file: str) -> str:
 
 
 def _make_collection(name: str, entry: dict[str, Any]) -> Collection:
-    """Make a `Collection` from its `entry` in the index.
-
-    The entry lists the files itself, or names a table of them beside the index.
-    """
+    """Make a `Collection` from its index `entry`, which lists the files or names their table."""
     rows, url = entry.pop("files"), entry.pop("url", "")
     if isinstance(rows, str):
         with (catalogue.find_data_folder() / rows).open(encoding="utf-8", newline="") as stream:

@@ -168,10 +168,7 @@ def _read_dimensions(source: Source, header: dict[str, str]) -> tuple[int, tuple
 
 
 def _read_intervals(source: Source, text: str, channels: int) -> list[int]:
-    """Return how many columns of confidence interval each channel has: 0, 1 or 2.
-
-    `text` is the value of the key VS.
-    """
+    """Parse `text`, the value of VS: the number of interval columns of each channel, 0 to 2."""
     kinds = text.split()
     if len(kinds) > channels or not all(kind in ("0", "1", "2") for kind in kinds):
         raise source.error(f"VS is {text[:40]!r} where 0, 1 or 2 per value belong; mend the line")
@@ -194,7 +191,7 @@ def _halve_intervals(columns: FloatArray, intervals: Sequence[int]) -> FloatArra
 def _find_value_factor(
     source: Source, header: dict[str, str], wo: FloatArray
 ) -> tuple[FloatArray | float, BoolArray | bool, dict[str, str]]:
-    """Return the factor (n, 1) by which to divide the values to get the BRDF, as PARAM_OUT states.
+    """Return the factor (n, 1) by which to divide the values to get the BRDF, by the header.
 
     The second result is a mask (n,) of the rows where that is possible; the third are notes.
     """

@@ -138,10 +138,7 @@ def _read_names(
 def _find_channels(
     columns: Sequence[str],
 ) -> tuple[Sequence[str], Sequence[str], dict[str, str]] | None:
-    """Return the names of the channels, of their columns in the file, and a note if these differ.
-
-    The result is None where the names of `columns` are no channels.
-    """
+    """Return the channels, their columns, and a note if these differ; None for no channels."""
     if set(columns) == set(RGB):
         return RGB, RGB, {}
     if set(columns) == set(MINI_DIFF_CHANNELS):

@@ -37,7 +37,7 @@ def sniff(head: bytes) -> bool:
     lines = [line for line in head.split(b"\n") if line.strip() and not line.startswith(b"#")]
     tokens = b" ".join(lines[:3]).split()
     try:
-        return int(tokens[0]) > 0 and _is_plausible_wavelength(float(tokens[1]))
+        return int(tokens[0]) > 0 and _is_wavelength(float(tokens[1]))
     except (ValueError, IndexError):
         return False
 
@@ -86,10 +86,7 @@ def write(obj: object, stream: IO[bytes]) -> None:
 
 
 def _read_wavelengths(source: Source) -> tuple[list[float], list[tuple[int, str]]]:
-    """Return the file's wavelengths [nm] and the lines behind them, which are the samples.
-
-    The wavelengths may stand on several lines.
-    """
+    """Return the wavelengths [nm], from one or more lines, and the lines of samples behind them."""
     if not source.lines:
         raise source.error("has comments only, no wavelengths; fetch the file again")
     first, text = source.lines[0]
@@ -120,10 +117,10 @@ def _read_wavelengths(source: Source) -> tuple[list[float], list[tuple[int, str]
 def _are_possible_wavelengths(nanometres: Sequence[float] | FloatArray) -> bool:
     """Return whether a file may have these wavelengths: all distinct, plausible, not too many."""
     distinct = len({f"{w:.10g}" for w in nanometres}) == len(nanometres) <= MOST_WAVELENGTHS
-    return distinct and all(map(_is_plausible_wavelength, nanometres))
+    return distinct and all(map(_is_wavelength, nanometres))
 
 
-def _is_plausible_wavelength(wavelength: float) -> bool:
+def _is_wavelength(wavelength: float) -> bool:
     return NANOMETRES[0] <= wavelength <= NANOMETRES[1]
 
 

@@ -142,9 +142,6 @@ def _name_value_columns(data: Measured, name: str) -> list[str]:
 
 
 def _round_angles(degrees: FloatArray) -> FloatArray:
-    """Round angles to 12 decimals if this changes them by less than 1e-13.
-
-    The file then has 30 in place of 30.000000000000004.
-    """
+    """Round angles to 12 decimals where this is a rounding error: 30 for 30.000000000000004."""
     rounded = np.round(degrees, 12)
     return np.where(np.abs(rounded - degrees) < 1e-13, rounded, degrees)

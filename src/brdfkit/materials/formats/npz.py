@@ -184,10 +184,7 @@ def _parse_array(source: Source, name: str, data: bytes) -> AnyArray:
 
 
 def _pack_zip(arrays: Mapping[str, AnyArray]) -> bytes:
-    """Return the bytes of an uncompressed zip archive with the `arrays`, by their names.
-
-    Equal arrays give equal bytes.
-    """
+    """Return a zip archive with the uncompressed `arrays`; equal arrays give equal bytes."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
         for name, array in arrays.items():

@@ -253,10 +253,7 @@ def _describe_measurement(tally: Tally, total: int) -> dict[str, str]:
 
 
 def _check_shape(shape: Sequence[int] | None, isotropic: bool) -> tuple[int, ...]:
-    """Return the numbers of cells of the table, by default those for its kind of surface.
-
-    Raises `BrdfkitError` for another number of axes, and for too many cells.
-    """
+    """Return the table's numbers of cells, by default for the kind of surface; check the limits."""
     shape = tuple(shape or (ISOTROPIC if isotropic else ANISOTROPIC))
     dimensions = 3 if isotropic else 4
     if len(shape) != dimensions or min(shape) < 1:

@@ -219,10 +219,7 @@ def _make_mesh(
 
 
 def _rotate_at_random(sampler: MitsubaObject, wi: JitVector, wo: JitVector) -> list[JitVector]:
-    """Return both directions in the frame of a tile that is randomly turned, and perhaps mirrored.
-
-    Samples of an isotropic surface are thus averaged over its azimuth.
-    """
+    """Rotate each pair of directions about the normal at random, and mirror half of the pairs."""
     import mitsuba as mi
 
     s, c = dr.sincos(2 * dr.pi * sampler.next_1d())

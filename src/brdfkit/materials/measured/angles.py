@@ -49,7 +49,7 @@ def _refuse_ambiguous_units(
     thetas = {name: angle for name, angle in largest.items() if name.startswith("theta")}
     # Large azimuths, surely in degrees, do not prove that the thetas are in degrees, too
     largest = thetas if any(thetas.values()) else largest
-    small = all(angle <= _find_largest_allowed(name) for name, angle in largest.items())
+    small = all(angle <= _find_largest_angle(name) for name, angle in largest.items())
     if small and any(largest.values()):
         raise origin.error(
             f"no {'theta' if largest is thetas else 'angle'} is above {max(largest.values()):.4g}, "
@@ -61,7 +61,7 @@ def _convert_angle(name: str, numbers: FloatArray, unit: str | None, origin: Ori
     """Return one angle's `numbers` (n,) in radians; raise `BrdfkitError` for those out of range."""
     in_radians = unit in RADIANS
     angles = numbers if in_radians else np.radians(numbers)
-    for row in np.flatnonzero(np.abs(angles) > _find_largest_allowed(name))[:1]:
+    for row in np.flatnonzero(np.abs(angles) > _find_largest_angle(name))[:1]:
         what = (
             f"{name} is {numbers[row]:g}{' rad' if in_radians else '°'} in {origin.locate_row(row)}"
         )
@@ -76,6 +76,6 @@ def _convert_angle(name: str, numbers: FloatArray, unit: str | None, origin: Ori
     return angles
 
 
-def _find_largest_allowed(name: str) -> float:
+def _find_largest_angle(name: str) -> float:
     """Return the largest absolute value [rad] that is accepted for the angle with this name."""
     return LARGEST_ANGLES[name.partition("_")[0]] + TOLERANCE

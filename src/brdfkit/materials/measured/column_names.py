@@ -173,10 +173,7 @@ def _group_by_channel(
 
 
 def _split_unit(name: str) -> tuple[str, str | None]:
-    """Split a column's name into the name and the unit in brackets behind it.
-
-    The unit is in lower case; it is None where the name has none.
-    """
+    """Split a column's name into the name itself and the unit in brackets behind it, or None."""
     name = name.strip()
     bracket = max(name.rfind("["), name.rfind("("))
     if bracket < 0 or name[-1] not in "])":

@@ -103,10 +103,7 @@ def extract_columns(frame: Any, origin: Origin) -> tuple[list[str], list[FloatAr
 
 
 def _parse_column(name: object, values: Any, origin: Origin) -> FloatArray:
-    """Return the `values` of the column `name` as floats, an array (n,), or () for a number.
-
-    Names of colour channels become 0, 1 or 2.
-    """
+    """Return a column's `values` as floats, (n,) or (); names of R, G, B become 0, 1, 2."""
     if match_channel_column(str(name)) == "channel":
         values = [parse_colour_name(text) for text in np.ravel(values)]
     column = to_float_array(f"the column {name!r}", values, origin)

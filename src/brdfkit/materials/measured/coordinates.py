@@ -37,7 +37,7 @@ def to_directions(
     half and difference angles may give such directions, which the caller must mask.
     """
     if "wi_x" in coordinates:
-        return _collect_unit_vectors("wi", coordinates, origin), _collect_unit_vectors(
+        return _to_unit_vectors("wi", coordinates, origin), _to_unit_vectors(
             "wo", coordinates, origin
         )
     angles = to_radians(coordinates, units, origin)
@@ -76,7 +76,7 @@ def is_surface_turned(
     return bool(np.any((length > ROUNDING) & turned))
 
 
-def _collect_unit_vectors(
+def _to_unit_vectors(
     name: str, coordinates: Mapping[str, FloatArray], origin: Origin
 ) -> FloatArray:
     """Return the directions (n, 3) with the components `name`_x, _y, _z, checked for errors."""

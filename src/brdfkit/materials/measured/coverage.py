@@ -76,14 +76,9 @@ def is_near_sample(data: Measured, wi: FloatArray, wo: FloatArray) -> BoolArray:
     from scipy.spatial import cKDTree
 
     valid = data.samples.at(data.samples.valid)
-    both_ways = [
-        _to_symmetric_points(data, valid.wi, valid.wo),
-        _to_symmetric_points(data, valid.wo, valid.wi),
-    ]
+    both_ways = [_symmetrize(data, valid.wi, valid.wo), _symmetrize(data, valid.wo, valid.wi)]
     tree = cKDTree(np.concatenate(both_ways))
-    return np.isfinite(
-        tree.query(_to_symmetric_points(data, wi, wo), distance_upper_bound=NEAR_ANGLE)[0]
-    )
+    return np.isfinite(tree.query(_symmetrize(data, wi, wo), distance_upper_bound=NEAR_ANGLE)[0])
 
 
 def map_pairs_to_points(wi: FloatArray, wo: FloatArray, anisotropic: bool = False) -> FloatArray:
@@ -103,7 +98,7 @@ def map_pairs_to_points(wi: FloatArray, wo: FloatArray, anisotropic: bool = Fals
     return np.stack([theta_i, theta_o, azimuth.real, azimuth.imag], axis=-1)
 
 
-def _to_symmetric_points(data: Measured, wi: FloatArray, wo: FloatArray) -> FloatArray:
+def _symmetrize(data: Measured, wi: FloatArray, wo: FloatArray) -> FloatArray:
     """Map pairs of directions to points; those that an isotropic material mirrors coincide."""
     points = map_pairs_to_points(wi, wo, data.anisotropic)
     if not data.anisotropic:

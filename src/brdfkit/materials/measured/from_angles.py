@@ -174,10 +174,7 @@ class FromAngles(MeasuredData):
 def _broadcast_angles(
     angles: Mapping[str, ArrayLike], origin: Origin
 ) -> tuple[dict[str, FloatArray], tuple[int, ...]]:
-    """Return the `angles` by name, broadcast to one shape and flattened to arrays (n,).
-
-    The second result is their shape before the flattening.
-    """
+    """Broadcast the `angles` to one shape; return them flattened to (n,) by name, and the shape."""
     arrays = [to_float_array(name, angle, origin) for name, angle in angles.items()]
     try:
         broadcast = np.broadcast_arrays(*arrays)

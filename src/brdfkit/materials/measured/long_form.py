@@ -86,10 +86,7 @@ def _find_wavelength_channels(keys: FloatArray, origin: Origin) -> tuple[tuple[s
 
 
 def _find_colour_channels(keys: FloatArray, origin: Origin) -> tuple[tuple[str, ...], IntArray]:
-    """Return the names R, G, B, and each row's index in them (n,).
-
-    Raises `BrdfkitError` for a row with another channel, and where one of the three is missing.
-    """
+    """Return the names R, G, B, and each row's index in them (n,); refuse any other channels."""
     for row in np.flatnonzero(np.isnan(keys))[:1]:
         raise origin.error(
             f"the channel in {origin.locate_row(row)} is not R, G or B; correct it or leave the "

@@ -83,10 +83,7 @@ def _find_sample_extents(
 
 
 def _check_weights(weights: ArrayLike, data: Measured) -> FloatArray:
-    """Return a user's `weights` of all samples of a `Measured` as an array (n,).
-
-    Raises `BrdfkitError` unless they are finite, at least 0 and in the right shape.
-    """
+    """Return a user's `weights` of all samples as an array (n,); refuse impossible ones."""
     n = data.table.values[..., 0].size if data.is_table else len(data.samples.wi)
     try:
         array = np.array(weights, float)

@@ -69,10 +69,7 @@ def _select_samples_near(samples: Samples, theta_i: float) -> tuple[FloatArray, 
 
 
 def _find_samples_in_plane(samples: Samples) -> BoolArray:
-    """Return a mask (n,) of the valid samples within `NEAR_PHI` of the plane of incidence.
-
-    A view along the normal is always in the plane.
-    """
+    """Return a mask (n,) of the valid samples within `NEAR_PHI` of the plane of incidence."""
     beside = np.abs(_compute_cos_delta_phi(samples)) >= np.cos(np.radians(NEAR_PHI))
     return samples.valid & (beside | (samples.wo[:, 2] == 1))
 

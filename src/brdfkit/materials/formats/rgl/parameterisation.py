@@ -92,7 +92,7 @@ class Parameterisation:
         interpolate, by `warp.find_slices` for the incidences, and the factors (n,) of
         `compute_facet_factor`.
         """
-        wi, wo = self._fold_into_stored_part(wi, wo)
+        wi, wo = self._fold_azimuths(wi, wo)
         theta_i, phi_i = to_angles(wi)
         theta_m, phi_m = to_angles(normalize(wi + wo))
         m = map_to_square(theta_m, phi_m - phi_i if self.isotropic else phi_m)
@@ -126,9 +126,7 @@ class Parameterisation:
         wo = 2 * np.sum(wi * normal, axis=1, keepdims=True) * normal - wi
         return wi, wo, m, self.compute_facet_factor(theta_i, phi_i, m)
 
-    def _fold_into_stored_part(
-        self, wi: FloatArray, wo: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
+    def _fold_azimuths(self, wi: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Rotate or mirror wi and wo (n, 3) so that wi lies in the stored part of the circle."""
         if self.parts < 2:
             return wi, wo

@@ -171,9 +171,6 @@ def _integrate_line(a: FloatArray, b: FloatArray, t: FloatArray) -> FloatArray:
 
 
 def _invert_line_integral(mass: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the t up to which the line that is a at 0 and b at 1 has the integral `mass`.
-
-    The formula avoids cancellation.
-    """
+    """Return the t up to which the line that is a at 0 and b at 1 has the integral `mass`."""
     divisor = a + np.sqrt(np.maximum(a * a + 2 * mass * (b - a), 0))
     return np.divide(2 * mass, divisor, out=np.zeros_like(mass), where=divisor > 0)
