@@ -79,7 +79,7 @@ def every_point_has_a_texel(shadow, si):
     )
     found = (part[seen] < len(shadow.maps)).all()
     for number, its_map in enumerate(shadow.maps):
-        places = np.array(mi.Point3f(*its_map.projection.project_to_map(*si.p)))[:2]
+        places = np.array(mi.Point3f(*its_map.projection.project(*si.p)))[:2]
         found &= (np.abs(places[:, seen & (part == number)]) <= 1 + 1e-4).all()
     return found
 
@@ -140,9 +140,7 @@ def test_cascades_keep_their_texels_as_the_camera_moves_and_turns():
     camera = replace(placement.camera, slope_y=moved.camera.slope_y)
     for near, far in ((0, 4), (4, 11)):
         before, after = (
-            snap_projection(replace(moved, camera=c), near, far, resolution).project_to_map(
-                *points
-            )[:2]
+            snap_projection(replace(moved, camera=c), near, far, resolution).project(*points)[:2]
             for c in (camera, moved.camera)
         )
         steps = (np.array(after) - before) * resolution / 2

@@ -37,19 +37,17 @@ def check(projection, placement):
     """The body is in the cube; there and back is the same; rays of light are points of the map."""
     points = points_in(placement.body)
     assert projection.is_projectable(*points.T).all()
-    there = np.transpose(projection.project_to_map(*points.T))
+    there = np.transpose(projection.project(*points.T))
     assert np.abs(there).max() < 1 + 1e-9
     size = placement.reach
-    assert (
-        np.abs(np.transpose(projection.unproject_from_map(*there.T)) - points).max() < 1e-6 * size
-    )
+    assert np.abs(np.transpose(projection.unproject(*there.T)) - points).max() < 1e-6 * size
     origins, ways = (
-        np.transpose(np.broadcast_arrays(*v)) for v in projection.compute_light_ray(*there[:, :2].T)
+        np.transpose(np.broadcast_arrays(*v)) for v in projection.light_ray(*there[:, :2].T)
     )
     assert np.linalg.norm(np.cross(points - origins, ways), axis=1).max() < 1e-6 * size
     way = np.transpose(np.broadcast_arrays(*placement.light.direction(*points.T)))
     for length in (1e-3 * size, 0.3 * size):
-        farther = np.transpose(projection.project_to_map(*(points + length * way).T))
+        farther = np.transpose(projection.project(*(points + length * way).T))
         assert np.abs(farther - there)[:, :2].max() < 1e-6
         assert (farther > there)[:, 2].all()
 
@@ -59,8 +57,8 @@ def check_slopes(projection, placement):
     points, step = points_in(placement.visible), 1e-6 * placement.reach
     for axis in np.eye(3):
         slope = np.subtract(
-            projection.project_to_map(*(points + step * axis).T),
-            projection.project_to_map(*(points - step * axis).T),
+            projection.project(*(points + step * axis).T),
+            projection.project(*(points - step * axis).T),
         ) / (2 * step)
         found = np.array(
             np.broadcast_arrays(*projection.directional_derivative(tuple(points.T), axis))
@@ -110,7 +108,7 @@ def test_a_point_light_far_away_is_a_directional_one(name):
             for place, w in ((1e7 * SUN, 1), (SUN, 0))
         )
         points = points_in(sun.visible).T
-        found = [project(name, scene).project_to_map(*points) for scene in (far_away, sun)]
+        found = [project(name, scene).project(*points) for scene in (far_away, sun)]
         np.testing.assert_allclose(*found, atol=1e-3)
 
 
@@ -144,7 +142,7 @@ def test_a_trapezoid_becomes_the_map(angle):
     sight = LineOfSight(to_sight @ np.linalg.inv(placed), light, corners, 0, 0)
     found = sight.make_warped_projection(1.35 - 0.6)
     points = [(0, 0, 0), (0, 0.4, 0), (0, -0.7, 0), (0, 0.4, 0.25), *((x, y, 0) for x, y in sides)]
-    u, v, depth = found.project_to_map(*project_points(placed, points).T)
+    u, v, depth = found.project(*project_points(placed, points).T)
     printed = project_points(np.array(N_T), points)
     np.testing.assert_allclose(np.transpose([-u, -v, depth]), printed, atol=1e-9)
     np.testing.assert_allclose(-u[:3], [-0.0222222, -0.1157895, 0.0536585], atol=1e-7)
@@ -209,7 +207,7 @@ def test_a_logarithm_makes_all_depths_equally_fine():
 @pytest.mark.parametrize("focus", [0.1, 0.4])
 def test_a_focus_has_80_percent_of_the_map(focus):
     projection = project("trapezoidal", overhead(), focus=focus)
-    v = [projection.project_to_map(0, y, 0)[1] for y in (1, 1 + 9 * focus, 10)]
+    v = [projection.project(0, y, 0)[1] for y in (1, 1 + 9 * focus, 10)]
     np.testing.assert_allclose(np.abs(np.subtract(v, v[0])), [0, 1.6, 2], atol=1e-9)
 
 
@@ -219,7 +217,7 @@ def test_perspective_is_even_in_the_picture_s_cube():
     scene = overhead()
     points = points_in(scene.body)
     cube = np.column_stack([project_points(scene.camera.matrix, points), np.ones(len(points))])
-    found = np.transpose(project("perspective", scene).project_to_map(*points.T))
+    found = np.transpose(project("perspective", scene).project(*points.T))
     affine, *_ = np.linalg.lstsq(cube, found, rcond=None)
     np.testing.assert_allclose(cube @ affine, found, atol=1e-9)
 
@@ -248,7 +246,7 @@ def test_plane_optimal_is_the_projection_by_five_pairs_of_points(light):
     at_infinity = by_pairs @ light / np.linalg.norm(by_pairs)
     np.testing.assert_allclose(at_infinity[[0, 1, 3]], 0, atol=1e-9)
     points = points_in(scene.body)
-    found = project("plane_optimal", scene).project_to_map(*points.T)
+    found = project("plane_optimal", scene).project(*points.T)
     for ours, theirs in zip(found, project_points(by_pairs, points).T, strict=True):
         stretch, shift = np.polyfit(theirs, ours, 1)
         assert stretch > 0
@@ -264,8 +262,8 @@ def test_the_ground_is_the_plane_unless_said():
     ground = np.array([[0, -9, 0], [2, 5, 0], [-4, 8, 0]])
     for where, plane, height in ((scene, "", 0), (flat, "", 0), (scene, [0, 0, 2, -3], 1.5)):
         found = project("plane_optimal", where, plane=plane)
-        assert np.ptp(found.project_to_map(*(ground + np.array([0, 0, height])).T)[2]) < 1e-9
-    assert project("plane_optimal", scene).project_to_map(*ground[0])[2] == pytest.approx(1)
+        assert np.ptp(found.project(*(ground + np.array([0, 0, height])).T)[2]) < 1e-9
+    assert project("plane_optimal", scene).project(*ground[0])[2] == pytest.approx(1)
 
 
 @pytest.mark.quick

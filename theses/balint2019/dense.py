@@ -12,7 +12,7 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.shadow import Shadow, clearance_ratio, find_smallest_ratio_near
+from brdfkit.distance_fields.shadows.shadow import Shadow, clearance_ratio, find_smallest_ratio
 from brdfkit.distance_fields.shadows.tau import lit_disc_share
 
 
@@ -28,6 +28,6 @@ def dense(field: Any, cone: LightCone, samples: int = 2000, refinements: int = 4
 
     with dr.suspend_grad():
         _, r, t = dr.while_loop((zero, zero + 1, zero), lambda i, r, t: i <= samples, look)
-        t = find_smallest_ratio_near(field, cone, t, spacing, refinements)
+        t = find_smallest_ratio(field, cone, t, spacing, refinements)
         r = dr.minimum(r, clearance_ratio(field, cone, t))
     return Shadow(lit_disc_share(r), r, t, zero + samples + 2 * refinements)

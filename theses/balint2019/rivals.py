@@ -13,7 +13,7 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.field import get_distance_function, get_lipschitz_bound
+from brdfkit.distance_fields.shadows.field import distance_function, lipschitz_bound
 from brdfkit.distance_fields.shadows.march import Rule
 from brdfkit.distance_fields.shadows.shadow import Shadow, trace_shadow
 from brdfkit.distance_fields.shadows.tau import lit_disc_share
@@ -97,11 +97,7 @@ def trace_hard_ray(
     The ray ends where it meets an object, so that the inner half of the penumbra is black.
     `nearness(t, F, F_before)` is the distance at which it passes, over t.
     """
-    f, lipschitz, cone = (
-        get_distance_function(field),
-        get_lipschitz_bound(field),
-        cone.make_detached(),
-    )
+    f, lipschitz, cone = (distance_function(field), lipschitz_bound(field), cone.make_detached())
     k, hit = cone.d / cone.R_1, HIT_DISTANCE * cone.d
 
     def step(

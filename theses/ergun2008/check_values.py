@@ -95,7 +95,7 @@ def trapezoid():
         to_sight = np.array([[-1, 0, 0, 0.1], [0, -1, 0, 0.6], [0, 0, 1, 0], [0, 0, 0, 1.0]])
         below = Light(-ABOVE.point)
         sight = LineOfSight(to_sight @ np.linalg.inv(placed), below, np.array(points), None, None)
-        u, v, _ = sight.make_warped_projection(1.35 - 0.6).project_to_map(*np.transpose(points))
+        u, v, _ = sight.make_warped_projection(1.35 - 0.6).project(*np.transpose(points))
         off = max(off, np.abs(np.column_stack([-u, -v]) - mapped).max())
     found = project_points(trapezoid_to_square(), [(0, 0, 0), (0, 0.4, 0.25), (0, -0.7, 0)])
     expected = [(-0.022222222, -1 / 3, 0), (-0.115789474, 0.368421053, 0.197368421)]

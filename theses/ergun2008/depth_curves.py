@@ -43,7 +43,7 @@ def depth_curve(projection, corners, count=1000, seed=0):
     corners : (n, 3), of the convex body that has the points.
     """
     points = np.random.default_rng(seed).dirichlet(np.full(len(corners), 0.3), count) @ corners
-    return projection.light.path_length(*points.T), projection.project_to_map(*points.T)[2]
+    return projection.light.path_length(*points.T), projection.project(*points.T)[2]
 
 
 def unevenness(before, after):

@@ -34,7 +34,7 @@ def simple_scores(view, resolution):
     camera = Projection.from_matrix(
         view.placement.camera.matrix, view.placement.light
     ).make_opaque()
-    x, y, _ = projection.project_to_map(*seen.si.p)
+    x, y, _ = projection.project(*seen.si.p)
     picture = camera, seen.size[::-1]
     e = np.array(aliasing((projection, resolution), picture, seen.si.p, seen.si.n))
     places = (np.array([x, y]).T[seen.facing] + 1) / 2

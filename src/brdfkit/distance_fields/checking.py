@@ -36,7 +36,7 @@ def check(
     low, high : three numbers
         The corners of the box that is checked.
     lipschitz : float, optional
-        The bound L on the slope of f; by default the node's own, else 1.
+        The upper bound on the slope of the field; by default the node's own, else 1.
     samples : integer, default 100_000
         The number of pairs.
     seed : integer, default 0
@@ -45,7 +45,7 @@ def check(
     Raises
     ------
     BrdfkitError
-        If f is not finite, or too steep, somewhere; the error says where.
+        If the field is not finite, or too steep, somewhere; the error says where.
 
     Examples
     --------
@@ -74,12 +74,12 @@ def check(
 
 
 def check_steps(node: Any, walks: int = 500, steps: int = 8, seed: int = 0) -> None:
-    """Check by random walks that no step of the length f / L crosses the surface of a node.
+    """Check by random walks that rays can step along a field without crossing its surface.
 
-    f is the field and L its bound `lipschitz`. `check` demands more: an estimate whose values jump,
-    such as the Mandelbulb's, may still have safe steps. Each step of a walk leads to a random point
-    of the ball that should hold no surface, so that the walk soon comes near the surface. A check
-    that finds nothing is no proof.
+    A step is as long as the field's value, over its bound `lipschitz`. `check` demands more: an
+    estimate whose values jump, such as the Mandelbulb's, may still have safe steps. Each step of a
+    walk leads to a random point of the ball that should contain no surface, so that the walk soon
+    comes near the surface. A check that finds nothing is no proof.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def check_steps(node: Any, walks: int = 500, steps: int = 8, seed: int = 0) -> N
     Raises
     ------
     BrdfkitError
-        If f is not finite, or a step crosses the surface; the error says where.
+        If the field is not finite, or a step crosses the surface; the error says where.
 
     Examples
     --------

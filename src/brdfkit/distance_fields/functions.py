@@ -92,8 +92,8 @@ def read_grid_value(grid: Any, i: JitInt, j: JitInt, k: JitInt, dtype: type) -> 
     columns, rows = (int(n) for n in grid.counts[:2])
     index = i + columns * (j + rows * k)
     if isinstance(i, int):
-        return float(grid.array(float)[index])
-    return dr.gather(dtype, grid.array(dtype), dr.uint32_array_t(type(i))(index))
+        return float(grid.to_flat_array(float)[index])
+    return dr.gather(dtype, grid.to_flat_array(dtype), dr.uint32_array_t(type(i))(index))
 
 
 def lerp(a: JitFloat, b: JitFloat, t: JitFloat) -> JitFloat:

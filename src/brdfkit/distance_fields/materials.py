@@ -80,7 +80,7 @@ def grow_material(node: Any, material: str, growth: float) -> Any:
     return node
 
 
-def compute_material_share(node: Node, larger: Node, p: JitVector, growth: float) -> JitFloat:
+def material_share(node: Node, larger: Node, p: JitVector, growth: float) -> JitFloat:
     """Return the share, 0 to 1, of the surface at `p` that belongs to a material.
 
     larger : the field with the parts of that material grown by `growth`, see `grow_material`.

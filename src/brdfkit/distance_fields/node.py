@@ -47,11 +47,14 @@ class Node(Operators, Conversions):
         return type(self).__name__
 
     def distance(self, p: JitVector) -> JitFloat:
-        """Return f at points `p` with x, y and z: Dr.Jit arrays of any backend, or numbers."""
+        """Return the field at `p` with x, y and z: Dr.Jit arrays of any backend, or numbers."""
         raise NotImplementedError
 
     def bounds(self, level: float = 0.0) -> Box:
-        """Return the corners (low, high) of a box around {f ≤ level}; infinite if none is known."""
+        """Return the corners (low, high) of a box around all points where the field is ≤ `level`.
+
+        They are infinite if no box is known.
+        """
         return EVERYWHERE
 
     @property
@@ -62,26 +65,26 @@ class Node(Operators, Conversions):
 
     @property
     def exact_outside(self) -> Any:
-        """True if f, where it is above 0, is the distance to the surface."""
+        """True if the field is the exact distance to the surface outside of the solid."""
         return False
 
     @property
     def exact_inside(self) -> Any:
-        """True if -f, where f is below 0, is the distance to the surface."""
+        """True if the field is the exact, negative distance to the surface inside of the solid."""
         return False
 
     @property
     def is_convex(self) -> Any:
-        """True if f is a convex function, so that the solid is convex, too."""
+        """True if the field is a convex function, so that the solid is convex, too."""
         return False
 
     @property
     def lipschitz(self) -> float:
-        """The bound L: f changes by at most L per unit of length."""
+        """An upper bound on the slope of the field, by default the largest of the children's."""
         return max((child.lipschitz for child in self.children), default=1.0)
 
     def __call__(self, points: ArrayLike) -> FloatArray:
-        """Return the values f (n,) at `points` (n, 3) of NumPy's, in double precision.
+        """Return the values (n,) of the field at NumPy's `points` (n, 3), in double precision.
 
         >>> sphere(1)([[0, 0, 3]])
         array([2.])
@@ -114,7 +117,7 @@ class Node(Operators, Conversions):
         return self._replace_parameters(values)
 
     def _replace_parameters(self, values: Mapping[str, Any]) -> Node:
-        """Return the tree with other values of the named parameters, which are known to exist."""
+        """Return the tree with other values of some parameters, whose names are known to exist."""
         own: dict[str, Any] = {
             f.name: values[f"{self.kind}.{f.name}"]
             for f in list_public_fields(self)

@@ -26,20 +26,23 @@ def find_kind(name: Any, where: str = "") -> type:
 
 
 def number(default: Any, least: float | None = None, above: float | None = None) -> Any:
-    """Declare a field for a number, or for a Dr.Jit array, which may carry derivatives."""
+    """Declare a parameter that is a number, or a Dr.Jit array, which may carry derivatives."""
     return field(default=default, metadata={"check": _check_number, "least": least, "above": above})
 
 
 def vector(
     default: Any, above: float | None = None, least: float | None = None, spread: bool = False
 ) -> Any:
-    """Declare a field for three numbers; with `spread`, one number may stand for three."""
+    """Declare a parameter of three numbers; with `spread`, one number may stand for three."""
     rules = {"check": _check_vector, "above": above, "least": least, "spread": spread}
     return field(default=default, metadata=rules)
 
 
 def count(default: Any, least: int = 0, optional: bool = False) -> Any:
-    """Declare a field for a whole number, which no optimiser may change; `optional` allows None."""
+    """Declare a parameter that is a whole number, so that no optimiser may change it.
+
+    optional : whether None is allowed.
+    """
     rules = {"check": _check_count, "least": least, "optional": optional, "fixed": True}
     return field(default=default, metadata=rules)
 

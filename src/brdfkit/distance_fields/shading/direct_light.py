@@ -70,9 +70,8 @@ class DirectLight:
         if self.shading == "exact":
             is_visible = partial(self._is_unoccluded, seen)
         else:
-            cone, shadow = self._compute_lamp_shadow(
-                lamp, seen, lamp.sample_centre(seen.si, seen.found)[0]
-            )
+            ds, _ = lamp.sample_centre(seen.si, seen.found)
+            cone, shadow = self._compute_lamp_shadow(lamp, seen, ds)
             with dr.suspend_grad():
                 edge = find_edge(seen.field, cone, shadow)
 
@@ -99,10 +98,10 @@ class DirectLight:
 
         ds, light = lamp.sample_centre(seen.si, seen.found)
         value = bsdf.eval(mi.BSDFContext(), seen.si, seen.si.to_local(ds.d), seen.found)
-        visible = (
-            1 if self.shadow == "none" else self._compute_lamp_shadow(lamp, seen, ds)[1].visible
-        )
-        return mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * visible
+        reflected = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light)
+        if self.shadow == "none":
+            return reflected
+        return reflected * self._compute_lamp_shadow(lamp, seen, ds)[1].visible
 
     @record_loops
     def _compute_lamp_shadow(
@@ -116,9 +115,8 @@ class DirectLight:
         """
         centre, radius = lamp.bounding_sphere(seen.si, ds, self.far)
         beside = centre + type(centre)(0, 0, 1) * (2 * radius + 1)
-        cone = make_light_cone(
-            dr.select(seen.found, seen.middle, beside), centre, radius, seen.ball
-        )
+        start = dr.select(seen.found, seen.middle, beside)
+        cone = make_light_cone(start, centre, radius, seen.ball)
         settings = self.epsilon, self.direction, self.rays
         return cone, compute_shadow_by_name(self.shadow, seen.field, cone, *settings)
 

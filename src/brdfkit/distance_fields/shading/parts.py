@@ -9,11 +9,7 @@ import numpy as np
 from brdfkit.core.array_types import JitVector, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.padding import pad
-from brdfkit.distance_fields.materials import (
-    compute_material_share,
-    grow_material,
-    list_material_names,
-)
+from brdfkit.distance_fields.materials import grow_material, list_material_names, material_share
 from brdfkit.distance_fields.node import Node
 
 
@@ -67,8 +63,7 @@ class Parts:
 
         with dr.suspend_grad():
             shares = {
-                name: compute_material_share(field, each, p, self.growth)
-                for name, each in larger.items()
+                name: material_share(field, each, p, self.growth) for name, each in larger.items()
             }
             bsdf, most = mi.BSDFPtr(self.other), 1 - sum(shares.values(), mi.Float(0))
             for name, here in shares.items():

@@ -41,8 +41,8 @@ class NearMiss:
     """A place where a camera ray passes closely by a silhouette.
 
     seen : the `VisiblePoint` that the ray would meet if the surface reached it.
-    gap : Float, g₀, the least gap between the ray's cone and the surface, with its derivatives.
-    band : Float, ε, the gap below which rays count as close.
+    gap : Float, the least gap between the ray's cone and the surface, with its derivatives.
+    band : Float, the gap below which rays count as close.
     """
 
     seen: Any
@@ -107,7 +107,5 @@ def find_nearest_pass(
     first = gap(zero)
     start = zero, first, first, zero + dr.inf, zero, dr.uint32_array_t(type(zero))(0)
     return dr.while_loop(
-        start,
-        lambda t, before, here, least, place, i: active & (t < far) & (i < MAX_STEPS),
-        step,
+        start, lambda t, before, here, least, place, i: active & (t < far) & (i < MAX_STEPS), step
     )[4]

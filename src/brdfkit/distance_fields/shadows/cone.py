@@ -28,12 +28,12 @@ TIP_RADIUS = 1e-3  # the radius, over the widest, at which a march counts as at 
 
 @dataclass(frozen=True)
 class LightCone:
-    """A truncated cone from `start` along the unit vector `axis`, with radii R_0 and R_1.
+    """A truncated cone from a surface point to a light, in which occluders are searched.
 
-    start, axis : Dr.Jit points and vectors, of any backend and precision.
+    start, axis : the surface point, and the unit vector from there; Dr.Jit types of any backend.
     d : Float, the length of the axis.
     R_0, R_1 : Float, the radii of the sections at its start and its end.
-    tan : Float, tan α, the growth of the radius per length.
+    tan : Float, the growth of the radius per length along the axis.
     basis : two unit vectors at right angles to the axis and to each other.
     """
 
@@ -54,7 +54,7 @@ class LightCone:
         object.__setattr__(self, "basis", (a, dr.cross(self.axis, a)))
 
     def radius(self, t: JitFloat) -> JitFloat:
-        """Return ρ(t), the radius of the section at t; never 0, so that ratios are finite."""
+        """Return the radius of the cone's section at t; never 0, so that ratios are finite."""
         return dr.maximum(self.R_0 + t * self.tan, POINT_RADIUS * self.d)
 
     def point(self, t: JitFloat) -> JitVector:
@@ -87,9 +87,10 @@ class LightCone:
         return LightCone(*(dr.detach(field) for field in fields))
 
     def bound_step_count(self, epsilon: float, lipschitz: float = 1.0) -> JitFloat:
-        """Return an upper bound on the steps of a march with this `epsilon`, in any field.
+        """Return an upper bound on the steps of a march along the cone, in any field.
 
-        A step is at least e ρ / (L + |tan α|) long, with e = ε π / 2 and the field's bound L.
+        A step is at least e ρ / (L + |tan α|) long, with e = ε π / 2, the cone's radius ρ and half
+        angle α, and the field's bound L.
         """
         wide = dr.maximum(self.R_0, self.R_1)
         narrow = dr.maximum(dr.minimum(self.R_0, self.R_1), TIP_RADIUS * wide)

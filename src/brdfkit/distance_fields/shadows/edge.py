@@ -14,7 +14,7 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitMask, JitVector
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.field import get_distance_function
+from brdfkit.distance_fields.shadows.field import distance_function
 from brdfkit.distance_fields.shadows.shadow import Shadow
 
 STEP = 0.02  # step of the finite differences, over the radius of the section
@@ -44,12 +44,13 @@ class Edge:
 def find_edge(field: Any, cone: LightCone, shadow: Shadow) -> Edge:
     """Return the straight edge of the occluder that a march in `cone` found.
 
-    The plane that touches the occluder goes through the apex. Where the axis is at the distance r ρ
-    from it, its line on the disc is r / √(1 - r² tan² α) from the centre.
+    The plane that touches the occluder goes through the apex. With the smallest ratio r of distance
+    to cone radius, and the cone's half angle α, its line on the disc is r / √(1 - r² tan² α) from
+    the centre.
 
     shadow : result of the march.
     """
-    on_axis = get_distance_function(field)(cone.point(shadow.t))
+    on_axis = distance_function(field)(cone.point(shadow.t))
     x, y = gradient_across(field, cone, shadow.t, on_axis)
     length = dr.sqrt(x * x + y * y)
     flat = length == 0  # the distance changes only along the axis, so that any direction will do
@@ -62,12 +63,12 @@ def find_edge(field: Any, cone: LightCone, shadow: Shadow) -> Edge:
 def gradient_across(
     field: Any, cone: LightCone, t: JitFloat, on_axis: JitFloat
 ) -> tuple[JitFloat, ...]:
-    """Return the gradient of a field within the section at t, by finite differences.
+    """Return the gradient of a field within the cone's section at t, by finite differences.
 
     Its two components are along the cone's `basis`.
 
     on_axis : the distance at the point of the axis.
     """
-    f, width = get_distance_function(field), STEP * cone.radius(t)
+    f, width = distance_function(field), STEP * cone.radius(t)
     aside = f(cone.disc_point(t, STEP, 0)), f(cone.disc_point(t, 0, STEP))
     return tuple((there - on_axis) / width for there in aside)

@@ -17,14 +17,14 @@ from brdfkit.distance_fields.shapes.motions import Motion
 UNIT_BOX = -np.ones(3), np.ones(3)  # used for fields that have no bounded parts
 
 
-def get_distance_function(field: Any) -> Callable[[Any], Any]:
+def distance_function(field: Any) -> Callable[[Any], Any]:
     """Return the function from points to distances of a field, which may be the field itself."""
     distance: Callable[[Any], Any] = getattr(field, "distance", field)
     return distance
 
 
-def get_lipschitz_bound(field: Any) -> float:
-    """Return the bound L on the change of the distance per unit of length, by default 1."""
+def lipschitz_bound(field: Any) -> float:
+    """Return the upper bound on the slope of a field; 1 for a field that states none."""
     return float(getattr(field, "lipschitz", 1.0))
 
 

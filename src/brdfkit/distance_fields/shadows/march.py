@@ -16,7 +16,7 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitMask
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.field import get_distance_function, get_lipschitz_bound
+from brdfkit.distance_fields.shadows.field import distance_function, lipschitz_bound
 
 # A function from (t, f, R_C, memory) to the length of a step and the memory for the next step;
 # the memory is whatever the function wants to know of earlier steps
@@ -27,9 +27,10 @@ Pace: TypeAlias = Callable[[Any, LightCone], tuple[Step, Any]]
 
 @dataclass(frozen=True)
 class Rule:
-    """The rule by which a march updates the smallest ratio R_T and its limit R_C.
+    """The rule by which a march lowers R_T, the smallest ratio so far, and R_C.
 
-    The methods of single-ray shadows differ by their rules.
+    A ratio is the distance over the cone's radius. The steps of the march are so short that it
+    misses no ratio below R_C. The methods of single-ray shadows differ by their rules.
 
     first : R_T and R_C at the start.
     lower : function from a ratio below R_T, and R_T, to the new R_T and R_C.
@@ -43,11 +44,11 @@ class Rule:
 
 @dataclass(frozen=True)
 class Walk:
-    """The result of a march.
+    """The result of a march along a cone.
 
-    R_T : the smallest ratio f / ρ that it found.
+    R_T : the smallest ratio of distance to cone radius that it found.
     t : the distance along the axis at which it found this ratio.
-    evaluations : the number of evaluations of f.
+    evaluations : the number of evaluations of the distance.
     """
 
     R_T: Any
@@ -58,9 +59,9 @@ class Walk:
 def make_cone_tracing_step(field: Any, cone: LightCone) -> tuple[Step, tuple[()]]:
     """Return a function for the steps of cone tracing, and its memory, which is empty.
 
-    A step leads to the point where a cone with the radius R_C ρ may first touch the surface.
+    A step leads as far as no ratio of distance to cone radius can be below the limit R_C.
     """
-    lipschitz, tan = get_lipschitz_bound(field), cone.tan
+    lipschitz, tan = lipschitz_bound(field), cone.tan
 
     def step(t: JitFloat, F: JitFloat, R_C: JitFloat, memory: Any) -> tuple[JitFloat, Any]:
         return (F - R_C * cone.radius(t)) / (lipschitz + dr.abs(R_C * tan)), memory
@@ -76,15 +77,18 @@ def march_along_cone(
     pace: Pace = make_cone_tracing_step,
     active: JitMask = True,
 ) -> Walk:
-    """March from the start of a cone to its end, without derivatives, where `active`.
+    """March from the start of a cone to its end, and return the smallest ratio on the way.
 
-    rule : the rule by which R_T and R_C are updated.
+    A ratio is the distance over the cone's radius. The result has no derivatives.
+
+    rule : the rule by which the smallest ratio and its limit are updated.
     epsilon : error of the lit share, which bounds the number of steps.
     pace : function that makes the function for the steps.
+    active : whether each ray marches at all.
     """
-    f, cone = get_distance_function(field), cone.make_detached()
+    f, cone = distance_function(field), cone.make_detached()
     step, memory = pace(field, cone)
-    max_steps = cone.bound_step_count(epsilon, get_lipschitz_bound(field))
+    max_steps = cone.bound_step_count(epsilon, lipschitz_bound(field))
 
     def one_step(
         t: JitFloat, R_T: JitFloat, R_C: JitFloat, t_min: JitFloat, i: JitFloat, memory: Any
@@ -106,4 +110,5 @@ def march_along_cone(
             ),
             one_step,
         )
-    return Walk(dr.select(dr.isnan(t), dr.nan, R_T), t_min, i)  # NaN of the field reaches only t
+    # A field that is not a number makes t NaN, but not R_T
+    return Walk(dr.select(dr.isnan(t), dr.nan, R_T), t_min, i)

@@ -22,8 +22,8 @@ import drjit as dr
 from brdfkit.core.array_types import JitFloat
 from brdfkit.distance_fields.shadows.cone import LightCone
 from brdfkit.distance_fields.shadows.field import (
-    get_distance_function,
-    get_lipschitz_bound,
+    distance_function,
+    lipschitz_bound,
     split_into_pieces,
 )
 from brdfkit.distance_fields.shadows.march import Rule, Step
@@ -35,15 +35,16 @@ def compute_linear_shadow(
 ) -> Shadow:
     """Return a soft shadow by the linear march, the default method.
 
-    The visible share is at most ε above the exact share for the smallest ratio.
+    The visible share is at most `epsilon` too large for the straight edge that it assumes.
     """
     return trace_shadow(field, cone, make_linear_rule(epsilon), epsilon, direction)
 
 
 def make_linear_rule(epsilon: float) -> Rule:
-    """Return the rule of the linear march, which misses no ratio e = ε π / 2 below the smallest.
+    """Return the rule of the linear march, whose lit share has at most the error ε = `epsilon`.
 
-    A change of ε in the lit share τ(r) is a change of e in r at least, because τ' ≤ 2 / π.
+    A change of ε in the lit share τ(r) of the ratio r is a change of at least e = ε π / 2 in r,
+    because τ' ≤ 2 / π. So no ratio more than e below the smallest one may be missed.
     """
     e = epsilon * pi / 2
     return Rule((1.0, 1 - e), lambda ratio, R_T: (ratio, ratio - e), e - 1)
@@ -63,9 +64,8 @@ def compute_convex_shadow(
 
     Pieces of a union without `is_convex` are approached by the steps of the linear march.
     """
-    return trace_shadow(
-        field, cone, make_linear_rule(epsilon), epsilon, direction, make_convex_step
-    )
+    rule = make_linear_rule(epsilon)
+    return trace_shadow(field, cone, rule, epsilon, direction, make_convex_step)
 
 
 def make_convex_step(field: Any, cone: LightCone) -> tuple[Step, Any]:
@@ -79,10 +79,10 @@ def make_convex_step(field: Any, cone: LightCone) -> tuple[Step, Any]:
     def step(t: JitFloat, F: JitFloat, R_C: JitFloat, memory: Any) -> tuple[JitFloat, Any]:
         t_before, before = memory
         rho, tan = cone.radius(t), cone.tan
-        now = tuple(get_distance_function(piece)(cone.point(t)) for piece in pieces)
+        now = tuple(distance_function(piece)(cone.point(t)) for piece in pieces)
         dt = cone.d
         for piece, f, f_before in zip(pieces, now, before, strict=True):
-            clearance, lipschitz = f - R_C * rho, get_lipschitz_bound(piece)
+            clearance, lipschitz = f - R_C * rho, lipschitz_bound(piece)
             closing = lipschitz + dr.abs(R_C * tan)
             if getattr(piece, "is_convex", False):
                 line = dr.maximum((f - f_before) / (t - t_before), -lipschitz)

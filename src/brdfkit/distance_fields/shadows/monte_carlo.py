@@ -15,7 +15,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitFloat, JitInt
 from brdfkit.core.jit.padding import pad
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.field import get_distance_function, get_lipschitz_bound
+from brdfkit.distance_fields.shadows.field import distance_function, lipschitz_bound
 from brdfkit.distance_fields.shadows.shadow import Shadow
 
 MAX_STEPS = 512  # the most steps along a ray
@@ -55,8 +55,8 @@ def trace_ray(
 
     The clearance is 0 or less where the ray met an object.
     """
-    f, tan = get_distance_function(field), cone.tan
-    speed = get_lipschitz_bound(field) * dr.sqrt(1 + tan * tan * (x * x + y * y))
+    f, tan = distance_function(field), cone.tan
+    speed = lipschitz_bound(field) * dr.sqrt(1 + tan * tan * (x * x + y * y))
     zero = 0 * cone.d
 
     def step(t: JitFloat, clearance: JitFloat, i: JitFloat) -> tuple[JitFloat, ...]:

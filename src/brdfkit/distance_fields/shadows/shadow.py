@@ -14,7 +14,7 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitMask
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.field import get_distance_function
+from brdfkit.distance_fields.shadows.field import distance_function
 from brdfkit.distance_fields.shadows.march import (
     Pace,
     Rule,
@@ -36,8 +36,8 @@ class Shadow:
     """The visible share of a light, and the ratio from which it was computed.
 
     visible : Float, the share of the light that is visible, 0 to 1.
-    r : Float, the smallest ratio f / ρ that was found, at most 1.
-    t : Float, where on the axis it was found, from the surface point on.
+    r : Float, the smallest ratio of distance to cone radius that was found, at most 1.
+    t : Float, where on the axis it was found, as a distance from the surface point.
     evaluations : Float, the number of evaluations of the distance.
     """
 
@@ -48,14 +48,14 @@ class Shadow:
 
 
 def clearance_ratio(field: Any, cone: LightCone, t: JitFloat) -> JitFloat:
-    """Return f / ρ, the distance over the cone's radius, at the place t of the axis."""
-    return get_distance_function(field)(cone.point(t)) / cone.radius(t)
+    """Return the field's distance over the cone's radius, at the place t of the axis."""
+    return distance_function(field)(cone.point(t)) / cone.radius(t)
 
 
-def find_smallest_ratio_near(
+def find_smallest_ratio(
     field: Any, cone: LightCone, t: JitFloat, width: JitFloat, steps: int
 ) -> JitFloat:
-    """Return where f / ρ is smallest within `width` of t, by golden-section search.
+    """Return where the clearance ratio is smallest within `width` of t, by golden-section search.
 
     The result has no derivatives.
     """
@@ -83,11 +83,13 @@ def trace_shadow(
     pace: Pace = make_cone_tracing_step,
     active: JitMask = True,
 ) -> Shadow:
-    """Return the shadow that one march by a `Rule` finds; rays that are not `active` are lit."""
+    """Return the shadow that one march along a cone finds; rays that are not `active` are lit.
+
+    rule, pace : rule and step function of the march, by which methods differ.
+    """
     forward = direction == "A"
-    walk = march_along_cone(
-        field, cone if forward else cone.make_reversed(), rule, epsilon, pace, active
-    )
+    path = cone if forward else cone.make_reversed()
+    walk = march_along_cone(field, path, rule, epsilon, pace, active)
     d = dr.detach(cone.d)
     t = walk.t if forward else d - walk.t
     r = walk.R_T
@@ -103,7 +105,7 @@ def trace_shadow(
 def attach_ratio_derivatives(
     r: JitFloat, field: Any, cone: LightCone, t: JitFloat, epsilon: float
 ) -> JitFloat:
-    """Return the minimum of f / ρ near t, with derivatives; `r` if nothing carries derivatives.
+    """Return the smallest clearance ratio near t with derivatives; `r` if nothing carries any.
 
     Derivatives jump at a crease of the field. The derivative of the minimum is then a mean of the
     derivatives on both sides, with weights that let the slopes along the axis cancel.
@@ -117,16 +119,10 @@ def attach_ratio_derivatives(
     with dr.suspend_grad():
         fixed = cone.make_detached()
         rho = fixed.radius(t)
-        t = find_smallest_ratio_near(field, cone, t, SEARCH_WIDTH * epsilon * rho, SEARCH_STEPS)
-        before, left, right, behind = (
-            dr.clip(t + k * SIDE_STEP * rho, 0, fixed.d) for k in (-2, -1, 1, 2)
-        )
-        falls = dr.maximum(
-            clearance_ratio(field, fixed, before) - clearance_ratio(field, fixed, left), 0
-        )
-        rises = dr.maximum(
-            clearance_ratio(field, fixed, behind) - clearance_ratio(field, fixed, right), 0
-        )
+        t = find_smallest_ratio(field, cone, t, SEARCH_WIDTH * epsilon * rho, SEARCH_STEPS)
+        places = [dr.clip(t + k * SIDE_STEP * rho, 0, fixed.d) for k in (-2, -1, 1, 2)]
+        before, at_left, at_right, behind = (clearance_ratio(field, fixed, t) for t in places)
+        falls, rises = dr.maximum(before - at_left, 0), dr.maximum(behind - at_right, 0)
         level = falls + rises == 0
         weight = dr.select(level, 0.5, rises / dr.select(level, 1, falls + rises))
-    return weight * moving_ratio(left) + (1 - weight) * moving_ratio(right)
+    return weight * moving_ratio(places[1]) + (1 - weight) * moving_ratio(places[2])

@@ -47,9 +47,10 @@ def compute_split_shadow(
 
 
 def slope_across(field: Any, cone: LightCone, shadow: Shadow, active: JitMask) -> JitFloat:
-    """Return |∇f| across the axis at the smallest ratio, without derivatives; 1 if not `active`.
+    """Return the slope of the field across the axis where the ratio is smallest.
 
-    It is 1 at an edge, and 0, limited to 1 / `FURTHEST_EDGE`, within a wall.
+    It is 1 at an edge, and nearly 0 within a wall; it is 1, too, for rays that are not `active`. It
+    has no derivatives.
     """
     cone = cone.make_detached()
 

@@ -28,7 +28,7 @@ def lit_disc_share(r: JitFloat) -> JitFloat:
 
 
 def lit_disc_slope(r: JitFloat) -> JitFloat:
-    """Return τ'(r), the slope of the lit share by the edge's distance r, at most 2/π.
+    """Return the derivative of `lit_disc_share` by the edge's distance r, at most 2/π.
 
     >>> lit_disc_slope(1.0)
     0.0

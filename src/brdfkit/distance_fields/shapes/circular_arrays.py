@@ -42,7 +42,7 @@ class circular_array(Node):
 
     @property
     def exact_inside(self) -> bool:
-        """True if f is exact inside the child, and the copies do not overlap."""
+        """True if the child's field is an exact distance inside, and the copies do not overlap."""
         return self.child.exact_inside and (
             self.copies == 1 or self._angular_extent()[1] < self.sector / 2
         )

@@ -64,7 +64,7 @@ class union(Combination):
 
     @property
     def exact_outside(self) -> bool:
-        """True if nothing is blended, and all children are exact outside."""
+        """True if nothing is blended, and the children's fields are exact distances outside."""
         return self.is_sharp and all(child.exact_outside for child in self.children)
 
     def distance(self, p: JitVector) -> JitFloat:
@@ -89,7 +89,7 @@ class intersection(Combination):
 
     @property
     def exact_inside(self) -> bool:
-        """True if nothing is blended, and all children are exact inside."""
+        """True if nothing is blended, and the children's fields are exact distances inside."""
         return self.is_sharp and all(child.exact_inside for child in self.children)
 
     @property
@@ -118,7 +118,10 @@ class difference(Combination):
 
     @property
     def exact_inside(self) -> bool:
-        """True if nothing is blended, the first child is exact inside, and all others outside."""
+        """True if nothing is blended, and the fields of the children are exact distances.
+
+        This holds inside of the first child, and outside of all others.
+        """
         first, *others = self.children
         return self.is_sharp and first.exact_inside and all(c.exact_outside for c in others)
 

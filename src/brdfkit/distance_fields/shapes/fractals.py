@@ -76,7 +76,7 @@ class mandelbulb(Node):
     def radius(self) -> JitFloat:
         """Return the radius of a ball that contains the fractal.
 
-        From ‖c‖ = 2^(1/(n-1)) on, every iteration leads further away.
+        From any point c with ‖c‖ ≥ 2^(1/(n-1)), every iteration leads further away.
         """
         return 2.0 ** (1.0 / (self.n - 1.0))
 

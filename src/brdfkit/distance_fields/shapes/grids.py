@@ -85,15 +85,15 @@ class grid(Node):
     def half_diagonal(self) -> float:
         """Half of the diagonal of a cell, which bounds the error of sampling.
 
-        A grid of samples of a field with the bound L differs from the field by at most L times this
-        length, as the mean distance of a point from the corners of its cell, by the weights of the
+        Samples of a field with the slope L at most differ from it by at most L times this length,
+        as the mean distance of a point from the corners of its cell, by the weights of the
         interpolation, is not larger.
         """
         return float(np.linalg.norm(self.spacing) / 2)
 
     @property
     def lipschitz(self) -> float:
-        """The bound L on the slope of the field, from the steepest cell."""
+        """An upper bound on the slope of the field, from its steepest cell."""
         if "lipschitz" not in self._cache:
             values = np.asarray(dr.detach(self.values), float)
             self._cache["lipschitz"] = _compute_largest_slope(values, self.spacing)
@@ -126,7 +126,7 @@ class grid(Node):
             planes.append(lerp(rows[0], rows[1], shares.y))
         return lerp(planes[0], planes[1], shares.z)
 
-    def array(self, dtype: type) -> Any:
+    def to_flat_array(self, dtype: type) -> Any:
         """Return all values in a row, x fastest, as a Dr.Jit array `dtype`; NumPy's for float."""
         if dr.is_tensor_v(self.values):
             return np.ravel(self.values) if dtype is float else dtype(self.values.array)
@@ -142,8 +142,9 @@ class grid(Node):
 def _compute_largest_slope(values: FloatArray, spacing: FloatArray) -> float:
     """Return the largest slope that the interpolation may have, in the steepest cell.
 
-    Along an axis the slope within a cell is a mean of the slopes of its four edges. Where the box
-    cuts the solid, the value outside is e + f, see `grid`, with a slope up to √(1 + L²).
+    Along an axis the slope within a cell is a mean of the slopes of its four edges. If the box cuts
+    the solid, the field outside is the distance to the box plus a value on it, so that a slope L
+    becomes √(1 + L²).
     """
     squared: Any = 0.0
     for axis, step in zip((2, 1, 0), spacing, strict=True):

@@ -16,10 +16,10 @@ from brdfkit.distance_fields.parameters import number
 
 @dataclass(frozen=True, eq=False, repr=False)
 class dilate(Node):
-    """A solid grown by a distance: {f ≤ radius}, with the field f of the solid.
+    """A solid grown by a distance on all sides.
 
-    Where f is exact, a grown solid has round edges. Where f is an estimate, the surface may move
-    further than the distance.
+    A field that is the exact distance makes round edges. Where the child's field is an estimate,
+    the surface may move further than the distance.
 
     Parameters
     ----------
@@ -35,15 +35,15 @@ class dilate(Node):
 
     @property
     def exact_outside(self) -> bool:
-        """True for a child that is exact outside, and grown."""
+        """True if the child's field is an exact distance outside, and the child is grown."""
         return self.child.exact_outside and to_floats(self.radius) >= 0
 
     @property
     def exact_inside(self) -> bool:
-        """True for a child that is exact inside, and shrunk or convex.
+        """True if the child's field is an exact distance inside, and the child is shrunk or convex.
 
-        Unless the child is convex, a point between its surface and the grown surface may be nearest
-        to a part of the grown surface that f does not account for.
+        Unless the child is convex, its distances do not tell how far inner points are from the
+        grown surface.
         """
         grown = self.child.is_convex and self.child.exact_outside
         return self.child.exact_inside and (grown or to_floats(self.radius) <= 0)
@@ -72,7 +72,7 @@ class shell(Node):
 
     @property
     def exact_outside(self) -> bool:
-        """True if the child is exact on both sides."""
+        """True if the child's field is an exact distance on both sides of its surface."""
         return self.child.exact_outside and self.child.exact_inside
 
     def distance(self, p: JitVector) -> JitFloat:

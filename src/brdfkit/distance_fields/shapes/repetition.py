@@ -64,7 +64,7 @@ class repeat(Node):
 
     @property
     def lipschitz(self) -> float:
-        """The bound L: the child's, but at least 1, as for the distances to faces and boxes."""
+        """An upper bound on the slope: the child's, but at least 1, the slope of a box's field."""
         return max(self.child.lipschitz, 1.0)
 
     def distance(self, p: JitVector) -> JitFloat:

@@ -63,10 +63,7 @@ class function(Node):
 
 
 def from_function(
-    f: Callable[[Any], Any],
-    lipschitz: float = 1.0,
-    bounds: Any = None,
-    resolution: int = 128,
+    f: Callable[[Any], Any], lipschitz: float = 1.0, bounds: Any = None, resolution: int = 128
 ) -> Node:
     """Return a field made from a function of points that is negative inside of a solid.
 

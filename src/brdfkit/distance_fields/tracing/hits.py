@@ -15,8 +15,8 @@ class Hit(NamedTuple):
     ----------
     t : distance along each ray at which it stopped
     found : bool, whether a surface is there
-    distance : f at that point: the radius of a ball there that contains no surface
-    steps : number of evaluations of f
+    distance : distance to the surface at that point: a ball of this radius contains no surface
+    steps : number of evaluations of the distance
     """
 
     t: Any
@@ -31,10 +31,10 @@ def start_march(o: JitVector, t: JitFloat) -> tuple[JitFloat, JitInt]:
 
 
 def reattach(distance: Callable[[Any], Any], o: JitVector, d: JitVector, t: JitFloat) -> JitFloat:
-    """Return the `t` of hits with its derivatives by all parameters of f and of the rays.
+    """Return the `t` of hits with its derivatives by all parameters of the field and of the rays.
 
-    By the implicit function theorem dt = -df / (∇f·d); a central difference gives the slope of f
-    along the ray. Rays that graze the surface get 0.
+    By the implicit function theorem dt = -df / (∇f·d), with the field f; a central difference gives
+    its slope along the ray. Rays that graze the surface get 0.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ TETRAHEDRON = ((1, -1, -1), (-1, -1, 1), (-1, 1, -1), (1, 1, 1))
 
 
 def normal(distance: Callable[[Any], Any], p: JitVector, step: float = 1e-3) -> JitVector:
-    """Return the unit normal of a distance, the direction in which f grows.
+    """Return the unit normal of a distance function f, the direction in which f grows.
 
     It is computed from four values of f. Automatic differentiation would be exact and take half the
     time. But Dr.Jit has no second derivatives, and scalar variants have none at all; these normals

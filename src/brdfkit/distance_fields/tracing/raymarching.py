@@ -22,12 +22,12 @@ def raymarch(
     step: JitFloat,
     active: JitMask = True,
 ) -> Hit:
-    """Find where a distance f first changes its sign along rays, by steps of equal length.
+    """Find where a distance first changes its sign along rays, by steps of equal length.
 
     Parameters
     ----------
     distance : callable
-        f(p) of points; such as a node's `distance`.
+        A function f(p) of points, such as a node's `distance`.
     o, d : anything with x, y, z
         The origins of the rays and their unit directions: Dr.Jit arrays, or numbers.
     t_max : number or array

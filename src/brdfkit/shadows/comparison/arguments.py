@@ -27,11 +27,6 @@ def check_names(what: str, names: Any) -> tuple[str, ...]:
         raise wrong_value_error(what, names, "names of techniques") from None
 
 
-def check_resolution(resolution: Any) -> int:
-    """Return the number of texels along a side of a map; raise `BrdfkitError` for a wrong one."""
-    return to_whole_number("resolution", resolution, 1, MAX_SIDE)
-
-
 def check_picture_size(size: Any) -> tuple[int, int]:
     """Return the width and height of a picture [pixels]; raise `BrdfkitError` for a wrong size."""
     try:

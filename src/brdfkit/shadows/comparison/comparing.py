@@ -9,15 +9,16 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.core.progress_bar import Progress
 from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 from brdfkit.shadows.comparison.arguments import (
+    MAX_SIDE,
     check_names,
     check_picture_size,
-    check_resolution,
     load_scene,
 )
 from brdfkit.shadows.comparison.comparison import ShadowComparison
@@ -101,7 +102,8 @@ def compare(
     filters = FILTERS if filters is None else filters
     named = {"projection": projections, "filter": filters, "partition": partitions}
     kinds = {kind: check_names(f"{kind}s", names) for kind, names in named.items()}
-    resolution, size = check_resolution(resolution), check_picture_size(size)
+    resolution = to_whole_number("resolution", resolution, 1, MAX_SIDE)
+    size = check_picture_size(size)
     techniques = choose_techniques(kinds, check_names("others", others), resolution)
     scene = load_scene(scene, size)
     places = list(itertools.product(enumerate(scene.sensors()), enumerate(scene.emitters())))
@@ -110,9 +112,8 @@ def compare(
     try:
         for (view_index, sensor), (light_index, emitter) in places:
             view = LitView.from_sensor(scene, sensor, emitter, size[::-1])
-            pictures = Pictures.from_view(
-                view, make_title(view_index, sensor, light_index, emitter)
-            )
+            title = make_title(view_index, sensor, light_index, emitter)
+            pictures = Pictures.from_view(view, title)
             scores: dict[str, Scores] = {}
             results.append((pictures, scores))
             if not pictures.is_lit:

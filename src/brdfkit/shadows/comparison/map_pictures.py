@@ -64,7 +64,7 @@ class MapPictures:
     def from_view(cls, view: LitView, placement: Placement, **settings: Any) -> "MapPictures":
         """Return the pictures of a view's shadow maps, by keyword arguments of `LightShadow`."""
         shadow = LightShadow(view.scene, placement, **settings)
-        shade, part = draw_checker(shadow, view)
+        shade, part = draw_texel_checkerboard(shadow, view)
         depths = arrange_squares([scale_depths(each) for each in shadow.maps])
         return cls(*map(CompressedArray.from_array, (shade, part, depths)))
 
@@ -87,7 +87,7 @@ class MapPictures:
         return self.view.array
 
 
-def draw_checker(shadow: LightShadow, view: LitView) -> tuple[IntArray, IntArray]:
+def draw_texel_checkerboard(shadow: LightShadow, view: LitView) -> tuple[IntArray, IntArray]:
     """Return two pictures: the scene's brightness, 0 to 255, under a checkerboard, and map indices.
 
     The checkerboard is projected like a shadow map, so that its squares show the size of texels.
@@ -96,9 +96,7 @@ def draw_checker(shadow: LightShadow, view: LitView) -> tuple[IntArray, IntArray
     shade = valid * (0.3 + 0.7 * np.abs(np.array(view.si.wi.z)))
     chosen, part = np.array(shadow.find_part(view.si.p)), np.full(len(valid), OUTSIDE)
     for index, its_map in enumerate(shadow.maps):
-        x, y, _ = (
-            np.array(component) for component in its_map.projection.project_to_map(*view.si.p)
-        )
+        x, y, _ = (np.array(component) for component in its_map.projection.project(*view.si.p))
         inside = valid & (chosen == index) & (np.abs(x) <= 1) & (np.abs(y) <= 1)
         columns, rows = (np.floor((place[inside] + 1) / 2 * CHECKS) for place in (x, y))
         shade[inside] *= np.where((columns + rows) % 2, DARK_SQUARE, 1)

@@ -11,7 +11,7 @@ from brdfkit.shadows.comparison.map_pictures import CompressedArray, MapPictures
 
 @dataclass
 class Pictures:
-    """One view in one light: without shadows, with exact ones, and with each technique's.
+    """The pictures of one view in one light: exact ones, and those of each technique.
 
     title : name of the view and the light.
     light : radiance (height, width, 3) of the surfaces by this light alone, without shadows.
@@ -30,15 +30,12 @@ class Pictures:
     @classmethod
     def from_view(cls, view: LitView, title: str) -> "Pictures":
         """Return the pictures of a view, to which techniques are added later."""
-        height, width = view.size
-        return cls(
-            title,
-            CompressedArray.from_array(
-                to_half_precision(view.unshadowed).reshape(height, width, 3)
-            ),
-            CompressedArray.from_array(view.exact.reshape(view.size)),
-            CompressedArray.from_array(view.facing.reshape(view.size)),
-        )
+        # Half precision suffices for pictures; larger radiance is limited to its largest number
+        radiance = np.minimum(view.unshadowed, np.finfo(np.float16).max).astype(np.float16)
+        exact, facing = view.exact.reshape(view.size), view.facing.reshape(view.size)
+        arrays = radiance.reshape(*view.size, 3), exact, facing
+        light, arrives, towards = map(CompressedArray.from_array, arrays)
+        return cls(title, light, arrives, towards)
 
     @property
     def is_lit(self) -> bool:
@@ -74,16 +71,12 @@ class Pictures:
         return self.unshadowed * lit[..., None]
 
 
-def to_half_precision(radiance: FloatArray) -> FloatArray:
-    """Return radiance in half precision, limited to its largest number, 65504."""
-    return np.minimum(radiance, np.finfo(np.float16).max).astype(np.float16)
-
-
 def make_title(view: int, sensor: MitsubaObject, light: int, emitter: MitsubaObject) -> str:
     """Return a title with the numbers of a view and a light, and with their names in the scene."""
-    return f"View {view + 1}{_format_name(sensor)}, light {light + 1}{_format_name(emitter)}"
+    camera, lamp = _format_object_name(sensor), _format_object_name(emitter)
+    return f"View {view + 1}{camera}, light {light + 1}{lamp}"
 
 
-def _format_name(thing: MitsubaObject) -> str:
+def _format_object_name(thing: MitsubaObject) -> str:
     """Return the name of a Mitsuba object in brackets; empty if Mitsuba made it up."""
     return "" if thing.id().startswith("_") or not thing.id() else f" ({thing.id()})"

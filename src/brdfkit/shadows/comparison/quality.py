@@ -12,9 +12,9 @@ WHITE = 255.0  # the highest grey level
 
 
 def share_of_texels_used(maps: Iterable[FloatArray], bins: int = BINS) -> float:
-    """Return Q1, the share in (0, 1] of the shadow maps that visible points use.
+    """Return the share in (0, 1] of the shadow maps' area that visible points use.
 
-    It is NaN if no point is on a map.
+    It is Q1 of [Ergun 2008, 3.2], and NaN if no point is on a map.
 
     maps : for each map, the coordinates (n, 2) of points on it; those outside [0, 1]² do not count.
 
@@ -30,12 +30,12 @@ def share_of_texels_used(maps: Iterable[FloatArray], bins: int = BINS) -> float:
 
 
 def aliasing_error(e: Any) -> float:
-    """Return Q2 [dB], the aliasing of a picture as one number; larger is better [Ergun 2008, 3.2].
+    """Return the aliasing of a picture as one number [dB]; larger is better.
 
-    A picture of the areas `e` of the texels under all visible points [pixels] is compared with a
-    black one by PSNR: 10 log10(255² / mean e²). The thesis does not say how e becomes a grey level.
-    Here e is the level, at most 255, which gives figures as printed (27 to 37 dB). The result is
-    NaN without points.
+    It is Q2 of [Ergun 2008, 3.2]: a picture of the areas `e` of the texels under all visible points
+    [pixels] is compared with a black one by PSNR, 10 log10(255² / mean e²). The thesis does not say
+    how e becomes a grey level. Here e is the level, at most 255, which gives figures as printed (27
+    to 37 dB). The result is NaN without points.
 
     >>> aliasing_error(np.full(9, 25.5))
     20.0

@@ -30,15 +30,16 @@ class Scores:
     Attributes
     ----------
     psnr : float
-        Q3, the PSNR of the picture lit by this light alone, against exact shadows [dB].
+        The PSNR of the picture lit by this light alone, against exact shadows [dB]; Q3 in
+        [Ergun 2008, 3.2].
     wrong : float
         The mean absolute error of the share of light that arrives, where surfaces face the light.
     acne : float
         The mean share of light that lit surfaces lack, away from shadows.
     texture_use : float
-        Q1, the share of the maps' texels that the picture uses.
+        The share of the maps' texels that the picture uses, Q1.
     aliasing : float
-        Q2, a measure of how small the texels are in the picture; larger is better [dB].
+        A measure of how small the texels are in the picture, Q2; larger is better [dB].
     camera_flicker, light_flicker : float
         The mean change of the error from picture to picture, while the camera moves and while the
         light does.

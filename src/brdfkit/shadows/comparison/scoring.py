@@ -75,9 +75,9 @@ def time_second_run(function: Callable[[], Any]) -> tuple[Any, float]:
 
 
 def score_texels(shadow: Any, view: LitView, placement: Placement) -> tuple[float, float]:
-    """Return Q1, the share of the maps' texels that are used, and Q2, the aliasing error [dB].
+    """Return the share of the maps' texels that are used, and the aliasing error [dB].
 
-    Both are NaN for a `shadow` without maps.
+    These are Q1 and Q2 of [Ergun 2008, 3.2]. Both are NaN for a `shadow` without maps.
     """
     import mitsuba as mi
 
@@ -91,7 +91,7 @@ def score_texels(shadow: Any, view: LitView, placement: Placement) -> tuple[floa
     part, facing = shadow.find_part(p), mi.Bool(view.facing)
     places, areas = [], []
     for index, its_map in enumerate(shadow.maps):
-        x, y, _ = its_map.projection.project_to_map(*p)
+        x, y, _ = its_map.projection.project(*p)
         texels = its_map.projection, its_map.resolution
         e = aliasing(texels, (camera, pixels.tolist()), p, n)
         chosen = np.array(facing & (part == index))

@@ -71,7 +71,7 @@ class TrackedPoints:
 
 
 def make_camera_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
-    """Return the placements of a camera that moves and turns to the right, in equal steps.
+    """Return placements in which the camera moves and turns to the right, to measure flicker.
 
     A step shifts a picture of 512 pixels by two or three of them.
     """
@@ -95,7 +95,10 @@ def is_visible_to_all_cameras(placements: list[Placement], points: FloatArray) -
 
 
 def make_light_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
-    """Return the placements of a light that moves at right angles to its rays, in equal steps."""
+    """Return placements in which the light moves step by step, so that flicker can be measured.
+
+    The steps are equal, and at right angles to the light's rays.
+    """
     light = placement.light
     way = light.point[:3] - light.point[3] * placement.visible.centroid
     step = LIGHT_TURN * unit_perpendicular(way) * (1 if light.is_directional else placement.reach)

@@ -1,4 +1,4 @@
-"""Techniques whose result is a set of shadow volumes, made from meshes or from a depth map."""
+"""Techniques that make shadow volumes in place of maps, from meshes or from a depth map."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -52,13 +52,13 @@ class Cell:
         numbers = {name: dr.opaque(mi.Float, getattr(self, name)) for name in ("x", "y", "half")}
         return replace(self, whole=self.whole.make_opaque(), **numbers)
 
-    def project_to_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+    def project(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
         """Return the map coordinates and the depth of a point of the world, [-1, 1] on the map."""
-        u, v, depth = self.whole.project_to_map(x, y, z)
+        u, v, depth = self.whole.project(x, y, z)
         return (u - self.x) / self.half, (v - self.y) / self.half, depth
 
     def is_projectable(self, x: JitFloat, y: JitFloat, z: JitFloat) -> JitMask:
-        """Return whether the projection can map a point of the world at all, that is w > 0."""
+        """Return whether the projection can map a point at all: its homogeneous w is above 0."""
         return self.whole.is_projectable(x, y, z)
 
     def directional_derivative(self, point: JitVector, way: JitVector) -> tuple[JitFloat, ...]:
@@ -73,13 +73,13 @@ class Cell:
         """Return the unit vectors from the points `p` to the light."""
         return self.whole.direction_to_light(p)
 
-    def compute_light_ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
+    def light_ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
         """Return origin and unit direction of the light ray through map coordinates x and y."""
-        return self.whole.compute_light_ray(x * self.half + self.x, y * self.half + self.y)
+        return self.whole.light_ray(x * self.half + self.x, y * self.half + self.y)
 
-    def unproject_from_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+    def unproject(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
         """Return the point of the world with map coordinates x and y and the depth z."""
-        return self.whole.unproject_from_map(x * self.half + self.x, y * self.half + self.y, z)
+        return self.whole.unproject(x * self.half + self.x, y * self.half + self.y, z)
 
 
 def make_cell_finder(whole: Projection, table: IntArray) -> Callable[[JitVector], JitInt]:
@@ -98,7 +98,7 @@ def make_cell_finder(whole: Projection, table: IntArray) -> Callable[[JitVector]
         return mi.UInt32(dr.clip(dr.floor((place + 1) / 2 * count), 0, count - 1))
 
     def find_cell(p: JitVector) -> JitInt:
-        column, row = (find_grid_index(place) for place in opaque.project_to_map(*p)[:2])
+        column, row = (find_grid_index(place) for place in opaque.project(*p)[:2])
         return dr.gather(mi.UInt32, entries, row * mi.UInt32(count) + column)
 
     return find_cell

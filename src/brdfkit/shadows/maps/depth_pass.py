@@ -35,7 +35,7 @@ def make_texel_rays(scene: MitsubaObject, opaque: AnyProjection, resolution: int
     side = dr.opaque(mi.UInt32, resolution)
     x = (mi.Float(index % side) + 0.5) * texel - 1
     y = (mi.Float(index // side) + 0.5) * texel - 1
-    origin, direction = (mi.Vector3f(*vector) for vector in opaque.compute_light_ray(x, y))
+    origin, direction = (mi.Vector3f(*vector) for vector in opaque.light_ray(x, y))
     if opaque.light.is_directional:
         bounds = scene.bbox()
         radius = float(np.linalg.norm(np.ravel(bounds.extents()))) / 2
@@ -47,7 +47,7 @@ def make_texel_rays(scene: MitsubaObject, opaque: AnyProjection, resolution: int
 
 def compute_depth(opaque: AnyProjection, p: JitVector) -> JitFloat:
     """Return the depth of points in a shadow map; infinity where they cannot be projected."""
-    return dr.select(opaque.is_projectable(*p), opaque.project_to_map(*p)[2], dr.inf)
+    return dr.select(opaque.is_projectable(*p), opaque.project(*p)[2], dr.inf)
 
 
 def reshape_to_map(values: JitFloat, resolution: int) -> MitsubaObject:

@@ -26,10 +26,10 @@ def make_enclosing_projection(light: Light, body: Body) -> Projection:
     Raises `BrdfkitError` for a point light that the body surrounds.
     """
     view = view_matrix(light.point, body.corners, body.centroid)
-    return fit_projection_to_corners(view, light, body.corners)
+    return fit_projection(view, light, body.corners)
 
 
-def fit_projection_to_corners(matrix: FloatArray, light: Light, corners: FloatArray) -> Projection:
+def fit_projection(matrix: FloatArray, light: Light, corners: FloatArray) -> Projection:
     """Return the projection by a matrix (4, 4), scaled so that its map just encloses `corners`.
 
     corners : points (n, 3) of the world.

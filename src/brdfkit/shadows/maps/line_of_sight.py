@@ -26,7 +26,7 @@ from brdfkit.core.projective.homogeneous import (
 )
 from brdfkit.core.projective.light import Light
 from brdfkit.mitsuba_bridge.properties.declarations import declare_float
-from brdfkit.shadows.maps.light_camera import fit_projection_to_corners, view_matrix
+from brdfkit.shadows.maps.light_camera import fit_projection, view_matrix
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 
@@ -81,7 +81,7 @@ class LineOfSight:
         warp, (near, _) = np.eye(4), self.y_range
         warp[1, 3] = -near
         warp[3, 1], warp[3, 3] = 1 / n, 1 - near / n
-        return fit_projection_to_corners(warp @ self.matrix, self.light, self.corners)
+        return fit_projection(warp @ self.matrix, self.light, self.corners)
 
 
 def find_line_of_sight(placement: Placement) -> LineOfSight | None:

@@ -68,7 +68,7 @@ class MapPoint:
         import mitsuba as mi
 
         x, y = self.u / self.half - 1, self.v / self.half - 1
-        return mi.Point3f(*self.projection.unproject_from_map(x, y, depth))
+        return mi.Point3f(*self.projection.unproject(x, y, depth))
 
     def cross_section_axes(self) -> list[tuple[JitFloat, JitFloat]]:
         """Return the map's images (u, v) [texels] of two unit vectors at right angles to the light.
@@ -107,7 +107,7 @@ def find_map_point(
     slope_u, slope_v, texel = plane_slopes(projection, half, p, n)
     if bias.normal_offset:
         p = p + n * texel * dr.opaque(mi.Float, bias.normal_offset)
-    x, y, depth = projection.project_to_map(*p)
+    x, y, depth = projection.project(*p)
     if bias.constant:
         step = dr.abs(projection.directional_derivative(p, to_light)[2])
         depth = depth - step * dr.opaque(mi.Float, bias.constant * reach)

@@ -69,7 +69,7 @@ class Placement:
 
     @cached_property
     def depths(self) -> tuple[float, float]:
-        """The distances z_n and z_f along the view between which there are visible surfaces."""
+        """The least and the greatest distance along the view of what the camera may see."""
         depths = self.camera.compute_depths(self.visible.corners)
         return min(max(depths.min(), self.nearest), depths.max()), depths.max()
 

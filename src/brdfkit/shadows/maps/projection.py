@@ -93,13 +93,13 @@ class Projection:
         dr.make_opaque(opaque.matrix, opaque.inverse, opaque.light.point)
         return opaque
 
-    def project_to_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+    def project(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
         """Return the map coordinates and the depth of a point of the world, [-1, 1] on the map."""
         u, v, depth = project(self.matrix, x, y, z)
         return u, v, self.depth.to_depth(self.light.path_length(x, y, z)) if self.depth else depth
 
     def is_projectable(self, x: JitFloat, y: JitFloat, z: JitFloat) -> JitMask:
-        """Return whether the projection can map a point of the world at all, that is w > 0."""
+        """Return whether the projection can map a point at all: its homogeneous w is above 0."""
         return transform(self.matrix, x, y, z)[3] > 0
 
     def directional_derivative(self, point: JitVector, way: JitVector) -> tuple[JitFloat, ...]:
@@ -121,7 +121,7 @@ class Projection:
 
         return -mi.Vector3f(*self.light.direction(*p))
 
-    def compute_light_ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
+    def light_ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
         """Return origin and unit direction of the light ray through map coordinates x and y.
 
         The origin is the light, or for a directional light any point on the ray.
@@ -133,10 +133,10 @@ class Projection:
         light = [self.light.point[i] for i in range(3)]
         return light, normalise(*(p - w * q for p, q in zip(point, light, strict=True)))
 
-    def unproject_from_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+    def unproject(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
         """Return the point of the world with map coordinates x and y and the depth z."""
         if not self.depth:
             return project(self.inverse, x, y, z)
-        origin, direction = self.compute_light_ray(x, y)
+        origin, direction = self.light_ray(x, y)
         distance = self.depth.to_distance(z) - self.light.path_length(*origin)
         return tuple(o + d * distance for o, d in zip(origin, direction, strict=True))

@@ -15,12 +15,14 @@ from brdfkit.shadows.maps.visible_surfaces import SIDE, VisibleSurfaces
 def aliasing(
     texels: tuple[AnyProjection, int], pixels: tuple[AnyProjection, Any], p: JitVector, n: JitVector
 ) -> JitFloat:
-    """Return 1 / |det J|, a texel's area in pixels, at surface points `p` with normals `n`.
+    """Return the area [pixels] of a shadow map's texel in the picture, at surface points.
 
-    Components are floats, NumPy arrays or, with projections made opaque, Dr.Jit arrays.
+    It is 1 / |det J|, with the Jacobian J from pixels to texels. Components are floats, NumPy
+    arrays or, with projections made opaque, Dr.Jit arrays.
 
     texels : projection and resolution of the shadow map.
     pixels : projection by the camera's matrix, and (width, height) of the picture.
+    p, n : the points and their normals.
     """
     projection, resolution = texels
     camera, (width, height) = pixels
@@ -43,10 +45,10 @@ def area_magnification(projection: AnyProjection, p: JitVector, n: JitVector) ->
 
 def locate_on_map(projection: AnyProjection, surfaces: VisibleSurfaces) -> FloatArray:
     """Return the map coordinates (n, 2), in [-1, 1], of visible points under a projection."""
-    return np.column_stack(projection.project_to_map(*surfaces.points.T)[:2])
+    return np.column_stack(projection.project(*surfaces.points.T)[:2])
 
 
-def compute_texel_footprints(places: FloatArray, surfaces: VisibleSurfaces) -> FloatArray:
+def texel_footprints(places: FloatArray, surfaces: VisibleSurfaces) -> FloatArray:
     """Return the width (n,) in the picture of a unit step on the map, at visible surface points.
 
     The unit in the picture is the distance between neighbouring rays, and the width is estimated
@@ -61,5 +63,5 @@ def compute_texel_footprints(places: FloatArray, surfaces: VisibleSurfaces) -> F
         np.moveaxis(np.diff(grid, axis=axis, append=np.nan), -1, 0) for axis in (0, 1)
     )
     area = np.abs(u_row * v_column - u_column * v_row)[surfaces.hit]
-    known = area > 0  # this is false for NaN
+    known = area > 0  # false also for NaN, where a neighbouring ray hits nothing
     return np.where(known, 1 / np.sqrt(np.where(known, area, 1)), 0)

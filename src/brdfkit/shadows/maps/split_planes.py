@@ -41,9 +41,10 @@ def compute_split_planes(near: float, far: float, parts: int, spacing: str) -> F
 
 
 def make_slice_finder(camera: Camera, planes: FloatArray) -> Callable[[JitVector], JitInt]:
-    """Return a function that finds the index of the slice between `planes` in which a point lies.
+    """Return a function that finds the index of the slice of the view in which a point lies.
 
-    A point before the first or behind the last plane is in the first or last slice.
+    planes : depths of the planes between the slices, from the first to the last. Points before or
+        behind all planes belong to the first or last slice.
     """
     import mitsuba as mi
 

@@ -43,7 +43,10 @@ def find_settings(kind: str, name: str) -> dict[str, Setting]:
 
 
 def find_map_renderer(filter: str) -> Callable[..., Any]:
-    """Return the function that renders a filter's maps, `render_depths` unless the file has one."""
+    """Return the function that renders the maps of a filter.
+
+    It is `render_map` of the filter's file, or `render_depths` if the file has none.
+    """
     renderer: Callable[..., Any] = getattr(FILES["filter"][filter], "render_map", render_depths)
     return renderer
 

@@ -36,7 +36,7 @@ class Texels:
         return dr.select(within, value, dr.inf)
 
     def read_depths(self, point: MapPoint, u: JitFloat, v: JitFloat) -> tuple[JitFloat, JitFloat]:
-        """Return the depth in the texel at (u, v), and the receiver's plane's at its centre."""
+        """Return the depth in the texel at (u, v), and the depth of the receiver's plane there."""
         import mitsuba as mi
 
         u, v = dr.floor(u), dr.floor(v)

@@ -63,7 +63,7 @@ def is_facing_light(mesh: Mesh, light: Light) -> BoolArray:
 
 
 def compute_facing(mesh: Mesh, light: Light) -> FloatArray:
-    """Return the cosine N · L (m,) between triangle normals and light, scaled by positive numbers.
+    """Return the cosine (m,) between triangle normals and light, scaled by positive numbers.
 
     It is 0 where the light is in the triangle's plane.
     """

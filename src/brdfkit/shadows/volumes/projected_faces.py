@@ -54,9 +54,10 @@ class ProjectedFaces:
 
 
 def picture_matrix(camera: Camera) -> FloatArray:
-    """Return the matrix (4, 4) from the world to a camera's picture space (X / s_x, Y / s_y, -Z).
+    """Return the matrix (4, 4) from the world to the space in which faces are projected.
 
-    s_x and s_y are the slopes of the field of view, so that X / s_x over -Z is -1 to 1.
+    A point (X, Y, Z) of the camera's space becomes (X / s_x, Y / s_y, -Z), with the slopes s_x and
+    s_y of the field of view, so that the picture is [-1, 1]² at the depth 1.
     """
     matrix: FloatArray = np.diag([1 / camera.slope_x, 1 / camera.slope_y, -1, 1]) @ camera.view
     return matrix
@@ -83,11 +84,11 @@ def project_faces(faces: Faces, matrix: FloatArray) -> ProjectedFaces:
 
 
 def break_ties(edges: FloatArray) -> FloatArray:
-    """Return the least edge functions E_i (k, 4) within faces: 0, or the least positive number.
+    """Return the least values (k, 4) of the faces' edge functions at which a point is within.
 
-    It is 0 where the first coefficient other than 0 is positive. As the same edge has the opposite
-    sign in the neighbouring face, exactly one of the two faces includes the edge, and no ray slips
-    through.
+    The value is 0, or the least positive number: it is 0 where the first coefficient other than 0
+    is positive. As the same edge has the opposite sign in the neighbouring face, exactly one of the
+    two faces includes the edge, and no ray slips through.
     """
     a, b, c = np.moveaxis(edges, -1, 0)
     leading = np.where(a != 0, a, np.where(b != 0, b, c))

@@ -38,14 +38,9 @@ class Stencil:
         return len(self.indices)
 
     def count_faces(
-        self,
-        x: JitFloat,
-        y: JitFloat,
-        least: JitFloat,
-        most: JitFloat,
-        active: JitMask = True,
+        self, x: JitFloat, y: JitFloat, least: JitFloat, most: JitFloat, active: JitMask = True
     ) -> JitInt:
-        """Return the sum (`mi.Int32`) of `times` over the faces that camera rays meet.
+        """Return the signed number (`mi.Int32`) of faces that camera rays meet: entries less exits.
 
         Only faces whose 1/z, z the depth, is above `least` and at most `most` count.
 

@@ -18,9 +18,9 @@ SETTINGS = {"width": WIDTH}
 
 
 class Lookup:
-    """The mean of depth comparisons over a square whose sides are `width` - 1 texels long.
+    """A shadow map that averages depth comparisons over a window that moves with the point.
 
-    A `width` of 1 compares a single texel, as the filter `depth` does.
+    The sides of the window are `width` - 1 texels long. A `width` of 1 compares a single texel.
     """
 
     def __init__(self, depths: MitsubaObject, width: int) -> None:

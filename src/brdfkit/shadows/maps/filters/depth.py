@@ -14,7 +14,7 @@ from brdfkit.shadows.maps.texels import Texels
 
 
 class Lookup:
-    """The comparison of a point's depth with that of the single texel on which it falls."""
+    """A shadow map that compares a point's depth with that of the single texel it falls on."""
 
     def __init__(self, depths: MitsubaObject) -> None:
         self.texels = Texels(depths)

@@ -33,7 +33,7 @@ LEAST_DEVIATION = 1e-3
 
 
 class Lookup:
-    """The bound on the light from the blurred mean and mean square of each warped depth."""
+    """A variance shadow map of exponentially warped depths, with two moments of each of them."""
 
     def __init__(
         self,

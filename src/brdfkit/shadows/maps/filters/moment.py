@@ -33,7 +33,7 @@ render_map = moving_depths.render_map
 
 
 class Lookup:
-    """The bound on the light from four blurred moments of depth."""
+    """A moment shadow map, which bounds the light by four blurred moments of depth."""
 
     def __init__(
         self, depths: moving_depths.MovingDepths, blur: int, bleeding: float, rounding: float

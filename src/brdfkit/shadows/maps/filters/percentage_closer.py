@@ -18,7 +18,7 @@ SETTINGS = {"width": WIDTH}
 
 
 class Lookup:
-    """The mean of depth comparisons over a square window with `width` texels along a side."""
+    """A shadow map that averages depth comparisons over a window of `width` × `width` texels."""
 
     def __init__(self, depths: MitsubaObject, width: int) -> None:
         self.windows, self.width = Windows(depths, width), width

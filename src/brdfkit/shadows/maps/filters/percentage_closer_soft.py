@@ -32,7 +32,11 @@ SETTINGS = {
 
 
 class Lookup:
-    """A search for occluders, followed by the mean of depth comparisons over a disk."""
+    """A shadow map that averages depth comparisons over a disk as wide as the penumbra.
+
+    light_size : diameter of the light [unit of length], or the tangent of a directional light's.
+    taps : number of look-ups for the search of occluders, and again for the average.
+    """
 
     def __init__(self, depths: MitsubaObject, light_size: float, taps: int) -> None:
         self.texels, self.light_size, self.taps = Texels(depths), light_size, make_spiral(taps)

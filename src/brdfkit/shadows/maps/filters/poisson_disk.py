@@ -29,9 +29,9 @@ SETTINGS = {
 
 
 class Lookup:
-    """The mean of depth comparisons at the 12 taps around a point.
+    """A shadow map that averages depth comparisons at 12 taps around a point.
 
-    radius : radius of the disk at the lower end of the map [texels].
+    radius : radius of the disk of taps at the lower end of the map [texels].
     taper : share by which the radius shrinks up to the upper end of the map.
     """
 

@@ -28,14 +28,10 @@ render_map = moving_depths.render_map
 
 
 class Lookup:
-    """The bound on the light from the blurred mean and mean square of depth."""
+    """A variance shadow map, which bounds the light by blurred means of depth and its square."""
 
     def __init__(
-        self,
-        depths: moving_depths.MovingDepths,
-        blur: int,
-        bleeding: float,
-        least_deviation: float,
+        self, depths: moving_depths.MovingDepths, blur: int, bleeding: float, least_deviation: float
     ) -> None:
         self.moments = MomentMap(lambda z: [z, z * z], depths, blur, bleeding)
         self.least_variance = least_deviation**2

@@ -28,11 +28,7 @@ class MomentMap:
     """
 
     def __init__(
-        self,
-        moments: Callable[[Any], list[Any]],
-        depths: MovingDepths,
-        blur: int,
-        bleeding: float,
+        self, moments: Callable[[Any], list[Any]], depths: MovingDepths, blur: int, bleeding: float
     ) -> None:
         import mitsuba as mi
 
@@ -43,7 +39,7 @@ class MomentMap:
             side = 2 * blur + 1
             values = dr.convolve(values, [1 / side] * side, axis=(0, 1), boundary="nearest")
         self.resolution, self.bleeding = values.shape[0], bleeding
-        texture: Any = mi.Texture2f  # Mitsuba annotates it as a mere object
+        texture: Any = mi.Texture2f  # `Any`, as mypy takes it for an object that cannot be called
         self.texture = texture(values, False, False, wrap_mode=dr.WrapMode.Clamp)
 
     def interpolate_moments(self, point: MapPoint) -> list[JitFloat]:

@@ -58,14 +58,9 @@ class MovingDepths:
         """
         if self.motions is None:
             return f
-        return f + sum(
-            self._compute_edge_derivatives(f, axis, motion)
-            for axis, motion in enumerate(self.motions)
-        )
+        return f + sum(self._edge_derivatives(f, i, each) for i, each in enumerate(self.motions))
 
-    def _compute_edge_derivatives(
-        self, f: MitsubaObject, axis: int, motion: TexelMotion
-    ) -> MitsubaObject:
+    def _edge_derivatives(self, f: MitsubaObject, axis: int, motion: TexelMotion) -> MitsubaObject:
         """Return zeros that carry the derivatives of `f` by silhouettes across an axis.
 
         motion : motion of the surfaces along the axis.
@@ -100,15 +95,13 @@ def render_map(scene: MitsubaObject, projection: AnyProjection, resolution: int)
     hit = scene.ray_intersect_preliminary(ray)
     si = hit.compute_surface_interaction(ray)
     valid = si.is_valid() & opaque.is_projectable(*si.p)
-    depths = reshape_to_map(
-        dr.select(si.is_valid(), compute_depth(opaque, si.p), dr.inf), resolution
-    )
-    values = dr.clip(depths, -1, 1)
+    depths = dr.select(si.is_valid(), compute_depth(opaque, si.p), dr.inf)
+    values = dr.clip(reshape_to_map(depths, resolution), -1, 1)
     if not dr.grad_enabled(values):
         return MovingDepths(values)
 
     moving = hit.compute_surface_interaction(ray, mi.RayFlags.All | mi.RayFlags.FollowShape)
-    places = opaque.project_to_map(*moving.p)
+    places = opaque.project(*moving.p)
     with dr.suspend_grad():
         slopes = plane_slopes(opaque, half, si.p, si.n)
     u, v = (

@@ -24,7 +24,7 @@ from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
 from brdfkit.mitsuba_bridge.properties.declarations import declare_int
 from brdfkit.shadows.maps.cells import Cell, make_cell_finder
 from brdfkit.shadows.maps.partition import Part, Partition, Setup
-from brdfkit.shadows.maps.resolution import compute_texel_footprints, locate_on_map
+from brdfkit.shadows.maps.resolution import locate_on_map, texel_footprints
 from brdfkit.shadows.maps.visible_surfaces import VisibleSurfaces, find_visible_surfaces, is_lit
 
 SETTINGS = {"budget": declare_int(16, (1, 256), "maps at most, of the full resolution each")}
@@ -39,9 +39,7 @@ def make_partition(setup: Setup, budget: int) -> Partition:
     surfaces = find_visible_surfaces(scene, setup.placement.camera)
     places = locate_on_map(whole, surfaces)
     border = is_at_shadow_border(surfaces, is_lit(scene, light, surfaces))
-    leaves = grow_quadtree(
-        places[border], compute_texel_footprints(places, surfaces)[border], budget
-    )
+    leaves = grow_quadtree(places[border], texel_footprints(places, surfaces)[border], budget)
     parts = [
         Part(Cell.from_grid(whole, column, row, 2**level, resolution), resolution)
         for level, row, column in leaves

@@ -133,7 +133,7 @@ def make_map_finder(maps: list[Projection], resolution: int) -> Callable[[JitVec
     def find_map(p: JitVector) -> JitInt:
         index: JitInt = mi.UInt32(len(opaque))
         for i in reversed(range(len(opaque))):
-            x, y, _ = opaque[i].project_to_map(*p)
+            x, y, _ = opaque[i].project(*p)
             index = dr.select((dr.abs(x) <= edge) & (dr.abs(y) <= edge), mi.UInt32(i), index)
         return index
 

@@ -18,7 +18,7 @@ from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.mitsuba_bridge.properties.declarations import declare_int
 from brdfkit.shadows.maps.cells import GUTTER, Cell, make_cell_finder
 from brdfkit.shadows.maps.partition import Part, Partition, Setup
-from brdfkit.shadows.maps.resolution import compute_texel_footprints, locate_on_map
+from brdfkit.shadows.maps.resolution import locate_on_map, texel_footprints
 from brdfkit.shadows.maps.visible_surfaces import find_visible_surfaces
 
 SETTINGS = {"tiles": declare_int(4, (1, 16), "tiles along a side of the map")}
@@ -30,7 +30,7 @@ def make_partition(setup: Setup, tiles: int) -> Partition:
     whole = setup.project(setup.placement)
     surfaces = find_visible_surfaces(setup.scene, setup.placement.camera)
     places = locate_on_map(whole, surfaces)
-    widths = compute_texel_footprints(places, surfaces)
+    widths = texel_footprints(places, surfaces)
     weights = np.histogram2d(places[:, 1], places[:, 0], tiles, [[-1, 1]] * 2, weights=widths)[0]
     sizes = distribute_texels(weights, setup.resolution)
     parts = [

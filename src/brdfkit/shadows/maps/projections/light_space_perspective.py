@@ -22,7 +22,7 @@ SETTINGS = {"apex": APEX}
 
 
 def make_projection(placement: Placement, apex: float) -> Projection:
-    """Make the projection; the focused one if there is no line of sight on the map."""
+    """Make the light-space perspective projection; the focused one if there is no line of sight."""
     sight = find_line_of_sight(placement)
     if sight is None:
         return focused.make_projection(placement)

@@ -27,7 +27,7 @@ SETTINGS = {"apex": APEX}
 
 
 def make_projection(placement: Placement, apex: float) -> Projection:
-    """Make the projection; the focused one if there is no line of sight on the map."""
+    """Make the logarithmic perspective projection; the focused one without a line of sight."""
     sight = find_line_of_sight(placement)
     if sight is None:
         return focused.make_projection(placement)
@@ -43,44 +43,36 @@ def make_projection(placement: Placement, apex: float) -> Projection:
 class Logarithmic(Projection):
     """A perspective by a matrix, followed by a logarithm along the second axis of the map.
 
-    ratio : y_f / n > 1, the ratio of the distances of the map's two ends from the apex.
+    ratio : the ratio of the distances of the map's far and near end from the apex, > 1.
     """
 
     ratio: Any = np.e
 
     def make_opaque(self) -> "Logarithmic":
-        """Return a copy with opaque Dr.Jit numbers, so that all maps share one compiled kernel."""
         import mitsuba as mi
 
         opaque: Any = super().make_opaque()
         logarithmic: Logarithmic = replace(opaque, ratio=dr.opaque(mi.Float, self.ratio))
         return logarithmic
 
-    def project_to_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
-        """Return the map coordinates and the depth of a point of the world, [-1, 1] on the map."""
-        u, v, depth = super().project_to_map(x, y, z)
+    def project(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+        u, v, depth = super().project(x, y, z)
         log = array_module(v).log
         return u, -2 * log(self.nearness(v)) / log(self.ratio) - 1, depth
 
     def directional_derivative(self, point: JitVector, way: JitVector) -> tuple[JitFloat, ...]:
-        """Return the derivative of map coordinates and depth as a point moves along a vector.
-
-        way : the vector.
-        """
-        v = super().project_to_map(*point)[1]
+        v = super().project(*point)[1]
         u_way, v_way, depth_way = super().directional_derivative(point, way)
         slope = (1 - 1 / self.ratio) / (self.nearness(v) * array_module(v).log(self.ratio))
         return u_way, v_way * slope, depth_way
 
-    def compute_light_ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
-        """Return origin and unit direction of the light ray through map coordinates x and y."""
-        return super().compute_light_ray(x, self.undo_logarithm(y))
+    def light_ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
+        return super().light_ray(x, self.undo_logarithm(y))
 
-    def unproject_from_map(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
-        """Return the point of the world with map coordinates x and y and the depth z."""
-        if self.depth:  # then the base class calls `compute_light_ray`, which undoes the logarithm
-            return super().unproject_from_map(x, y, z)
-        return super().unproject_from_map(x, self.undo_logarithm(y), z)
+    def unproject(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
+        if self.depth:  # then the base class calls `light_ray`, which undoes the logarithm
+            return super().unproject(x, y, z)
+        return super().unproject(x, self.undo_logarithm(y), z)
 
     def nearness(self, v: JitFloat) -> JitFloat:
         """Return n / y, the ratio of the distances of the near end and of a point from the apex.

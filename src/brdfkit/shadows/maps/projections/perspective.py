@@ -10,7 +10,7 @@ eye; else nearly all of the map is spent there. Every step of the camera moves a
 """
 
 from brdfkit.core.projective.homogeneous import project_points
-from brdfkit.shadows.maps.light_camera import fit_projection_to_corners, view_matrix
+from brdfkit.shadows.maps.light_camera import fit_projection, view_matrix
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 
@@ -25,4 +25,4 @@ def make_projection(placement: Placement) -> Projection:
     camera = near_camera.move_behind(corners).matrix
     cube, (middle,) = project_points(camera, corners), project_points(camera, [middle])
     light_view = view_matrix(camera @ placement.light.point, cube, middle)
-    return fit_projection_to_corners(light_view @ camera, placement.light, corners)
+    return fit_projection(light_view @ camera, placement.light, corners)

@@ -20,7 +20,7 @@ from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.homogeneous import project_points
 from brdfkit.mitsuba_bridge.properties.declarations import Setting
-from brdfkit.shadows.maps.light_camera import fit_projection_to_corners
+from brdfkit.shadows.maps.light_camera import fit_projection
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import focused
@@ -72,7 +72,7 @@ def project_onto(placement: Placement, plane: AnyArray) -> Projection:
         return focused.make_projection(placement)
     matrix = camera.matrix @ flat
     matrix[2] = -plane
-    return fit_projection_to_corners(matrix, light, corners)
+    return fit_projection(matrix, light, corners)
 
 
 def takes_shadows(plane: AnyArray, placement: Placement) -> bool:

@@ -29,7 +29,7 @@ SETTINGS = {
 
 
 def make_projection(placement: Placement, focus: float) -> Projection:
-    """Make the projection; the focused one if there is no line of sight on the map."""
+    """Make the trapezoidal projection; the focused one if the eye looks along the light."""
     sight = find_line_of_sight(placement)
     if sight is None or sight.y_range[0] < 0:
         return focused.make_projection(placement)

@@ -19,14 +19,14 @@ VIEWS = {
     "V4": 0,  # along the light, like a miner's lamp
 }
 LIGHTS = {1: 14, 2: 17}  # azimuths [degrees]; the second sun is a small step from the first
-ELEVATION = 48  # of the suns [degrees]
+ELEVATION = 48  # the suns' height above the horizon [degrees]
 
 Place: TypeAlias = Iterable[float]  # three coordinates, or sizes
 Colour: TypeAlias = Iterable[float]  # red, green, blue
 Shape: TypeAlias = dict[str, Any]  # for `mitsuba.load_dict`
 
 
-def make_stage(
+def make_camera_and_sun(
     view: str,
     light: int,
     size: tuple[int, int],

@@ -6,10 +6,10 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray, MitsubaObject
 from brdfkit.shadows.maps.scenes._stage import (
+    make_camera_and_sun,
     make_ground,
     make_matte,
     make_pole,
-    make_stage,
     name_shapes_by_number,
 )
 
@@ -36,7 +36,7 @@ def foliage(view: str = "V1", light: int = 1, size: tuple[int, int] = (512, 512)
         return -10.5 * np.sin(azimuth), -10.5 * np.cos(azimuth), 4.4
 
     return (
-        make_stage(view, light, size, place_eye, down=17, fov=46)
+        make_camera_and_sun(view, light, size, place_eye, down=17, fov=46)
         | {"meadow": make_ground(10, (0.4, 0.42, 0.22))}
         | {"leaves": make_mesh(np.concatenate(leaves), (0.24, 0.4, 0.1))}
         | {"grass": make_mesh(blades, (0.36, 0.44, 0.14))}

@@ -4,14 +4,14 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.array_types import FloatArray, MitsubaObject
+from brdfkit.core.array_types import FloatArray
 from brdfkit.shadows.maps.scenes._stage import (
     make_ball,
     make_box,
+    make_camera_and_sun,
     make_ground,
     make_matte,
     make_pole,
-    make_stage,
     name_shapes_by_number,
 )
 
@@ -39,7 +39,7 @@ def objects_on_a_ground(
         return -9 * np.sin(azimuth), -9 * np.cos(azimuth), 5.2
 
     return (
-        make_stage(view, light, size, place_eye, down=28, fov=48)
+        make_camera_and_sun(view, light, size, place_eye, down=28, fov=48)
         | {"floor": make_ground(9, (0.62, 0.6, 0.56))}
         | name_shapes_by_number("brick", [thing for things in bricks for thing in things])
     )
@@ -49,6 +49,8 @@ def make_bricks(
     random: np.random.Generator, place: FloatArray, colour: FloatArray
 ) -> list[dict[str, Any]]:
     """Return the shapes of a random object at a place (2,): a ball, box, column or gate."""
+    import mitsuba as mi
+
     x, y = place.tolist()
     kind, large, turn = random.integers(4), random.uniform(0.3, 0.6), random.uniform(0, 90)
     if kind == 0:
@@ -56,25 +58,11 @@ def make_bricks(
     if kind == 1:
         return [make_box([x, y, 0], [2 * large, large, large], colour, turn)]
     if kind == 2:
-        top = 4 * large
-        cap = {
-            "type": "disk",
-            "bsdf": make_matte(colour),
-            "to_world": _place_lid([x, y, top], large / 2),
-        }
-        return [make_pole([x, y, 0], top, large / 2, colour), cap]
-    feet = [x - large, x + large]
+        top, radius = 4 * large, large / 2
+        to_world = mi.ScalarTransform4f().translate([x, y, top]).scale([radius, radius, 1])
+        lid = {"type": "disk", "bsdf": make_matte(colour), "to_world": to_world}
+        return [make_pole([x, y, 0], top, radius, colour), lid]
+    post = [0.4 * large, 0.4 * large, 3 * large]
+    posts = [make_box([foot, y, 0], post, colour) for foot in (x - large, x + large)]
     beam = make_box([x, y, 3 * large], [2.6 * large, 0.4 * large, 0.4 * large], colour)
-    return [make_box([f, y, 0], [0.4 * large, 0.4 * large, 3 * large], colour) for f in feet] + [
-        beam
-    ]
-
-
-def _place_lid(centre: list[float], radius: float) -> MitsubaObject:
-    """Return the transform of a disk that closes the top of a column.
-
-    centre, radius : centre and radius of the column's top.
-    """
-    import mitsuba as mi
-
-    return mi.ScalarTransform4f().translate(centre).scale([radius, radius, 1])
+    return [*posts, beam]

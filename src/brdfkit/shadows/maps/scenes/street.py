@@ -11,14 +11,14 @@ import numpy as np
 from brdfkit.shadows.maps.scenes._stage import (
     make_ball,
     make_box,
+    make_camera_and_sun,
     make_ground,
     make_pole,
-    make_stage,
     name_shapes_by_number,
 )
 
-LENGTH = 200.0  # of a street, from the crossing to its end [m]
-WIDTH = 16.0  # of a street, from house to house [m]
+LENGTH = 200.0  # the length of a street, from the crossing to its end [m]
+WIDTH = 16.0  # the width of a street, from house to house [m]
 HOUSE = 14.0  # width and depth of a house's plot [m]
 WALLS = [(0.74, 0.66, 0.54), (0.7, 0.46, 0.34), (0.78, 0.74, 0.68), (0.6, 0.5, 0.42)]
 DARK, GREEN = (0.12, 0.12, 0.13), (0.2, 0.34, 0.13)
@@ -34,7 +34,7 @@ def street(view: str = "V1", light: int = 1, size: tuple[int, int] = (512, 512))
     sides = [(along, way, side) for along in (0, 1) for way in (-1, 1) for side in (-1, 1)]
     things = [thing for side in sides for thing in build_side(random, *side)]
     return (
-        make_stage(view, light, size, lambda azimuth: (0.5, -0.5, 1.7), down=0.5, fov=60)
+        make_camera_and_sun(view, light, size, lambda azimuth: (0.5, -0.5, 1.7), down=0.5, fov=60)
         | {"ground": make_ground(LENGTH + 20, (0.32, 0.32, 0.33))}
         | name_shapes_by_number("thing", things)
     )
@@ -59,17 +59,14 @@ def build_side(
         return [length, width, height] if along == 0 else [width, length, height]
 
     kerb = (LENGTH - WIDTH / 2, WIDTH / 2 - 6)
-    things = [
-        make_box(locate((LENGTH + WIDTH / 2) / 2, 7), orient(*kerb, 0.15), (0.55, 0.54, 0.52))
-    ]
+    pavement = locate((LENGTH + WIDTH / 2) / 2, 7)
+    things = [make_box(pavement, orient(*kerb, 0.15), (0.55, 0.54, 0.52))]
     for i, distance in enumerate(np.arange(WIDTH / 2 + HOUSE / 2, LENGTH, HOUSE)):
         tall, wall = random.uniform(6, 15), WALLS[random.integers(len(WALLS))]
-        middle = WIDTH / 2 + HOUSE / 2
+        middle, roof = WIDTH / 2 + HOUSE / 2, orient(HOUSE, HOUSE + 0.8, 0.4)
         things += [
             make_box(locate(distance, middle), orient(HOUSE - 0.6, HOUSE, tall), wall),
-            make_box(
-                locate(distance, middle, tall), orient(HOUSE, HOUSE + 0.8, 0.4), (0.35, 0.2, 0.16)
-            ),
+            make_box(locate(distance, middle, tall), roof, (0.35, 0.2, 0.16)),
             make_pole(locate(distance + 4, 5.5), 5.5, 0.07, DARK),
             make_box(locate(distance + 4, 4.9, 5.5), orient(0.2, 1.4, 0.12), DARK),
         ]
