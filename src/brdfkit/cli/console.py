@@ -17,7 +17,7 @@ from brdfkit.core.progress_bar import Progress, progress
 if TYPE_CHECKING:
     import rich.console
 
-MINIMUM_WIDTH, UNLIMITED_WIDTH = 20, 10_000  # characters
+MINIMUM_WIDTH, UNLIMITED_WIDTH = 20, 10_000  # characters in a line
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Console:
 
     def print_json(self, record: Any) -> None:
         """Print a record of dictionaries, lists, arrays, paths and dataclasses as JSON."""
-        from brdfkit.core.json_values import to_json  # here, because it loads NumPy
+        from brdfkit.core.json_values import to_json  # imported here because it loads NumPy
 
         print(json.dumps(to_json(record), indent=2))
 

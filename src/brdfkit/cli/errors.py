@@ -72,7 +72,7 @@ def translate_errors() -> Iterator[None]:
         command = error.ctx.command_path if error.ctx else "brdfkit"
         raise FinalMessage(f"{_describe_misuse(error)}; see {command} --help.") from error
     except OSError as error:
-        if error.filename is not None:  # such as a name that is too long
+        if error.filename is not None:  # for instance, a file name is too long
             raise FinalMessage(
                 f"{error.filename!s:.200}: {error.strerror}; name another."
             ) from error

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from brdfkit.fitting.ranking import Ranking
     from brdfkit.materials.measured import Measured
 
-BEST = "best"  # stands for the recommended model
+BEST = "best"  # the word that stands for the recommended model
 # Options that a ranking ignores, by the names of their settings
 IGNORED_OPTIONS = {"robust": "robust", "spectral": "spectral", "fixed": "fixed", "bounds": "bound"}
 

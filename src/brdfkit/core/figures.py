@@ -12,7 +12,7 @@ from brdfkit.core.array_types import AnyArray
 
 # The grey level of lines and text: its contrast ratio is 4 to white, 4.5 to dark notebooks
 INK_LEVEL = 0.49
-OPACITY_GAIN = 1.6  # opacity over (1 - grey): 0.4 becomes opaque, 0.9 one sixth opaque
+OPACITY_GAIN = 1.6  # a grey of level g gets the opacity 1.6 (1 - g), so that light greys fade
 GREY_TOLERANCE = 0.02  # a colour whose channels differ by less counts as grey
 COLOURS = {
     "Text": ("color",),
@@ -46,7 +46,7 @@ def to_png(figure: Figure, dpi: float = 100) -> bytes:
 @contextmanager
 def _with_visible_greys(figure: Figure) -> Iterator[None]:
     """Make the greys of a figure legible on any background within the block."""
-    figure.draw_without_rendering()  # creates the labels of the ticks
+    figure.draw_without_rendering()  # creates the tick labels, which `findobj` then finds
     before = [
         (artist, name, getattr(artist, f"get_{name}")())
         for artist in figure.findobj()

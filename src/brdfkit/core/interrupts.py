@@ -42,7 +42,9 @@ def stop_on_signals() -> Iterator[None]:
     """
     global _received
     _received = None
-    if threading.current_thread() is not threading.main_thread():  # no other thread gets signals
+    if (
+        threading.current_thread() is not threading.main_thread()
+    ):  # only the main thread gets signals
         yield
         return
     before = {number: signal.getsignal(number) for number in SIGNALS}
@@ -83,12 +85,13 @@ def delay_signals() -> Iterator[None]:
     A KeyboardInterrupt within the import of Dr.Jit or Mitsuba is lost in native code, or ends the
     process. Blocking the signals of this thread would not help: another thread would get them.
     """
-    if threading.current_thread() is not threading.main_thread():  # only it may set handlers
+    if threading.current_thread() is not threading.main_thread():  # only the main one sets handlers
         yield
         return
     received: list[int] = []
-    before = {number: signal.getsignal(number) for number in SIGNALS}
-    before = {number: h for number, h in before.items() if h is not None}  # not by native code
+    # Handlers that native code has set are None here; they stay
+    handlers = ((number, signal.getsignal(number)) for number in SIGNALS)
+    before = {number: handler for number, handler in handlers if handler is not None}
     for number in before:
         signal.signal(number, lambda number, _frame: received.append(number))
     try:

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}  # ASCII and ISO 6429
+CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}  # by ASCII and ISO 6429
 RESERVED = '/\\:*?"<>|'  # not allowed in file names on some system
 LONGEST_STEM = 100  # bytes; file systems allow 255 with the suffix
 

@@ -53,7 +53,7 @@ def derive_phase_function(mi: MitsubaModule, parameters: dict[str, Any]) -> Any:
             wo: JitVector,
             active: JitMask = True,
         ) -> tuple[JitColour, JitFloat]:
-            pdf = self.density(-dr.dot(interaction.wi, wo))  # wi points back
+            pdf = self.density(-dr.dot(interaction.wi, wo))  # wi points back along the path
             return mi.Spectrum(pdf), pdf
 
     return Deflection

@@ -15,7 +15,7 @@ from brdfkit.mitsuba_bridge.properties.radiance_rows import require_intact_rows
 
 SUFFIX = ".xml"
 RADIANCE_FILE = re.compile(r"""["']([^"'\n]+\.(?:hdr|rgbe))["']""", re.IGNORECASE)
-DEFAULT_ID = "material"  # of the BSDF in a scene that a material replaces
+DEFAULT_ID = "material"  # of the BSDF that a material replaces if the user names none
 
 
 def load_scene_file(path: str | PathLike[str], **how: Any) -> MitsubaObject:

@@ -134,7 +134,7 @@ def _fit_one_file(
         require_memory((size, size) if size else SIZE, 1 + len(names))
         output = output or Path(to_file_stem(material.name))
 
-    errors = None  # in the pictures, if there are any
+    errors = None  # errors of the pictures, if there are any
     with use_results_folder(output):
         _check_output(output, names, rendered=pictures is not None)
         fits, failed, interrupted = _fit_each_model(names, material, how, output, console)

@@ -46,7 +46,7 @@ class Request:
     preview: bool
     shadows: bool
     tone: ToneMapping
-    values: Sequence[str]  # of --set
+    values: Sequence[str]  # words behind --set
     scene: str
     environment: str | None
     spp: int | None

@@ -41,7 +41,7 @@ from brdfkit.core.interrupts import Interrupted
 )
 @click.option(
     "--smoothness",
-    type=float,  # `svbrdf` checks its range
+    type=float,  # `brdfkit.photographs.svbrdf` checks its range
     metavar="X",
     help="Allowed difference between neighbouring texels; smaller values give smoother maps. "
     "Default: chosen by photographs that are held out.",

@@ -138,7 +138,7 @@ def _import_user_file(file: Path, _modified: int) -> ModuleType:
     sys.modules[name] = imported
     try:
         loader.exec_module(imported)
-    except BaseException as error:  # a file may raise anything
+    except BaseException as error:  # a plugin file may raise anything
         del sys.modules[name]
         if isinstance(error, KeyboardInterrupt):
             raise

@@ -70,7 +70,7 @@ def make_ring_rule(wi: FloatArray, points: int) -> tuple[FloatArray, FloatArray]
     up = normalize(np.cross(mirror, [-mirror[1], mirror[0], 0]) if sin_theta else [1.0, 0, 0])
     ring = np.cos(psi)[..., None] * up + np.sin(psi)[..., None] * np.cross(mirror, up)
     wo = np.cos(gamma)[:, None, None] * mirror + np.sin(gamma)[:, None, None] * ring
-    # Sum over the points above the horizon
+    # Keep the points above the horizon
     solid_angle = np.outer(np.sin(gamma) * width * 2 * half, weight)
     above = (wo[..., 2] > 0) & (solid_angle > 0)
     wo, solid_angle = wo[above], solid_angle[above]
@@ -91,5 +91,5 @@ def make_cosine_directions(n: int) -> FloatArray:
     The mean of π f over them is the albedo of a BRDF f.
     """
     square = (np.arange(n) + 0.5) / n
-    golden = (np.sqrt(5) - 1) / 2  # turns from point to point: fills the circle most evenly
+    golden = (np.sqrt(5) - 1) / 2  # turns between points: fill the circle evenly
     return from_angles(np.arcsin(np.sqrt(square)), 2 * np.pi * golden * np.arange(n))

@@ -121,7 +121,7 @@ def use_variant() -> str:
             warnings.warn(
                 f"Mitsuba has no CUDA device and no LLVM {OLDEST} or newer: its slow variant "
                 f"scalar_rgb is used; to mend it, {describe_llvm_remedy()}.",
-                stacklevel=3,  # the caller of use_variant, above the wrapper of `in_turn`
+                stacklevel=3,  # shows the caller of `use_variant`, above the wrapper of `in_turn`
             )
     variant = str(mi.variant())
     require_safe_variant(variant)

@@ -10,7 +10,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
-LEAST_RADIUS = 1e-9  # of a body's largest inner ball, over its size; below, it has no volume
+LEAST_RADIUS = 1e-9  # of the largest ball in a body of size 1; if it is smaller, the body is flat
 
 
 class Empty(BrdfkitError):
@@ -91,7 +91,7 @@ def _find_inscribed_centre(planes: AnyArray) -> FloatArray | None:
     """
     from scipy.optimize import linprog
 
-    # maximise r with a·x + |a| r ≤ -d
+    # Maximise the radius r under a·x + |a| r ≤ -d: the ball lies within every plane
     norms = np.linalg.norm(planes[:, :3], axis=1)
     system = np.column_stack([planes[:, :3], norms])
     bounds = [(None, None)] * 3 + [(0, None)]

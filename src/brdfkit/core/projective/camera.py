@@ -48,7 +48,7 @@ class Camera:
                 f"the camera is a {sensor.class_name()}; shadows by projection need a "
                 "perspective one."
             )
-        offsets = [f"principal_point_offset_{axis}" for axis in "xy"]  # a thin lens has none
+        offsets = [f"principal_point_offset_{axis}" for axis in "xy"]  # a thin lens has no offsets
         if any(_read_number(parameters, name) for name in offsets if name in parameters):
             raise BrdfkitError("the camera's principal point is off the middle; move it there.")
         slope = math.tan(math.radians(_read_number(parameters, "x_fov")) / 2)

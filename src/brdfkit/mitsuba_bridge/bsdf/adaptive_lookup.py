@@ -102,7 +102,7 @@ class AdaptiveLookup:
         wi, wo = self._fold_azimuth(wi, wi), self._fold_azimuth(wo, wi)
         m, u, density = self._find_half_vector(wi, wo)
         density *= self.density.eval(u, self._incident_angles(wi))
-        # dω_m / dx dy on the square of directions
+        # The solid angle dω_m per area dx dy on the square of directions
         solid_angle = 2 * dr.pi**2 * m.x * dr.sin(m.x * m.x * (dr.pi / 2))
         return density / (solid_angle * 4 * cos_theta_d(wi, wo))
 
@@ -125,7 +125,7 @@ class AdaptiveLookup:
     def _incident_angles(self, wi: JitVector) -> list[JitFloat]:
         """Return [phi_i, theta_i] of a direction within the stored azimuths."""
         phi_i = dr.atan2(wi.y, wi.x)
-        # The nodes of a part of the circle begin at -π, so that the azimuth π becomes -π
+        # Nodes on a part of the circle begin at -π, so that the azimuth π must become -π
         return [phi_i if self.parts < 2 else -dr.abs(phi_i), _polar_angle(wi)]
 
     def _fold_azimuth(self, w: JitVector, wi: JitVector) -> JitVector:

@@ -178,7 +178,7 @@ def _draw_cell(sums: Rows, start: JitInt, n: int, x: JitFloat) -> tuple[JitInt, 
     """
     x = dr.minimum(x, BELOW_ONE)  # 1 would fall into an empty last cell with the width 0
     cell: Any = 0
-    low, high = 0, 1  # cumulative shares before the cell and including it
+    low, high = 0, 1  # cumulative shares before the cell and with it
     for step in 2 ** np.arange(int(n - 1).bit_length())[::-1]:
         there = dr.minimum(cell + int(step), n)
         share = sums.at(start + there - 1)

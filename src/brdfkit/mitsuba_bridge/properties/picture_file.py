@@ -13,7 +13,7 @@ from brdfkit.core.files import is_utf8_path, require_file
 from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.mitsuba_bridge.properties.radiance_rows import require_intact_rows
 
-OWN_ERROR = "BrdfkitError: "  # in Mitsuba's report of an error in one of brdfkit's plugins
+OWN_ERROR = "BrdfkitError: "  # marks an error of brdfkit's plugins in a message of Mitsuba
 
 
 def load_by_mitsuba(function: Callable[..., Any], source: Any, name: object) -> Any:
@@ -35,7 +35,7 @@ def load_by_mitsuba(function: Callable[..., Any], source: Any, name: object) -> 
         raise
     except (RuntimeError, TypeError, ValueError) as error:
         message = str(error)
-        if isinstance(error, UnicodeDecodeError):  # a damaged file's bytes are in the message
+        if isinstance(error, UnicodeDecodeError):  # the message contains bytes of a damaged file
             message = error.object.decode(errors="replace")
         if "KeyboardInterrupt" in message:  # Ctrl-C in a plugin that is written in Python
             raise KeyboardInterrupt from None
@@ -48,7 +48,7 @@ def load_by_mitsuba(function: Callable[..., Any], source: Any, name: object) -> 
         raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason.rstrip('.')}).") from error
 
 
-LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"  # formats without a curve for screens
+LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"  # formats of linear values, without the curve of sRGB
 
 
 def read_photograph(path: str | PathLike[str], accept_8_bit: bool) -> AnyArray:
