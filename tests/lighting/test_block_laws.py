@@ -60,7 +60,10 @@ def test_the_renderer_chooses_by_the_law(law, llvm_variant):
     tree = build_tree(np.random.default_rng(0).random((20, 30)), law.n)
     shares = np.full(law.n, 1 / law.n)
     blocks = SortedBlocks(
-        tree, shares, np.zeros((law.n, 2)), type("Law", (type(law),), {"fit": lambda _: law})
+        tree,
+        shares,
+        np.zeros((law.n, 2)),
+        type("Law", (type(law),), {"fit_to_shares": lambda _: law}),
     )
     xi = ((np.arange(40_000) + 0.5) / 40_000).astype(np.float32)
     x, y, density = (
