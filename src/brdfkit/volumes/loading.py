@@ -127,7 +127,7 @@ def looks_like_volume(name: str) -> bool:
 
 
 def _is_radiance_map(path: Path) -> bool:
-    """Return whether a file is an environment map in Radiance's format, which has .hdr as well."""
+    """Return whether a .hdr file is an environment map of Radiance's, not a NIfTI header."""
     if path.suffix.lower() != ".hdr" or not path.is_file():
         return False
     with path.open("rb") as stream:

@@ -114,7 +114,7 @@ def _pixel_to_square(pixel: AnyArray, size: int) -> FloatArray:
 
 
 def _square_to_pixel(coordinate: FloatArray, size: int) -> FloatArray:
-    """Convert a coordinate from -1 to 1 in a square picture of `size` pixels to pixels."""
+    """Convert a coordinate from -1 to 1 to pixels, in a square picture of `size` pixels."""
     return ((coordinate + 1) * size - 1) / 2
 
 

@@ -41,7 +41,9 @@ class Hyperbolic:
 
     @classmethod
     def fit_to_shares(cls, shares: FloatArray) -> Hyperbolic:
-        """Return the law with the maximum likelihood Σ P log P̂ for the sorted `shares` P (n,).
+        """Fit the law to sorted `shares` P (n,) of the power of blocks.
+
+        The law's probabilities P̂ have the maximum likelihood Σ P log P̂.
 
         >>> shares = Hyperbolic(256, 5.0).probability(np.arange(256))
         >>> round(Hyperbolic.fit_to_shares(shares).u, 3)
@@ -90,9 +92,10 @@ class Steps:
 
     @classmethod
     def fit_to_shares(cls, shares: FloatArray) -> Steps:
-        """Return the law with the maximum likelihood Σ P log P̂ for the sorted `shares` P (n,).
+        """Fit the law to sorted `shares` P (n,) of the power of blocks.
 
-        Dynamic programming finds the edges.
+        The law's probabilities P̂ have the maximum likelihood Σ P log P̂. Dynamic programming finds
+        the edges of the steps.
         """
         n = len(shares)
         edges = np.unique(np.append(0, np.geomspace(1, n, EDGES).round())).astype(int)

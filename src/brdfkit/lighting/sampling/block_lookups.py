@@ -29,7 +29,7 @@ class BlockDensities:
     def density_in_block(
         self, block: JitInt, x: JitFloat, y: JitFloat, active: JitMask
     ) -> JitFloat:
-        """Return the density at a point (x, y) that lies in the block with this number."""
+        """Return the sampling density at a point (x, y) that lies in the block with this number."""
         import drjit as dr
         import mitsuba as mi
 
@@ -53,7 +53,7 @@ class TextureLookup:
         self.nbytes = texels.nbytes + self.densities.nbytes
 
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
-        """Return the density at a point (x, y), relative to a uniform one."""
+        """Return the sampling density at a point (x, y) of the map, relative to a uniform one."""
         index = find_cell(y, self.rows) * self.columns + find_cell(x, self.columns)
         return self.densities.density_in_block(self.texels.at(index, active), x, y, active)
 
@@ -84,7 +84,7 @@ class GridLookup:
         self.nbytes = 4 * (len(lists) + sum(map(len, lists))) + self.densities.nbytes
 
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
-        """Return the density at a point (x, y), relative to a uniform one."""
+        """Return the sampling density at a point (x, y) of the map, relative to a uniform one."""
         import drjit as dr
         import mitsuba as mi
 
@@ -167,7 +167,7 @@ class TreeWalk:
         return dr.lerp(box.x, box.y, s), dr.lerp(box.z, box.w, t), density
 
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
-        """Return the density at a point (x, y), relative to a uniform one."""
+        """Return the sampling density at a point (x, y) of the map, relative to a uniform one."""
         import drjit as dr
 
         x, y = dr.detach(x), dr.detach(y)

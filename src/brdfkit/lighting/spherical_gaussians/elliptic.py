@@ -31,8 +31,8 @@ def fit_elliptic_lobes(grid: list[list[OneView]], lobes: int) -> list[list[ViewL
 def fit_anisotropic_gaussian(x: FloatArray, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Fit an anisotropic spherical Gaussian to directions `x` (n, 3) with `weights` (n,).
 
-    Returns its frame (3, 3), with the rows x, y and z, and its bandwidths (2,), λ and μ, from the
-    second moments of the directions.
+    Returns its frame (3, 3), with the rows x, y and z, and its bandwidths (2,) along x and y, from
+    the second moments of the directions.
     """
     axis = normalize(weights @ x)
     plane = np.array(tangents(axis))

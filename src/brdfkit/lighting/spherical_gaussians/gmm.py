@@ -110,7 +110,7 @@ def _rotate_lobes(lobes: Mixture, angle: float) -> Mixture:
 
 
 def _move_lobes_to_view(lobes: Mixture, before: FloatArray, view: FloatArray) -> Mixture:
-    """Move lobes from the view `before` to another `view`, so that their half vectors stay."""
+    """Move lobes from the view `before` to another `view`, so that half vectors stay equal."""
     halves = convert_to_half_vector_lobes(lobes.axes, lobes.kappa, before)
     return Mixture(lobes.weights, *convert_to_light_lobes(*halves, view))
 

@@ -88,7 +88,7 @@ def kernel_bandwidth(kappa: ArrayLike, n: int) -> AnyArray:
 
 
 def split_lobe(mu: ArrayLike, kappa: ArrayLike, n: int) -> tuple[FloatArray, AnyArray]:
-    """Split a lobe with axis μ and concentration κ into `n` sharper lobes, as wide in sum.
+    """Split a lobe with axis μ and concentration κ into `n` sharper ones, as wide together.
 
     Returns their axes (..., n, 3), and their concentration (...).
     """

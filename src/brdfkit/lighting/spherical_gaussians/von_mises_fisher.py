@@ -29,7 +29,7 @@ def density(x: FloatArray, mu: ArrayLike, kappa: ArrayLike) -> AnyArray:
 
 
 def log_density(cosine: ArrayLike, kappa: ArrayLike) -> AnyArray:
-    """Return the log density (...) at directions whose angle to the axis has this `cosine`."""
+    """Return the log density (...) at directions with this `cosine` of the angle to the axis."""
     cosine, kappa = np.asarray(cosine, float), np.asarray(kappa, float)
     return kappa * (cosine - 1) - np.log(4 * np.pi * exprel(-2 * kappa))
 

@@ -40,10 +40,10 @@ class Hierarchy:
         test: Callable[[JitInt, JitMask], tuple[JitMask, JitInt]],
         active: JitMask = True,
     ) -> tuple[JitMask, JitInt]:
-        """Return whether a ray hits the content of any box before its `maxt`, and a sum of reads.
+        """Return whether a ray hits the content of any box before its `maxt`, and the reads.
 
         `test(number, active)` tests the content of the box with this number: it returns whether
-        the ray hits it, and a number of memory reads, to measure the costs.
+        the ray hits it, and its number of memory reads, which are summed to measure the costs.
         """
         import drjit as dr
         import mitsuba as mi

@@ -103,7 +103,7 @@ def _find_slice_step(file: VolumeFile, images: list[Slice], normal: FloatArray) 
         return normal * images[0].thickness
     places = np.array([image.place for image in images])
     steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    median = float(np.sort(steps)[(len(steps) - 1) // 2])  # with a gap, the smaller of two steps
+    median = float(np.sort(steps)[(len(steps) - 1) // 2])  # the lower median
     if not steps.min() > 1e-3 * max(median, 1e-6):
         raise file.error(
             "has several slices at one place, such as at several times; keep those of one volume"

@@ -97,7 +97,7 @@ def _read_grid(
 
 
 def _read_dtype(array: ElementTree.Element) -> DType:
-    """Return the type of an array's numbers; raise AttributeError if the attribute is damaged."""
+    """Read the type of an array's numbers from its XML; raise AttributeError if it is damaged."""
     match: Any = re.fullmatch(r"(Int|UInt|Float)(8|16|32|64)", array.get("type", ""))
     kind, bits = match.groups()
     return np.dtype(f"{TYPES[kind]}{int(bits) // 8}")

@@ -20,14 +20,13 @@ import numpy as np
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission, make_rgb_spectrum, make_white_light
+from brdfkit.volumes.light.emitters import replace_grad
 from brdfkit.volumes.light.majorants import Majorants, compute_majorants
 from brdfkit.volumes.light.tracking import (
     estimate_passed_and_collided_light,
     estimate_transmittance,
 )
 from brdfkit.volumes.rays.box import intersect_box
-
-replace_grad: Any = dr.replace_grad  # Dr.Jit's stub does not type its result
 
 TESTED_POINTS = 1 << 14  # random points at which an extinction is compared to its majorants
 # Collisions across a box; more would take very long, with steps below single precision

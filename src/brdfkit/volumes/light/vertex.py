@@ -6,8 +6,7 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
-
-replace_grad: Any = dr.replace_grad  # Dr.Jit's stub does not type its result
+from brdfkit.volumes.light.emitters import replace_grad
 
 
 @dataclass(eq=False)

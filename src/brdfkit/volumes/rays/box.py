@@ -6,7 +6,7 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
 
-SMALLEST_COSINE = 1e-3  # between a normal that has been bent to the viewer and the viewer
+SMALLEST_COSINE = 1e-3  # cosine of the angle between a bent normal and the viewer
 
 
 def get_world_to_cube(volume: MitsubaObject) -> MitsubaObject:

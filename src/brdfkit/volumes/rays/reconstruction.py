@@ -123,7 +123,7 @@ def _interpolant_slopes(volume: Volume, indices: FloatArray) -> FloatArray:
         low, _, _ = find_bracket(indices[:, axis], n)
         ends = [indices.copy(), indices.copy()]
         ends[0][:, axis], ends[1][:, axis] = low, low + 1
-        moves = (indices[:, axis] > 0) & (indices[:, axis] < n - 1)  # constant beyond the centres
+        moves = (indices[:, axis] > 0) & (indices[:, axis] < n - 1)  # constant beyond them
         slope = _interpolate_trilinearly(volume, ends[1]) - _interpolate_trilinearly(
             volume, ends[0]
         )

@@ -13,9 +13,9 @@ from brdfkit.core.errors import BrdfkitError, no_such_error
 
 
 def require_rising(given: ArrayLike, what: str) -> FloatArray:
-    """Return control points' places as floats (n,); raise `BrdfkitError` unless they rise.
+    """Return numbers as floats (n,); raise `BrdfkitError` unless they rise like control points.
 
-    Two or more are needed, and neighbours may be equal. The error calls them `what`.
+    There must be at least two numbers, and neighbours may be equal. The error calls them `what`.
     """
     try:
         points = np.array(given, float)

@@ -75,7 +75,10 @@ def _format_json_rows(value: Any) -> str:
 
 
 def parse_json(cls: Any, text: str | bytes, where: str | Path) -> Any:
-    """Parse a transfer function, of the class `cls`, from brdfkit's JSON; errors name `where`."""
+    """Parse a transfer function, of the class `cls`, from brdfkit's JSON.
+
+    Errors name `where`, the source of the text.
+    """
     try:
         record = json.loads(text)
     except ValueError as error:

@@ -44,7 +44,7 @@ class Preintegration:
         self.steps = table.shape[0] - 1
         self.rows = dr.select((place & 3) == 3, alpha, flat * alpha)
         first = dr.gather(mi.Float, self.rows, place & 3)
-        self.sums = dr.custom(Cumulative, self.rows) - (self.rows + first) / 2  # trapezoids
+        self.sums = dr.custom(Cumulative, self.rows) - (self.rows + first) / 2  # trapezoidal rule
         dr.make_opaque(self.rows, self.sums)
 
     def integrate_up_to(self, x: JitFloat) -> tuple[JitFloat, JitVector, JitVector]:
