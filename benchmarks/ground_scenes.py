@@ -25,4 +25,4 @@ def complicated():
 
 def make_light_cones(size, radius, half=4.0):
     """Return size² cones, row by row, from points of the ground to a light of this `radius`."""
-    return view.ground(size, half, LIGHT, radius, BALL)
+    return view.make_ground_cones(size, half, LIGHT, radius, BALL)

@@ -20,7 +20,10 @@ from brdfkit.inverse.scenes.problem.parameters import choose_unknowns
 from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
 from brdfkit.inverse.scenes.problem.targets import read_targets
 from brdfkit.inverse.scenes.problem.views import Views
-from brdfkit.inverse.scenes.search.forward_derivatives import compute_derivatives, group_tangents
+from brdfkit.inverse.scenes.search.forward_derivatives import (
+    compute_derivatives,
+    group_numbers_by_picture,
+)
 from brdfkit.inverse.scenes.search.normal_equations import Equations, Residuals
 from brdfkit.model import labels
 
@@ -106,7 +109,7 @@ def compare_gradients():
         views = make_views(model, truth, render_picture(make_corner(make_bsdf(model, truth)), 256))
         x, shares = views.start, {}
         found = compute_derivatives(views, x, spp, 3)
-        for group in group_tangents(views):
+        for group in group_numbers_by_picture(views):
             moved = np.zeros(len(x))
             moved[group] = step
             ends = [views.render_residuals(x + sign * moved, spp, 3) for sign in (1, -1)]
@@ -129,13 +132,13 @@ def time_steps():
             times = [time.perf_counter()]
             views.render_residuals(views.start, spp, 7)
             times.append(time.perf_counter())
-            here = Residuals.at(views, views.start, spp, 8)
+            here = Residuals.render(views, views.start, spp, 8)
             times.append(time.perf_counter())
-            Equations.at(views, here, 8)
+            Equations.render(views, here, 8)
             times.append(time.perf_counter())
             seconds.append(np.diff(times))
         one, trial, slopes = np.min(seconds[1:], axis=0)
-        searched = len(list(group_tangents(views)))
+        searched = len(list(group_numbers_by_picture(views)))
         print(
             f"{model:18} {(trial + slopes) / one:.2f}  ({searched} derivatives "
             f"{slopes / one:.2f}, trial {trial / one:.2f}; a picture {one:.2f} s)",

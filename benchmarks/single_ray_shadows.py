@@ -27,7 +27,7 @@ from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shad
 from brdfkit.distance_fields.shadows.split import compute_split_shadow
 from brdfkit.distance_fields.shadows.tau import lit_disc_share
 from brdfkit.core.json_values import round_numbers
-from brdfkit.theses.balint2019.dense import dense
+from brdfkit.theses.balint2019.dense import compute_dense_shadow
 from brdfkit.theses.balint2019.rivals import aaltonen, base, discrete, quilez
 
 RESULTS = Path(__file__).with_suffix(".json")
@@ -105,7 +105,7 @@ def measure_occluder(kind):
         )  # the true share has a closed form
     else:
         truth = np.array(compute_monte_carlo_shadow(field, lanes.cone, TRUE_RAYS, HIT).visible)
-    model = np.array(dense(field, lanes.cone).visible)
+    model = np.array(compute_dense_shadow(field, lanes.cone).visible)
     rows = compare_methods(field, lanes.cone, truth)
     for name, march in MARCHES.items():
         from_model = 20 * (np.array(march(field, lanes.cone, 1 / 20).visible) - model)

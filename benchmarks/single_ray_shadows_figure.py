@@ -7,7 +7,7 @@ from brdfkit.theses.balint2019.rivals import quilez
 from brdfkit.distance_fields.shadows.marches import compute_linear_shadow
 from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
 from brdfkit.distance_fields.shadows.split import compute_split_shadow
-from brdfkit.theses.drawing import COLOURS, figure, tidy
+from brdfkit.theses.drawing import COLOURS, make_figure, style_axes
 
 FAMILIES = "monte_carlo", "linear", "base", "discrete", "convex", "split", "quilez", "aaltonen"
 SIZE, RADIUS = 200, 1.0
@@ -21,7 +21,7 @@ PICTURES = {
 
 def draw_figure(results):
     """Return the figure with both parts, from the results by part."""
-    page = figure(11, 8.2)
+    page = make_figure(11, 8.2)
     above, below = page.subfigures(2, 1, height_ratios=(1, 1.15))
     draw_errors(above, [v for k, v in results.items() if k.startswith("occluder")])
     draw_shadows(below)
@@ -46,7 +46,7 @@ def draw_errors(part, kinds):
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlabel("evaluations of the distance per point")
-    tidy(
+    style_axes(
         axes,
         "Eight kinds of occluders that cover a part of the light: geometric means",
         "error (RMS)",

@@ -4,7 +4,7 @@ import numpy as np
 from volume_programs.case import NAMES, Case
 
 from brdfkit.core.colours import to_srgb
-from brdfkit.theses.drawing import figure
+from brdfkit.theses.drawing import make_figure
 
 TIMES = 10  # factor of the differences
 SHOWN = (
@@ -19,7 +19,7 @@ SHOWN = (
 
 def draw_figure(pictures):
     """Return the figure; `pictures`: RGB and opacity by (case, program, setting)."""
-    page = figure(13, 11.5)
+    page = make_figure(13, 11.5)
     axes = page.subplots(len(NAMES), 1 + 2 * len(SHOWN))
     for a in axes.flat:
         a.set_axis_off()

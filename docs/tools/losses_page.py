@@ -9,7 +9,7 @@ from make_models import join_paragraphs, make_table
 
 from brdfkit.core.names import join_words
 from brdfkit.regression.losses.named_losses import DEFAULT
-from brdfkit.theses.drawing import COLOURS, figure, tidy
+from brdfkit.theses.drawing import COLOURS, make_figure, style_axes
 
 PAGE = Path(__file__).parents[1] / "losses.md"
 # The losses that the figure shows, and the difference from which on one is clearly better [dB]
@@ -169,7 +169,7 @@ def make_materials_table(found):
 
 def draw_gains(found):
     """Return the figure of sorted gains over the default loss, with a panel for each model."""
-    drawn = figure(3.2 * len(found), 3.0)
+    drawn = make_figure(3.2 * len(found), 3.0)
     panels = drawn.subplots(1, len(found), sharey=True, squeeze=False)[0]
     for axes, (model, by_loss) in zip(panels, found.items(), strict=True):
         for loss, colour in zip(DRAWN[1:], COLOURS, strict=False):
@@ -177,7 +177,7 @@ def draw_gains(found):
                 values = sorted(compute_gains(by_loss, loss).values())
                 axes.plot(range(1, len(values) + 1), values, label=loss, color=colour)
         axes.axhline(0, color="0.3", linewidth=0.8)
-        tidy(axes, model, "")
+        style_axes(axes, model, "")
         axes.set_xlabel("materials, sorted")
     panels[0].set_ylabel("PSNR beside the default loss [dB]")
     panels[0].legend(frameon=False)

@@ -164,11 +164,11 @@ def test_ctrl_c_within_a_check_is_no_failure_of_it(llvm_variant, monkeypatch):
 @pytest.mark.quick
 def test_ctrl_c_within_a_recorded_picture_is_no_reason_to_render_again(llvm_variant, monkeypatch):
     """A claim of a thesis went on for minutes: Dr.Jit makes a RuntimeError of Ctrl-C."""
-    from brdfkit.theses.lesar2018.iterations import iteration
+    from brdfkit.theses.lesar2018.iterations import make_renderer
 
     def stopped(*_args, **_options):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(llvm_variant, "render", stopped)
     with pytest.raises(KeyboardInterrupt):
-        iteration()(llvm_variant.load_dict({"type": "scene"}), 0)
+        make_renderer()(llvm_variant.load_dict({"type": "scene"}), 0)

@@ -6,7 +6,7 @@ from scipy.ndimage import gaussian_filter
 import brdfkit as bk
 from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.inverse.photographs.capture.pinhole import find_corners
-from brdfkit.inverse.photographs.maps.scene import bsdf_dict
+from brdfkit.inverse.photographs.maps.scene import make_bsdf_dict
 
 SIDE = 0.1  # m
 CAMERA = bk.photographs.Pinhole(
@@ -16,7 +16,7 @@ F0 = 0.5
 
 
 class Truth:
-    """A sample of `texels` a side: what `bsdf_dict` reads of an `Svbrdf`."""
+    """A sample of `texels` a side: what `make_bsdf_dict` reads of an `Svbrdf`."""
 
     model, fixed, size = "ggx", {"f0": F0}, (SIDE, SIDE)
 
@@ -75,7 +75,7 @@ def photographs(texels, count, noise=0.01, pixels=None, truth=None, lights_at=No
     """(`Truth`, `Capture` with relative noise) of a made sample under so many lights."""
     truth = truth or Truth(texels)
     bsdf, places, pixels = (
-        bsdf_dict(truth),
+        make_bsdf_dict(truth),
         lights_at or lights(count),
         pixels or round(1.4 * texels),
     )

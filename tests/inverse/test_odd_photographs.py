@@ -11,7 +11,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.inverse.photographs.arguments import to_texel_parameters
-from brdfkit.inverse.photographs.maps.scene import scene_xml
+from brdfkit.inverse.photographs.maps.scene import format_scene_xml
 from brdfkit.inverse.photographs.maps.undetermined import describe_undetermined
 from brdfkit.inverse.photographs.search import coarse_to_fine
 
@@ -65,9 +65,9 @@ def part(values, k, value):
 
 ODD = {
     "is black": lambda c: {"pictures": part(c.pictures, 3, 0)},
-    "03.exr: nothing of the sample counts": lambda c: {"pictures": part(c.pictures, 3, 9)},
-    "00.exr: nothing of the sample counts": lambda c: {"lost": c.pictures > -1},
-    "light that grazes": lambda c: {"positions": part(c.positions, 3, [0.3, 0.3, 1e-3])},
+    "03.exr: it has no usable value": lambda c: {"pictures": part(c.pictures, 3, 9)},
+    "00.exr: it has no usable value": lambda c: {"lost": c.pictures > -1},
+    "under a grazing light": lambda c: {"positions": part(c.positions, 3, [0.3, 0.3, 1e-3])},
     "positions: they should be finite": lambda c: {"positions": part(c.positions, 0, np.nan)},
     "none below": lambda c: {"intensities": part(c.intensities, 0, [1, -1, 1])},
     "intensities: they should be finite": lambda c: {"intensities": part(c.intensities, 0, np.inf)},
@@ -144,7 +144,7 @@ def test_a_sample_of_a_millimetre(mi, capture, found):
     again = fit(small)
     for name, values in found.maps.items():
         np.testing.assert_allclose(again.maps[name], values, atol=0.002)
-    assert "near_clip" in scene_xml(again, {name: name for name in again.maps})
+    assert "near_clip" in format_scene_xml(again, {name: name for name in again.maps})
 
 
 def test_fresnel_reflectances_of_sums_are_alike_everywhere():
@@ -154,7 +154,7 @@ def test_fresnel_reflectances_of_sums_are_alike_everywhere():
 @pytest.mark.parametrize("finished", [0, 1, 2])
 def test_ctrl_c_of_maps_that_are_not_square(capture, monkeypatch, finished):
     """33 texels were made of 3, each 11 large, not 16, and the lower ones were missing."""
-    original, calls = coarse_to_fine.finish_level, []
+    original, calls = coarse_to_fine.fit_with_restarts, []
 
     def stop(*args):
         calls.append(args)
@@ -162,7 +162,7 @@ def test_ctrl_c_of_maps_that_are_not_square(capture, monkeypatch, finished):
             raise KeyboardInterrupt
         return original(*args)
 
-    monkeypatch.setattr(coarse_to_fine, "finish_level", stop)
+    monkeypatch.setattr(coarse_to_fine, "fit_with_restarts", stop)
     with pytest.raises(bk.Interrupted) as stopped:
         fit(dataclasses.replace(capture, size=(0.1, 0.09)), resolution=33)
     assert stopped.value.best.shape == (30, 33)

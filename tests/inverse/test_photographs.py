@@ -13,12 +13,12 @@ import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.inverse.photographs.arguments import to_texel_parameters
-from brdfkit.inverse.photographs.capture.camera_from_corners import camera_from_corners
+from brdfkit.inverse.photographs.capture.camera_from_corners import find_camera
 from brdfkit.inverse.photographs.capture.capture import downsample
 from brdfkit.inverse.photographs.capture.observations import Observations
 from brdfkit.inverse.photographs.capture.pinhole import find_corners
-from brdfkit.inverse.photographs.maps.maps import Maps, to_rows
-from brdfkit.inverse.photographs.maps.scene import bsdf_dict, scene_xml
+from brdfkit.inverse.photographs.maps.maps import Maps, to_texel_numbers
+from brdfkit.inverse.photographs.maps.scene import format_scene_xml, make_bsdf_dict
 from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE
 from brdfkit.inverse.photographs.search import coarse_to_fine
 from brdfkit.inverse.photographs.search.problem import Problem
@@ -46,7 +46,7 @@ def test_the_formula_is_what_mitsuba_shows(mi):
     """At the truth, seen in so many pixels that they blur little."""
     truth, capture = made_capture.photographs(TEXELS, 3, noise=0, pixels=8 * TEXELS)
     seen = Observations.collect(capture, (TEXELS, TEXELS))
-    numbers, x = to_rows(Maps(truth.model, truth.fixed, truth.size, truth.maps))
+    numbers, x = to_texel_numbers(Maps(truth.model, truth.fixed, truth.size, truth.maps))
     off = numbers.compute_radiances(x, seen) - seen.radiance
     off = (off * np.sqrt(seen.weights)).reshape(3, TEXELS, TEXELS, 3)[:, 1:-1, 1:-1]
     assert np.sqrt((off**2).mean()) < 0.005
@@ -80,7 +80,7 @@ def test_lights_that_were_held_out_are_predicted(mi, made, found):
     positions, intensities = made_capture.lights(3, seed=9)
     for light in zip(positions, intensities, strict=True):
         a, b = (
-            made_capture.photograph(bsdf_dict(one), *light, round(1.4 * TEXELS))
+            made_capture.photograph(make_bsdf_dict(one), *light, round(1.4 * TEXELS))
             for one in (found, truth)
         )
         inside = b.max(axis=2) > 0
@@ -121,7 +121,7 @@ def test_derivatives_are_those_of_differences(made, model, anisotropic):
     numbers, rng = to_texel_parameters(model, anisotropic, {}), np.random.default_rng(0)
     assert len(numbers.shapes.number_names) == len(numbers.names) + anisotropic
     seen = Observations.collect(made[1], (TEXELS, TEXELS)).select_texels(np.arange(100, 108))
-    low, high = (np.clip(limit, -0.3, 1) for limit in numbers.limits())
+    low, high = (np.clip(limit, -0.3, 1) for limit in numbers.find_limits())
     x = low + (0.3 + 0.4 * rng.random((8, numbers.count))) * (high - low)
     problem = Problem(numbers, seen)
     about = problem.compute_equations(x)
@@ -175,12 +175,12 @@ def test_the_direction_of_a_brushed_metal_comes_back(mi, tmp_path):
 def test_models_with_options_and_sums_can_be_shown(mi, made):
     found = bk.photographs.svbrdf(made[1], "ggx+ward", resolution=8, smoothness=0.1)
     assert mi.load_dict(found.scene_dict()).bsdf() is not None
-    assert 'name="models" value="ggx+ward"' in scene_xml(found, {n: n for n in found.maps})
+    assert 'name="models" value="ggx+ward"' in format_scene_xml(found, {n: n for n in found.maps})
 
 
 def test_ctrl_c_keeps_the_coarser_maps(made, monkeypatch, tmp_path):
     """Nothing is rendered any more, and no standard errors are found: that took 22 s."""
-    original, calls = coarse_to_fine.finish_level, []
+    original, calls = coarse_to_fine.fit_with_restarts, []
 
     def stop(*args):
         calls.append(args)
@@ -188,7 +188,7 @@ def test_ctrl_c_keeps_the_coarser_maps(made, monkeypatch, tmp_path):
             raise KeyboardInterrupt
         return original(*args)
 
-    monkeypatch.setattr(coarse_to_fine, "finish_level", stop)
+    monkeypatch.setattr(coarse_to_fine, "fit_with_restarts", stop)
     with pytest.raises(bk.Interrupted) as stopped:
         bk.photographs.svbrdf(made[1], resolution=TEXELS, smoothness=0.1)
     best = stopped.value.best
@@ -417,7 +417,7 @@ def test_a_camera_comes_back_from_corners():
         target, up = rng.standard_normal((2, 3)) * [[0.02, 0.02, 0], [1, 1, 1]]
         camera = bk.photographs.Pinhole(origin, target, up, 40.0)
         places = camera.project(find_corners(size), (640, 480))
-        found = camera_from_corners(places, find_corners(size), (640, 480), 40.0)
+        found = find_camera(places, find_corners(size), (640, 480), 40.0)
         np.testing.assert_allclose(found.origin, origin, atol=1e-9)
         np.testing.assert_allclose(found.axes, camera.axes, atol=1e-9)
 

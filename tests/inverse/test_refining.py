@@ -62,8 +62,8 @@ def test_derivatives_are_those_of_finite_differences(mi, picture):
 def test_differences_of_noisy_pictures_are_unbiased(mi, picture):
     """E² of 4 samples is, in the mean, that of 4096: noise adds nothing."""
     found = views(mi, picture, corner(mi, TRUTH))
-    exact = Residuals.at(found, found.start, 4096, 900).error
-    some = [Residuals.at(found, found.start, 4, seed) for seed in range(40)]
+    exact = Residuals.render(found, found.start, 4096, 900).error
+    some = [Residuals.render(found, found.start, 4, seed) for seed in range(40)]
     errors = np.array([one.error for one in some])
     assert abs(errors.mean() - exact) < 4 * errors.std() / np.sqrt(len(errors))
     assert np.mean([one.compute_noise(found) for one in some]) > 20 * exact
@@ -124,7 +124,7 @@ def test_a_light_is_a_parameter(mi, picture):
 
 def test_ctrl_c_keeps_the_best(mi, picture, monkeypatch):
     calls = []
-    original = gauss_newton.Equations.at
+    original = gauss_newton.Equations.render
 
     def stop(*args):
         calls.append(args)
@@ -132,7 +132,7 @@ def test_ctrl_c_keeps_the_best(mi, picture, monkeypatch):
             raise KeyboardInterrupt
         return original(*args)
 
-    monkeypatch.setattr(gauss_newton.Equations, "at", stop)
+    monkeypatch.setattr(gauss_newton.Equations, "render", stop)
     start = corner(mi, TRUTH | {"diffuse_reflectance": (0.9, 0.9, 0.9)})
     with pytest.raises(bk.Interrupted) as stopped:
         bk.refine(start, picture, parameters=["ball.bsdf.diffuse_reflectance"], starts=1)
@@ -263,8 +263,8 @@ def test_pictures_that_are_not_finite_are_no_steps(mi, picture):
     found = views(mi, picture, corner(mi, TRUTH | {"specular_reflectance": (0.0,) * 3}))
     x = found.start
     here, there = (
-        Residuals.at(found, found.start, 4, 0),
-        Residuals.at(found, np.where(found.is_linear, 1e30, x), 4, 0),
+        Residuals.render(found, found.start, 4, 0),
+        Residuals.render(found, np.where(found.is_linear, 1e30, x), 4, 0),
     )
     assert there.error == np.inf
     assert here.compute_gain(there)[0] == -np.inf
@@ -381,7 +381,7 @@ def test_masks_are_weights_of_any_unit(mi, picture, tmp_path):
         np.testing.assert_allclose(seen_by(same).weights, by_half.weights)
     np.testing.assert_array_equal(seen_by(half | True).weights, everywhere.weights)
     assert by_half.blocks[1] == everywhere.blocks[1] / 2
-    assert len(Residuals.at(by_half, by_half.start, 4, 0).terms) == half.sum()
+    assert len(Residuals.render(by_half, by_half.start, 4, 0).terms) == half.sum()
 
 
 def test_numbers_that_nothing_shows_are_said(mi, picture):
@@ -449,10 +449,10 @@ def test_a_material_begins_on_the_ball_of_render(mi, tmp_path):
 def test_steps_cost_less_than_four_pictures(mi, picture):
     """By samples, of which a derivative's take as long as two or three of a picture's."""
     found = views(mi, picture, corner(mi, TRUTH))
-    here = Residuals.at(found, found.start, 128, 0)
+    here = Residuals.render(found, found.start, 128, 0)
     assert found.cost == pytest.approx(128)
-    Equations.at(found, here, 0)
-    Residuals.at(found, found.start, 128, 0)
+    Equations.render(found, here, 0)
+    Residuals.render(found, found.start, 128, 0)
     assert found.cost < 4 * 128 + 128
 
 

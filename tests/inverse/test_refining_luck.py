@@ -5,8 +5,8 @@ import pytest
 from refined_scenes import TRUTH, alone, bsdf_of, knot, noisy, require_back, views
 
 import brdfkit as bk
-from brdfkit.inverse.scenes.result.conclusions import conclude_search
-from brdfkit.inverse.scenes.result.second_look import conclude_checked_search, take_second_look
+from brdfkit.inverse.scenes.result.conclusions import make_refinement
+from brdfkit.inverse.scenes.result.search_check import check_search, make_checked_refinement
 from brdfkit.inverse.scenes.search.gauss_newton import Search
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 
@@ -24,7 +24,8 @@ def test_the_least_of_many_errors_is_luck_and_the_least_bound_is_not(mi, picture
     found = views(mi, picture, knot(mi, 0.18, 0.3), [ALPHA])
     narrow = found.unknowns[0].to_coordinates(np.array([0.004]))
     right, wrong = (
-        [Residuals.at(found, x, SAMPLES, seed) for seed in range(20)] for x in (found.start, narrow)
+        [Residuals.render(found, x, SAMPLES, seed) for seed in range(20)]
+        for x in (found.start, narrow)
     )
     assert min(one.error for one in wrong) < min(one.error for one in right)
     assert min(one.bound for one in wrong) > max(one.bound for one in right)
@@ -45,24 +46,24 @@ def end(mi, picture, alpha, start):
     """(the `Views` that begin at one roughness, a `Search` that ended at another)."""
     seen = views(mi, picture, knot(mi, start, 0.3), [ALPHA])
     x = seen.unknowns[0].to_coordinates(np.array([alpha]))
-    return seen, Search(Residuals.at(seen, x, SAMPLES, 3), converged=True)
+    return seen, Search(Residuals.render(seen, x, SAMPLES, 3), converged=True)
 
 
 def test_what_is_worse_than_the_start_is_not_returned(mi, picture):
     seen, found = end(mi, picture, alpha=0.01, start=0.25)
-    checked, second_look = take_second_look(seen, found, 0)
-    assert second_look is None
+    checked, search_check = check_search(seen, found, 0)
+    assert search_check is None
     np.testing.assert_array_equal(checked.residuals.x, seen.start)
-    said = str(conclude_search(seen, checked, 0.0)).splitlines()
+    said = str(make_refinement(seen, checked, 0.0)).splitlines()
     assert "worse than the scene's own values" in said[1]
 
 
 @pytest.mark.parametrize(("alpha", "doubtful"), [(0.004, True), (0.18, False)])
 def test_twice_the_samples_say_what_few_paths_tell(mi, picture, alpha, doubtful):
     seen, found = end(mi, picture, alpha, start=alpha)
-    checked, second_look = take_second_look(seen, found, 0)
+    checked, search_check = check_search(seen, found, 0)
     assert checked.residuals.spp == 2 * found.residuals.spp
-    result = conclude_checked_search(seen, checked, second_look, 0.0)
+    result = make_checked_refinement(seen, checked, search_check, 0.0)
     for said in (str(result), " ".join(result.notes), result._repr_html_()):
         assert ("at twice the samples" in said) == doubtful
 
@@ -74,5 +75,5 @@ def test_a_picture_that_no_value_explains_leaves_no_more_than_the_start(mi):
     start = alone(mi, bsdf_of("ggx", {"alpha_u": 0.4, "specular_reflectance": (0.1,) * 3}))
     seen = views(mi, picture, start, [ALPHA])
     found = bk.refine(start, picture, parameters=[ALPHA, "ball.bsdf.specular_reflectance"], spp=32)
-    own = Residuals.at(seen, seen.start, 512, 9)
+    own = Residuals.render(seen, seen.start, 512, 9)
     assert found.loss**2 < own.bound

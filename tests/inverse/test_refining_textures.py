@@ -12,7 +12,10 @@ from brdfkit.inverse.scenes.problem.targets import read_targets
 from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search import descent
 from brdfkit.inverse.scenes.search.backward_derivatives import compute_error_and_gradient
-from brdfkit.inverse.scenes.search.descent import _hold_out, compute_penalty
+from brdfkit.inverse.scenes.search.descent import (
+    _choose_held_out_pixels,
+    compute_smoothness_penalty,
+)
 
 SIZE = 16
 TEXTURE = "floor.bsdf.diffuse_reflectance.data"
@@ -77,13 +80,13 @@ def test_roughness_has_its_derivatives(mi):
     names = mi.traverse(mi.load_dict(scene(mi, TRUTH), optimize=False))
     unknowns = choose_unknowns(names, [TEXTURE, "sky.data"])
     parts = [unknown.to_coordinates(unknown.start) for unknown in unknowns]
-    slopes, step = compute_penalty(unknowns, parts)[1], 1e-5
+    slopes, step = compute_smoothness_penalty(unknowns, parts)[1], 1e-5
     for which, number in ((0, 7), (1, 0)):
         ends = []
         for sign in (1, -1):
             moved = [part.copy() for part in parts]
             moved[which][number] += sign * step
-            ends.append(compute_penalty(unknowns, moved)[0])
+            ends.append(compute_smoothness_penalty(unknowns, moved)[0])
         row = number + which * len(parts[0])
         assert slopes[row] == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-4)
 
@@ -119,13 +122,13 @@ def test_of_ten_pixels_alike_one_is_held_out(mi, picture):
     names = mi.traverse(loaded)
     targets, chosen = read_targets(picture, mask=mask), choose_unknowns(names, [TEXTURE])
     views = Views(loaded, make_integrator(loaded), targets, names, chosen)
-    held = _hold_out(views, 3)
+    held = _choose_held_out_pixels(views, 3)
     bright = (views.weights * views.target_pixels**2).sum(axis=1)
     order = np.argsort(-np.where(views.counted, bright, -1), kind="stable")
     in_tens = held[order[: mask.sum() // 10 * 10]].reshape(-1, 10)
     assert (in_tens.sum(axis=1) == 1).all()
     assert not held[~views.counted].any()
-    assert (held != _hold_out(views, 4)).any()
+    assert (held != _choose_held_out_pixels(views, 4)).any()
 
 
 def test_masked_texels_follow_their_neighbours(mi, picture, monkeypatch):

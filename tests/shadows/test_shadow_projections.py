@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from brdfkit.theses.ergun2008.depth_curves import depth_curve, unevenness
+from brdfkit.theses.ergun2008.depth_curves import measure_unevenness, sample_depth_curve
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from placements import LIGHTS, SUN, VIEWS, camera, placement
@@ -309,14 +309,14 @@ def test_trapezoidal_and_plane_optimal_distort_depth_more(view):
     """[Ergun 2008, Figure 4.1]; there the perspective one is among the even, ours is not."""
     scene = seen_from(view)
     found = {
-        name: unevenness(*depth_curve(project(name, scene), scene.body.corners))
+        name: measure_unevenness(*sample_depth_curve(project(name, scene), scene.body.corners))
         for name in PROJECTIONS
     }
     assert found["uniform"] < 1e-9
     assert found["focused"] < 1e-9
     assert found["light_space_perspective"] < found["trapezoidal"] < found["plane_optimal"]
     linear = replace(project("plane_optimal", scene), depth=LightDepth.from_placement(scene))
-    assert unevenness(*depth_curve(linear, scene.body.corners)) < 1e-9
+    assert measure_unevenness(*sample_depth_curve(linear, scene.body.corners)) < 1e-9
 
 
 @pytest.mark.quick

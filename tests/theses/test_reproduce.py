@@ -3,7 +3,7 @@
 import pytest
 from brdfkit.theses.kurt2007 import NEEDS, PARTS
 from brdfkit.theses.kurt2007.appendix_3 import read_rows
-from brdfkit.theses.kurt2007.printed import SEVEN, printed
+from brdfkit.theses.kurt2007.printed import SEVEN, read_printed_table
 from click.testing import CliRunner
 from PIL import Image
 
@@ -11,7 +11,7 @@ import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.theses import Claim, list_theses
 from brdfkit.theses.claims import count_verdicts
-from brdfkit.theses.drawing import draw_curves, figure
+from brdfkit.theses.drawing import draw_curves, make_figure
 from brdfkit.theses.page import Picture, Section, Table, write_page
 from brdfkit.theses.sources import find_sources
 
@@ -24,7 +24,7 @@ CLAIMS = [
 
 @pytest.mark.quick
 def test_a_page_has_every_claim_table_and_figure(tmp_path):
-    drawn = figure(3, 2)
+    drawn = make_figure(3, 2)
     draw_curves(drawn.add_subplot(), {"one": [1, 2, 3], "two": [3, 2, 4]}, "curves", "E")
     table = Table(("model", "E"), [("ward", "0.1")], "By eq. 5.")
     section = Section("Table 1", "Some text.", CLAIMS, [table], [Picture("curves", drawn)])
@@ -100,7 +100,7 @@ def test_ctrl_c_keeps_what_is_finished(empty_files, tmp_path, monkeypatch):
 
 def test_the_printed_tables_agree(measured_data):
     """The seven models of Table 9.2 have the errors of Appendix 3, where that is at hand."""
-    table = printed("table_9_2")
+    table = read_printed_table("table_9_2")
     assert set(SEVEN) < set(table["errors"])
     assert all(len(row) == 5 for row in table["errors"].values())
     rows = read_rows(find_sources(measured_data, None, NEEDS))

@@ -76,7 +76,7 @@ def test_frames_and_tables_at_a_small_size(monkeypatch):
 
 @pytest.mark.quick
 def test_printed_times_are_those_of_the_shadows():
-    times = march_times.printed_times("table_6_1")
+    times = march_times.read_printed_times("table_6_1")
     assert times[0, march_times.LINEAR] == 1
     assert times[0, march_times.BASE] == pytest.approx((3.2398 - 0.7005) / (1.4602 - 0.7005))
 
@@ -86,7 +86,7 @@ def test_a_row_that_fails_is_counted():
     times = np.ones((8, 4))
     times[:, march_times.BASE] = 2
     times[3, march_times.BASE] = 0.5
-    claim = variants.base_claim({"table_6_1": times}, {"table_6_1": np.abs(times)})
+    claim = variants.claim_base({"table_6_1": times}, {"table_6_1": np.abs(times)})
     assert (claim.printed, claim.ours, claim.verdict) == ("7 of 8 rows", "7 of 8", "not confirmed")
 
 
@@ -94,7 +94,7 @@ def test_a_row_that_fails_is_counted():
 def test_bands_are_jumps_of_the_error():
     image = np.zeros((4, 4))
     image[:, 2:] = 0.5
-    assert bands.jumps(image).tolist() == [[0, 0.5, 0]] * 3
+    assert bands.measure_jumps(image).tolist() == [[0, 0.5, 0]] * 3
 
 
 @pytest.mark.quick
@@ -102,7 +102,7 @@ def test_an_edge_is_as_wide_as_its_ramp():
     x = np.arange(64) - 32.0
     for wide in (2, 8):
         share = np.clip(x / wide + 0.5, 0, 1) + np.zeros((64, 1))
-        assert hard_edges.width(share) == pytest.approx(wide, abs=1.1)
+        assert hard_edges.measure_edge_width(share) == pytest.approx(wide, abs=1.1)
 
 
 def test_a_view_sees_points_off_the_surface():

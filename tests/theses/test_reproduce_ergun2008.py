@@ -44,8 +44,8 @@ def test_tables_and_volumes_at_a_small_size(monkeypatch):
 
 @pytest.mark.quick
 def test_printed_tables_are_means_of_their_cells():
-    cells = printed.printed("texture_use")["plane_optimal"]
-    mean, relative = printed.mean_and_relative(cells)
+    cells = printed.read_printed_table("texture_use")["plane_optimal"]
+    mean, relative = printed.average_cells(cells)
     assert mean == pytest.approx(0.05925)
     assert relative == pytest.approx(0.02175)
 
@@ -54,5 +54,5 @@ def test_printed_tables_are_means_of_their_cells():
 def test_the_printed_n_t():
     """Acceptance check 3 by the eight steps."""
     expected = [[4, -4 / 15, 0, -0.04], [0, 8 / 3, 0, -0.6], [0, 0, 1, 0], [0, -4 / 3, 0, 1.8]]
-    found = trapezoid.trapezoid_to_square()
+    found = trapezoid.map_trapezoid_to_square()
     np.testing.assert_allclose(found / found[2, 2], expected, atol=1e-12)

@@ -14,7 +14,7 @@ from brdfkit.theses.ergun2015 import (
     shapes,
 )
 from brdfkit.theses.ergun2015.lit_balls import FILTERS, METHODS, ROUGHNESSES
-from brdfkit.theses.ergun2015.unshadowed import unshadowed
+from brdfkit.theses.ergun2015.unshadowed import make_unshadowed_integrator
 
 import brdfkit as bk
 from brdfkit.lighting.visibility.hull import make_hull
@@ -26,9 +26,9 @@ CONVEX = ["convex_reads", "convex_pictures", "convex_settings", "moving_parts"]
 def no_data(monkeypatch):
     """The parts take what brdfkit brings, and keep no meshes between tests."""
     monkeypatch.delenv("BRDFKIT_DATA", raising=False)
-    convex_study.studies.cache_clear()
+    convex_study.make_studies.cache_clear()
     yield
-    convex_study.studies.cache_clear()
+    convex_study.make_studies.cache_clear()
 
 
 @pytest.mark.quick
@@ -93,11 +93,11 @@ def decibels(**by_method):
 def test_the_verdicts_on_a_grid_follow_its_figures():
     falling = np.linspace(45, 25, len(ROUGHNESSES))
     grid = decibels(warped=falling, filtered_sampling=falling + 1)
-    assert lobe_scenes.best_claim(grid).verdict == "confirmed"
-    assert lobe_scenes.matte_claim(grid).verdict == "confirmed"
+    assert lobe_scenes.claim_best(grid).verdict == "confirmed"
+    assert lobe_scenes.claim_matte(grid).verdict == "confirmed"
     grid = decibels(kde=falling - 20)
-    assert lobe_scenes.best_claim(grid).verdict == "not confirmed"
-    assert lobe_scenes.matte_claim(grid).verdict == "not confirmed"
+    assert lobe_scenes.claim_best(grid).verdict == "not confirmed"
+    assert lobe_scenes.claim_matte(grid).verdict == "not confirmed"
 
 
 @pytest.mark.quick
@@ -106,8 +106,8 @@ def test_an_edge_is_seen_where_the_view_changes(monkeypatch):
     monkeypatch.setattr(lobe_views, "SIZE", size)
     error = np.random.default_rng(0).normal(size=(size, size, 3))
     views, seen = np.arange(size)[:, None] // 8 + np.zeros((1, size)), np.ones((size, size), bool)
-    assert lobe_views.jump(error, views, seen) == pytest.approx(1, abs=0.15)
-    assert lobe_views.jump(error + 9 * views[..., None], views, seen) > 5
+    assert lobe_views.measure_view_jumps(error, views, seen) == pytest.approx(1, abs=0.15)
+    assert lobe_views.measure_view_jumps(error + 9 * views[..., None], views, seen) > 5
 
 
 def test_the_truth_without_shadows_has_none(llvm_variant):
@@ -126,9 +126,9 @@ def test_the_truth_without_shadows_has_none(llvm_variant):
             "sensor": {"type": "perspective", "fov": 30, "to_world": camera, "film": film},
         }
     )
-    picture = np.array(unshadowed(4096, 0).render(scene, seed=0, spp=1))[..., :3]
+    picture = np.array(make_unshadowed_integrator(4096, 0).render(scene, seed=0, spp=1))[..., :3]
     cup = np.abs(picture - 0.5) > 0.1
     assert cup.mean() > 0.1
     assert picture[cup].mean() == pytest.approx(0.2, rel=0.005)
-    again = np.array(unshadowed(4096, 0).render(scene, seed=0, spp=1))[..., :3]
+    again = np.array(make_unshadowed_integrator(4096, 0).render(scene, seed=0, spp=1))[..., :3]
     assert (again == picture).all()

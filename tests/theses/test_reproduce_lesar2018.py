@@ -27,7 +27,7 @@ from brdfkit.theses.lesar2018 import (
     tone_mappers,
     transfer_functions,
 )
-from brdfkit.theses.lesar2018.iterations import iteration
+from brdfkit.theses.lesar2018.iterations import make_renderer
 
 
 def verdicts(*parts, **settings):
@@ -56,20 +56,20 @@ def test_paths_and_places(monkeypatch):
     change(monkeypatch, {largest_values: {"RAYS": 60, "ITERATIONS": 32, "DENSE": 2048}})
     found = verdicts("free_paths", "isosurface_depth", "largest_values")
     assert found == ["confirmed"] * 5 + ["not confirmed"]
-    found = isosurface_depth.at_random(10, np.random.default_rng(1))
+    found = isosurface_depth.measure_random_depth(10, np.random.default_rng(1))
     assert found == pytest.approx(0.0916, abs=0.002)
 
 
 @pytest.mark.parametrize("steps", ray_marching.KNOWN)
 def test_a_segment_that_does_not_dim_itself_is_of_first_order(steps):
-    off = ray_marching.plain_march(steps) - ray_marching.EXACT
+    off = ray_marching.march_without_dimming(steps) - ray_marching.EXACT
     assert off == pytest.approx(ray_marching.KNOWN[steps][1], rel=0.01)
 
 
 @pytest.mark.quick
 def test_slabs_in_closed_form():
     known = [0.172314, 0.004882, 0.017146, 0.002585, 0.032698]
-    found = [single_scattering.closed_form(*slab) for slab in single_scattering.SLABS]
+    found = [single_scattering.compute_closed_form(*slab) for slab in single_scattering.SLABS]
     np.testing.assert_allclose(found, known, atol=6e-7)
 
 
@@ -79,7 +79,7 @@ def test_slabs_in_closed_form():
     [(0.3, 0.45015, 0.31346, 0.0113), (0.9, 0.99405, 0.97108, 0.2103)],
 )
 def test_how_near_schlicks_is(g, k, mean, distance):
-    assert schlick.figures(g) == pytest.approx((k, mean, distance), abs=6e-5)
+    assert schlick.compare_schlick(g) == pytest.approx((k, mean, distance), abs=6e-5)
 
 
 @pytest.mark.quick
@@ -88,7 +88,7 @@ def test_how_near_schlicks_is(g, k, mean, distance):
     [("Rayleigh", 0.023, 0.044), ("Mie hazy", 0.054, 0.17), ("Mie murky", 0.103, 0.67)],
 )
 def test_two_lobes_of_schlicks(name, error, largest):
-    _, *found = phases.fit(*phases.TARGETS[name])
+    _, *found = phases.fit_two_lobes(*phases.TARGETS[name])
     assert found == pytest.approx((error, largest), abs=0.005)
 
 
@@ -97,7 +97,9 @@ def test_a_mean_in_16_bits_stops(monkeypatch):
     change(monkeypatch, {half_floats: {"PIXELS": 1024, "SHOWN": (100, 1000, 1500)}})
     assert verdicts("half_floats") == ["not confirmed"]
     mean, draw = half_floats.NOISES["even, 0.45 to 0.55"]
-    half, full = (half_floats.errors(mean, draw, kind)[0][[999, -1]] for kind in ("f2", "f4"))
+    half, full = (
+        half_floats.measure_errors(mean, draw, kind)[0][[999, -1]] for kind in ("f2", "f4")
+    )
     assert half == pytest.approx([0.0015, 0.0015], rel=0.02)
     assert full == pytest.approx([0.00091, 0.00075], rel=0.05)
 
@@ -136,7 +138,7 @@ def test_nothing_is_freed_while_a_picture_is_recorded(llvm_variant, monkeypatch)
         return mi.Float(1)
 
     monkeypatch.setattr(mi, "render", draw)
-    iteration()(mi.load_dict({"type": "scene"}), 0)
+    make_renderer()(mi.load_dict({"type": "scene"}), 0)
     assert enabled == [False]
     assert gc.isenabled()
 
@@ -149,7 +151,7 @@ def test_the_end_of_a_run_as_its_reference():
         kept = {n: means[n - 1] / n for n in (30, 500, 900, 1000)}
         runs.append(convergence.Run(kept[1000], np.ones(1), kept))
     for n, inflated in ((30, 0.13), (500, 3.01), (900, 10)):
-        _, same, least, another, most = convergence.inflation(*runs, n)
+        _, same, least, another, most = convergence.measure_psnr_excess(*runs, n)
         assert same == pytest.approx(least, abs=0.2)
         assert least == pytest.approx(inflated, abs=0.005)
         assert another == pytest.approx(most, abs=0.2)
@@ -163,9 +165,9 @@ def test_times_beside_the_printed(monkeypatch):
         slow = {"single_scattering": 2, "maximum_intensity": 0.5}
         return slow.get(renderer, 1) * iteration_times.PRINTED["phone"][cell]
 
-    monkeypatch.setattr(iteration_times, "time_of", phone)
+    monkeypatch.setattr(iteration_times, "measure_iteration", phone)
     assert verdicts("iteration_times") == ["confirmed"] * 3 + ["not confirmed"]
-    monkeypatch.setattr(iteration_times, "time_of", lambda name, v, f: f**2 / len(name))
+    monkeypatch.setattr(iteration_times, "measure_iteration", lambda name, v, f: f**2 / len(name))
     assert verdicts("iteration_times") == ["not confirmed"] * 4
 
 
@@ -178,7 +180,7 @@ def test_a_bias_against_volpath_is_found(bias, verdict, monkeypatch):
         mean = 1 + bias * (kind == "volpath")
         return mean + rng.normal(size=(passes, 16, 16, 3)), np.ones(passes)
 
-    monkeypatch.setattr(against_volpath, "pictures", pictures)
+    monkeypatch.setattr(against_volpath, "render_passes", pictures)
     assert verdicts("against_volpath")[0] == verdict
 
 

@@ -12,7 +12,7 @@ from functools import cache
 import numpy as np
 import pytest
 from brdfkit.theses.kurt2007.appendix_3 import SHAPES
-from brdfkit.theses.kurt2007.curet import PLAIN, lobes_at
+from brdfkit.theses.kurt2007.curet import PLAIN, evaluate_lobes
 from random_models import random_model
 
 import brdfkit as bk
@@ -95,7 +95,7 @@ def row_of(line, data):
     weights = ("kd",) if name == "oren_nayar" else ("kd", "ks")
     printed = np.array([[float(line[f"{k}_{c}"]) for c in "rgb"] for k in weights])
     error = float(line["l2_error"] or "nan")
-    lobes = lobes_at(name, shapes, data.wi, data.wo).T
+    lobes = evaluate_lobes(name, shapes, data.wi, data.wo).T
     return Row(int(line["curet_sample"]), name, shapes, printed, error, data, lobes)
 
 
@@ -174,7 +174,7 @@ def misprinted(row):
 
 def turned(row):
     """Our lobes with φ_r + 180°, as if the mirror direction were at Δφ = 0."""
-    return lobes_at(row.model, row.shapes, row.data.wi, row.data.wo * [-1, -1, 1]).T
+    return evaluate_lobes(row.model, row.shapes, row.data.wi, row.data.wo * [-1, -1, 1]).T
 
 
 def test_misprinted_oren_nayar_misses_the_errors(rows):

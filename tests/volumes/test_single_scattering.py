@@ -5,7 +5,7 @@ import math
 import drjit as dr
 import numpy as np
 import pytest
-from brdfkit.theses.lesar2018.volpath_settings import pictures, settings, z_scores
+from brdfkit.theses.lesar2018.volpath_settings import compute_z_scores, make_settings, render_passes
 
 from brdfkit import BrdfkitError
 from brdfkit.volumes import TransferFunction
@@ -178,10 +178,10 @@ THREE = "grid, sky by blocks", "transfer function, surfaces", "scattered five ti
 @pytest.mark.parametrize("name", THREE)
 def test_the_light_is_that_of_volpath(name, llvm_variant):
     """Three of ten settings."""
-    scene = settings()[name]
+    scene = make_settings()[name]
     kinds = enumerate(("single_scattering", "volpath"))
-    both = [pictures(scene, kind, spp=4, first=16 * i)[0] for i, kind in kinds]
-    assert np.abs(z_scores(*both)).max() < DEVIATIONS
+    both = [render_passes(scene, kind, spp=4, first=16 * i)[0] for i, kind in kinds]
+    assert np.abs(compute_z_scores(*both)).max() < DEVIATIONS
 
 
 # Derivatives

@@ -1,4 +1,4 @@
-"""Bálint et al. (2019): soft shadows of distance functions from a single ray."""
+"""Bálint et al. (2019): soft shadows of distance functions by marching a single ray."""
 
 TITLE = "Bálint et al. 2019, reproduced"
 INTRODUCTION = """C. Bálint, G. Valasek, R. Bán, *Real-time single-ray soft-shadow algorithms for
@@ -14,7 +14,7 @@ run, of seconds of CPU of the shadows alone; errors are ours to find.
 A claim is *confirmed* where our figures agree, *not confirmed* where they do not, *not stated*
 where the thesis gives no figure to compare ours to."""
 
-NEEDS: dict[str, str] = {}  # all scenes are code
+NEEDS: dict[str, str] = {}  # no measured files, as all scenes are made by code
 
 PARTS = (
     "hard_edges",

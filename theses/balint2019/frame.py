@@ -1,9 +1,9 @@
-"""A scene's shadows by all methods beside those of rays: their shares, errors and times."""
+"""Computes a scene's shadows by all methods and by rays: shares, errors and times."""
 
 from functools import partial
 
 import numpy as np
-from brdfkit.theses.balint2019.measuring import rms, seconds_in_turns, shares
+from brdfkit.theses.balint2019.measuring import compute_rms, measure_in_turns, read_shares
 from brdfkit.theses.balint2019.rivals import aaltonen, quilez
 from brdfkit.theses.balint2019.view import View
 
@@ -18,35 +18,35 @@ RAYS = 1, 2, 3, 4, 8, 16, 32, 64, 128, 512
 
 
 class Frame:
-    """The shadows of a scene by all methods: their shares, errors and times."""
+    """The shadows of a scene by all methods and by rays: shares of the light, errors and times."""
 
     def __init__(self, scene, radius):
         self.view = View(scene(), SIZE)
-        field, cone, epsilon = self.view.scene.field, self.view.cones(radius), EPSILON[radius]
+        field, cone, epsilon = self.view.scene.field, self.view.make_cones(radius), EPSILON[radius]
         methods = {n: partial(compute_monte_carlo_shadow, field, cone, n) for n in RAYS}
         methods["linear"] = partial(compute_linear_shadow, field, cone, epsilon)
         methods["split"] = partial(compute_split_shadow, field, cone, epsilon)
         methods |= {m.__name__: partial(m, field, cone) for m in (quilez, aaltonen)}
-        self.seconds = seconds_in_turns(methods, TIMES)
-        self.shares = {name: shares(method()) for name, method in methods.items()}
-        self.truth = shares(compute_monte_carlo_shadow(field, cone, TRUE_RAYS, 1e-4))
-        self.errors = {name: rms(share - self.truth) for name, share in self.shares.items()}
+        self.seconds = measure_in_turns(methods, TIMES)
+        self.shares = {name: read_shares(method()) for name, method in methods.items()}
+        self.truth = read_shares(compute_monte_carlo_shadow(field, cone, TRUE_RAYS, 1e-4))
+        self.errors = {name: compute_rms(share - self.truth) for name, share in self.shares.items()}
 
-    def faster(self, rays, name="linear"):
-        """How many times as long as a method so many rays take."""
+    def compare_times(self, rays, name="linear"):
+        """Return the time of so many rays over that of a method."""
         return self.seconds[rays] / self.seconds[name]
 
-    def rays_of_error(self, name):
-        """How many rays have the error of a method, between those that were tried."""
+    def count_equal_rays(self, name):
+        """Return the number of rays with the error of a method, by interpolation."""
         errors = np.log([self.errors[n] for n in RAYS])
         return float(np.exp(np.interp(-np.log(self.errors[name]), -errors, np.log(RAYS))))
 
-    def faster_at_equal_error(self, name):
-        """How many times as long as a method rays take that have its error."""
-        times = np.interp(self.rays_of_error(name), RAYS, [self.seconds[n] for n in RAYS])
+    def compare_times_at_equal_error(self, name):
+        """Return the time of rays with the same error as a method, over its time."""
+        times = np.interp(self.count_equal_rays(name), RAYS, [self.seconds[n] for n in RAYS])
         return float(times) / self.seconds[name]
 
-    def decibels(self, name):
-        """PSNR [dB] of the shaded picture by a method."""
-        true, other = (self.view.shaded(s)[..., None] for s in (self.truth, self.shares[name]))
+    def compute_psnr(self, name):
+        """Return the PSNR [dB] of the shaded picture by a method."""
+        true, other = (self.view.shade(s)[..., None] for s in (self.truth, self.shares[name]))
         return psnr(true, other)

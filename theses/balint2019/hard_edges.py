@@ -1,19 +1,19 @@
-"""Section 4.1 and Figure 1.1: a light of radius 0 gives a hard shadow with a smooth edge."""
+"""Measures the edge of the hard shadow of a light of radius 0, section 4.1 and Figure 1.1."""
 
 import numpy as np
 from brdfkit.theses.balint2019 import scenes
-from brdfkit.theses.balint2019.measuring import shares
-from brdfkit.theses.balint2019.view import View, ground
+from brdfkit.theses.balint2019.measuring import read_shares
+from brdfkit.theses.balint2019.view import View, make_ground_cones
 
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.distance_fields.shadows.marches import compute_hard_shadow, compute_linear_shadow
-from brdfkit.theses.claims import Claim, verdict
-from brdfkit.theses.drawing import figure
+from brdfkit.theses.claims import Claim, to_verdict
+from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section
 
 SECONDS = 3
 SIZE, HALF, EPSILON, RADIUS = 256, 2.5, 1 / 30, 0.5
-PARTLY = 0.02  # a share from which, and up to 1 less which, a pixel is neither lit nor dark
+PARTLY = 0.02  # shares from this to 1 minus this are neither lit nor dark
 TEXT = f"""The simple scene. The width of the edge is measured on its ground, seen from above
 through all objects with {SIZE} × {SIZE} pixels, and with empty balls that have half a pixel's edge
 as their radius: the area of the pixels that are neither lit nor dark, over the length of the edge,
@@ -22,45 +22,49 @@ the sum of |∇ share|."""
 
 @in_turn
 def run(sources, report):
-    """The edge, and the pictures."""
+    """Check the claims on the width of a hard shadow's edge; return their section of the page."""
     scene = scenes.simple()
-    cone = ground(SIZE, HALF, scene.light, 0.0, HALF / SIZE)
-    share = shares(compute_hard_shadow(scene.field, cone, EPSILON)).reshape(SIZE, SIZE)
+    cone = make_ground_cones(SIZE, HALF, scene.light, 0.0, HALF / SIZE)
+    share = read_shares(compute_hard_shadow(scene.field, cone, EPSILON)).reshape(SIZE, SIZE)
     report(1, 2)
-    wide = width(share)
+    wide = measure_edge_width(share)
     claim = Claim(
         "With a light of radius 0 the shadow is hard, with an edge of a pixel at most.",
         "4.1, Figure 1.1",
         "1 pixel",
         f"{wide:.2f} pixels",
-        verdict(wide <= 1),
+        to_verdict(wide <= 1),
     )
     caption = "Without shadows, with a hard one, and with those of lights of two radii."
-    return Section("Hard shadows", TEXT, [claim], [], [Picture("hard_edges", draw(), caption)])
+    return Section(
+        "Hard shadows", TEXT, [claim], [], [Picture("hard_edges", draw_radii(), caption)]
+    )
 
 
-def width(share):
-    """The width of the edge between light and shadow [pixels] in an image."""
+def measure_edge_width(share):
+    """Return the width of the edge between light and shadow [pixels] in an image."""
     partly = (share > PARTLY) & (share < 1 - PARTLY)
     slope = np.hypot(np.diff(share, axis=0)[:, 1:], np.diff(share, axis=1)[1:])
     return partly.sum() / slope.sum()
 
 
-def draw():
-    """One scene without, with a hard and with soft shadows."""
+def draw_radii():
+    """Draw a scene without shadows, with a hard one, and with soft ones."""
     view = View(scenes.simple(), SIZE)
     field = view.scene.field
     shown = {
         "no shadow": 1.0,
-        "radius 0": shares(compute_hard_shadow(field, view.cones(0.0), EPSILON)),
-        f"radius {RADIUS:g}": shares(compute_linear_shadow(field, view.cones(RADIUS), EPSILON)),
-        f"radius {2 * RADIUS:g}": shares(
-            compute_linear_shadow(field, view.cones(2 * RADIUS), EPSILON)
+        "radius 0": read_shares(compute_hard_shadow(field, view.make_cones(0.0), EPSILON)),
+        f"radius {RADIUS:g}": read_shares(
+            compute_linear_shadow(field, view.make_cones(RADIUS), EPSILON)
+        ),
+        f"radius {2 * RADIUS:g}": read_shares(
+            compute_linear_shadow(field, view.make_cones(2 * RADIUS), EPSILON)
         ),
     }
-    drawn = figure(9, 2.5)
+    drawn = make_figure(9, 2.5)
     for axes, (title, visible) in zip(drawn.subplots(1, len(shown)), shown.items(), strict=True):
-        axes.imshow(view.shaded(visible), cmap="gray", vmin=0, vmax=1)
+        axes.imshow(view.shade(visible), cmap="gray", vmin=0, vmax=1)
         axes.set_title(title, size=9)
         axes.set_axis_off()
     return drawn

@@ -1,12 +1,12 @@
-"""Times of the four marches by direction and ε: ours, and those printed in tables 6.1 to 6.3."""
+"""Measures the times of four marches by direction and ε, and reads those of Tables 6.1 to 6.3."""
 
 import tomllib
 from functools import partial
 from pathlib import Path
 
 import numpy as np
-from brdfkit.theses.balint2019.dense import dense
-from brdfkit.theses.balint2019.measuring import rms, seconds_in_turns, shares
+from brdfkit.theses.balint2019.dense import compute_dense_shadow
+from brdfkit.theses.balint2019.measuring import compute_rms, measure_in_turns, read_shares
 from brdfkit.theses.balint2019.scenes import MARCHES
 
 from brdfkit.theses.page import Table
@@ -18,48 +18,54 @@ HEADS = {
     "table_6_2": "Table 6.2, a complicated scene",
     "table_6_3": "Table 6.3, the Mandelbulb",
 }
-BASE, LINEAR, DISCRETE, CONVEX = range(4)  # the columns, as `MARCHES`
+BASE, LINEAR, DISCRETE, CONVEX = range(4)  # columns of the tables, in the order of `MARCHES`
 
 
-def settings():
-    """(1 / ε, direction) in the order of the printed rows."""
+def list_settings():
+    """Return pairs of 1 / ε, the inverse error bound, and direction, as in the printed rows."""
     return [(n, direction) for n in INVERSES for direction in "AB"]
 
 
-def printed_times(name):
-    """Times (row, march) of the shadows alone, over that of `linear` in the first row."""
+def read_printed_times(name):
+    """Return printed times (row, march) of the shadows alone, over that of `linear` in the first
+    row.
+    """
     text = Path(__file__).with_name("printed.toml").read_text(encoding="utf-8")
     table = tomllib.loads(text)[name]
-    times = np.array([table[f"1/{n} {direction}"] for n, direction in settings()]) - table["bare"]
+    times = (
+        np.array([table[f"1/{n} {direction}"] for n, direction in list_settings()]) - table["bare"]
+    )
     return times / times[0, LINEAR]
 
 
-def measure(view):
-    """Times and mean evaluations (row, march), and errors (row, march) against τ(r_min)."""
-    field, cone = view.scene.field, view.cones(RADIUS)
+def measure_marches(view):
+    """Return times, mean evaluations and errors of marches, each an array (row, march)."""
+    field, cone = view.scene.field, view.make_cones(RADIUS)
     methods = {
         (row, march): partial(call, field, cone, 1 / n, direction)
-        for row, (n, direction) in enumerate(settings())
+        for row, (n, direction) in enumerate(list_settings())
         for march, call in enumerate(MARCHES.values())
     }
-    seconds = seconds_in_turns(methods, TIMES)
-    model = shares(dense(field, cone))
-    found = np.zeros((3, len(settings()), len(MARCHES)))
+    seconds = measure_in_turns(methods, TIMES)
+    model = read_shares(compute_dense_shadow(field, cone))
+    found = np.zeros((3, len(list_settings()), len(MARCHES)))
     for place, method in methods.items():
         shadow = method()
-        error = rms(shares(shadow) - model)
+        error = compute_rms(read_shares(shadow) - model)
         found[:, *place] = seconds[place], np.mean(shadow.evaluations), error
     return found
 
 
-def times_table(name, ours, printed, evaluations):
-    """Ours beside the printed."""
+def make_times_table(name, ours, printed, evaluations):
+    """Return a table of our times beside the printed ones."""
     rows = [
         (
             f"1/{n} {direction}",
             *(f"{a:.2f} / {b:.2f} ({e:.0f})" for a, b, e in zip(*columns, strict=True)),
         )
-        for (n, direction), *columns in zip(settings(), ours, printed, evaluations, strict=True)
+        for (n, direction), *columns in zip(
+            list_settings(), ours, printed, evaluations, strict=True
+        )
     ]
     caption = (
         f"{HEADS[name]}: times, ours / printed, and in brackets our mean number of evaluations."
@@ -67,8 +73,8 @@ def times_table(name, ours, printed, evaluations):
     return Table(("ε", *MARCHES), rows, caption)
 
 
-def error_table(errors):
-    """Errors by march and ε, in direction A."""
+def make_error_table(errors):
+    """Return a table of errors by march and error bound ε, in direction A."""
     rows = [
         (
             name.replace("table_", "").replace("_", "."),

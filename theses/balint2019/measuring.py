@@ -1,4 +1,4 @@
-"""Shadows as numbers: their shares, evaluations, errors and times."""
+"""Measures shadows: their shares of the light, evaluations, errors and times."""
 
 import drjit as dr
 import numpy as np
@@ -6,30 +6,30 @@ import numpy as np
 from brdfkit.theses.claims import measure_cpu_seconds
 
 
-def evaluate(shadow):
-    """Run the kernel of a `Shadow`."""
+def evaluate_shadow(shadow):
+    """Run the kernel of a `Shadow` and wait for its end."""
     dr.eval(shadow.visible, shadow.evaluations)
     dr.sync_thread()
 
 
-def seconds_in_turns(methods, times):
-    """Label → the least seconds of CPU, without what Python takes to record kernels.
+def measure_in_turns(methods, times):
+    """Return the least CPU seconds of each method, without the time to record kernels.
 
-    methods : label → function without arguments that returns a `Shadow`. They take turns, so that a
-    load that comes and goes meets all of them; the first turn compiles.
+    methods : functions without arguments that return a `Shadow`, by label. They take turns, so that
+        other load of the machine meets all of them; the first turn compiles.
     """
     turns = [
-        {label: measure_cpu_seconds(evaluate, method()) for label, method in methods.items()}
+        {label: measure_cpu_seconds(evaluate_shadow, method()) for label, method in methods.items()}
         for _ in range(1 + times)
     ]
     return {label: min(turn[label] for turn in turns[1:]) for label in methods}
 
 
-def shares(shadow):
-    """The shares of the light (n,)."""
+def read_shares(shadow):
+    """Return the shares of the light (n,) of a `Shadow` as an array."""
     return np.array(shadow.visible, float)
 
 
-def rms(values):
-    """The root mean square."""
+def compute_rms(values):
+    """Return the root mean square of values."""
     return float(np.sqrt(np.mean(np.square(values))))

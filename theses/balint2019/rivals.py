@@ -1,4 +1,4 @@
-"""Soft shadows that are slower or less exact than the default `linear`: for comparison alone.
+"""Defines soft shadows that are slower or less exact than the default `linear`, to compare with it.
 
 `base` and `discrete` are the thesis's other marches, `quilez` and `aaltonen` formulas known from
 games. `soft_shadow` and the integrator `distance_field` load them when their names are chosen.
@@ -18,47 +18,50 @@ from brdfkit.distance_fields.shadows.march import Rule
 from brdfkit.distance_fields.shadows.shadow import Shadow, trace_shadow
 from brdfkit.distance_fields.shadows.tau import lit_disc_share
 
-NEWTON_STEPS = 4  # errors below 1e-14, and below 1e-6 in single precision
+NEWTON_STEPS = 4  # for errors below 1e-14, and below 1e-6 in single precision
 MAX_STEPS = 512  # of a hard ray
-HIT_DISTANCE = 1e-3  # at which a hard ray meets an object, over the light's distance
+HIT_DISTANCE = 1e-3  # of a hard ray from an object that it meets, over the light's distance
 
 
 def base(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A") -> Shadow:
-    """Compute a shadow by the basic march, with 0 ≤ visible - τ(r_min) ≤ ε."""
+    """Compute a shadow by the basic march, with a share from τ(r_min) to ε above it.
+
+    τ(r_min) is the share that the model of one straight edge gives.
+    """
 
     def lower(ratio: JitFloat, R_T: JitFloat) -> tuple[JitFloat, JitFloat]:
-        return ratio, tau_inverse(lit_disc_share(ratio) - epsilon)
+        return ratio, invert_tau(lit_disc_share(ratio) - epsilon)
 
-    rule = Rule((1.0, tau_inverse(1 - epsilon)), lower, tau_inverse(epsilon))
+    rule = Rule((1.0, invert_tau(1 - epsilon)), lower, invert_tau(epsilon))
     return trace_shadow(field, cone, rule, epsilon, direction)
 
 
 def discrete(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A") -> Shadow:
-    """Compute a shadow in levels: |visible - τ(r_min)| ≤ ε, and 1 - visible is a multiple of ε.
+    """Compute a shadow in levels that are multiples of ε: |visible - τ(r_min)| ≤ ε.
 
-    Its `t` is where the march reached the last level, perhaps far from the minimum, so that its
-    derivatives are rough.
+    The result's `t` is where the march reached the last level, perhaps far from the minimum, so
+    that its derivatives are rough.
     """
 
     def lower(ratio: JitFloat, R_T: JitFloat) -> tuple[JitFloat, JitFloat]:
         """Go down one level, or several where the light itself lies within an object."""
         levels = dr.maximum(dr.ceil((lit_disc_share(R_T) - lit_disc_share(ratio)) / epsilon - 1), 1)
         share = lit_disc_share(R_T) - levels * epsilon
-        return tau_inverse(share), tau_inverse(share - epsilon)
+        return invert_tau(share), invert_tau(share - epsilon)
 
-    rule = Rule((1.0, tau_inverse(1 - epsilon)), lower, tau_inverse(epsilon))
+    rule = Rule((1.0, invert_tau(1 - epsilon)), lower, invert_tau(epsilon))
     return trace_shadow(field, cone, rule, epsilon, direction)
 
 
-def tau_inverse(share: JitFloat) -> JitFloat:
+def invert_tau(share: JitFloat) -> JitFloat:
     """Return the r with τ(r) = `share`, which is clamped to [0, 1].
 
-    The thesis bisects, because Newton's steps for τ are divisions by 0 at both ends. But with
-    r = ±cos(y/2) the equation is y - sin y = π - π |2 share - 1|, convex in y ≥ 0: four Newton
-    steps from the root of y³/6, which is exact at the ends, reach the last digit. Forty bisections
-    made `base` 15 times as slow as `linear`.
+    The thesis bisects, because Newton's steps for τ are divisions by 0 at both ends. But with r =
+    ±cos(y/2) the equation is y - sin y = π - π |2 share - 1|, convex in y ≥ 0: four Newton steps
+    from the root of y³/6, which is exact at the ends, reach the last digit. Forty bisections made
+    `base` 15 times as slow as `linear`.
 
-    >>> round(tau_inverse(0.75), 9)
+    >>> round(invert_tau(0.75), 9)
     0.403972753
     """
     side = 2 * dr.clip(share, 0, 1) - 1
@@ -71,28 +74,34 @@ def tau_inverse(share: JitFloat) -> JitFloat:
 
 
 def quilez(field: Any, cone: LightCone) -> Shadow:
-    """Compute a shadow as the smallest k f / t, with the hardness k = d / R_1 of the light."""
+    """Compute a shadow as the smallest k f / t along a ray, for distances f at t.
 
-    def nearness(t: JitFloat, F: JitFloat, F_before: JitFloat) -> JitFloat:
+    The light's hardness is k = d / R_1, its distance over its radius [Quílez 2010].
+    """
+
+    def compute_nearness(t: JitFloat, F: JitFloat, F_before: JitFloat) -> JitFloat:
         return F / t
 
-    return trace_hard_ray(field, cone, nearness)
+    return trace_hard_ray(field, cone, compute_nearness)
 
 
 def aaltonen(field: Any, cone: LightCone) -> Shadow:
-    """Compute a shadow as the smallest k √(f² - y²) / (t - y), with y = f² / (2 f before)."""
+    """Compute a shadow as the smallest k √(f² - y²) / (t - y), with y = f² / (2 f before).
 
-    def nearness(t: JitFloat, F: JitFloat, F_before: JitFloat) -> JitFloat:
+    It is Aaltonen's improvement of `quilez`, by the distances f at two steps along a ray.
+    """
+
+    def compute_nearness(t: JitFloat, F: JitFloat, F_before: JitFloat) -> JitFloat:
         y = F * F / (2 * F_before)
         return dr.safe_sqrt(F * F - y * y) / dr.maximum(t - y, 1e-6 * t)
 
-    return trace_hard_ray(field, cone, nearness)
+    return trace_hard_ray(field, cone, compute_nearness)
 
 
 def trace_hard_ray(
     field: Any, cone: LightCone, nearness: Callable[[JitFloat, JitFloat, JitFloat], JitFloat]
 ) -> Shadow:
-    """Compute the shadow of a hard ray that notes how closely it passes objects.
+    """Compute the shadow of a hard ray by the smallest distance at which it passes objects.
 
     The ray ends where it meets an object, so that the inner half of the penumbra is black.
     `nearness(t, F, F_before)` is the distance at which it passes, over t.
@@ -110,7 +119,7 @@ def trace_hard_ray(
 
     with dr.suspend_grad():
         zero = 0 * cone.d
-        start = dr.maximum(cone.R_0, hit)  # both methods start off the surface
+        start = dr.maximum(cone.R_0, hit)  # off the surface, where the distance is 0
         _, visible, t_min, _, i = dr.while_loop(
             (start, zero + 1, zero, zero + 1e20, zero),
             lambda t, visible, t_min, F, i: (t < cone.d) & (visible > 0) & (i < MAX_STEPS),

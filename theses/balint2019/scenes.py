@@ -1,4 +1,4 @@
-"""Scenes after those of the thesis, which prints what is in them, but no place of anything."""
+"""Defines scenes like those of the thesis, which prints their objects, but not their places."""
 
 from dataclasses import dataclass
 
@@ -21,7 +21,7 @@ Triple = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Scene:
-    """A field, the centre of a light, and a camera at `eye` that looks at `target`.
+    """A distance field, the centre of a light, and a camera at `eye` that looks at `target`.
 
     fov : the angle of view [degrees].
     """
@@ -34,13 +34,13 @@ class Scene:
 
 
 def cube() -> Scene:
-    """S0: a cube of edge 2, whose top is 9 from the light."""
+    """Return scene S0: a cube of edge 2, whose top is 9 from the light."""
     field = box(2).at(0, 0, 1) | plane()
     return Scene(field, (-5.0, -2.0, 9.2), (5.0, -7.0, 6.0), (-0.6, 0.4, 0.4))
 
 
 def simple() -> Scene:
-    """S1: three spheres, a box and a plane."""
+    """Return scene S1: three spheres, a box and a plane."""
     field = (
         sphere(0.8).at(-1.2, 0.3, 0.8)
         | sphere(0.5).at(0.7, 1.0, 0.5)
@@ -52,12 +52,12 @@ def simple() -> Scene:
 
 
 def horizon() -> Scene:
-    """S1 again; the horizon is a few pixels below the upper edge of the picture."""
+    """Return scene S1, spheres and a box, from a lower camera with the horizon in view."""
     return Scene(simple().field, simple().light, (3.5, -6.5, 1.5), (1.65, -2.4, 0.0))
 
 
 def complicated() -> Scene:
-    """S2: 25 objects and a plane."""
+    """Return scene S2: 25 objects and a plane."""
     rng = np.random.default_rng(2)
     places = np.column_stack([rng.uniform(-3, 3, (25, 2)), rng.uniform(0.2, 1, 25)])
     spheres = [sphere(0.6 * place[2]).at(place) for place in places[:12]]
@@ -67,19 +67,21 @@ def complicated() -> Scene:
 
 
 def fractal() -> Scene:
-    """S3: a Mandelbulb."""
+    """Return scene S3: a Mandelbulb."""
     return Scene(mandelbulb(), (3.0, -3.0, 4.0), (1.6, -2.6, 1.2), (0.0, 0.0, 0.0), 45.0)
 
 
 def near_light() -> Scene:
-    """S4: S2 from elsewhere; the light is 6 from the top of a cylinder of radius 1."""
+    """Return scene S4: the 25 objects of S2 and a cylinder of radius 1, whose top is 6 from the
+    light.
+    """
     cylinder = capped_cylinder((0, 0, 0), (0, 0, 1.5), 1)
     field = complicated().field | cylinder.at(-1.0, -1.0, 0.0)
     return Scene(field, (1.0, -3.0, 6.8), (-5.0, -5.5, 4.5), (-0.5, -0.3, 0.5))
 
 
 def three_solids() -> Scene:
-    """S5: a sphere, a cube and a cylinder on a plane."""
+    """Return scene S5: a sphere, a cube and a cylinder on a plane."""
     field = (
         sphere(0.7).at(-1.5, 0.2, 0.7)
         | box(1.2).rotate(0.5).at(0.1, -0.3, 0.6)

@@ -1,20 +1,23 @@
-"""Figures 6.15 and 6.16: shading by one march, by samples that a march decides, and by rays."""
+"""Compares shading by one march, by samples that a march decides, and by rays.
+
+The thesis does so in Figures 6.15 and 6.16.
+"""
 
 import numpy as np
 from brdfkit.theses.balint2019 import scenes
-from brdfkit.theses.balint2019.measuring import rms
+from brdfkit.theses.balint2019.measuring import compute_rms
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import Claim, measure_least_seconds, verdict
-from brdfkit.theses.drawing import figure
+from brdfkit.theses.claims import Claim, measure_least_seconds, to_verdict
+from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section, Table
 
 SECONDS = 25
 SIZE, MANY, FEW, TRUE_SAMPLES, TIMES = 128, 150, 50, 1024, 2
-RADIUS, SIDES = 0.6, (0.9, 0.5)  # of the spherical light, half of the rectangular one's edges
+RADIUS, SIDES = 0.6, (0.9, 0.5)  # the spherical light's radius, half of the other one's edges
 SPLIT, ESTIMATED, EXACT = ({"shading": s} for s in ("split", "estimated", "exact"))
-# Figure 6.16: light, settings of the integrator, printed time [ms]
+# The pictures of Figure 6.16: light, settings of the integrator, printed time [ms]
 METHODS = {
     "a, quilez": ("sphere", SPLIT | {"shadow": "quilez"}, 1.17),
     "b, one march": ("sphere", SPLIT, 1.49),
@@ -33,13 +36,15 @@ which names no BSDF. Truth: {TRUE_SAMPLES:,} samples by rays."""
 
 @in_turn
 def run(sources, report):
-    """The pictures, and the claims on them."""
+    """Check the claims on shading by marches and by rays; return their section of the page."""
     use_variant()
-    truths = {light: render(light, EXACT | {"samples": TRUE_SAMPLES}) for light in lamps()}
+    truths = {
+        light: render_radiance(light, EXACT | {"samples": TRUE_SAMPLES}) for light in make_lamps()
+    }
     pictures, seconds = {}, {}
     for done, (name, (light, settings, _)) in enumerate(METHODS.items()):
-        call = renderer(light, settings)
-        pictures[name[0]] = call()  # compiles
+        call = make_renderer(light, settings)
+        pictures[name[0]] = call()  # compiles the kernels, which is not timed
         seconds[name[0]] = measure_least_seconds(call, times=TIMES)
         report(done + 1, len(METHODS))
     rows = [
@@ -48,7 +53,7 @@ def run(sources, report):
             light,
             f"{seconds[name[0]] / seconds['b']:.2f}",
             f"{printed / METHODS['b, one march'][2]:.2f}",
-            f"{rms(pictures[name[0]] - truths[light]):.4f}",
+            f"{compute_rms(pictures[name[0]] - truths[light]):.4f}",
             f"{np.mean(pictures[name[0]] - truths[light]):+.4f}",
         )
         for name, (light, _, printed) in METHODS.items()
@@ -57,18 +62,18 @@ def run(sources, report):
     table = Table(heads, rows, "Times over those of b; errors of radiance, 1 is white.")
     errors = {name: pictures[name] - truths["sphere"] for name in "abcde"}
     claims = [
-        dark_claim(pictures),
-        near_claim(pictures),
-        leak_claim(errors),
-        faster_claim("d", "e", 74.7 / 41.3, seconds, f"{MANY} samples of a sphere"),
-        faster_claim("h", "g", 27.5 / 12.6, seconds, f"{FEW} samples of a rectangle"),
+        claim_dark(pictures),
+        claim_near(pictures),
+        claim_leak(errors),
+        claim_faster("d", "e", 74.7 / 41.3, seconds, f"{MANY} samples of a sphere"),
+        claim_faster("h", "g", 27.5 / 12.6, seconds, f"{FEW} samples of a rectangle"),
     ]
-    shown = Picture("shading", draw(pictures), "Figure 6.16, from a to h.")
+    shown = Picture("shading", draw_pictures(pictures), "Figure 6.16, from a to h.")
     return Section("Shading", TEXT, claims, [table], [shown])
 
 
-def lamps():
-    """Name → Mitsuba's dictionary of a light."""
+def make_lamps():
+    """Return the Mitsuba dictionaries of both lights by name."""
     import mitsuba as mi
 
     scene = scenes.three_solids()
@@ -81,8 +86,8 @@ def lamps():
     }
 
 
-def renderer(light, settings):
-    """A function that renders the scene under a light, by settings of the integrator."""
+def make_renderer(light, settings):
+    """Return a function that renders the scene under a light, by settings of the integrator."""
     import mitsuba as mi
 
     scene = scenes.three_solids()
@@ -103,73 +108,73 @@ def renderer(light, settings):
                 **settings,
             },
             "sensor": {"type": "perspective", "fov": scene.fov, "to_world": camera, "film": film},
-            "light": lamps()[light],
+            "light": make_lamps()[light],
         },
         parallel=False,
     )
     return lambda: np.array(mi.render(loaded, spp=1), float)[..., 0]
 
 
-def render(light, settings):
-    """The radiance of one channel (size, size)."""
-    return renderer(light, settings)()
+def render_radiance(light, settings):
+    """Render the radiance of one channel (size, size)."""
+    return make_renderer(light, settings)()
 
 
-def dark_claim(pictures):
-    """a against c."""
+def claim_dark(pictures):
+    """Claim that shadows of a rival method are too large, by pictures of Figure 6.16."""
     a, b = (np.mean(pictures[name] - pictures["c"]) for name in "ab")
     return Claim(
         "The shadows of Quílez's and Aaltonen's method are too large.",
         "Figure 6.16 a",
         "a picture",
         f"mean radiance {a:+.4f} against the share by rays; {b:+.4f} of one march",
-        verdict(a < -2 * abs(b)),
+        to_verdict(a < -2 * abs(b)),
         "Confirmed where it is darker by twice what one march is off.",
     )
 
 
-def near_claim(pictures):
-    """b against c."""
-    a, b = (rms(pictures[name] - pictures["c"]) for name in "ab")
+def claim_near(pictures):
+    """Claim that one march is far closer to rays than a rival, by pictures of Figure 6.16."""
+    a, b = (compute_rms(pictures[name] - pictures["c"]) for name in "ab")
     return Claim(
         "One march is far closer to the share by rays.",
         "Figure 6.16 a-c",
         "pictures",
         f"errors {a:.4f} and {b:.4f}",
-        verdict(b < a / 2),
+        to_verdict(b < a / 2),
         "Confirmed below half.",
     )
 
 
-def leak_claim(errors):
-    """d against b."""
+def claim_leak(errors):
+    """Claim that samples decided by a march have the errors of one march."""
     return Claim(
         "Samples that a march decides have the errors of one march.",
         "Figure 6.16 d, e",
         "the same leak",
-        f"errors {rms(errors['d']):.4f} and {rms(errors['b']):.4f}; of rays for the share "
-        f"{rms(errors['c']):.4f}",
-        verdict(0.5 < rms(errors["d"]) / rms(errors["b"]) < 1.5),
+        f"errors {compute_rms(errors['d']):.4f} and {compute_rms(errors['b']):.4f}; of rays for "
+        f"the share {compute_rms(errors['c']):.4f}",
+        to_verdict(0.5 < compute_rms(errors["d"]) / compute_rms(errors["b"]) < 1.5),
         "Confirmed from 0.5 to 1.5 times. What is left of c is the BSDF, taken at the middle of "
         "the light.",
     )
 
 
-def faster_claim(march, rays, printed, seconds, what):
-    """Samples by a march against samples by rays."""
+def claim_faster(march, rays, printed, seconds, what):
+    """Claim that samples by a march take less time than samples by rays."""
     ours = seconds[rays] / seconds[march]
     return Claim(
         f"{what} by a march take less time than by rays.",
         f"Figure 6.16 {min(march, rays)}, {max(march, rays)}",
         f"{printed:.2f} times as fast",
         f"{ours:.2f} times as fast",
-        verdict(ours >= printed),
+        to_verdict(ours >= printed),
     )
 
 
-def draw(pictures):
-    """All of them."""
-    drawn = figure(9, 4.8)
+def draw_pictures(pictures):
+    """Draw all pictures of Figure 6.16."""
+    drawn = make_figure(9, 4.8)
     for axes, (name, picture) in zip(drawn.subplots(2, 4).flat, pictures.items(), strict=True):
         axes.imshow(np.clip(picture, 0, 1) ** (1 / 2.2), cmap="gray", vmin=0, vmax=1)
         axes.set_title(name, size=10)

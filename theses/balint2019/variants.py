@@ -1,4 +1,4 @@
-"""Tables 6.1 to 6.3: four marches, two directions and four ε in three scenes."""
+"""Reproduces Tables 6.1 to 6.3: times of four marches, in two directions, with four ε."""
 
 from collections import Counter
 from functools import partial
@@ -13,26 +13,26 @@ from brdfkit.theses.balint2019.march_times import (
     LINEAR,
     RADIUS,
     TIMES,
-    error_table,
-    measure,
-    printed_times,
-    settings,
-    times_table,
+    list_settings,
+    make_error_table,
+    make_times_table,
+    measure_marches,
+    read_printed_times,
 )
-from brdfkit.theses.balint2019.measuring import seconds_in_turns
+from brdfkit.theses.balint2019.measuring import measure_in_turns
 from brdfkit.theses.balint2019.scenes import MARCHES
 from brdfkit.theses.balint2019.view import View
 
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.distance_fields.shadows.marches import compute_convex_shadow, compute_linear_shadow
-from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.claims import Claim, to_verdict
 from brdfkit.theses.page import Section
 
 SECONDS = 60
 SIZE = 160
 SCENES = {"table_6_1": scenes.simple, "table_6_2": scenes.complicated, "table_6_3": scenes.fractal}
 FRACTAL = "table_6_3"
-PRACTICAL = 30  # the largest of use, says the thesis
+PRACTICAL = 30  # the largest 1 / ε that the thesis calls useful
 TEXT = f"""Pictures of {SIZE} × {SIZE} pixels, a light of radius {RADIUS:g}, and times of the
 shadows alone, the least of {TIMES}. The printed ones are times of frames less that of a frame
 without shadows. Both are told over the time of `linear` in direction A at ε = 1/10, in each scene.
@@ -43,45 +43,50 @@ every convex object, also within objects. A Mandelbulb is not convex: there it m
 
 @in_turn
 def run(sources, report):
-    """The tables, and the claims on them."""
+    """Check the claims on the times of four marches; return their section of the page."""
     ours, errors, tables = {}, {}, []
-    printed = {name: printed_times(name) for name in SCENES}
+    printed = {name: read_printed_times(name) for name in SCENES}
     for done, (name, scene) in enumerate(SCENES.items()):
         view = View(scene(), SIZE)
-        times, evaluations, errors[name] = measure(view)
+        times, evaluations, errors[name] = measure_marches(view)
         ours[name] = times / times[0, LINEAR]
-        tables.append(times_table(name, ours[name], printed[name], evaluations))
+        tables.append(make_times_table(name, ours[name], printed[name], evaluations))
         report(done + 1, len(SCENES) + 1)
-    tables.append(error_table(errors))
+    tables.append(make_error_table(errors))
     claims = [
-        fastest_claim(ours, printed),
-        base_claim(ours, printed),
-        slowest_claim(ours, printed),
-        convex_claim(ours, printed),
-        direction_claim(ours, printed),
-        horizon_claim(),
-        quality_claim(errors),
+        claim_fastest(ours, printed),
+        claim_base(ours, printed),
+        claim_slowest(ours, printed),
+        claim_convex(ours, printed),
+        claim_direction(ours, printed),
+        claim_horizon(),
+        claim_quality(errors),
     ]
     return Section("Marches, directions and ε", TEXT, claims, tables)
 
 
-def counted(test, tables):
-    """In how many rows of some tables a test of (1 / ε, times by march) holds, and of how many."""
-    rows = [(n, row) for times in tables for (n, _), row in zip(settings(), times, strict=True)]
+def count_rows(test, tables):
+    """Return in how many rows of tables of times a test holds, and the number of rows.
+
+    The test takes 1 / ε, the inverse of the error bound, and the row's times by march.
+    """
+    rows = [
+        (n, row) for times in tables for (n, _), row in zip(list_settings(), times, strict=True)
+    ]
     return sum(bool(test(n, row)) for n, row in rows), len(rows)
 
 
-def by_count(says, where, test, ours, printed, why=""):
-    """The claim that a test holds in all rows, counted in the printed tables, too."""
-    (here, many), (there, _) = (counted(test, tables.values()) for tables in (ours, printed))
+def claim_in_all_rows(says, where, test, ours, printed, why=""):
+    """Claim that a test holds in all rows, and count those of the printed tables, too."""
+    (here, many), (there, _) = (count_rows(test, tables.values()) for tables in (ours, printed))
     return Claim(
-        says, where, f"{there} of {many} rows", f"{here} of {many}", verdict(here == many), why
+        says, where, f"{there} of {many} rows", f"{here} of {many}", to_verdict(here == many), why
     )
 
 
-def base_claim(ours, printed):
-    """`linear` against `base`."""
-    return by_count(
+def claim_base(ours, printed):
+    """Claim that the march `linear` is faster than `base`."""
+    return claim_in_all_rows(
         "`linear` is faster than `base`.",
         "7",
         lambda n, row: row[LINEAR] < row[BASE],
@@ -91,17 +96,17 @@ def base_claim(ours, printed):
     )
 
 
-def slowest_claim(ours, printed):
-    """Which one is the slowest."""
-    return by_count(
+def claim_slowest(ours, printed):
+    """Claim that the march `base` is the slowest."""
+    return claim_in_all_rows(
         "`base` is the slowest.", "7", lambda n, row: row[BASE] == max(row), ours, printed
     )
 
 
-def convex_claim(ours, printed):
-    """`convex` against `linear`, where objects are convex."""
+def claim_convex(ours, printed):
+    """Claim that the march `convex` is faster than `linear`, where objects are convex."""
     kept = [name for name in ours if name != FRACTAL]
-    return by_count(
+    return claim_in_all_rows(
         "Where objects are convex, `convex` is faster than `linear`.",
         "7",
         lambda n, row: row[CONVEX] < row[LINEAR],
@@ -112,8 +117,8 @@ def convex_claim(ours, printed):
     )
 
 
-def fastest_claim(ours, printed):
-    """The fastest march and direction of each scene and ε."""
+def claim_fastest(ours, printed):
+    """Claim which march is the fastest in each scene, with each ε."""
     names, same, found = list(MARCHES), 0, []
     for table in ours:
         for i in range(len(INVERSES)):
@@ -128,15 +133,15 @@ def fastest_claim(ours, printed):
         "Tables 6.1-6.3",
         "linear B 7, convex B 3, linear A 2",
         f"{ours_in_words}; the same march in {same} of {len(found)}",
-        verdict(same == len(found)),
+        to_verdict(same == len(found)),
     )
 
 
-def direction_claim(ours, printed):
-    """B against A, for `linear`."""
+def claim_direction(ours, printed):
+    """Claim that the march `linear` is faster from the light (B) than from the surface (A)."""
     last = sum(n <= PRACTICAL for n in INVERSES)
 
-    def faster(tables):
+    def count_faster(tables):
         rows = [times[: 2 * last, LINEAR].reshape(last, 2) for times in tables.values()]
         return int(sum((r[:, 1] < r[:, 0]).sum() for r in rows))
 
@@ -144,34 +149,34 @@ def direction_claim(ours, printed):
     return Claim(
         f"`linear` is faster from the light than from the surface, from ε = 1/{PRACTICAL} on.",
         "Tables 6.1-6.3",
-        f"{faster(printed)} of {many}",
-        f"{faster(ours)} of {many}",
-        verdict(faster(ours) == many),
+        f"{count_faster(printed)} of {many}",
+        f"{count_faster(ours)} of {many}",
+        to_verdict(count_faster(ours) == many),
     )
 
 
-def horizon_claim():
-    """S1 with the horizon in view."""
+def claim_horizon():
+    """Claim that the march `convex` is up to three times as fast as `linear` near the horizon."""
     view = View(scenes.horizon(), SIZE)
-    field, cone = view.scene.field, view.cones(RADIUS)
+    field, cone = view.scene.field, view.make_cones(RADIUS)
     methods = {
         m: partial(m, field, cone, 1 / 30, "B")
         for m in (compute_linear_shadow, compute_convex_shadow)
     }
-    seconds = seconds_in_turns(methods, TIMES)
+    seconds = measure_in_turns(methods, TIMES)
     ours = seconds[compute_linear_shadow] / seconds[compute_convex_shadow]
     return Claim(
         "With the horizon in view `convex` is up to 3 times as fast as `linear`.",
         "6.2",
         f"{4.55 / 1.53:.2f} times, of whole frames",
         f"{ours:.1f} times, of shadows",
-        verdict(ours >= 3),
+        to_verdict(ours >= 3),
         "ε = 1/30; the direction is not printed, here it is B.",
     )
 
 
-def quality_claim(errors):
-    """How good the marches are."""
+def claim_quality(errors):
+    """Claim that the march `linear` is as exact as `base`, and `discrete` much less so."""
     last = 2 * sum(n <= PRACTICAL for n in INVERSES)
     some = np.concatenate([e[:last] for name, e in errors.items() if name != FRACTAL])
     same, worse = some[:, LINEAR] / some[:, BASE], some[:, DISCRETE] / some[:, LINEAR]
@@ -181,7 +186,7 @@ def quality_claim(errors):
         "by eye",
         f"errors of linear are {same.min():.2f} to {same.max():.2f} times those of base, errors of "
         f"discrete {worse.min():.1f} to {worse.max():.1f} times those of linear",
-        verdict(same.max() <= 1.1 and worse.min() >= 2),
+        to_verdict(same.max() <= 1.1 and worse.min() >= 2),
         "Against τ(r_min), where distances are exact; confirmed up to 1.1 and from 2 times on. The "
         "distance of the Mandelbulb is an estimate that may jump: there a smaller ε brings no "
         "march nearer.",

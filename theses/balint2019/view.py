@@ -1,4 +1,7 @@
-"""What a camera sees of a scene: points with empty balls about them, from which shadows begin."""
+"""Finds the points of a scene that a camera sees, and cones from them to a light.
+
+Around each point is an empty ball, which touches the nearest object.
+"""
 
 from functools import cached_property
 
@@ -10,11 +13,12 @@ from brdfkit.distance_fields import cone_trace, normal, pixel_tangent
 from brdfkit.distance_fields.shadows import make_light_cone
 
 
-def ground(size, half, light, radius, ball):
-    """The `LightCone`s (size², in rows) of a square about the origin of the plane z = 0.
+def make_ground_cones(size, half, light, radius, ball):
+    """Return the light cones (size², in rows) of a square about the origin of the plane z = 0.
 
-    half : half of the square's edge; light : the centre of a light of this `radius`; ball : the
-    radius of the empty balls about the points, which they touch the plane with.
+    half : half of the square's edge.
+    light : the centre of a light of this `radius`.
+    ball : the radius of the empty balls about the points, which touch the plane.
     """
     i = dr.arange(UInt, size * size)
     x = (Float(i % size) + 0.5) / size * 2 * half - half
@@ -25,18 +29,18 @@ def ground(size, half, light, radius, ball):
 
 
 FAR, PRECISION = 100.0, 1e-4
-STEP = 1e-3  # of the differences of normals
-SKY, AMBIENT = 0.8, 0.15  # of pictures
+STEP = 1e-3  # of the finite differences that give normals
+SKY, AMBIENT = 0.8, 0.15  # the grey of pictures without an object, and of unlit surfaces
 
 
 class View:
-    """The points of a `Scene` that a square picture of `size` pixels by side sees."""
+    """The points of a `Scene` that a square picture of `size` × `size` pixels shows."""
 
     def __init__(self, scene, size):
         self.scene, self.size = scene, size
         eye, d, tangent = (
             Array3f(scene.eye),
-            directions(scene, size),
+            compute_ray_directions(scene, size),
             pixel_tangent(scene.fov, size),
         )
         field = scene.field
@@ -48,8 +52,8 @@ class View:
         self.ball = dr.gather(Float, hit.distance, lanes)
         dr.eval(self.points, self.ball)
 
-    def cones(self, radius):
-        """The cones from all points to a light of this radius."""
+    def make_cones(self, radius):
+        """Return the cones from all points to a light of this radius."""
         cones = make_light_cone(self.points, Array3f(self.scene.light), radius, self.ball)
         dr.eval(cones)
         return cones
@@ -61,19 +65,19 @@ class View:
         l = dr.normalize(Array3f(self.scene.light) - self.points)
         return np.array(dr.maximum(dr.dot(n, l), 0))
 
-    def shaded(self, visible):
-        """A picture (size, size) of grey surfaces, by the shares (n,) of the light they see."""
-        return self.image(AMBIENT + (1 - AMBIENT) * self.facing * visible, SKY)
+    def shade(self, visible):
+        """Return a picture (size, size) of grey surfaces, by shares (n,) of the light."""
+        return self.make_image(AMBIENT + (1 - AMBIENT) * self.facing * visible, SKY)
 
-    def image(self, values, other=np.nan):
-        """Values of the points as an image (size, size), `other` where there is none."""
+    def make_image(self, values, other=np.nan):
+        """Return values of the points as an image (size, size), `other` where there is no point."""
         found = np.full(self.seen.shape, other, float)
         found[self.seen] = values
         return found.reshape(self.size, self.size)
 
 
-def directions(scene, size):
-    """The directions of the rays through the middles of pixels, in rows from above."""
+def compute_ray_directions(scene, size):
+    """Return the directions of the rays through the middles of pixels, in rows from above."""
     i = dr.arange(UInt, size * size)
     x = (Float(i % size) + 0.5) / size * 2 - 1
     y = 1 - (Float(i // size) + 0.5) / size * 2

@@ -1,4 +1,4 @@
-"""Ergun (2008): real-time systems of hard shadows, compared."""
+"""Ergun (2008): a comparison of real-time methods for hard shadows."""
 
 TITLE = "Ergun 2008, reproduced"
 INTRODUCTION = """S. Ergun, *Comparison of real-time shadow systems in graphics applications* (in
@@ -15,7 +15,7 @@ between both lights, small where shadows are steady.
 A claim is *confirmed* where our figures agree, *not confirmed* where they do not, *not stated*
 where the thesis gives no figure to compare ours to."""
 
-NEEDS: dict[str, str] = {}  # all scenes are code
+NEEDS: dict[str, str] = {}  # no measured files, as all scenes are made by code
 
 PARTS = (
     "check_values",

@@ -1,14 +1,14 @@
-"""Section 5: the combination that the thesis recommends, what it costs and what it gives."""
+"""Measures the combination of methods that the thesis recommends in section 5: errors and times."""
 
-from brdfkit.theses.ergun2008.views import RESOLUTION, View, measured
+from brdfkit.theses.ergun2008.views import RESOLUTION, View, measure_all
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import UNSTATED, Claim, measure_least_seconds, verdict
+from brdfkit.theses.claims import UNSTATED, Claim, measure_least_seconds, to_verdict
 from brdfkit.theses.page import Picture, Section, Table
 
 SECONDS = 60
-SCENES = ()  # by default all
+SCENES = ()  # names of the scenes to measure; by default all
 LISPSM, PSSM = "light_space_perspective", "parallel_split"
 TECHNIQUES = {
     "uniform + depth": {"projection": "uniform", "filter": "depth"},
@@ -39,11 +39,11 @@ map of as many texels, 1024 × 1024."""
 
 @in_turn
 def run(sources, report):
-    """The errors and times, and the claims on them."""
+    """Check the claims on the recommended combination of methods; return their section."""
     use_variant()
-    found = measured(figures, SCENES, report)
+    found = measure_all(measure_techniques, SCENES, report)
     means = {scene: cells.mean(axis=(0, 1)) for scene, cells in found.items()}
-    claims = [gain_claim(means), split_claim(means), size_claim(means), best_claim(means)]
+    claims = [claim_gain(means), claim_split(means), claim_size(means), claim_best(means)]
     rows = [
         (
             scene,
@@ -57,24 +57,27 @@ def run(sources, report):
     ]
     heads = "scene", "technique", "wrong light [%]", "PSNR [dB]", "time [ms]"
     caption = "`street`, view V1: exact shadows, and those by three of the techniques."
-    pictures = [Picture("combination", draw(), caption)]
+    pictures = [Picture("combination", draw_street(), caption)]
     return Section("What is recommended", TEXT, claims, [Table(heads, rows)], pictures)
 
 
-def figures(view):
-    """(wrong share, PSNR, seconds) of each technique."""
+def measure_techniques(view):
+    """Return the mean error, the PSNR [dB] and the CPU seconds of each technique, in one view."""
     found = []
     for technique in TECHNIQUES.values():
-        lit = view.lit(view.shadow(**technique))
+        lit = view.compute_lit(view.make_shadow(**technique))
         seconds = measure_least_seconds(
-            lambda how: view.lit(view.shadow(**how)), technique, times=1
+            lambda how: view.compute_lit(view.make_shadow(**how)), technique, times=1
         )
-        found.append((view.wrong(lit), view.psnr(lit), seconds))
+        found.append((view.measure_error(lit), view.compute_psnr(lit), seconds))
     return found
 
 
-def gains(means, better, worse):
-    """dB, and times the time, in each scene."""
+def compare_gains(means, better, worse):
+    """Return the gain of one technique over another as text, and whether it gains in each scene.
+
+    The gain is in dB, with the ratio of times; `better` and `worse` are indices of techniques.
+    """
     return (
         ", ".join(
             f"{scene} {values[better, 1] - values[worse, 1]:+.1f} dB at "
@@ -85,31 +88,31 @@ def gains(means, better, worse):
     )
 
 
-def gain_claim(means):
-    ours, holds = gains(means, RECOMMENDED, BASE)
+def claim_gain(means):
+    ours, holds = compare_gains(means, RECOMMENDED, BASE)
     return Claim(
         "LiSPSM + VSM is better than uniform depth maps.",
         "5",
         "the recommendation",
         ours,
-        verdict(holds),
+        to_verdict(holds),
     )
 
 
-def split_claim(means):
-    ours, holds = gains(means, SPLIT, RECOMMENDED)
+def claim_split(means):
+    ours, holds = compare_gains(means, SPLIT, RECOMMENDED)
     return Claim(
         "PSSM improves it.",
         "2.2.3, 5",
         "the statement",
         ours,
-        verdict(holds),
+        to_verdict(holds),
         "Its four maps have four times the texels.",
     )
 
 
-def size_claim(means):
-    ours, holds = gains(means, SPLIT, LARGE)
+def claim_size(means):
+    ours, holds = compare_gains(means, SPLIT, LARGE)
     return Claim(
         "PSSM is better than one map of as many texels.",
         "2.2.3",
@@ -120,7 +123,7 @@ def size_claim(means):
     )
 
 
-def best_claim(means):
+def claim_best(means):
     names = list(TECHNIQUES)
     best = {scene: names[int(values[:, 1].argmax())] for scene, values in means.items()}
     return Claim(
@@ -128,13 +131,13 @@ def best_claim(means):
         "5",
         "the recommendation",
         ", ".join(f"{scene}: {name}" for scene, name in best.items()),
-        verdict(set(best.values()) == {names[SPLIT]}),
+        to_verdict(set(best.values()) == {names[SPLIT]}),
         "The best of this table by PSNR. With hard shadows for the truth the filter is what costs; "
         "see Table 4.",
     )
 
 
-def draw():
-    """The street, by three techniques."""
+def draw_street():
+    """Draw the scene `street` by three techniques."""
     chosen = "uniform + depth", "LiSPSM + VSM", "LiSPSM + VSM + PSSM"
-    return View.of("street", "V1", 1).draw({name: TECHNIQUES[name] for name in chosen})
+    return View.load("street", "V1", 1).draw_techniques({name: TECHNIQUES[name] for name in chosen})

@@ -1,4 +1,4 @@
-"""Section 4.1: what volumes and maps cost, by formulas there, and measured."""
+"""Measures the costs of shadow volumes and shadow maps, which section 4.1 gives by formulas."""
 
 import numpy as np
 from brdfkit.theses.ergun2008.views import RESOLUTION, SIZE, View
@@ -10,11 +10,11 @@ from brdfkit.shadows.hybrid import make_hybrid_shadow
 from brdfkit.shadows.maps.scenes import SCENES
 from brdfkit.shadows.volumes.light_volumes import LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
-from brdfkit.theses.claims import UNSTATED, Claim, measure_least_seconds, verdict
+from brdfkit.theses.claims import UNSTATED, Claim, measure_least_seconds, to_verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 15
-COUNTS = 16, 64, 256, 1024  # of boxes
+COUNTS = 16, 64, 256, 1024  # numbers of boxes in the scene
 FIGURES = "prepare", "shade", "memory"
 TEXT = f"""Boxes on the ground of `objects_on_a_ground`, view V1, as many as told, each of E = 18
 edges: volumes by depth-fail, and a focused depth map of {RESOLUTION} × {RESOLUTION} texels of 4
@@ -26,16 +26,16 @@ light, one a texel, which find their triangle in a tree: its time hardly depends
 
 @in_turn
 def run(sources, report):
-    """The times, and the claims on them."""
+    """Check the claims on the costs of shadow volumes and shadow maps, and return their section."""
     use_variant()
     found = {"volumes": [], "maps": []}
     for done, count in enumerate(COUNTS):
-        view = View.by(boxes(count))
-        found["volumes"].append(cost_of_volumes(view))
-        found["maps"].append(cost_of_maps(view))
+        view = View.from_dictionary(make_boxes(count))
+        found["volumes"].append(measure_volumes(view))
+        found["maps"].append(measure_maps(view))
         report(done + 1, len(COUNTS) + 1)
     found = {way: np.array(rows) for way, rows in found.items()}
-    claims = [memory_claim(found), time_claim(found), slower_claim(found), hybrid_claim()]
+    claims = [claim_memory(found), claim_time(found), claim_slower(found), claim_hybrid()]
     rows = [
         (
             str(count),
@@ -50,8 +50,8 @@ def run(sources, report):
     return Section("Costs", TEXT, claims, [Table(heads, rows)])
 
 
-def boxes(count):
-    """The dictionary of a ground with boxes."""
+def make_boxes(count):
+    """Return the dictionary of a ground with boxes."""
     import mitsuba as mi
 
     random = np.random.default_rng(4)
@@ -61,13 +61,13 @@ def boxes(count):
     for i, (x, y) in enumerate(random.uniform(-5, 5, (count, 2)).tolist()):
         place = mi.ScalarTransform4f().translate([x, y, 2 * half])
         turned = place.rotate([0, 0, 1], random.uniform(0, 90)).scale([half, half, 2 * half])
-        # of one material, so that Mitsuba makes one mesh of them
+        # Boxes have one material, so that Mitsuba makes one mesh of them
         found[f"box {i}"] = {"type": "cube", "to_world": turned, "bsdf": {"type": "diffuse"}}
     return found
 
 
-def cost_of_volumes(view):
-    """Seconds to prepare and to shade, and bytes."""
+def measure_volumes(view):
+    """Return the CPU seconds to prepare shadow volumes and to shade by them, and their bytes."""
     sensor, si = view.scene.sensors()[0], view.seen.si
     meshes = [Mesh.from_shape(shape) for shape in view.scene.shapes()]
 
@@ -82,47 +82,47 @@ def cost_of_volumes(view):
     return measure_least_seconds(prepare), shade, memory
 
 
-def cost_of_maps(view):
-    """The same of a shadow map."""
-    shadow = view.shadow()
-    shade = measure_least_seconds(lambda: view.lit(shadow))
-    # a map is only made when it is looked up
-    both = measure_least_seconds(lambda: view.lit(view.shadow()))
+def measure_maps(view):
+    """Return the CPU seconds to make a shadow map and to shade by it, and its bytes."""
+    shadow = view.make_shadow()
+    shade = measure_least_seconds(lambda: view.compute_lit(shadow))
+    # A map is only made when it is looked up, so its time is a difference
+    both = measure_least_seconds(lambda: view.compute_lit(view.make_shadow()))
     return max(both - shade, 0.0), shade, 4 * RESOLUTION**2
 
 
-def growth(rows, figure):
-    """By which power of the count a figure grows."""
+def fit_growth(rows, figure):
+    """Return the power of the count of boxes with which a figure grows."""
     return float(np.polyfit(np.log(COUNTS), np.log(rows[:, figure]), 1)[0])
 
 
-def memory_claim(found):
-    power = growth(found["volumes"], 2)
+def claim_memory(found):
+    power = fit_growth(found["volumes"], 2)
     most = found["volumes"][-1, 2] / found["maps"][-1, 2]
     return Claim(
         "The memory of volumes grows with the scene, that of maps does not.",
         "4.1, 5",
         "O(E n) and O(r s t)",
         f"as n to the power {power:.2f}, up to {most:.1f} times the map's; maps 0",
-        verdict(power > 0.5),
+        to_verdict(power > 0.5),
         "Below 1: a small box has its faces in few tiles of the picture.",
     )
 
 
-def time_claim(found):
-    powers = [growth(found["volumes"], 1), growth(found["maps"], 1)]
+def claim_time(found):
+    powers = [fit_growth(found["volumes"], 1), fit_growth(found["maps"], 1)]
     return Claim(
         "The time to shade by volumes grows with the scene, a look-up does not.",
         "4.1",
         "O(E n k j) and O(1) a pixel",
         f"as n to the power {powers[0]:.2f} and {powers[1]:.2f}",
-        verdict(powers[0] > 0.3 and abs(powers[1]) < 0.2),
+        to_verdict(powers[0] > 0.3 and abs(powers[1]) < 0.2),
         "The printed worst case has each face over all of the picture; boxes that become smaller "
         "as they become more cover as much in all. Confirmed above 0.3 and below 0.2.",
     )
 
 
-def slower_claim(found):
+def claim_slower(found):
     times = [rows[:, 0] + rows[:, 1] for rows in found.values()]
     ratios = times[0] / times[1]
     return Claim(
@@ -131,13 +131,13 @@ def slower_claim(found):
         "no figure",
         f"{ratios[0]:.1f} times the time of a map with {COUNTS[0]} boxes, {ratios[-1]:.1f} times "
         f"with {COUNTS[-1]:,}",
-        verdict(ratios[-1] > 2 and ratios[-1] > ratios[0]),
+        to_verdict(ratios[-1] > 2 and ratios[-1] > ratios[0]),
         "To prepare and shade one picture; confirmed from 2 times.",
     )
 
 
-def hybrid_claim():
-    view = View.by(boxes(COUNTS[1]))
+def claim_hybrid():
+    view = View.from_dictionary(make_boxes(COUNTS[1]))
     parts = view.scene, view.scene.sensors()[0], view.seen.emitter
     si, jump = view.seen.si, 8.0
 
@@ -145,9 +145,9 @@ def hybrid_claim():
         return np.array(make_hybrid_shadow(*parts, RESOLUTION, jump).visibility(si.p, si.n))
 
     def by_map():
-        return view.lit(view.shadow())
+        return view.compute_lit(view.make_shadow())
 
-    wrong = [view.wrong(way()) for way in (by_hybrid, by_map)]
+    wrong = [view.measure_error(way()) for way in (by_hybrid, by_map)]
     times = [measure_least_seconds(way, times=1) for way in (by_hybrid, by_map)]
     return Claim(
         "Hybrids are weak by speed and by quality.",

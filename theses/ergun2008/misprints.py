@@ -1,15 +1,15 @@
-"""Formulas of the thesis that cannot be meant as they are printed, by computing them."""
+"""Computes formulas of the thesis as printed and as they must be meant."""
 
 import numpy as np
-from brdfkit.theses.ergun2008.printed import mean_and_relative, printed
-from brdfkit.theses.ergun2008.trapezoid import CORNERS, SQUARE, trapezoid_to_square
+from brdfkit.theses.ergun2008.printed import average_cells, read_printed_table
+from brdfkit.theses.ergun2008.trapezoid import CORNERS, SQUARE, map_trapezoid_to_square
 
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import make_axes, make_rigid_matrix, project_points
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.resolution import area_magnification
-from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.claims import Claim, to_verdict
 from brdfkit.theses.page import Section
 
 SECONDS = 1
@@ -18,26 +18,33 @@ where the printed one fails. brdfkit computes what is meant."""
 
 
 def run(sources, report):
-    """The formulas, a claim each."""
+    """Check the claims on misprinted formulas; return their section of the page."""
     checks = (
-        bound, shear, centre, fifth_point, depth_matrix, footprint_area, rotation, means,
-    )  # fmt: skip
+        claim_bound,
+        claim_shear,
+        claim_centre,
+        claim_fifth_point,
+        claim_depth_matrix,
+        claim_footprint_area,
+        claim_rotation,
+        claim_means,
+    )
     return Section("Misprints", TEXT, [check() for check in checks])
 
 
-def misprint(says, where, wrong, right, why):
-    """The claim on a formula that is off by `wrong` as printed, and by `right` as it is meant."""
+def claim_misprint(says, where, wrong, right, why):
+    """Claim on a formula that is off by `wrong` as printed, and by `right` as it is meant."""
     ours = f"off by {wrong:.3g}; as it is meant {right:.0e}"
-    return Claim(says, where, "the formula", ours, verdict(wrong < 1e-4), why)
+    return Claim(says, where, "the formula", ours, to_verdict(wrong < 1e-4), why)
 
 
-def bound():
-    """E4."""
+def claim_bound():
+    """Claim on the bound p_max of variance shadow maps, whose last bracket is misprinted."""
     d_1, d_2, p = 1.0, 2.0, np.linspace(0.1, 0.9, 9)
     variance = (p - p**2) * (d_2 - d_1) ** 2
     gaps = d_2 - p * d_2**2 - (1 - p) * d_1**2, d_2 - p * d_2 - (1 - p) * d_1
     wrong, right = (np.abs(variance / (variance + gap**2) - p).max() for gap in gaps)
-    return misprint(
+    return claim_misprint(
         "p_max of an occluder at 1 and a receiver at 2 is the lit share p.",
         "2.2.1.4",
         wrong,
@@ -46,47 +53,48 @@ def bound():
     )
 
 
-def missed(**as_printed):
-    """How far the corners of the trapezoid come from those of the square."""
-    corners = np.column_stack([CORNERS, np.zeros(4)])
-    found = project_points(trapezoid_to_square(**as_printed), corners)
+def measure_missed_corners(**as_printed):
+    """Return the largest distance of the trapezoid's mapped corners from those of the square."""
+    found = project_points(
+        map_trapezoid_to_square(**as_printed), np.column_stack([CORNERS, np.zeros(4)])
+    )
     return np.abs(found[:, :2] - SQUARE).max()
 
 
-def shear():
-    """E5."""
-    return misprint(
+def claim_shear():
+    """Claim that a trapezoid's shear H, a step of mapping it to a square, has a wrong entry."""
+    return claim_misprint(
         "H, the shear of a trapezoid, has the entry -x_u / 2.",
         "2.2.2.4, step 4",
-        missed(shear_as_printed=True),
-        missed(),
+        measure_missed_corners(shear_as_printed=True),
+        measure_missed_corners(),
         "It must be -x_u / y_u, so that the sides are symmetric about y.",
     )
 
 
-def centre():
-    """E6."""
-    return misprint(
+def claim_centre():
+    """Claim that T_3, a step of mapping a trapezoid to a square, divides sums wrongly."""
+    return claim_misprint(
         "T_3 moves the middle of a rectangle by -(y_u + y_v) / (w_u + w_v).",
         "2.2.2.4, step 7",
-        missed(centre_as_printed=True),
-        missed(),
+        measure_missed_corners(centre_as_printed=True),
+        measure_missed_corners(),
         "The middle of two points is half the sum of their quotients, not the quotient of sums.",
     )
 
 
-def fifth_point():
-    """E9: the fourth point of the plane, lifted to the light or to the eye."""
+def claim_fifth_point():
+    """Claim on the fourth point of the plane, which is lifted to the light or to the eye."""
     light, eye = np.array([-1.0, -0.5, 3]) / np.sqrt(10.25), np.array([0.0, -6, 8])
     corners = np.array([(-3.0, -3, 0), (3, -3, 0), (6, 6, 0), (-6, 6, 0)])
     off = {
         way: np.abs(
-            project_points(by_five_points(light, corners, corners[3] + lift), corners)[3, :2]
+            project_points(solve_five_points(light, corners, corners[3] + lift), corners)[3, :2]
             - SQUARE[3]
         ).max()
         for way, lift in {"light": 0.1 * light, "eye": 0.1 * (eye - corners[3])}.items()
     }
-    return misprint(
+    return claim_misprint(
         "POSM moves one of its four points towards the point of view.",
         "2.2.2.5",
         off["eye"],
@@ -95,9 +103,12 @@ def fifth_point():
     )
 
 
-def by_five_points(light, corners, lifted):
-    """The matrix (4, 4) that takes a light's direction (3,) to infinity, three of four `corners` of
-    a plane, and the fourth `lifted`, to the corners of the map."""
+def solve_five_points(light, corners, lifted):
+    """Return the matrix (4, 4) of a plane-optimal map, by five points and their images.
+
+    It takes a light's direction (3,) to infinity, and three of four `corners` of a plane and the
+    fourth `lifted` one to the corners of the map.
+    """
     rows = [np.kron(row, np.append(light, 0)) for row in np.eye(4)[[0, 1, 3]]]
     targets = np.column_stack([SQUARE, [1, 1, 1, -1]])
     for point, target in zip([*corners[:3], lifted], targets, strict=True):
@@ -107,14 +118,14 @@ def by_five_points(light, corners, lifted):
     return vectors[-1].reshape(4, 4)
 
 
-def depth_matrix():
-    """E11."""
+def claim_depth_matrix():
+    """Claim on the matrix of depths, which is written for rows and used with columns."""
     n, f = 1.0, 100.0
     a, c, z = (f + n) / (f - n), -2 * f * n / (f - n), np.array([n, f])
     as_printed = np.array([[a, 1], [c, 0]])
     found = [m @ np.stack([z, np.ones(2)]) for m in (as_printed, as_printed.T)]
     wrong, right = (np.abs(top / bottom - [-1, 1]).max() for top, bottom in found)
-    return misprint(
+    return claim_misprint(
         "The matrix (a b; c d) times the column (z, 1) gives near -1 and far 1.",
         "3.1.3",
         wrong,
@@ -123,8 +134,8 @@ def depth_matrix():
     )
 
 
-def footprint_area():
-    """E12: how the footprint of a texel grows with the distance of the light."""
+def claim_footprint_area():
+    """Claim on the growth of a texel's footprint with the distance of the light."""
     ground, areas = ((0.0, 0, 0), (0.0, 0, 1)), []
     for place in np.array([(0, 3, 2), (0, 6, 4)], float):
         back = place / np.linalg.norm(place)
@@ -137,14 +148,14 @@ def footprint_area():
         "3.1.1",
         "2 times at twice the distance",
         f"{growth:.4f} times",
-        verdict(np.isclose(growth, 2)),
+        to_verdict(np.isclose(growth, 2)),
         "The formula is that of a length, along the slope; the area is d_s² r_s² / cosα. So Q2, by "
         "4.2.3 a ratio of areas, is not the ratio that 3.1.1 prints.",
     )
 
 
-def rotation():
-    """E18."""
+def claim_rotation():
+    """Claim on a rotated point, whose last digit was cut."""
     turn = np.radians(30)
     y = -5 * np.sin(turn) + 8 * np.cos(turn)
     return Claim(
@@ -152,19 +163,19 @@ def rotation():
         "Appendix 2",
         "(8.3301, 4.4281)",
         f"({5 * np.cos(turn) + 8 * np.sin(turn):.4f}, {y:.4f})",
-        verdict(f"{y:.4f}" == "4.4281"),
+        to_verdict(f"{y:.4f}" == "4.4281"),
         "The last digit was cut.",
     )
 
 
-def means():
-    """Tables 1 and 4 from their cells."""
-    tables = {"table_1": printed("table_1"), "table_4": printed("table_4")}
+def claim_means():
+    """Claim that Tables 1 and 4 are the means of their cells."""
+    tables = {"table_1": read_printed_table("table_1"), "table_4": read_printed_table("table_4")}
     expected = {("texture_use", k): v[:2] for k, v in tables["table_1"].items()}
-    expected |= {("aliasing", k): tables["table_1"][k][2:] for k in printed("aliasing")}
+    expected |= {("aliasing", k): tables["table_1"][k][2:] for k in read_printed_table("aliasing")}
     expected |= {("psnr", k): v for k, v in tables["table_4"].items()}
     off = [
-        np.abs(mean_and_relative(printed(table)[name]) - figures)
+        np.abs(average_cells(read_printed_table(table)[name]) - figures)
         / (1e-4 if table != "aliasing" else 1e-2)
         for (table, name), figures in expected.items()
     ]
@@ -173,5 +184,5 @@ def means():
         "5",
         f"{2 * len(expected)} figures whose cells are in the text",
         f"off by {np.max(off):.2f} of their last digits at most",
-        verdict(np.max(off) < 1),
+        to_verdict(np.max(off) < 1),
     )

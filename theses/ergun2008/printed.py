@@ -1,4 +1,4 @@
-"""The printed figures, and what the thesis makes of them: means, and relative scores."""
+"""Reads the thesis's printed figures, and computes means and relative scores as the thesis does."""
 
 import tomllib
 from functools import cache
@@ -8,17 +8,19 @@ import numpy as np
 
 
 @cache
-def printed(table):
-    """A table of `printed.toml`: name → its figures, an array."""
+def read_printed_table(table):
+    """Return a table of `printed.toml` as an array of figures for each name."""
     text = Path(__file__).with_name("printed.toml").read_text(encoding="utf-8")
     return {name: np.array(figures) for name, figures in tomllib.loads(text)[table].items()}
 
 
-def mean_and_relative(cells):
-    """Of cells (..., view, light): their mean, and the mean over views of the difference between
-    both lights [Ergun 2008, 3.2].
+def average_cells(cells):
+    """Return the mean of cells (..., view, light), and their relative score.
 
-    >>> mean_and_relative(np.array([[1.0, 2.0], [4.0, 1.0]]))
+    The relative score is the mean over views of the difference between both lights
+    [Ergun 2008, 3.2].
+
+    >>> average_cells(np.array([[1.0, 2.0], [4.0, 1.0]]))
     (2.0, 2.0)
     """
     return float(cells.mean()), float(np.abs(np.diff(cells, axis=-1)).mean())

@@ -1,7 +1,7 @@
-"""PSM in the simple way that the thesis describes: a light's view that is opened to the whole cube.
+"""Makes perspective shadow maps (PSM) in the simple way that the thesis describes.
 
-It is symmetric about its axis, and the camera's near plane is nearer than what is seen
-[Ergun 2008, 2.2.2.2].
+The light's view is opened to the whole unit cube, symmetric about its axis, and the camera's near
+plane is nearer than anything in view [Ergun 2008, 2.2.2.2].
 """
 
 import numpy as np
@@ -12,11 +12,11 @@ from brdfkit.shadows.maps.light_camera import view_matrix
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.resolution import aliasing
 
-NEAR = 0.1  # the camera's near plane over the distance of what is nearest
+NEAR = 0.1  # distance of the camera's near plane, over that of the nearest point in view
 
 
-def simple_perspective(placement):
-    """The `Projection` of a `Placement`."""
+def make_simple_perspective(placement):
+    """Return the `Projection` of a simple perspective shadow map, for a `Placement`."""
     corners, middle = placement.body.corners, placement.body.centroid
     z_n, z_f = placement.depths
     camera = placement.camera.replace_planes(NEAR * z_n, z_f).move_behind(corners).matrix
@@ -28,9 +28,9 @@ def simple_perspective(placement):
     return Projection.from_matrix(square @ matrix, placement.light)
 
 
-def simple_scores(view, resolution):
-    """(The unused share, the aliasing [dB]) of it."""
-    projection, seen = simple_perspective(view.placement).make_opaque(), view.seen
+def score_simple_perspective(view, resolution):
+    """Return the unused share and the aliasing [dB] of a simple perspective shadow map."""
+    projection, seen = make_simple_perspective(view.placement).make_opaque(), view.seen
     camera = Projection.from_matrix(
         view.placement.camera.matrix, view.placement.light
     ).make_opaque()

@@ -1,8 +1,14 @@
-"""Section 2.1: stencil shadow volumes, against shadow rays."""
+"""Compares stencil shadow volumes with shadow rays, section 2.1."""
 
 import numpy as np
 from brdfkit.theses.ergun2008 import by_volumes
-from brdfkit.theses.ergun2008.by_volumes import RAYS, SIZE, ByVolumes, bricks, within_a_shadow
+from brdfkit.theses.ergun2008.by_volumes import (
+    RAYS,
+    SIZE,
+    ByVolumes,
+    make_bricks,
+    place_eye_in_shadow,
+)
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
@@ -12,8 +18,8 @@ from brdfkit.shadows.volumes.casters import CASTERS
 from brdfkit.shadows.volumes.light_volumes import METHODS
 from brdfkit.shadows.volumes.mesh import Mesh
 from brdfkit.shadows.volumes.silhouettes import SILHOUETTES
-from brdfkit.theses.claims import Claim, verdict
-from brdfkit.theses.drawing import figure
+from brdfkit.theses.claims import Claim, to_verdict
+from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section
 
 SECONDS = 30
@@ -27,26 +33,26 @@ of a shadow goes through it, by {RAYS} × {RAYS} more rays. `foliage` is left ou
 
 @in_turn
 def run(sources, report):
-    """The volumes, and the claims on them."""
+    """Check the claims on stencil shadow volumes; return their section of the page."""
     use_variant()
     differ, counted, done = dict.fromkeys(METHODS, 0), 0, 0
     places = [(name, view) for name in NAMES for view in VIEWS]
     for name, view in places:
         seen = ByVolumes(SCENES[name](view, 1, (by_volumes.SIZE, by_volumes.SIZE)))
         for method in METHODS:
-            differ[method] += seen.wrong(method=method)
+            differ[method] += seen.count_wrong(method=method)
         counted += int(seen.facing.sum())
         report(done := done + 1, len(places) + 3)
-    inside = ByVolumes(within_a_shadow())
+    inside = ByVolumes(place_eye_in_shadow())
     report(done + 1, len(places) + 3)
     claims = [
-        exact_claim(differ, counted, len(places)),
-        inside_claim(differ, inside),
-        near_claim(),
-        cap_claim(inside),
-        far_claim(),
-        length_claim(),
-        silhouettes_claim(),
+        claim_exact(differ, counted, len(places)),
+        claim_inside(differ, inside),
+        claim_near(),
+        claim_cap(inside),
+        claim_far(),
+        claim_length(),
+        claim_silhouettes(),
     ]
     caption = (
         "The eye in a shadow: what is lit by depth-pass, depth-fail and rays. Depth-pass misses "
@@ -54,88 +60,92 @@ def run(sources, report):
         "in the same shadow is lit."
     )
     return Section(
-        "Stencil shadow volumes", TEXT, claims, [], [Picture("stencil", draw(inside), caption)]
+        "Stencil shadow volumes",
+        TEXT,
+        claims,
+        [],
+        [Picture("stencil", draw_methods(inside), caption)],
     )
 
 
-def exact_claim(differ, counted, places):
+def claim_exact(differ, counted, places):
     return Claim(
         "Stencil volumes are exact in every pixel, by depth-fail.",
         "2.1, 4.2",
         "taken for the truth",
         f"{differ['depth_fail']} of {counted:,} pixels in {places} pictures differ from rays",
-        verdict(differ["depth_fail"] == 0),
+        to_verdict(differ["depth_fail"] == 0),
     )
 
 
-def inside_claim(differ, inside):
-    shares = [inside.share(method=method) for method in ("depth_pass", "depth_fail")]
+def claim_inside(differ, inside):
+    shares = [inside.measure_wrong_share(method=method) for method in ("depth_pass", "depth_fail")]
     return Claim(
         "Depth-pass is right but where the eye is in a volume; depth-fail is right there, too.",
         "2.1.2, 2.1.9",
         "the statement",
         f"outside {differ['depth_pass']} pixels differ; inside {100 * shares[0]:.1f} % by "
         f"depth-pass, {100 * shares[1]:.1f} % by depth-fail",
-        verdict(differ["depth_pass"] == 0 and shares[0] > 0.1 and shares[1] == 0),
+        to_verdict(differ["depth_pass"] == 0 and shares[0] > 0.1 and shares[1] == 0),
         "So where a camera only looks from above, depth-pass is enough, and not depth-fail, as is "
         "printed in 2.1.10.",
     )
 
 
-def near_claim():
-    cut = ByVolumes(bricks(near_clip=9.0))
-    shares = [cut.share(method=method) for method in ("depth_pass", "depth_fail")]
+def claim_near():
+    cut = ByVolumes(make_bricks(near_clip=9.0))
+    shares = [cut.measure_wrong_share(method=method) for method in ("depth_pass", "depth_fail")]
     return Claim(
         "Depth-pass fails where the near plane cuts a volume.",
         "2.1.7",
         "a picture",
         f"{100 * shares[0]:.1f} % of the pixels; depth-fail {100 * shares[1]:.1f} %",
-        verdict(shares[0] > 0 == shares[1]),
+        to_verdict(shares[0] > 0 == shares[1]),
     )
 
 
-def cap_claim(inside):
-    seen = ByVolumes(bricks(near_clip=9.0)), inside
-    shares = [each.share(method="depth_pass", near_cap=True) for each in seen]
+def claim_cap(inside):
+    seen = ByVolumes(make_bricks(near_clip=9.0)), inside
+    shares = [each.measure_wrong_share(method="depth_pass", near_cap=True) for each in seen]
     return Claim(
         "A cap on the near plane mends depth-pass.",
         "2.1.7",
         "the statement",
         f"{100 * shares[0]:.1f} % of the pixels where the plane cuts a volume, and "
         f"{100 * shares[1]:.1f} % with the eye in one",
-        verdict(shares == [0, 0]),
+        to_verdict(shares == [0, 0]),
         "Without the cracks and holes that are expected of it: no face is clipped or projected; "
         "the light sees the casters through the near plane.",
     )
 
 
-def far_claim():
-    cut = ByVolumes(bricks(far_clip=14.0))
-    shares = [cut.share(far_plane=plane) for plane in ("finite", "infinite")]
+def claim_far():
+    cut = ByVolumes(make_bricks(far_clip=14.0))
+    shares = [cut.measure_wrong_share(far_plane=plane) for plane in ("finite", "infinite")]
     return Claim(
         "Depth-fail fails where the far plane cuts a volume, and a plane at infinity mends it.",
         "2.1.7, 2.1.8",
         "a picture",
         f"{100 * shares[0]:.1f} % of the pixels, and {100 * shares[1]:.1f} %",
-        verdict(shares[0] > 0 == shares[1]),
+        to_verdict(shares[0] > 0 == shares[1]),
     )
 
 
-def length_claim():
-    seen, lengths = ByVolumes(bricks()), (0.5, 2.0, 50.0)
-    shares = [seen.share(length=length) for length in lengths]
+def claim_length():
+    seen, lengths = ByVolumes(make_bricks()), (0.5, 2.0, 50.0)
+    shares = [seen.measure_wrong_share(length=length) for length in lengths]
     ours = (f"{100 * s:.1f} % at {length:g}" for s, length in zip(shares, lengths, strict=True))
     return Claim(
         "Volumes that end too soon lose shadows; a long one is enough.",
         "2.1.1",
         "a picture",
         ", ".join(ours),
-        verdict(shares[0] > shares[1] > shares[2] == 0),
+        to_verdict(shares[0] > shares[1] > shares[2] == 0),
         "Pixels that are wrong, by the length of the walls; bricks are up to 2 high.",
     )
 
 
-def silhouettes_claim():
+def claim_silhouettes():
     import mitsuba as mi
 
     cube = Mesh.from_shape(mi.load_dict({"type": "cube"}))
@@ -152,16 +162,16 @@ def silhouettes_claim():
         "2.1.5",
         "4 and 6 edges",
         f"{one[0]} and {one[1]} edges" + ("" if one == other else f"; {other[0]} and {other[1]}"),
-        verdict(one == other == [4, 6]),
+        to_verdict(one == other == [4, 6]),
     )
 
 
-def draw(inside):
-    """What is lit by both methods, and by rays."""
-    drawn = figure(7.5, 2.7)
+def draw_methods(inside):
+    """Draw the lit pixels by both methods of counting, and by rays."""
+    drawn = make_figure(7.5, 2.7)
     pictures = {
-        "depth-pass": inside.lit(method="depth_pass"),
-        "depth-fail": inside.lit(method="depth_fail"),
+        "depth-pass": inside.compute_lit(method="depth_pass"),
+        "depth-fail": inside.compute_lit(method="depth_fail"),
         "rays": inside.exact,
     }
     for axes, (name, lit) in zip(drawn.subplots(1, 3), pictures.items(), strict=True):

@@ -1,4 +1,4 @@
-"""The scenes, views and lights of all measurements, and the shadow maps in them."""
+"""Sets up the scenes, views and lights of all measurements, and shadow maps in them."""
 
 from dataclasses import dataclass
 
@@ -9,11 +9,11 @@ from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.maps.light_shadow import LightShadow
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.scenes import LIGHTS, SCENES, VIEWS
-from brdfkit.theses.drawing import figure
+from brdfkit.theses.drawing import make_figure
 
 SIZE = 256  # pixels along a side of a picture
 RESOLUTION = 512  # texels along a side of a map
-MOST = 99.0  # dB of a picture without an error
+MOST = 99.0  # dB: the PSNR of a picture without an error, which would be infinite
 PROJECTIONS = {
     "uniform": "uniform",
     "focused": "focused",
@@ -26,20 +26,22 @@ PROJECTIONS = {
 
 @dataclass(frozen=True)
 class View:
-    """A `scene` of Mitsuba's in one light: its `Placement`, and what is `Seen` of it."""
+    """A scene of Mitsuba in one light, with the placement of its shadow maps and its visible
+    points.
+    """
 
     scene: object
     placement: Placement
     seen: LitView
 
     @classmethod
-    def of(cls, name, view, light):
-        """Of one of the scenes that come along."""
-        return cls.by(SCENES[name](view, light, (SIZE, SIZE)))
+    def load(cls, name, view, light):
+        """Make the view of one of brdfkit's scenes."""
+        return cls.from_dictionary(SCENES[name](view, light, (SIZE, SIZE)))
 
     @classmethod
-    def by(cls, description):
-        """Of a scene's dictionary."""
+    def from_dictionary(cls, description):
+        """Make the view of a scene's dictionary."""
         import mitsuba as mi
 
         scene = mi.load_dict(description, parallel=False)
@@ -48,30 +50,32 @@ class View:
         placement = Placement.from_scene(scene, sensor, emitter)
         return cls(scene, placement, LitView.from_sensor(scene, sensor, emitter, (height, width)))
 
-    def shadow(self, **technique):
-        """The `LightShadow` by a technique."""
+    def make_shadow(self, **technique):
+        """Return the `LightShadow` by a technique."""
         return LightShadow(self.scene, self.placement, **({"resolution": RESOLUTION} | technique))
 
-    def lit(self, shadow):
-        """The shares (pixels,) of the light that a `LightShadow` lets through."""
+    def compute_lit(self, shadow):
+        """Return the shares (pixels,) of the light that a `LightShadow` lets through."""
         si = self.seen.si
         return np.array(shadow.visibility(si.p, si.n, si.is_valid()))
 
-    def wrong(self, lit):
-        """The mean error of shares of the light, where surfaces face it."""
+    def measure_error(self, lit):
+        """Return the mean error of shares of the light, where surfaces face it."""
         return float(np.abs(lit - self.seen.exact)[self.seen.facing].mean())
 
-    def psnr(self, lit):
-        """Q3 [dB], of the picture with these shares against the one with exact shadows."""
+    def compute_psnr(self, lit):
+        """Return the PSNR [dB] of a picture with shares of the light, against exact shadows."""
         seen = self.seen
         true, found = seen.compute_picture(seen.exact), seen.compute_picture(lit)
         return min(psnr(true, found, seen.facing.reshape(seen.size)), MOST)
 
-    def draw(self, techniques):
-        """The picture with exact shadows, and beside it those by `techniques`, by their names."""
-        lit = {name: self.lit(self.shadow(**each)) for name, each in techniques.items()}
+    def draw_techniques(self, techniques):
+        """Draw the picture with exact shadows, and beside it those by `techniques`, by name."""
+        lit = {
+            name: self.compute_lit(self.make_shadow(**each)) for name, each in techniques.items()
+        }
         lit = {"exact": self.seen.exact} | lit
-        drawn, most = figure(10, 2.8), self.seen.unshadowed.max()
+        drawn, most = make_figure(10, 2.8), self.seen.unshadowed.max()
         for axes, (name, shares) in zip(drawn.subplots(1, len(lit)), lit.items(), strict=True):
             picture = self.seen.compute_picture(0.85 * shares + 0.15) / most
             axes.imshow(picture.clip(0, 1) ** (1 / 2.2))
@@ -80,15 +84,15 @@ class View:
         return drawn
 
 
-def measured(function, scenes, report):
-    """Scene → what `function(view)` gives, an array (view, light, ...)."""
+def measure_all(function, scenes, report):
+    """Return for each scene an array (view, light, ...) of the results of `function(view)`."""
     scenes, found, done = list(scenes or SCENES), {}, 0
     total = len(scenes) * len(VIEWS) * len(LIGHTS)
     for name in scenes:
         rows = []
         for view in VIEWS:
             for light in LIGHTS:
-                rows.append(function(View.of(name, view, light)))
+                rows.append(function(View.load(name, view, light)))
                 report(done := done + 1, total)
         shape = len(VIEWS), len(LIGHTS)
         found[name] = np.array(rows).reshape(*shape, *np.shape(rows[0]))

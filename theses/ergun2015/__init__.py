@@ -17,7 +17,7 @@ graphics card. So ours are ratios and orders, at settings that are told with eac
 A claim is *confirmed* where our figures agree, *not confirmed* where they do not, *not stated*
 where the thesis gives no figure to compare ours to, *not run* where a file is missing."""
 
-# The probes and the meshes are looked for beside the measurements, and shipped maps stand in
+# The probes and meshes are optional: they are looked for beside the folder of measurements
 NEEDS: dict[str, str] = {}
 
 PARTS = (

@@ -1,4 +1,7 @@
-"""C1: which block to cut next, by the error of the map that the blocks hold."""
+"""Checks which criterion is best for choosing the block of an environment map to cut next.
+
+A k-d tree cuts the map into blocks that a light sampler draws from.
+"""
 
 import numpy as np
 from brdfkit.theses.ergun2015.lit_balls import find_probes, read_probes
@@ -8,8 +11,8 @@ from brdfkit.lighting import environments
 from brdfkit.lighting.environments.audit_picture import DRAWN_BLOCKS, draw_map
 from brdfkit.lighting.sampling import tree
 from brdfkit.lighting.sampling.power_map import cell_power
-from brdfkit.theses.claims import Claim, verdict
-from brdfkit.theses.drawing import figure
+from brdfkit.theses.claims import Claim, to_verdict
+from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section, Table
 
 SECONDS = 3
@@ -20,12 +23,12 @@ power. The error is Σ (power − mean)² / Σ power²."""
 
 
 def run(sources, report):
-    """The errors of the maps by criterion, and the claim on them."""
+    """Check the claims on the choice of the next block to cut; return their section."""
     maps = read_probes(sources)
     errors = {}
     for done, (name, rgb) in enumerate(maps.items()):
         power = cell_power(luminance(rgb))
-        errors[name] = [reconstruction_error(power, criterion) for criterion in CRITERIA]
+        errors[name] = [compute_reconstruction_error(power, criterion) for criterion in CRITERIA]
         report(done + 1, len(maps))
     best = [name for name, row in errors.items() if np.argmin(row) == 0]
     claim = Claim(
@@ -33,16 +36,16 @@ def run(sources, report):
         "6.2, Figure 6.1",
         "best of three on grace",
         f"best on {len(best)} of {len(errors)} maps",
-        verdict(len(best) == len(errors)),
+        to_verdict(len(best) == len(errors)),
     )
     rows = [(name, *(f"{e:.3g}" for e in row)) for name, row in errors.items()]
-    picture = Picture("block_criteria", draw(*next(iter(find_probes(sources).items()))))
+    picture = Picture("block_criteria", draw_block_map(*next(iter(find_probes(sources).items()))))
     table = Table(("map", *CRITERIA), rows)
     return Section("Which block to cut next", TEXT, [claim], [table], [picture])
 
 
-def reconstruction_error(power, criterion, count=BLOCKS):
-    """The relative squared error of `power` (rows, columns) where blocks hold their means."""
+def compute_reconstruction_error(power, criterion, count=BLOCKS):
+    """Return the relative squared error of `power` (rows, columns) if each block holds its mean."""
     boxes = tree.build_tree(power, count, criterion).blocks
     x0, x1, y0, y1 = boxes.T
     means = tree.block_sums(power, boxes) / ((x1 - x0) * (y1 - y0))
@@ -51,9 +54,9 @@ def reconstruction_error(power, criterion, count=BLOCKS):
     return 1 - kept / np.sum(power**2)
 
 
-def draw(name, file):
-    """A map with its first blocks, by the sum of squared errors."""
-    drawn, audit = figure(8, 4.4), environments.audit(file)
+def draw_block_map(name, file):
+    """Draw a map with its first blocks, cut by the sum of squared errors."""
+    drawn, audit = make_figure(8, 4.4), environments.audit(file)
     rgb = audit.data.astype(float)
     blocks = tree.build_tree(cell_power(luminance(rgb)), DRAWN_BLOCKS, "sse").blocks
     draw_map(drawn.subplots(), audit, rgb, blocks)

@@ -1,4 +1,7 @@
-"""C2, C5: the law of sorted blocks, how well it holds, and what it and the blocks take to store."""
+"""Checks whether one formula fits the sorted powers of an environment map's blocks.
+
+The thesis's law needs a single number in place of the power of each block.
+"""
 
 import numpy as np
 from brdfkit.theses.ergun2015.lit_balls import read_probes
@@ -8,13 +11,13 @@ from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.sampling import tree
 from brdfkit.lighting.sampling.block_laws import Hyperbolic, Steps
 from brdfkit.lighting.sampling.power_map import cell_power
-from brdfkit.theses.claims import UNSTATED, Claim, verdict
-from brdfkit.theses.drawing import COLOURS, figure, tidy
+from brdfkit.theses.claims import UNSTATED, Claim, to_verdict
+from brdfkit.theses.drawing import COLOURS, make_figure, style_axes
 from brdfkit.theses.page import Picture, Section
 
 SECONDS = 6
 BLOCKS = 4096
-COMPRESSION = 170  # of Uffizi, Figure 9.3
+COMPRESSION = 170  # pixels per block of Uffizi in Figure 9.3
 TEXT = f"""Blocks are sorted by their share of the power, the largest first. The thesis's law gives
 block i the probability log(1 + 1/(u + i)) / log(1 + n/u), eq. 6.4, with one parameter u, which is
 fitted here by maximum likelihood: the thesis does not say how. The law of steps has equal
@@ -22,18 +25,18 @@ probabilities in each of eight ranges of ranks. {BLOCKS:,} blocks."""
 
 
 def run(sources, report):
-    """The claims on the law, and the curves of Figure 6.3."""
+    """Check the claims on the law of sorted block powers; return their section of the page."""
     maps = read_probes(sources)
-    drawn = figure(8, 2.6 * ((len(maps) + 1) // 2))
+    drawn = make_figure(8, 2.6 * ((len(maps) + 1) // 2))
     grid, noise = drawn.subplots((len(maps) + 1) // 2, 2, squeeze=False), {}
     for done, ((name, rgb), axes) in enumerate(zip(maps.items(), grid.flat, strict=False)):
-        shares = sorted_shares(cell_power(luminance(rgb)))
+        shares = compute_sorted_shares(cell_power(luminance(rgb)))
         laws = {
             "hyperbolic": Hyperbolic.fit_to_shares(shares),
             "steps": Steps.fit_to_shares(shares),
         }
-        noise[name] = {label: added_variance(shares, law) for label, law in laws.items()}
-        draw(axes, name, shares, laws)
+        noise[name] = {label: compute_added_variance(shares, law) for label, law in laws.items()}
+        draw_shares(axes, name, shares, laws)
         report(done + 1, len(maps))
     for axes in grid.flat[len(maps) :]:
         axes.remove()
@@ -41,25 +44,25 @@ def run(sources, report):
     return Section(
         "The law of sorted blocks",
         TEXT,
-        [law_claim(), shape_claim(noise), compression_claim(maps)],
+        [claim_law(), claim_shape(noise), claim_compression(maps)],
         pictures=[Picture("block_law", drawn, "Sorted shares, and the laws fitted to them.")],
     )
 
 
-def sorted_shares(power, count=BLOCKS):
-    """The blocks' shares (n,) of the power, the largest first."""
+def compute_sorted_shares(power, count=BLOCKS):
+    """Return the blocks' shares (n,) of a map's power, the largest first."""
     boxes = tree.build_tree(power, count).blocks
     shares = tree.block_sums(power, boxes).clip(0)
     return np.sort(shares / shares.sum())[::-1]
 
 
-def added_variance(shares, law):
-    """The variance of share / P̂ over samples by the law: what it adds to that of exact shares."""
+def compute_added_variance(shares, law):
+    """Return the relative variance of samples drawn by a law, beyond that by exact shares."""
     return float(np.sum(shares**2 / law.probability(np.arange(len(shares)))) - 1)
 
 
-def law_claim():
-    """C2: the probabilities sum to 1, and F⁻¹ is the inverse of F."""
+def claim_law():
+    """Claim that the law's probabilities sum to 1 and that its inverse is exact."""
     law, xi = Hyperbolic(256, 5.0), np.linspace(0, 1, 1001)[:-1]
     off = abs(law.probability(np.arange(256)).sum() - 1)
     back = np.abs(law.cumulative_probability(law.inverse_cumulative(xi)) - xi).max()
@@ -68,13 +71,13 @@ def law_claim():
         "eqs. 6.3-6.5",
         "sum 1, F(F⁻¹(ξ)) = ξ",
         f"sum off by {off:.0e}, ξ by {back:.0e}",
-        verdict(max(off, back) < 1e-12),
+        to_verdict(max(off, back) < 1e-12),
         "n = 256, u = 5.",
     )
 
 
-def shape_claim(noise):
-    """How near the sorted shares are to a hyperbola."""
+def claim_shape(noise):
+    """Claim that sorted shares are near a hyperbola, by the variance that this adds to samples."""
     by = {label: [row[label] for row in noise.values()] for label in ("hyperbolic", "steps")}
     worst, mean = max(by["hyperbolic"]), np.mean(by["hyperbolic"])
     return Claim(
@@ -83,15 +86,15 @@ def shape_claim(noise):
         "a drawing",
         f"adds {mean:.2f} to the relative variance of a sample in the mean, {worst:.2f} at most; "
         f"steps {np.mean(by['steps']):.2f} and {max(by['steps']):.2f}",
-        verdict(worst < 0.1),
+        to_verdict(worst < 0.1),
         "Confirmed below 0.1. Sorted shares fall faster than a hyperbola at the end, and lamps "
         "stand out at the beginning. The estimate is unbiased all the same: P̂ divides it, not the "
         "share.",
     )
 
 
-def compression_claim(maps):
-    """C5: a map of blocks at the thesis's compression."""
+def claim_compression(maps):
+    """Claim that a map of blocks is still recognised at the thesis's compression."""
     name = "uffizi" if "uffizi" in maps else next(iter(maps))
     power = cell_power(luminance(maps[name]))
     count = max(power.size // COMPRESSION, 1)
@@ -112,12 +115,12 @@ def compression_claim(maps):
     )
 
 
-def draw(axes, name, shares, laws):
-    """Sorted shares and laws over the rank, both logarithmic."""
+def draw_shares(axes, name, shares, laws):
+    """Draw sorted shares and laws over the rank of the block, both logarithmic."""
     rank = np.arange(len(shares)) + 1
     axes.loglog(rank, shares, color=COLOURS[-1], linewidth=2, label="shares")
     for (label, law), colour in zip(laws.items(), COLOURS, strict=False):
         axes.loglog(rank, law.probability(rank - 1), color=colour, linewidth=1.2, label=label)
     axes.set_ylim(max(shares[-1], 1e-8) / 2, shares[0] * 3)
     axes.set_xlabel("rank of the block")
-    tidy(axes, name, "probability")
+    style_axes(axes, name, "probability")

@@ -1,22 +1,28 @@
-"""C9: pictures with the shadows of convex parts, beside those of triangles and of height fields."""
+"""Compares pictures with shadows of convex parts to those of triangles and of height fields."""
 
 import numpy as np
-from brdfkit.theses.ergun2015.convex_study import NO_COACD, SETTING, has_coacd, shown, studies
-from brdfkit.theses.ergun2015.part_colours import coloured
-from brdfkit.theses.ergun2015.shapes import MESHES, file_of
+from brdfkit.theses.ergun2015.convex_study import (
+    NO_COACD,
+    SETTING,
+    can_decompose,
+    make_studies,
+    to_screen_values,
+)
+from brdfkit.theses.ergun2015.part_colours import render_coloured_parts
+from brdfkit.theses.ergun2015.shapes import MESHES, find_mesh_path
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.lighting.visibility.decomposition import CONCAVITY
 from brdfkit.lighting.visibility.occluders import RESOLUTION
-from brdfkit.theses.claims import NOT_RUN, Claim, verdict
-from brdfkit.theses.drawing import figure
+from brdfkit.theses.claims import NOT_RUN, Claim, to_verdict
+from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section, Table
 
 SECONDS = 60
-BAR = 39  # dB
+BAR = 39  # dB: the lowest PSNR that the thesis has on any mesh
 DRAWN = "spot", "stanford-bunny", "suzanne"
-DIFFERENCE = 5  # times as large as it is
+DIFFERENCE = 5  # the factor by which the figure enlarges differences
 TITLE = "Shadows of convex parts"
 GOOD = f"No PSNR is below {BAR} dB.", "Figure 9.9", f"at least {BAR} dB on 12 meshes"
 ORDER = "Height fields have the better pictures.", "Figure 9.9", "a drawing"
@@ -33,14 +39,14 @@ too."""
 
 @in_turn
 def run(sources, report):
-    """The pictures, and the claims on them."""
+    """Check the claims on shadows of convex parts; return their section of the page."""
     use_variant()
-    if not has_coacd():
+    if not can_decompose():
         return Section(TITLE, TEXT, [Claim(*c, "", NOT_RUN, NO_COACD) for c in (GOOD, ORDER)])
-    found = studies(sources)
+    found = make_studies(sources)
     quality = {}
     for done, (name, study) in enumerate(found.items()):
-        quality[name] = [study.quality(by) for by in (study.convex, study.fields)]
+        quality[name] = [study.compute_quality(by) for by in (study.convex, study.fields)]
         report(done + 1, len(found) + 1)
     heads = "mesh", "triangles", "parts", "convex parts [dB]", "height fields [dB]"
     rows = [
@@ -57,13 +63,17 @@ def run(sources, report):
         "From the left: the parts, the shadows of triangles, those of the parts, and their "
         f"difference, {DIFFERENCE} times as large."
     )
-    picture = Picture("convex_pictures", draw(drawn), caption)
-    claims = [good_claim(quality), order_claim(quality)]
+    picture = Picture("convex_pictures", draw_rows(drawn), caption)
+    claims = [claim_good(quality), claim_order(quality)]
     return Section(TITLE, TEXT, claims, [Table(heads, rows)], [picture])
 
 
-def good_claim(quality):
-    """C9; `quality`: name → [(linear, as shown) of convex parts, the same of height fields]."""
+def claim_good(quality):
+    """Claim that no mesh has a PSNR below the thesis's lowest one.
+
+    `quality` maps each mesh to two pairs of PSNRs, linear and as shown, for convex parts and for
+    height fields.
+    """
     linear, as_shown = np.array([pair[0] for pair in quality.values()]).T
     ours = (
         f"{(linear >= BAR).sum()} of {len(quality)} meshes, {linear.min():.1f} to "
@@ -71,27 +81,29 @@ def good_claim(quality):
         f"{as_shown.max():.1f} dB"
     )
     if not set(quality) <= set(MESHES):
-        return Claim(*GOOD, ours, NOT_RUN, f"{file_of(MESHES[0])} and the others are missing.")
-    return Claim(*GOOD, ours, verdict(linear.min() >= BAR), WHY)
+        return Claim(
+            *GOOD, ours, NOT_RUN, f"{find_mesh_path(MESHES[0])} and the others are missing."
+        )
+    return Claim(*GOOD, ours, to_verdict(linear.min() >= BAR), WHY)
 
 
-def order_claim(quality):
-    """Whether height fields come nearer to triangles."""
+def claim_order(quality):
+    """Claim that pictures by height fields are nearer to triangles than those by convex parts."""
     better = sum(fields[0] > convex[0] for convex, fields in quality.values())
-    holds = verdict(better > len(quality) / 2)
+    holds = to_verdict(better > len(quality) / 2)
     return Claim(*ORDER, f"on {better} of {len(quality)} meshes", holds, "Confirmed on most.")
 
 
-def draw(studies):
-    """A row per mesh: its parts, both pictures and their difference."""
-    drawn = figure(8, 2.1 * len(studies))
+def draw_rows(studies):
+    """Draw a row per mesh: its parts, both pictures and their difference."""
+    drawn = make_figure(8, 2.1 * len(studies))
     grid = drawn.subplots(len(studies), 4, squeeze=False)
     for axes in grid.flat:
         axes.axis("off")
     for row, study in zip(grid, studies.values(), strict=True):
         ours = study.render(study.convex)
         difference = DIFFERENCE * np.abs(ours - study.exact)
-        pictures = [shown(p, study.exact) for p in (study.exact, ours, difference)]
-        for axes, pixels in zip(row, [coloured(study), *pictures], strict=True):
+        pictures = [to_screen_values(p, study.exact) for p in (study.exact, ours, difference)]
+        for axes, pixels in zip(row, [render_coloured_parts(study), *pictures], strict=True):
             axes.imshow(pixels)
     return drawn

@@ -1,21 +1,21 @@
-"""C10: how the shadows of convex parts depend on the concavity that is allowed, and on the rest."""
+"""Varies the settings of convex shadows: the allowed concavity, the maps' size, the clearance."""
 
 from itertools import pairwise
 
-from brdfkit.theses.ergun2015.convex_study import NO_COACD, SETTING, has_coacd, swept
+from brdfkit.theses.ergun2015.convex_study import NO_COACD, SETTING, can_decompose, make_swept_study
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.lighting.visibility.occluders import Occluders
-from brdfkit.theses.claims import NOT_RUN, Claim, verdict
-from brdfkit.theses.drawing import COLOURS, figure, tidy
+from brdfkit.theses.claims import NOT_RUN, Claim, to_verdict
+from brdfkit.theses.drawing import COLOURS, make_figure, style_axes
 from brdfkit.theses.page import Picture, Section, Table
 
 SECONDS = 60
 CONCAVITIES = 0.02, 0.03, 0.05, 0.1, 0.2, 0.4
 RESOLUTIONS = 8, 16, 32, 64, 128, 256
 CLEARANCES = 0.0, 0.005, 0.01, 0.02, 0.03, 0.04
-PEAKED = 1  # dB above both ends, to be called a maximum
+PEAKED = 1  # dB above both ends of a curve, from which its middle counts as a maximum
 TITLE = "Settings of convex shadows"
 PEAK = "The PSNR is highest at a middle concavity.", "Figure 9.8", "at about 40 %, on Armadillo"
 FEWER = "The larger the concavity, the fewer the parts.", "Figure 9.8", "as a logarithm"
@@ -31,30 +31,30 @@ better."""
 
 @in_turn
 def run(sources, report):
-    """The sweeps, and the claims on them."""
+    """Check the claims on the settings of convex shadows; return their section of the page."""
     use_variant()
-    if not has_coacd():
+    if not can_decompose():
         missing = [Claim(*c, "", NOT_RUN, NO_COACD) for c in (PEAK, FEWER, FASTER)]
         return Section(TITLE, TEXT, missing)
-    name, study = swept(sources)
+    name, study = make_swept_study(sources)
     steps, done = 2 * len(CONCAVITIES) + len(RESOLUTIONS) + len(CLEARANCES), 0
 
-    def decibels(occluders):
+    def measure_psnr(occluders):
         nonlocal done
         done += 1
         report(done, steps)
-        return study.quality(occluders)[0]
+        return study.compute_quality(occluders)[0]
 
-    parts = {c: study.parts(concavity=c) for c in CONCAVITIES}
+    parts = {c: study.decompose_mesh(concavity=c) for c in CONCAVITIES}
     clear = {c: Occluders({"mesh": p}) for c, p in parts.items()}
-    seconds = [study.seconds(occluders) for occluders in clear.values()]
+    seconds = [study.measure_seconds(occluders) for occluders in clear.values()]
     by = {
-        "with clearance": [decibels(occluders) for occluders in clear.values()],
-        "without": [decibels(Occluders({"mesh": p}, clearance=0)) for p in parts.values()],
+        "with clearance": [measure_psnr(occluders) for occluders in clear.values()],
+        "without": [measure_psnr(Occluders({"mesh": p}, clearance=0)) for p in parts.values()],
     }
-    usual = study.parts()
-    sides = [decibels(Occluders({"mesh": usual}, resolution=side)) for side in RESOLUTIONS]
-    lengths = [decibels(Occluders({"mesh": usual}, clearance=c)) for c in CLEARANCES]
+    usual = study.decompose_mesh()
+    sides = [measure_psnr(Occluders({"mesh": usual}, resolution=side)) for side in RESOLUTIONS]
+    lengths = [measure_psnr(Occluders({"mesh": usual}, clearance=c)) for c in CLEARANCES]
 
     counts = [len(p) for p in parts.values()]
     relative = [s / seconds[0] for s in seconds]
@@ -63,22 +63,25 @@ def run(sources, report):
     heads = "concavity", "parts", "CPU time", "PSNR [dB]", "without clearance [dB]"
     tables = [
         Table(heads, rows, f"Of {name}; times over that of the first row."),
-        row_table("texels of a map", RESOLUTIONS, sides),
-        row_table("clearance", CLEARANCES, lengths),
+        make_row_table("texels of a map", RESOLUTIONS, sides),
+        make_row_table("clearance", CLEARANCES, lengths),
     ]
-    claims = [peak_claim(by), fewer_claim(counts), faster_claim(relative)]
-    picture = Picture("convex_settings", draw(by, counts))
+    claims = [claim_peak(by), claim_fewer(counts), claim_faster(relative)]
+    picture = Picture("convex_settings", draw_curves(by, counts))
     return Section(TITLE, TEXT, claims, tables, [picture])
 
 
-def row_table(label, settings, decibels):
-    """A table of one row: PSNR by setting."""
+def make_row_table(label, settings, decibels):
+    """Return a table of one row: PSNR by setting."""
     row = "PSNR [dB]", *(f"{x:.1f}" for x in decibels)
     return Table((label, *(f"{s:g}" for s in settings)), [row])
 
 
-def peak_claim(by):
-    """C10; `by`: with and without clearance → PSNRs by concavity."""
+def claim_peak(by):
+    """Claim that the PSNR is highest at a middle concavity.
+
+    `by` holds PSNRs by concavity, with and without clearance.
+    """
     best = {label: CONCAVITIES[psnrs.index(max(psnrs))] for label, psnrs in by.items()}
     first, *_, last = as_thesis = by["without"]
     above = max(as_thesis) - max(first, last)
@@ -86,37 +89,42 @@ def peak_claim(by):
         *PEAK,
         f"at {best['without']:g} without clearance, as in the thesis, {above:.1f} dB above the "
         f"ends; with it at {best['with clearance']:g}",
-        verdict(above >= PEAKED),
+        to_verdict(above >= PEAKED),
         WHY,
     )
 
 
-def fewer_claim(counts):
-    """Whether the parts get fewer."""
+def claim_fewer(counts):
+    """Claim that a mesh has fewer convex parts if more concavity is allowed."""
     falling = all(a > b for a, b in pairwise(counts))
-    return Claim(*FEWER, " ".join(map(str, counts)), verdict(falling), "Confirmed where they fall.")
+    return Claim(
+        *FEWER, " ".join(map(str, counts)), to_verdict(falling), "Confirmed where they fall."
+    )
 
 
-def faster_claim(relative):
-    """Whether pictures take less time; `relative`: times over that at the least concavity."""
+def claim_faster(relative):
+    """Claim that pictures take less time if more concavity is allowed.
+
+    `relative` are times over that at the least concavity.
+    """
     return Claim(
         *FASTER,
         f"the largest takes {relative[-1]:.2f} times as long as the least",
-        verdict(relative[-1] < 0.9),
+        to_verdict(relative[-1] < 0.9),
         "Seconds of CPU; confirmed below 0.9. The parts' time is not all of a picture's.",
     )
 
 
-def draw(by, counts):
-    """PSNR and number of parts over concavity."""
-    drawn = figure(7.6, 2.8)
+def draw_curves(by, counts):
+    """Draw PSNR and number of parts over the concavity."""
+    drawn = make_figure(7.6, 2.8)
     left, right = drawn.subplots(1, 2)
     for (label, decibels), colour in zip(by.items(), COLOURS, strict=False):
         left.semilogx(CONCAVITIES, decibels, "o-", color=colour, label=label)
     left.legend(frameon=False)
-    tidy(left, "quality", "PSNR [dB]")
+    style_axes(left, "quality", "PSNR [dB]")
     right.loglog(CONCAVITIES, counts, "o-", color=COLOURS[-1])
-    tidy(right, "parts", "number of parts")
+    style_axes(right, "parts", "number of parts")
     for axes in (left, right):
         axes.set_xlabel("concavity")
         axes.set_xticks(CONCAVITIES, [f"{c:g}" for c in CONCAVITIES])

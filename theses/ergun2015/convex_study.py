@@ -1,4 +1,4 @@
-"""A mesh on a ground under the environment `studio`, with shadows of several kinds.
+"""Renders a mesh on a ground under the environment `studio`, with shadows of several kinds.
 
 All pictures take the same samples, by the integrator `convex_direct`: they differ by their shadows
 alone.
@@ -19,7 +19,7 @@ from brdfkit.rendering.scene_input.environment import describe_environment, repl
 from brdfkit.theses.claims import measure_least_seconds
 
 SIZE, SPP = 96, 64
-SWEPT = "spot"  # the mesh of which settings are varied, and that moves
+SWEPT = "spot"  # the mesh for which settings are varied, and which moves
 GREY = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": 0.5}}
 SETTING = f"""Pictures of {SIZE} × {SIZE} pixels with {SPP} samples: a grey mesh, whose longest side
 is 2, on a ground under the environment *studio*. The truth has the shadows of its triangles."""
@@ -29,25 +29,25 @@ NO_COACD = (
 
 
 @cache
-def studies(sources):
-    """Name → `Study` of the meshes that enclose a volume; made once for all parts of the page."""
+def make_studies(sources):
+    """Return a `Study` by name for each mesh that encloses a volume, made once for all parts."""
     found = {name: Study(shape) for name, shape in find_meshes(sources).items()}
-    return {name: study for name, study in found.items() if study.parts()}
+    return {name: study for name, study in found.items() if study.decompose_mesh()}
 
 
-def swept(sources):
-    """(name, `Study`) of the mesh of which settings are varied."""
+def make_swept_study(sources):
+    """Return the name and the `Study` of the mesh for which settings are varied."""
     ((name, shape),) = find_meshes(sources, [SWEPT]).items()
     return name, Study(shape)
 
 
-def has_coacd():
-    """Whether meshes can be decomposed here."""
+def can_decompose():
+    """Return whether the packages that decompose meshes are installed."""
     return all(find_spec(name) for name in ("coacd", "igl"))
 
 
 class Study:
-    """A mesh, and its pictures; `shape`: a `Shape`."""
+    """A mesh, given as a `Shape`, with its pictures by shadows of several kinds."""
 
     def __init__(self, shape):
         import mitsuba as mi
@@ -59,14 +59,14 @@ class Study:
         self.scene = mi.load_dict(entries, parallel=False)
         self.ground = mi.load_dict({"type": "scene", "ground": made["ground"]}, parallel=False)
 
-    def parts(self, **settings):
-        """The convex parts of the mesh; see `decompose`."""
+    def decompose_mesh(self, **settings):
+        """Return the convex parts of the mesh; the settings are those of `decompose`."""
         return decompose(self.points, self.faces, **settings)
 
     @cached_property
     def convex(self):
         """The mesh as convex parts, by the default settings."""
-        return Occluders({"mesh": self.parts()})
+        return Occluders({"mesh": self.decompose_mesh()})
 
     @cached_property
     def fields(self):
@@ -75,42 +75,44 @@ class Study:
 
     @cached_property
     def exact(self):
-        """The picture with the shadows of triangles."""
+        """The picture with the shadows of the mesh's triangles."""
         return self.render(None, self.scene)
 
     def render(self, occluders, others=None, spp=SPP):
-        """A picture with the shadows of `occluders`, and of the scene `others`: by default of the
-        ground."""
+        """Render a picture with the shadows of `occluders` and of the scene `others`.
+
+        By default the other scene is the ground.
+        """
         integrator = self.scene.integrator()
         integrator.casters.set_casters(self.scene, occluders, others or self.ground)
         return np.array(integrator.render(self.scene, seed=0, spp=spp), float)[..., :3]
 
-    def seconds(self, occluders):
-        """Seconds of CPU for a picture, the least of three."""
+    def measure_seconds(self, occluders):
+        """Return the CPU seconds for a picture, the least of three."""
         return measure_least_seconds(self.render, occluders)
 
-    def quality(self, occluders):
-        """PSNR [dB] of the picture with the shadows of `occluders`: (linear, as shown)."""
+    def compute_quality(self, occluders):
+        """Return the PSNR [dB] of a picture with shadows of `occluders`, linear and in sRGB."""
         picture = self.render(occluders)
-        on_screen = (shown(p, self.exact) for p in (self.exact, picture))
+        on_screen = (to_screen_values(p, self.exact) for p in (self.exact, picture))
         return psnr(self.exact, picture), psnr(*on_screen, peak=1)
 
-    def reads(self, occluders):
-        """Reads of maps per pixel, for the two shadow rays of one sample: (mean, deviation)."""
-        counting = Counting(occluders)
+    def count_reads(self, occluders):
+        """Return mean and deviation of the reads of maps per pixel, for two shadow rays."""
+        counting = CountingOccluders(occluders)
         self.render(counting, spp=1)
         reads = sum(np.array(found, float) for found in counting.reads)
         return reads.mean(), reads.std()
 
 
-class Counting:
-    """Occluders that remember the reads of all rays."""
+class CountingOccluders:
+    """Occluders that remember the reads of all rays, which Mitsuba's integrator does not return."""
 
     def __init__(self, occluders):
         self.occluders, self.reads = occluders, []
 
     def is_blocked(self, ray, active=True):
-        """As that of the occluders."""
+        """Return whether rays are blocked, and the reads, which are also remembered."""
         import drjit as dr
 
         blocked, reads = self.occluders.is_blocked(ray, active)
@@ -119,6 +121,6 @@ class Counting:
         return blocked, reads
 
 
-def shown(picture, exact):
-    """A picture as it is shown: in sRGB, with white at the 95th percentile of the `exact` one."""
+def to_screen_values(picture, exact):
+    """Return a picture in sRGB, with white at the 95th percentile of the `exact` one."""
     return to_srgb(picture / np.percentile(exact, 95))

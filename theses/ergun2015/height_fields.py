@@ -1,8 +1,9 @@
-"""A rival of convex parts: a tree over height fields, RBVH [Novák & Dachsbacher 2012].
+"""Defines occluders that rival convex parts: a tree over height fields, RBVH.
 
-A tree over the triangles ends where all triangles of a node face to one side. There they become a
-height field over the plane that they face, in which a ray marches from texel to texel. The original
-keeps triangles where a field would hold few of them; here every leaf is a field.
+In the tree over the triangles of [Novák & Dachsbacher 2012], a node whose triangles all face to one
+side becomes a height field over the plane that they face, in which a ray marches from texel to
+texel. The original keeps triangles where a field would hold few of them; here every leaf is a
+field.
 """
 
 import numpy as np
@@ -13,26 +14,25 @@ from brdfkit.lighting.visibility.occluders import CLEARANCE
 from brdfkit.mitsuba_bridge.arrays import Rows, find_cell
 
 SIDE = 32  # texels
-MAX_TRIANGLES = 512  # of a field: about the number of its texels
-MIN_COS = 0.3  # between the normal of a triangle and the direction of its field's heights
-NO_SURFACE = -1e3  # the height of an empty texel, far below the field's 0 to 1
-MARGIN = 0.02  # of the box of a field around its heights, which lie within 0 and 1
+MAX_TRIANGLES = 512  # the most in a field: about the number of its texels
+MIN_COS = 0.3  # the least cosine between a triangle's normal and its field's heights
+NO_SURFACE = -1e3  # the height of an empty texel, far below a field's heights of 0 to 1
+MARGIN = 0.02  # the space in a field's box around its heights, over its largest side
 
 
 class HeightFields:
-    """The height fields of a mesh, and a tree over them.
+    """The height fields of a mesh, and a tree over them, which answer rays as `Occluders` do.
 
-    points, faces : the vertices (n, 3) of the mesh, and of each triangle (m, 3) their numbers.
-    clearance : see `Occluders`.
-
-    `blocked` answers as that of `Occluders` does.
+    points, faces : the vertices (n, 3) of the mesh, and the vertex numbers (m, 3) of its triangles.
+    clearance : the distance within which a field does not block a ray, over half of the mesh's
+        side.
     """
 
     def __init__(self, points, faces, clearance=CLEARANCE):
         self.clearance = clearance * np.ptp(points, axis=0).max() / 2
         corners = np.asarray(points, float)[faces]
-        groups = one_sided_groups(corners)
-        fields = [_field(corners[group]) for group in groups]
+        groups = group_one_sided_triangles(corners)
+        fields = [_make_field(corners[group]) for group in groups]
         boxes = [
             (corners[group].min(axis=(0, 1)), corners[group].max(axis=(0, 1))) for group in groups
         ]
@@ -41,22 +41,22 @@ class HeightFields:
         self.heights = Rows(np.concatenate([heights.ravel() for _, heights in fields]))
 
     def is_blocked(self, ray, active=True):
-        """(whether a field lies between the ray's origin and its `maxt`, reads of heights)."""
+        """Return whether a field lies before the ray's `maxt`, and the reads of heights."""
         return self.tree.find_any_hit(ray, lambda field, a: self._march(ray, field, a), active)
 
     def _march(self, ray, field, active):
-        """(whether the ray crosses a field, reads of heights)."""
+        """Return whether the ray crosses a field, and how many heights it reads."""
         import drjit as dr
         import mitsuba as mi
 
-        # The ray in the field's frame, whose box is the unit cube, and the part of it in the box
+        # Transform the ray to the field's frame, whose box is the unit cube, and clip it there
         o, d = self.frames.transform_ray(field, ray, active)
         inverse = dr.rcp(d)
         a, b = -o * inverse, (1 - o) * inverse
         near = dr.maximum(dr.max(dr.minimum(a, b)), self.clearance)
         far = dr.minimum(dr.min(dr.maximum(a, b)), ray.maxt)
 
-        # Steps of at most a texel; a crossing lies where the ray changes sides between two of them
+        # Steps are at most a texel long; the ray crosses the field where it changes sides
         length = dr.maximum(far - near, 0) * SIDE * dr.maximum(dr.abs(d.x), dr.abs(d.y))
         steps = dr.select(active & (near < far), mi.UInt32(dr.ceil(length)) + 1, 0)
         step = (far - near) / dr.maximum(mi.Float(steps), 1)
@@ -77,8 +77,8 @@ class HeightFields:
         return hit == 1, reads
 
 
-def one_sided_groups(corners):
-    """The numbers of the triangles `corners` (m, 3, 3) of each field, a list of arrays.
+def group_one_sided_triangles(corners):
+    """Return the numbers of the triangles `corners` (m, 3, 3) of each field, as a list of arrays.
 
     A group is halved along the longest side of its box until all of it faces one direction.
     """
@@ -100,10 +100,10 @@ def one_sided_groups(corners):
     return groups
 
 
-def _field(corners):
-    """(the map (3, 4) to the field's unit cube, heights (SIDE, SIDE)) of triangles (m, 3, 3).
+def _make_field(corners):
+    """Return the map (3, 4) to a field's unit cube, and its heights (SIDE, SIDE).
 
-    The heights are along z, rows along y and columns along x.
+    The field is of triangles (m, 3, 3). The heights are along z, rows along y and columns along x.
     """
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).sum(axis=0)
     z = normal / np.linalg.norm(normal)
@@ -115,17 +115,19 @@ def _field(corners):
     room = MARGIN * (high - low).max()
     size = high - low + 2 * room
     to_field = np.column_stack([axes, room - low]) / size[:, None]
-    return to_field, rasterise_planes((local - low + room) / size)
+    return to_field, rasterise_heights((local - low + room) / size)
 
 
-def rasterise_planes(corners):
-    """The greatest height z (SIDE, SIDE) of triangles (m, 3, 3) in the unit cube at each texel's
-    centre; `NO_SURFACE` where there is none."""
+def rasterise_heights(corners):
+    """Return the greatest height z of triangles (m, 3, 3) in the unit cube at each texel's centre.
+
+    The result (SIDE, SIDE) is `NO_SURFACE` where there is no triangle.
+    """
     centres = (np.arange(SIDE) + 0.5) / SIDE
     y, x = np.meshgrid(centres, centres, indexing="ij")
     heights = np.full((SIDE, SIDE), NO_SURFACE)
     for a, b, c in corners:
-        # barycentric coordinates of all texels, of which those of the triangle are ≥ 0
+        # The barycentric coordinates v and w of a texel are ≥ 0 within the triangle
         area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
         if abs(area) < 1e-12:
             continue

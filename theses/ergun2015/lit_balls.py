@@ -1,9 +1,9 @@
-"""What the experiments with lobes share: the material, the methods, a picture and its errors."""
+"""Defines the material, the methods, the pictures and their errors for all claims on lobes."""
 
 import time
 
 import numpy as np
-from brdfkit.theses.ergun2015.unshadowed import unshadowed
+from brdfkit.theses.ergun2015.unshadowed import make_unshadowed_integrator
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.images.errors.psnr import psnr
@@ -16,14 +16,13 @@ SHIPPED = "studio", "sky", "room"
 
 
 def find_probes(sources):
-    """Name → file of the thesis's probes where all are at hand, else name → name of the maps that
-    brdfkit brings."""
+    """Return the file of each of the thesis's probes by name, or shipped maps if one is missing."""
     files = {name: sources.find_beside(f"environments/{name}.hdr") for name in PROBES}
     return files if all(files.values()) else {name: name for name in SHIPPED}
 
 
 def read_probes(sources):
-    """Name → radiance (height, width, 3) of each of the probes."""
+    """Return the radiance (height, width, 3) of each probe by name."""
     return {name: load_map(file)[1].astype(float) for name, file in find_probes(sources).items()}
 
 
@@ -34,14 +33,16 @@ WARD = {"type": "ward", "diffuse_reflectance": 0.1, "specular_reflectance": 0.4}
 SIZE, SAMPLES = 96, 4096
 
 
-def material(alpha):
-    """The BSDF of Ward's lobe of a roughness."""
+def make_ward_bsdf(alpha):
+    """Return the BSDF of Ward's lobe of a roughness."""
     return load_material(WARD | {"alpha_u": alpha, "alpha_v": alpha}, "ward", both_sides=True)
 
 
-def integrators():
-    """(method, filter) → integrator; both filters of a method share its lobes, and all methods of a
-    filter its light."""
+def make_integrators():
+    """Return an integrator for each method and filter of the map.
+
+    Both filters of a method share its fitted lobes, and all methods of a filter its filtered map.
+    """
     import mitsuba as mi
 
     found = {}
@@ -54,9 +55,11 @@ def integrators():
     return found
 
 
-def render(made, light, integrator):
-    """(picture, seconds of CPU, scene) of a scene's dictionary, a ray through the middle of each
-    pixel."""
+def render_scene(made, light, integrator):
+    """Render a scene's dictionary with a ray through the middle of each pixel.
+
+    Returns the picture, the CPU seconds and the scene.
+    """
     import mitsuba as mi
 
     scene = mi.load_dict(describe_preview(made, light, integrator, 1), parallel=False)
@@ -65,13 +68,15 @@ def render(made, light, integrator):
     return picture, time.process_time() - start, scene
 
 
-def truth(made, light):
-    """(the picture by samples, in two halves; the scene)."""
-    halves = [render(made, light, unshadowed(SAMPLES // 2, seed)) for seed in (1, 2)]
+def render_reference(made, light):
+    """Render the picture by many samples in two halves, and return them with the scene."""
+    halves = [
+        render_scene(made, light, make_unshadowed_integrator(SAMPLES // 2, seed)) for seed in (1, 2)
+    ]
     return [half[0] for half in halves], halves[0][2]
 
 
-def decibels(reference, picture, seen):
-    """PSNR over the pixels `seen`: of 8-bit sRGB with the peak 255, and of linear values."""
+def compute_psnr(reference, picture, seen):
+    """Return the PSNR over the pixels `seen`, of 8-bit sRGB and of linear values."""
     eight_bits = (np.round(255 * to_srgb(p)) for p in (reference, picture))
     return psnr(*eight_bits, seen, peak=255), psnr(reference, picture, seen)

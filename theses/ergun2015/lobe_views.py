@@ -1,7 +1,13 @@
-"""C13: mixtures are stored for some views; what shows between them."""
+"""Measures the edges that show in a picture where lobes are stored for a few views only."""
 
 import numpy as np
-from brdfkit.theses.ergun2015.lit_balls import decibels, find_probes, material, render, truth
+from brdfkit.theses.ergun2015.lit_balls import (
+    compute_psnr,
+    find_probes,
+    make_ward_bsdf,
+    render_reference,
+    render_scene,
+)
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.jit.llvm import use_variant
@@ -9,13 +15,13 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.rendering.scene_input.environment import describe_environment
 from brdfkit.rendering.scene_input.loading import find_scene
 from brdfkit.rendering.scene_input.material import find_material_mask
-from brdfkit.theses.claims import Claim, verdict
-from brdfkit.theses.drawing import figure
+from brdfkit.theses.claims import Claim, to_verdict
+from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section
 
 SECONDS = 20
 SIZE, ALPHA = 256, 0.05
-JUMP = 1.5  # times the differences within a view that count as a block's edge
+JUMP = 1.5  # times the change within a view: a larger change is an edge between views
 KINDS = {"gmm, nearest view": "gmm", "gmm, between views": "gmm", "kde, between views": "kde"}
 TEXT = f"""A ball of {SIZE} × {SIZE} pixels, α = {ALPHA:g}, where each point takes the lobes of the
 nearest stored view, as in the thesis, or where lobes are interpolated between two views. Its
@@ -24,28 +30,28 @@ kernels have a closed form at every view; ours are stored and interpolated, too.
 
 @in_turn
 def run(sources, report):
-    """The pictures, and the claims on their edges."""
+    """Check the claims on the edges between stored views of lobes, and return their section."""
     import mitsuba as mi
 
     use_variant()
     name, file = next(iter(find_probes(sources).items()))
     light = mi.load_dict(describe_environment(file), parallel=False)
-    bsdf = material(ALPHA)
+    bsdf = make_ward_bsdf(ALPHA)
     made = find_scene("ball")(bsdf, (SIZE, SIZE))
-    halves, scene = truth(made, light)
+    halves, scene = render_reference(made, light)
     report(1, 2)
     reference, seen = np.mean(halves, axis=0), find_material_mask(scene, bsdf)
     pictures, views = {}, None
     for kind, method in KINDS.items():
         integrator = mi.load_dict({"type": "filtered_environment", "method": method})
         lobes = integrator.shading.fit_lobes(bsdf)
-        views = nearest(scene, lobes.step) if views is None else views
+        views = find_nearest_views(scene, lobes.step) if views is None else views
         if "nearest" in kind:
-            lobes.find_surrounding_views = find_nearest_view(lobes.find_surrounding_views)
+            lobes.find_surrounding_views = select_nearest_view(lobes.find_surrounding_views)
         integrator.shading.lobes.make = lambda bsdf, lobes=lobes: lobes
-        pictures[kind] = render(made, light, integrator)[0]
-    psnrs = {kind: decibels(reference, p, seen)[0] for kind, p in pictures.items()}
-    jumps = {kind: jump(p - reference, views, seen) for kind, p in pictures.items()}
+        pictures[kind] = render_scene(made, light, integrator)[0]
+    psnrs = {kind: compute_psnr(reference, p, seen)[0] for kind, p in pictures.items()}
+    jumps = {kind: measure_view_jumps(p - reference, views, seen) for kind, p in pictures.items()}
     blocks, _, kernels = jumps.values()
     figures = [f"{jumps[kind]:.1f} times, {psnrs[kind]:.1f} dB" for kind in KINDS]
     claims = [
@@ -54,7 +60,7 @@ def run(sources, report):
             "9.3",
             "a drawing",
             f"from pixel to pixel the error changes {figures[0]} where the view changes",
-            verdict(blocks > JUMP),
+            to_verdict(blocks > JUMP),
             f"Times as much as within a view; confirmed above {JUMP:g}. Interpolated, it changes "
             f"{figures[1]}.",
         ),
@@ -63,16 +69,16 @@ def run(sources, report):
             "9.3",
             "a drawing",
             f"the error changes {figures[2]}",
-            verdict(kernels < JUMP),
+            to_verdict(kernels < JUMP),
         ),
     ]
     caption = f"In {name}, from the left: the truth; {'; '.join(KINDS)}."
-    picture = Picture("lobe_views", draw([reference, *pictures.values()]), caption)
+    picture = Picture("lobe_views", draw_balls([reference, *pictures.values()]), caption)
     return Section("Between views", TEXT, claims, pictures=[picture])
 
 
-def find_nearest_view(find_surrounding_views):
-    """A function like `ViewedLobes.find_surrounding_views`, which finds only the nearest view."""
+def select_nearest_view(find_surrounding_views):
+    """Return a function like `find_surrounding_views` that gives all weight to the nearest view."""
     import drjit as dr
 
     def found(wo):
@@ -82,8 +88,11 @@ def find_nearest_view(find_surrounding_views):
     return found
 
 
-def nearest(scene, step):
-    """The number (SIZE, SIZE) of the nearest stored view at each pixel; views are `step` apart."""
+def find_nearest_views(scene, step):
+    """Return the number of the nearest stored view at each pixel (SIZE, SIZE).
+
+    Stored views are `step` apart [radians].
+    """
     import mitsuba as mi
 
     place = (np.mgrid[:SIZE, :SIZE].reshape(2, -1) + 0.5) / SIZE
@@ -93,10 +102,12 @@ def nearest(scene, step):
     return np.round(np.arccos(cos.clip(-1, 1)) / step).reshape(SIZE, SIZE)
 
 
-def jump(error, views, seen):
-    """The mean change of an error (height, width, 3) from a pixel to the next where the view
-    changes, over that where it does not. Pairs count alike by their place on the ball: each change
-    is compared to those of the pixels beside it."""
+def measure_view_jumps(error, views, seen):
+    """Return the change of an error between pixels where the view changes, over that elsewhere.
+
+    `error` is (height, width, 3). Each change is compared with those of pixels beside it, so that
+    all places on the ball count alike.
+    """
     error = error.mean(axis=-1)
     changed, kept = [], []
     for axis in (0, 1):
@@ -110,9 +121,9 @@ def jump(error, views, seen):
     return float(np.concatenate(changed).mean() / np.concatenate(kept).mean())
 
 
-def draw(pictures):
-    """The balls in a row."""
-    drawn = figure(9, 2.4)
+def draw_balls(pictures):
+    """Draw the pictures of balls in a row."""
+    drawn = make_figure(9, 2.4)
     for axes, pixels in zip(drawn.subplots(1, len(pictures)), pictures, strict=True):
         axes.imshow(to_srgb(pixels))
         axes.axis("off")

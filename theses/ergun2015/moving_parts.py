@@ -1,18 +1,25 @@
-"""An object that moves: the time to update its parts, and pictures by its parts and triangles.
+"""Measures how fast the convex parts of a moving object are updated, and compares its pictures.
 
-The thesis claims it, and shows no scene that moves.
+The thesis claims that this is fast, and shows no scene that moves.
 """
 
 import math
 
 import numpy as np
-from brdfkit.theses.ergun2015.convex_study import GREY, NO_COACD, SETTING, has_coacd, shown, swept
+from brdfkit.theses.ergun2015.convex_study import (
+    GREY,
+    NO_COACD,
+    SETTING,
+    can_decompose,
+    make_swept_study,
+    to_screen_values,
+)
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.images.errors.psnr import psnr
-from brdfkit.theses.claims import NOT_RUN, Claim, measure_cpu_seconds, verdict
-from brdfkit.theses.drawing import figure
+from brdfkit.theses.claims import NOT_RUN, Claim, measure_cpu_seconds, to_verdict
+from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section
 
 SECONDS = 30
@@ -28,20 +35,20 @@ TEXT = f"""A rigid motion changes one transform and a small tree. {SETTING}"""
 
 @in_turn
 def run(sources, report):
-    """The times, the frames, and the claim."""
+    """Check the claims on the time to move convex parts; return their section of the page."""
     use_variant()
-    if not has_coacd():
+    if not can_decompose():
         return Section(TITLE, TEXT, [Claim(*CLAIM, "", NOT_RUN, NO_COACD)])
-    name, study = swept(sources)
-    seconds = update_times(study)
+    name, study = make_swept_study(sources)
+    seconds = measure_update_times(study)
     report(1, 2)
-    drawn, errors = frames(study)
+    drawn, errors = draw_frames(study)
     parts, triangles, instance = seconds.values()
     claim = Claim(
         *CLAIM,
         f"{1e3 * parts:.1f} ms, {triangles / parts:.0f} times as fast as the tree over triangles, "
         f"{instance / parts:.1f} times as fast as a Mitsuba instance",
-        verdict(parts < triangles),
+        to_verdict(parts < triangles),
         f"Seconds of CPU, the median of {MOVES} motions of {name}: {len(study.faces):,} triangles, "
         f"{len(study.convex.hulls)} parts. An instance moves with its own tree as it is, too.",
     )
@@ -52,51 +59,57 @@ def run(sources, report):
     return Section(TITLE, TEXT, [claim], pictures=[Picture("moving_parts", drawn, caption)])
 
 
-def update_times(study):
-    """Seconds of CPU for a rigid motion: of the parts; of Mitsuba's tree over the triangles; and
-    of its small tree over instances."""
+def measure_update_times(study):
+    """Return the CPU seconds of a rigid motion for convex parts and two rivals.
+
+    The rivals are Mitsuba's tree over the triangles and its small tree over instances.
+    """
     import mitsuba as mi
 
-    mesh = mi.load_dict({"type": "scene", "mesh": plain_mesh(study)}, parallel=False)
-    group = {"type": "shapegroup", "mesh": plain_mesh(study)}
+    mesh = mi.load_dict({"type": "scene", "mesh": make_plain_mesh(study)}, parallel=False)
+    group = {"type": "shapegroup", "mesh": make_plain_mesh(study)}
     instance = {"type": "instance", "group": {"type": "ref", "id": "group"}}
     entries = {"type": "scene", "group": group, "instance": instance}
     instance = mi.load_dict(entries, parallel=False)
     at = mi.ScalarTransform4f
     turns = [at().rotate([0, 0, 1], 360 * i / MOVES) for i in range(MOVES)]
     matrices = [np.array(turn.matrix) for turn in turns]
-    moved = [placed(study.points, matrix) for matrix in matrices]
+    moved = [move_points(study.points, matrix) for matrix in matrices]
     return {
-        "parts": median_seconds(lambda turn: study.convex.move("mesh", turn), matrices),
-        "triangles": median_seconds(update(mesh, "mesh.vertex_positions", mi.Float), moved),
-        "instance": median_seconds(update(instance, "instance.to_world", mi.Transform4f), turns),
+        "parts": measure_median_seconds(lambda turn: study.convex.move("mesh", turn), matrices),
+        "triangles": measure_median_seconds(
+            make_updater(mesh, "mesh.vertex_positions", mi.Float), moved
+        ),
+        "instance": measure_median_seconds(
+            make_updater(instance, "instance.to_world", mi.Transform4f), turns
+        ),
     }
 
 
-def frames(study):
-    """A figure of a mesh that jumps and turns; the PSNR [dB] of each frame."""
+def draw_frames(study):
+    """Draw frames of a mesh that jumps and turns; return the figure and each frame's PSNR [dB]."""
     import mitsuba as mi
 
     parameters = mi.traverse(study.scene)
     key = next(key for key in parameters.keys() if key.endswith("vertex_positions"))  # noqa: SIM118
-    drawn, errors = figure(8, 2.8), []
+    drawn, errors = make_figure(8, 2.8), []
     grid = drawn.subplots(2, FRAMES)
     for column, phase in enumerate(np.arange(FRAMES) / FRAMES):
         up = mi.ScalarTransform4f().translate([0, 0, 0.6 * math.sin(math.pi * phase)])
         matrix = np.array(up.rotate([0, 0, 1], 360 * phase).matrix)
-        parameters[key] = mi.Float(placed(study.points, matrix))
-        parameters.update()  # for what the camera sees
+        parameters[key] = mi.Float(move_points(study.points, matrix))
+        parameters.update()  # the camera sees the triangles, whichever shadows are rendered
         study.convex.move("mesh", matrix)
         pair = study.render(study.convex), study.render(None, study.scene)
         errors.append(psnr(pair[1], pair[0]))
         for axes, picture in zip(grid[:, column], pair, strict=True):
-            axes.imshow(shown(picture, pair[1]))
+            axes.imshow(to_screen_values(picture, pair[1]))
             axes.axis("off")
     return drawn, errors
 
 
-def plain_mesh(study):
-    """The mesh by itself, without normals."""
+def make_plain_mesh(study):
+    """Return the mesh alone, without normals, which an update would compute again."""
     import mitsuba as mi
 
     properties = mi.Properties()
@@ -109,13 +122,13 @@ def plain_mesh(study):
     return mesh
 
 
-def placed(points, matrix):
-    """Points (n, 3) moved by a matrix (4, 4), as one array of single precision."""
+def move_points(points, matrix):
+    """Return points (n, 3) moved by a matrix (4, 4), as one array of single precision."""
     return (points @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32).ravel()
 
 
-def update(scene, key, kind):
-    """A function that sets a parameter of a scene to a value and waits until rays see it."""
+def make_updater(scene, key, kind):
+    """Return a function that sets a parameter of a scene and waits until rays see it."""
     import drjit as dr
     import mitsuba as mi
 
@@ -130,6 +143,6 @@ def update(scene, key, kind):
     return set_to
 
 
-def median_seconds(function, values):
-    """Median seconds of CPU of a call of `function` with each of the `values`."""
+def measure_median_seconds(function, values):
+    """Return the median CPU seconds of a call of `function` with each of the `values`."""
     return float(np.median([measure_cpu_seconds(function, value) for value in values]))

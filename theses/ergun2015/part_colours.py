@@ -1,4 +1,4 @@
-"""A picture of a mesh's convex parts, each in a colour of its own."""
+"""Renders a mesh's convex parts, each in a colour of its own."""
 
 import colorsys
 
@@ -10,20 +10,20 @@ from brdfkit.core.colours import to_srgb
 from brdfkit.rendering.scenes._meshes import make_mesh
 from brdfkit.rendering.scenes._studio import make_studio
 
-GOLDEN = 0.618034  # of the way around the colours, from a part to the next
+GOLDEN = 0.618034  # of the colour circle between the hues of a part and the next
 
 
-def coloured(study):
-    """The parts of a `Study` (SIZE, SIZE, 3) in sRGB, in the light of brdfkit's scenes."""
+def render_coloured_parts(study):
+    """Render the parts of a `Study` (SIZE, SIZE, 3) in sRGB, in the light of brdfkit's scenes."""
     import mitsuba as mi
 
-    parts = {f"part_{k}": part(hull, k) for k, hull in enumerate(study.convex.hulls)}
+    parts = {f"part_{k}": make_part_mesh(hull, k) for k, hull in enumerate(study.convex.hulls)}
     scene = mi.load_dict(make_studio((SIZE, SIZE)) | parts, parallel=False)
     return to_srgb(np.array(mi.render(scene, spp=SPP, seed=0), float)[..., :3])
 
 
-def part(hull, number):
-    """The mesh of a `Hull` with flat faces, in the colour of its number."""
+def make_part_mesh(hull, number):
+    """Return the mesh of a convex hull with flat faces, in the colour of its number."""
     points = hull.vertices
     corners = points[ConvexHull(points).simplices]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

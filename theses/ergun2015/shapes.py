@@ -1,4 +1,4 @@
-"""Shapes to light: meshes that lie beside the measurements, and a torus by code."""
+"""Loads the meshes of the claims, which lie beside the measurements, and makes a torus."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -26,13 +26,16 @@ MESHES = (
     "teapot",
     "woody",
 )
-COLUMNS = 97  # of the torus's profile
+COLUMNS = 97  # points of the torus's profile
 
 
 @dataclass(frozen=True)
 class Shape:
-    """`build`: a function of (BSDF, size) that makes the dictionary of a scene, as those of
-    `brdfkit.rendering.scenes`; `points` (n, 3), `faces` (m, 3): its triangles as the file has them.
+    """A mesh, and a function that places it in a scene.
+
+    build : a function of a BSDF and a picture size that returns a scene's dictionary.
+    points : the vertices (n, 3) as the file has them.
+    faces : the vertex numbers (m, 3) of the triangles.
     """
 
     build: Callable
@@ -41,20 +44,20 @@ class Shape:
 
 
 def find_meshes(sources, names=MESHES):
-    """Name → `Shape` of the meshes, models/NAME.obj.xz; where one is missing, a torus for all."""
-    files = {name: sources.find_beside(file_of(name)) for name in names}
+    """Return a `Shape` by name for each mesh, models/NAME.obj.xz, or a torus if one is missing."""
+    files = {name: sources.find_beside(find_mesh_path(name)) for name in names}
     if not all(files.values()):
-        return {"torus": ring()}
-    return {name: unpacked(file) for name, file in files.items()}
+        return {"torus": make_torus_shape()}
+    return {name: load_shape(file) for name, file in files.items()}
 
 
-def file_of(name):
-    """Where a mesh is looked for."""
+def find_mesh_path(name):
+    """Return the path of a mesh beside the folder of measurements."""
     return f"models/{name}.obj.xz"
 
 
-def unpacked(file):
-    """The `Shape` of a compressed mesh."""
+def load_shape(file):
+    """Load a `Shape` from a compressed mesh file."""
     with TemporaryDirectory() as folder:
         plain = Path(folder) / file.stem
         plain.write_bytes(read_bytes(file))
@@ -65,21 +68,23 @@ def unpacked(file):
     )
 
 
-def ring():
-    """The `Shape` of the torus."""
+def make_torus_shape():
+    """Return the `Shape` of a torus, which needs no file."""
     import mitsuba as mi
 
-    buffers = mi.traverse(torus({"type": "diffuse"}, (1, 1))["mesh"])
+    buffers = mi.traverse(make_torus_scene({"type": "diffuse"}, (1, 1))["mesh"])
     points, faces = (buffers[name] for name in ("vertex_positions", "faces"))
-    return Shape(torus, np.array(points, float).reshape(-1, 3), np.array(faces).reshape(-1, 3))
+    return Shape(
+        make_torus_scene, np.array(points, float).reshape(-1, 3), np.array(faces).reshape(-1, 3)
+    )
 
 
-def torus(bsdf, size):
-    """A ring of the ball's size, leaning towards the camera."""
+def make_torus_scene(bsdf, size):
+    """Return the scene of a torus of the ball's size, leaning towards the camera."""
     phi = np.linspace(0, 2 * np.pi, COLUMNS)
-    phi[-1] = 0  # the profile closes
+    phi[-1] = 0  # exactly the first angle, so that the profile closes
     points, normals = revolve_profile(0.68 + 0.32 * np.cos(phi), 0.32 * np.sin(phi))
-    points = points.round(9)  # it closes around the axis, too
+    points = points.round(9)  # equal points at both ends of a turn, so that the mesh closes
     lean = np.array([[1, 0, 0], [0, 0.64, 0.768375], [0, -0.768375, 0.64]])
     points = points @ lean + [0, 0, 1]
     return make_studio(size) | {"mesh": make_grid_mesh(points, normals @ lean, bsdf)}

@@ -1,16 +1,19 @@
-"""Direct light without shadows, by samples: what `filtered_environment` approximates."""
+"""Renders direct light without shadows by samples, which `filtered_environment` approximates."""
 
 
-def unshadowed(samples, seed):
-    """An integrator for `samples` directions of the light and as many of the BSDF per ray, by
-    multiple importance sampling. Equal seeds give equal pictures."""
+def make_unshadowed_integrator(samples, seed):
+    """Return an integrator that samples direct light without shadows.
+
+    Each ray takes `samples` directions of the light and as many of the BSDF, by multiple importance
+    sampling. Equal seeds give equal pictures.
+    """
     import mitsuba as mi
 
-    return define(mi, samples, seed)(mi.Properties())
+    return define_integrator(mi, samples, seed)(mi.Properties())
 
 
-def define(mi, samples, seed):
-    """The class of the integrator for the current variant."""
+def define_integrator(mi, samples, seed):
+    """Return the class of the integrator for the current variant."""
     import drjit as dr
 
     class Unshadowed(mi.SamplingIntegrator):
@@ -21,12 +24,12 @@ def define(mi, samples, seed):
             numbers = mi.load_dict({"type": "independent"})
             numbers.seed(seed, dr.width(ray))
 
-            def one(i, total, numbers):
-                # By the light
+            def add_sample(i, total, numbers):
+                # Sample the light
                 ds, weight = light.sample_direction(si, numbers.next_2d(), hit)
                 value, pdf = bsdf.eval_pdf(context, si, si.to_local(ds.d), hit)
                 by_light = value * weight * balance(ds.pdf, pdf)
-                # By the BSDF
+                # Sample the BSDF
                 drawn, weight = bsdf.sample(context, si, numbers.next_1d(), numbers.next_2d(), hit)
                 ds = mi.DirectionSample3f()
                 ds.d = si.to_world(drawn.wo)
@@ -39,7 +42,7 @@ def define(mi, samples, seed):
             _, total, _ = dr.while_loop(
                 (mi.UInt32(0), mi.Color3f(0), numbers),
                 lambda i, total, numbers: hit & (i < samples),
-                one,
+                add_sample,
             )
             behind = light.eval(si, active & ~hit)
             return dr.select(hit, total / samples, behind), active, []

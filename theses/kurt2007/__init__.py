@@ -1,4 +1,4 @@
-"""Kurt (2007): BRDF models fitted to CUReT, Cornell and MERL, and a polynomial of its own."""
+"""Kurt (2007): BRDF models fitted to CUReT, Cornell and MERL, and a new polynomial BRDF model."""
 
 TITLE = "Kurt 2007, reproduced"
 INTRODUCTION = """M. Kurt, *A new illumination model in computer graphics*, MSc thesis, Ege
@@ -20,7 +20,7 @@ E is eq. 5.13: cosine-weighted, w = sin θ_i, squares summed over the channels, 
 confirmed* where they do not, or where the thesis's own table or a proof speaks against it, *not
 stated* where the thesis gives no figure to compare ours to, *not run* where a file is missing."""
 
-# The measured files, and where they come from
+# The measured files, and where to get each of them
 NEEDS = {
     "curet/abrdf.dat": "abrdf.dat of CUReT (brdfkit data list curet)",
     "curet/table.txt": "the table of directions of CUReT (brdfkit data list curet) as table.txt",

@@ -1,21 +1,24 @@
-"""Appendix 3: the parameters of seven models on 52 samples, 364 rows, beside our search."""
+"""Reproduces Appendix 3, printed parameters of seven BRDF models fitted to 52 samples of CUReT.
+
+The printed fits, 364 rows, are compared with brdfkit's fits to the same samples.
+"""
 
 import csv
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from brdfkit.theses.kurt2007.curet import NUMBERS, lobes_at, sample
+from brdfkit.theses.kurt2007.curet import NUMBERS, evaluate_lobes, load_sample
 from brdfkit.theses.kurt2007.printed import SEVEN
 from scipy.optimize import nnls
 
-from brdfkit.theses.claims import NOT_RUN, Claim, verdict
+from brdfkit.theses.claims import NOT_RUN, Claim, to_verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 45
 FILE = "curet_fits.csv"
-SLACK = 1.001
-# The thesis's p₀, p₁, p₂ by the names of ours
+SLACK = 1.001  # our error over the least one at printed shapes, up to which a search is as good
+# Our names of the shape parameters that the thesis calls p₀, p₁, p₂
 SHAPES = {
     "ashikhmin_shirley": ("f0", "exponent_u"),
     "blinn_phong": ("exponent",),
@@ -35,7 +38,17 @@ negative, and so is one with an illegible error."""
 
 @dataclass(frozen=True)
 class Row:
-    """A printed fit; `lobes` (n, lobes): ours at the printed shape parameters."""
+    """A printed fit of one model to one sample of CUReT.
+
+    number : the number of the sample.
+    model : the label of brdfkit's model.
+    shapes : the printed shape parameters by name.
+    weights : the printed weights (lobes, 3) of the model's lobes.
+    error : the printed error E, eq. 5.13 of the thesis.
+    data : the measured sample.
+    lobes : the values (n, lobes) of brdfkit's model at the printed shape parameters, without
+        weights.
+    """
 
     number: int
     model: str
@@ -46,83 +59,93 @@ class Row:
     lobes: Any
 
     @property
-    def usable(self):
-        """Coefficients below 0 were printed as 0, beside the error of the fit that had them."""
+    def is_usable(self):
+        """Whether the row's weights can be compared.
+
+        The thesis printed weights below 0 as 0, beside the error of the fit that had them.
+        """
         return bool((self.weights != 0).all()) and np.isfinite(self.error)
 
-    def least_error(self):
-        """E with the best weights ≥ 0, and whether the best of any sign are below 0."""
-        columns, values = self.data.rooted(self.lobes)
-        best = self.data.error_of(self.lobes @ nnls(columns, values)[0])
-        return best, bool((self.data.solve(self.lobes) < 0).any())
+    def compute_least_error(self):
+        """Return the thesis's error E for the best weights ≥ 0, and whether any sign is better."""
+        columns, values = self.data.weigh_by_root(self.lobes)
+        best = self.data.compute_value_error(self.lobes @ nnls(columns, values)[0])
+        return best, bool((self.data.solve_coefficients(self.lobes) < 0).any())
 
 
 def read_rows(sources):
-    """Every `Row`, or None where the table is not at hand."""
+    """Return the transcribed rows of the appendix, or None where the table is missing."""
     path = sources.table(FILE)
     if path is None:
         return None
     with path.open(encoding="utf-8", newline="") as file:
-        return [_row(line, sources) for line in csv.DictReader(file)]
+        return [_read_row(line, sources) for line in csv.DictReader(file)]
 
 
-def _row(line, sources):
+def _read_row(line, sources):
     model, number = line["model"].replace("-", "_"), int(line["curet_sample"])
     shapes = {name: float(line[f"p{i}"]) for i, name in enumerate(SHAPES[model])}
     columns = ("kd",) if model == "oren_nayar" else ("kd", "ks")
     weights = np.array([[float(line[f"{k}_{c}"]) for c in "rgb"] for k in columns])
-    data = sample(sources, number)
-    lobes = lobes_at(model, shapes, data.wi, data.wo)
+    data = load_sample(sources, number)
+    lobes = evaluate_lobes(model, shapes, data.wi, data.wo)
     return Row(number, model, shapes, weights, float(line["l2_error"] or "nan"), data, lobes)
 
 
-def scales(rows):
-    """Measured over printed albedo, and our E to the sum of channels, by sample.
+def find_scales(rows):
+    """Return two factors for each sample, by which our measurements differ from the thesis's.
 
-    Both of Oren-Nayar, whose one coefficient is the albedo.
+    The first is measured over printed albedo. The second turns the error of the mean of three
+    channels to that of their sum. Both are of Oren-Nayar's model, whose only weight is the albedo.
     """
     found = {}
     for row in rows:
         if row.model == "oren_nayar":
             k_d = row.weights[0]
             found[row.number] = (
-                row.data.solve(row.lobes)[0] / k_d.mean(),
+                row.data.solve_coefficients(row.lobes)[0] / k_d.mean(),
                 np.linalg.norm(k_d) / k_d.mean(),
             )
     return found
 
 
 def run(sources, report):
-    """Claims on the 364 rows; not run without the table."""
+    """Check the claims on the 364 printed fits of Appendix 3; return their section of the page."""
     rows = read_rows(sources)
     title = "Appendix 3: 364 printed fits"
     if rows is None:
         why = f"{sources.tables / FILE}, a transcription of the appendix, is not at hand."
         claim = Claim("The 364 fits of the appendix.", WHERE, "364 rows", "", NOT_RUN, why)
         return Section(title, TEXT, [claim])
-    factors, excess, negative, ratios, specular = scales(rows), [], [], [], {n: [] for n in SHAPES}
+    factors, excess, negative, ratios, specular = (
+        find_scales(rows),
+        [],
+        [],
+        [],
+        {n: [] for n in SHAPES},
+    )
     for done, row in enumerate(rows):
-        least, below = row.least_error()
-        excess.append(row.data.error(row.model) / least)
+        least, below = row.compute_least_error()
+        excess.append(row.data.compute_error(row.model) / least)
         negative.append(below)
-        if row.usable:
+        if row.is_usable:
             scale, channels = factors[row.number]
             model = scale * (row.lobes @ row.weights.mean(axis=1))
-            ratios.append(row.data.error_of(model) / scale * channels / row.error)
+            ratios.append(row.data.compute_value_error(model) / scale * channels / row.error)
             if len(row.weights) > 1:
-                k_s = row.data.solve(row.lobes)[1] / scale
+                k_s = row.data.solve_coefficients(row.lobes)[1] / scale
                 specular[row.model].append(k_s / row.weights[1].mean())
         report(done + 1, len(rows))
     medians = {name: np.median(found) for name, found in specular.items() if found}
     claims = [
-        _search(rows, np.array(excess), np.array(negative)),
-        _errors(rows, np.array(ratios)),
-        _specular(medians),
+        _claim_search_quality(rows, np.array(excess), np.array(negative)),
+        _claim_printed_errors(rows, np.array(ratios)),
+        _claim_specular_weights(medians),
     ]
-    return Section(title, TEXT, claims, [_table(rows, factors)])
+    return Section(title, TEXT, claims, [_make_table(rows, factors)])
 
 
-def _search(rows, excess, negative):
+def _claim_search_quality(rows, excess, negative):
     good = excess <= SLACK
     worst = rows[excess.argmax()]
     return Claim(
@@ -130,7 +153,7 @@ def _search(rows, excess, negative):
         WHERE,
         f"{len(rows)} rows",
         f"{good.sum()} of {len(rows)} within 0.1 %; worst {excess.max() - 1:+.3%}",
-        verdict(good.all()),
+        to_verdict(good.all()),
         f"Worst: {worst.model} on sample {worst.number}. E falls by {1 - np.median(excess):.2%} "
         f"in the median, by {1 - excess.min():.0%} at most. In {negative.sum()} rows the best "
         "weights of any sign include one below 0, which the thesis let be and ours do not: there "
@@ -138,8 +161,8 @@ def _search(rows, excess, negative):
     )
 
 
-def _errors(rows, ratios):
-    usable = [row for row in rows if row.usable]
+def _claim_printed_errors(rows, ratios):
+    usable = [row for row in rows if row.is_usable]
     theirs = np.array([row.error for row in usable])
     scatter, correlation = np.log(ratios).std(), np.corrcoef(ratios * theirs, theirs)[0, 1]
     return Claim(
@@ -148,34 +171,34 @@ def _errors(rows, ratios):
         "ratio 1",
         f"median ratio {np.median(ratios):.3f}, scatter {scatter:.3f}, "
         f"correlation {correlation:.3f} on {len(ratios)} rows",
-        verdict(abs(np.median(ratios) - 1) <= 0.05 and scatter <= 0.15 and correlation >= 0.97),
+        to_verdict(abs(np.median(ratios) - 1) <= 0.05 and scatter <= 0.15 and correlation >= 0.97),
         "Tolerance: median within 5 %, standard deviation of the logarithm at most 0.15, "
         "correlation at least 0.97. The convention of eq. 5.13 was found so; the scatter is mostly "
         "one factor per material, larger where it is coloured.",
     )
 
 
-def _specular(medians):
+def _claim_specular_weights(medians):
     names = {label: name for name, label in SEVEN.items()}
     return Claim(
         "The printed k_s are the best at the printed shapes.",
         WHERE,
         "ratio 1",
         ", ".join(f"{names[n]} {m:.2f}" for n, m in medians.items()),
-        verdict(all(abs(m - 1) <= 0.03 for m in medians.values())),
+        to_verdict(all(abs(m - 1) <= 0.03 for m in medians.values())),
         "Median by model of k_s by least squares over the printed one; tolerance 3 %. This holds "
         "the constant before each specular term, as 1/π in eq. 3.28.",
     )
 
 
-def _table(rows, factors):
+def _make_table(rows, factors):
     lines = []
     for name, label in SEVEN.items():
         of_model = [row for row in rows if row.model == label and np.isfinite(row.error)]
         theirs = np.array([row.error for row in of_model])
         ours = np.array(
             [
-                row.data.error(label) / factors[row.number][0] * factors[row.number][1]
+                row.data.compute_error(label) / factors[row.number][0] * factors[row.number][1]
                 for row in of_model
             ]
         )

@@ -1,4 +1,8 @@
-"""The 52 isotropic samples of CUReT: their fits, and the thesis's error of any of them."""
+"""Loads the 52 isotropic samples of CUReT, fits models to them, and computes the thesis's error.
+
+The error E, eq. 5.13, is the root of a weighted sum of squared differences between model and
+measurement, each times the cosine of the incident direction.
+"""
 
 from dataclasses import replace
 from functools import cache
@@ -15,24 +19,24 @@ from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.regression import losses
 
 
-def error(model, samples):
-    """E of a model with values at `Samples`, squares summed over the channels."""
+def compute_error(model, samples):
+    """Return the thesis's error E of a model at measured `Samples`, summed over the channels."""
     plain, squared = compute_lobe_values(model, samples.wi, samples.wo)
     weights = to_weight_matrix(model)
-    return error_of(plain @ weights + squared @ weights**2, samples)
+    return compute_value_error(plain @ weights + squared @ weights**2, samples)
 
 
-def error_of(values, samples):
-    """E of values (n, channels) of a BRDF."""
+def compute_value_error(values, samples):
+    """Return the thesis's error E of BRDF values (n, channels) at measured `Samples`."""
     squares = ((values - samples.values) * samples.wi[:, 2:]) ** 2
     return float(np.sqrt(losses.named["kurt"].importance(samples) @ squares.sum(axis=1)))
 
 
-# Ribbed paper, straw, corduroy, linen, cotton, corn husk, two woods and bark, as the thesis says
+# Samples that the thesis leaves out: papers, straw, cloths, corn husk, woods and bark
 ANISOTROPIC = 38, 40, 42, 44, 46, 51, 54, 56, 58
 NUMBERS = tuple(n for n in range(1, 62) if n not in ANISOTROPIC)
-# The thesis's widths are at most 0.5; its polynomials are fitted by bisquare without a cosine, and
-# Koenderink's basis by plain least squares
+# The thesis's lobe widths are at most 0.5; it fits polynomials by bisquare weights without cosines,
+# and Koenderink's basis by plain least squares
 BOUNDS = {name: {"alpha_u": (0.001, 0.5)} for name in ("ward", "ward_duer")}
 PLAIN = replace(losses.named.by_sample["plain"], name="plain sum", measure="samples")
 BISQUARE, OLS, WLS = (PLAIN, "bisquare"), (PLAIN, None), ("kurt", None)
@@ -40,7 +44,7 @@ METHODS = {"bisquare": BISQUARE, "least squares": OLS, "weighted by eq. 5.13": W
 
 
 class Sample:
-    """A sample of CUReT: the 189 values below 80°, and the weights of eq. 5.13."""
+    """A sample of CUReT, with its 189 values at angles below 80° and the weights of eq. 5.13."""
 
     def __init__(self, sources, number):
         self.data = load(f"{sources.path('curet/abrdf.dat')}#{number}")
@@ -51,54 +55,59 @@ class Sample:
         self.fits = {}
 
     def fit(self, label, how=WLS):
-        """The `Fit` of a model; `how`: the loss and the robust weight."""
+        """Return the `Fit` of a model, made once; `how` holds the loss and the robust weight."""
         if (label, how) not in self.fits:
             loss, robust = how
             found = fit(self.data, label, loss=loss, robust=robust, bounds=BOUNDS.get(label))
             self.fits[label, how] = found
         return self.fits[label, how]
 
-    def error(self, label, how=WLS):
-        """E of a fit."""
-        return error(self.fit(label, how).model, self.samples)
+    def compute_error(self, label, how=WLS):
+        """Return the thesis's error E of a model's fit to the sample."""
+        return compute_error(self.fit(label, how).model, self.samples)
 
-    def error_of(self, values):
-        """E of values (n,) of a BRDF."""
-        return error_of(values[:, None], self.samples)
+    def compute_value_error(self, values):
+        """Return the thesis's error E of BRDF values (n,) at the sample's directions."""
+        return compute_value_error(values[:, None], self.samples)
 
-    def rooted(self, columns):
-        """Columns (n, k) and values as least squares by E wants them."""
+    def weigh_by_root(self, columns):
+        """Return columns (n, k) and the measured values, times the roots of the thesis's weights.
+
+        The squared differences of these make up the thesis's error E.
+        """
         root = np.sqrt(self.weights) * self.cosines
         return columns * root[:, None], self.values * root
 
-    def solve(self, columns):
-        """The best coefficients (k,) of columns (n, k), of any sign as in the thesis."""
-        return np.linalg.lstsq(*self.rooted(columns), rcond=None)[0]
+    def solve_coefficients(self, columns):
+        """Return the coefficients (k,) of columns (n, k) with the thesis's least error E, of any
+        sign.
+        """
+        return np.linalg.lstsq(*self.weigh_by_root(columns), rcond=None)[0]
 
 
 @cache
-def sample(sources, number):
-    """The `Sample` of a number; its fits are kept."""
+def load_sample(sources, number):
+    """Return the `Sample` of a number; equal calls share it and its fits."""
     return Sample(sources, number)
 
 
-def samples(sources):
-    """The 52 samples by number."""
-    return {number: sample(sources, number) for number in NUMBERS}
+def load_samples(sources):
+    """Return the 52 isotropic samples by number."""
+    return {number: load_sample(sources, number) for number in NUMBERS}
 
 
-def errors(sources, label, how=WLS, report=None):
-    """E (52,) of a model's fits to all samples."""
+def compute_errors(sources, label, how=WLS, report=None):
+    """Return the thesis's error E (52,) of a model's fits to all samples."""
     found = []
-    for done, data in enumerate(samples(sources).values()):
-        found.append(data.error(label, how))
+    for done, data in enumerate(load_samples(sources).values()):
+        found.append(data.compute_error(label, how))
         if report:
             report(done + 1, len(NUMBERS))
     return np.array(found)
 
 
-def lobes_at(name, shapes, wi, wo):
-    """Lobes (n, lobes) of a model at shape parameters that may lie beyond our bounds.
+def evaluate_lobes(name, shapes, wi, wo):
+    """Return the lobes (n, lobes) of a model, for shape parameters beyond brdfkit's bounds as well.
 
     The thesis lets exponents be 0.
     """
@@ -108,10 +117,10 @@ def lobes_at(name, shapes, wi, wo):
     return np.stack([np.broadcast_to(v, len(np.asarray(wi.x))) for v in values], axis=1)
 
 
-def scale(data, printed):
-    """The factor from our E of a sample to the thesis's, which sums over three channels.
+def find_scale(data, printed):
+    """Return the factor from our error of a sample to the thesis's, summed over three channels.
 
-    The median over the seven models of printed / ours; `printed`: name → error.
+    It is the median over the seven models of printed / ours; `printed` maps names to errors.
     """
     names = [n for n in SEVEN if np.isfinite(printed[n])]
-    return np.median([printed[n] / data.error(SEVEN[n]) for n in names])
+    return np.median([printed[n] / data.compute_error(SEVEN[n]) for n in names])

@@ -1,17 +1,17 @@
-"""Chapter 3: which models keep energy, as the text says, by their albedos."""
+"""Checks which models conserve energy as the thesis says in chapter 3, by their albedos."""
 
 import numpy as np
 
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.evaluating import albedo
 from brdfkit.model import labels
-from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.claims import Claim, to_verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 6
 ANGLES = 0, 30, 60, 75, 85, 89
 BLACK = {"diffuse_reflectance": 0.0, "specular_reflectance": 1.0}
-# The title in the table → the model, its shape, and where the thesis calls it plausible
+# The title in the table → the model, its shape parameters, and the thesis's equation
 SHOWN = {
     "Phong, n = 10": ("phong", {"exponent": 10.0}, "eq. 3.2"),
     "Blinn-Phong, n = 10": ("blinn_phong", {"exponent": 10.0}, "eq. 3.4"),
@@ -38,14 +38,14 @@ leaves than came."""
 
 
 def run(sources, report):
-    """The table of albedos, and claims on it."""
+    """Check the claims on the albedos of specular models; return their section of the page."""
     wi = from_angles(np.radians(ANGLES), np.zeros(len(ANGLES)))
     lines, claims = [], []
     for done, (title, (name, shapes, where)) in enumerate(SHOWN.items()):
         model = labels.model(name)
         found = np.ravel([albedo(model(**BLACK, **shapes), w).mean() for w in wi])
         lines.append((title, *(f"{a:.3f}" for a in found)))
-        holds = verdict(found.max() <= 1 + 1e-3)
+        holds = to_verdict(found.max() <= 1 + 1e-3)
         ours = f"{found.max():.3f} at {ANGLES[found.argmax()]}°"
         claims.append(Claim(SAYS[title], where, "albedo ≤ 1", ours, holds, WHY.get(title, "")))
         report(done + 1, len(SHOWN))

@@ -1,19 +1,22 @@
-"""Figure 7.1: the polynomial as a surface over its components, and what interactions are worth."""
+"""Reproduces Figure 7.1, a polynomial BRDF as a surface over its two principal components.
+
+The thesis says that the components need no interaction terms; this is tested, too.
+"""
 
 import numpy as np
-from brdfkit.theses.kurt2007.curet import PLAIN, samples
+from brdfkit.theses.kurt2007.curet import PLAIN, load_samples
 
 from brdfkit.fitting.fit import fit
 from brdfkit.materials.loading import load
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.evaluation import to_weight_matrix
-from brdfkit.theses.claims import NOT_RUN, Claim, verdict
-from brdfkit.theses.drawing import figure
+from brdfkit.theses.claims import NOT_RUN, Claim, to_verdict
+from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section, Table
 
 SECONDS = 4
 DEGREE = 5
-LIMIT = 0.12  # sr⁻¹: the figure's, below which are most samples
+LIMIT = 0.12  # sr⁻¹: the top of the figure, below which are most samples
 DEGREES = 2, 3, 4, 7
 TEXT = """Z₁ and Z₂ are the principal components of W₁ = l_x v_x + l_y v_y and W₂ = l_z v_z over
 the measured directions. The thesis shows Mystique lacquer, whose file is not at hand: this is
@@ -22,10 +25,10 @@ polynomial, f = β₀ + g(Z₁) + h(Z₂)."""
 
 
 def run(sources, report):
-    """The figure, and the claim on interactions."""
-    picture = _draw(load(sources.path("cornell/cayman.brdf")))
+    """Check the claims on the polynomial and its terms of interaction, and return their section."""
+    picture = _draw_figure(load(sources.path("cornell/cayman.brdf")))
     report(1, 3)
-    shares = _interactions(samples(sources).values())
+    shares = _compare_interactions(load_samples(sources).values())
     claims = [
         Claim(
             "f as a surface over Z₁ and Z₂, of Mystique lacquer.",
@@ -40,66 +43,79 @@ def run(sources, report):
             "7, eq. 7.5",
             "1 at every degree",
             ", ".join(f"{s:.2f} (p = {p})" for p, s in shares.items()),
-            verdict(all(s > 0.99 for s in shares.values())),
+            to_verdict(all(s > 0.99 for s in shares.values())),
             "Least E of a full polynomial of Z₁ and Z₂ over that of the sum without interactions, "
             "median of 52 samples. That two components do not correlate over the directions says "
             "nothing on the coefficient of their product.",
         ),
     ]
     return Section(
-        "Figure 7.1: the polynomial's surface", TEXT, claims, [_table(shares)], [picture]
+        "Figure 7.1: the polynomial's surface", TEXT, claims, [_make_table(shares)], [picture]
     )
 
 
-def _table(shares):
+def _make_table(shares):
     columns = "E with interactions / without", *(f"p = {p}" for p in shares)
     return Table(columns, [("median of 52", *(f"{s:.3f}" for s in shares.values()))])
 
 
-def _interactions(found):
-    """Degree → median of E with interactions over E without."""
+def _compare_interactions(found):
+    """Return by degree how much smaller the thesis's error E is with terms of interaction.
+
+    Each value is the median over samples of E with such terms over E without.
+    """
     ratios = {p: [] for p in DEGREES}
     for data in found:
-        z = _components(data.wi, data.wo, _angle(data.wi, data.wo))
+        z = _compute_components(data.wi, data.wo, _find_principal_angle(data.wi, data.wo))
         z = z / np.abs(z).max(axis=0)
         for p, list_ in ratios.items():
             powers = [(j, k) for j in range(p + 1) for k in range(p + 1 - j)]
             full = np.stack([z[:, 0] ** j * z[:, 1] ** k for j, k in powers], axis=1)
             alone = full[:, [j == 0 or k == 0 for j, k in powers]]
-            list_.append(np.divide(*(data.error_of(c @ data.solve(c)) for c in (full, alone))))
+            list_.append(
+                np.divide(
+                    *(
+                        data.compute_value_error(c @ data.solve_coefficients(c))
+                        for c in (full, alone)
+                    )
+                )
+            )
     return {p: float(np.median(r)) for p, r in ratios.items()}
 
 
-def _products(wi, wo):
+def _multiply_directions(wi, wo):
     return np.stack([(wi * wo)[:, :2].sum(axis=1), wi[:, 2] * wo[:, 2]], axis=1)
 
 
-def _angle(wi, wo):
-    """The angle [rad] of the first principal axis."""
-    _, axes = np.linalg.eigh(np.cov(_products(wi, wo).T))
+def _find_principal_angle(wi, wo):
+    """Return the angle [rad] of the first principal axis of W₁ and W₂ over pairs of directions.
+
+    W₁ = l_x v_x + l_y v_y and W₂ = l_z v_z are products of the directions' components.
+    """
+    _, axes = np.linalg.eigh(np.cov(_multiply_directions(wi, wo).T))
     return np.arctan2(axes[1, 1], axes[0, 1])
 
 
-def _components(wi, wo, angle):
+def _compute_components(wi, wo, angle):
     sine, cosine = np.sin(angle), np.cos(angle)
-    return _products(wi, wo) @ np.array([[cosine, -sine], [sine, cosine]])
+    return _multiply_directions(wi, wo) @ np.array([[cosine, -sine], [sine, cosine]])
 
 
-def _draw(data):
+def _draw_figure(data):
     from matplotlib.ticker import MaxNLocator
 
     found = fit(data, f"pca_polynomial:degree={DEGREE}", loss=PLAIN, robust="bisquare")
     shown, angle = select_samples(data, 80), found.values["angle_1_2"]
-    z, f = _components(shown.wi, shown.wo, angle), shown.values[:, 1]
+    z, f = _compute_components(shown.wi, shown.wo, angle), shown.values[:, 1]
     betas = to_weight_matrix(found.model)[:, 1]
-    drawn = figure(6.0, 4.6)
+    drawn = make_figure(6.0, 4.6)
     axes = drawn.add_subplot(projection="3d", computed_zorder=False)
     steps = [np.linspace(a, b, 33) for a, b in zip(z.min(axis=0), z.max(axis=0), strict=True)]
     grid = np.meshgrid(*steps, indexing="ij")
     surface = betas[0] + sum(
         betas[2 * k - 1] * grid[0] ** k + betas[2 * k] * grid[1] ** k for k in range(1, DEGREE + 1)
     )
-    surface = np.where(_reached(grid, angle) & (surface <= LIMIT), surface, np.nan)
+    surface = np.where(_find_reachable(grid, angle) & (surface <= LIMIT), surface, np.nan)
     low = f <= LIMIT
     axes.scatter(*z[low].T, f[low], s=3, color="#d55e00", alpha=0.6, label="samples")
     axes.plot_wireframe(
@@ -117,8 +133,11 @@ def _draw(data):
     return Picture("figure_7_1", drawn, caption)
 
 
-def _reached(grid, angle):
-    """Where a pair of directions below 80° has these components: |W₁| ≤ sin θ_i sin θ_r."""
+def _find_reachable(grid, angle):
+    """Return where on a grid of components Z₁, Z₂ some pair of directions below 80° has them.
+
+    The condition is |W₁| ≤ sin θ_i sin θ_r.
+    """
     sine, cosine = np.sin(angle), np.cos(angle)
     w1, w2 = cosine * grid[0] - sine * grid[1], sine * grid[0] + cosine * grid[1]
     return (w2 >= np.cos(np.radians(80)) ** 2) & (np.abs(w1) + w2 <= 1)

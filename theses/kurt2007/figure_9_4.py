@@ -1,18 +1,21 @@
-"""Figure 9.4: errors of eight models over 52 samples, and how often the polynomial is lowest."""
+"""Reproduces Figure 9.4, errors of eight models on 52 samples of CUReT.
+
+The thesis says that its polynomial of degree 7 has the lowest error on most of them.
+"""
 
 import numpy as np
 from brdfkit.theses.kurt2007.appendix_3 import read_rows
-from brdfkit.theses.kurt2007.curet import METHODS, NUMBERS, errors, samples, scale
+from brdfkit.theses.kurt2007.curet import METHODS, NUMBERS, compute_errors, find_scale, load_samples
 from brdfkit.theses.kurt2007.printed import SEVEN
 
-from brdfkit.theses.claims import Claim, verdict
-from brdfkit.theses.drawing import draw_curves, figure
+from brdfkit.theses.claims import Claim, to_verdict
+from brdfkit.theses.drawing import draw_curves, make_figure
 from brdfkit.theses.page import Picture, Section
 
 SECONDS = 20
 POLYNOMIAL = "pca_polynomial:degree=7"
-WON = 35  # of 52, printed
-TOLERANCE = 2
+WON = 35  # printed number of samples, of 52, on which the polynomial has the lowest error
+TOLERANCE = 2  # samples by which the number may differ
 TEXT = """The samples are sorted by the error of Cook-Torrance, as in the thesis. *Ours*: every
 model fitted here, weights ≥ 0, on the same averaged data, so that no scale is needed. *Printed*:
 the errors of the seven from Appendix 3, with our polynomial multiplied by one factor per sample,
@@ -20,31 +23,34 @@ the median of printed / ours over the seven."""
 
 
 def run(sources, report):
-    """The figure, and the count."""
-    ours = {name: errors(sources, label) for name, label in SEVEN.items()}
+    """Check the claims on the errors of eight models; return their section of the page."""
+    ours = {name: compute_errors(sources, label) for name, label in SEVEN.items()}
     report(1, 5)
     found = {}
     for done, (method, how) in enumerate(METHODS.items()):
-        found[method] = errors(sources, POLYNOMIAL, how)
+        found[method] = compute_errors(sources, POLYNOMIAL, how)
         report(2 + done, 5)
-    theirs = _printed_errors(sources)
+    theirs = _read_printed_errors(sources)
     factor = None
     if theirs is not None:
         factor = [
-            scale(data, {n: e[k] for n, e in theirs.items()})
-            for k, data in enumerate(samples(sources).values())
+            find_scale(data, {n: e[k] for n, e in theirs.items()})
+            for k, data in enumerate(load_samples(sources).values())
         ]
-    against_ours = {m: _wins(e, ours) for m, e in found.items()}
+    against_ours = {m: _count_wins(e, ours) for m, e in found.items()}
     against_printed = (
-        {} if factor is None else {m: _wins(e * factor, theirs) for m, e in found.items()}
+        {} if factor is None else {m: _count_wins(e * factor, theirs) for m, e in found.items()}
     )
-    claims = [_claim(against_ours, against_printed), _ward(ours, theirs)]
-    picture = _draw(ours, theirs, found["bisquare"], factor)
+    claims = [
+        _claim_polynomial_wins(against_ours, against_printed),
+        _claim_ward_order(ours, theirs),
+    ]
+    picture = _draw_figure(ours, theirs, found["bisquare"], factor)
     return Section("Figure 9.4: eight models on 52 materials", TEXT, claims, (), [picture])
 
 
-def _printed_errors(sources):
-    """Name → errors (52,) of Appendix 3, NaN where illegible; None without the table."""
+def _read_printed_errors(sources):
+    """Return the errors (52,) of Appendix 3 by model, NaN where illegible; None if missing."""
     rows = read_rows(sources)
     if rows is None:
         return None
@@ -55,12 +61,12 @@ def _printed_errors(sources):
     return found
 
 
-def _wins(polynomial, others):
-    """On how many samples the polynomial has the lowest error."""
+def _count_wins(polynomial, others):
+    """Return on how many samples the polynomial has the lowest error."""
     return int((polynomial < np.nanmin(list(others.values()), axis=0)).sum())
 
 
-def _claim(against_ours, against_printed):
+def _claim_polynomial_wins(against_ours, against_printed):
     printed = ", ".join(f"{n} ({m})" for m, n in against_printed.items())
     ours = ", ".join(f"{n} ({m})" for m, n in against_ours.items())
     counted = (against_printed or against_ours)["bisquare"]
@@ -69,31 +75,31 @@ def _claim(against_ours, against_printed):
         "Figure 9.4",
         f"{WON} of 52",
         (f"against the printed errors {printed}; " if printed else "") + f"against ours {ours}",
-        verdict(abs(counted - WON) <= TOLERANCE),
+        to_verdict(abs(counted - WON) <= TOLERANCE),
         f"By bisquare, which the thesis names, {counted} (tolerance ±{TOLERANCE}). The count hangs "
         "on how the polynomial is fitted: plain least squares comes nearest to the printed one. "
         "It has the lowest error on most samples by each of the three.",
     )
 
 
-def _ward(ours, theirs):
+def _claim_ward_order(ours, theirs):
     counts = [np.sum(e["Ward-Dür"] < e["Ward"]) for e in (theirs or {}, ours) if e]
     return Claim(
         "Ward-Dür fits better than Ward.",
         "3.1",
         f"{counts[0]} of 52 in Appendix 3" if theirs else "no figure",
         f"{counts[-1]} of 52",
-        verdict(counts[-1] > len(NUMBERS) / 2),
+        to_verdict(counts[-1] > len(NUMBERS) / 2),
     )  # fmt: skip
 
 
-def _draw(ours, theirs, polynomial, factor):
-    """The curves, ours and, where there are any, the printed ones."""
+def _draw_figure(ours, theirs, polynomial, factor):
+    """Draw the models' errors as curves: ours and, unless the table is missing, printed ones."""
     panels = {"ours": ({**ours, "polynomial, p = 7": polynomial}, "E, one channel [sr⁻¹]")}
     if theirs is not None:
         scaled = {**theirs, "polynomial, p = 7": polynomial * factor}
         panels["printed; the polynomial is ours"] = scaled, "E, three channels [sr⁻¹]"
-    drawn = figure(7.6, 3.1 * len(panels))
+    drawn = make_figure(7.6, 3.1 * len(panels))
     for number, (title, (curves, unit)) in enumerate(panels.items(), 1):
         axes = drawn.add_subplot(len(panels), 1, number)
         order = np.argsort(np.nan_to_num(curves["Cook-Torrance"]))

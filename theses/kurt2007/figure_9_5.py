@@ -1,11 +1,11 @@
-"""Figure 9.5: Koenderink's basis and the polynomial, of two orders each, over 52 samples."""
+"""Reproduces Figure 9.5, errors of Koenderink's basis and of the polynomial, each of two orders."""
 
 import numpy as np
-from brdfkit.theses.kurt2007.curet import BISQUARE, NUMBERS, OLS, WLS, errors
+from brdfkit.theses.kurt2007.curet import BISQUARE, NUMBERS, OLS, WLS, compute_errors
 
 from brdfkit.model import labels
-from brdfkit.theses.claims import UNSTATED, Claim, verdict
-from brdfkit.theses.drawing import draw_curves, figure
+from brdfkit.theses.claims import UNSTATED, Claim, to_verdict
+from brdfkit.theses.drawing import draw_curves, make_figure
 from brdfkit.theses.page import Picture, Section, Table
 
 SECONDS = 25
@@ -22,48 +22,53 @@ same data. *Least E*: by least squares weighted as eq. 5.13 weighs."""
 
 
 def run(sources, report):
-    """The figure, and claims on it."""
+    """Check the claims on Koenderink's basis and the polynomial; return their section."""
     as_thesis, least = {}, {}
     for done, (name, (label, how)) in enumerate(LINEAR.items()):
-        as_thesis[name] = errors(sources, label, how)
-        least[name] = errors(sources, label, WLS)
+        as_thesis[name] = compute_errors(sources, label, how)
+        least[name] = compute_errors(sources, label, WLS)
         report(done + 1, len(LINEAR))
     order = np.argsort(as_thesis["polynomial, degree 8"])
-    drawn = figure(7.6, 3.6)
+    drawn = make_figure(7.6, 3.6)
     curves = {name: e[order] for name, e in as_thesis.items()}
     draw_curves(drawn.add_subplot(), curves, "linear models", "E, one channel [sr⁻¹]")
     drawn.axes[0].set_xlabel("samples of CUReT, by the error of the polynomial of degree 8")
     drawn.legend(*drawn.axes[0].get_legend_handles_labels(), loc="outside right", frameon=False)
     lines = [(name, *(f"{np.median(e[name]):.4f}" for e in (as_thesis, least))) for name in LINEAR]
     table = Table(("median E over 52 samples", "as the thesis fits", "least E"), lines)
-    claims = [_degrees(as_thesis, least), _koenderink(as_thesis, least), _isotropic(), _others()]
+    claims = [
+        _claim_degrees(as_thesis, least),
+        _claim_koenderink(as_thesis, least),
+        _claim_isotropic_counts(),
+        _claim_anisotropic_counts(),
+    ]
     picture = Picture("figure_9_5", drawn)
     return Section("Figure 9.5: the linear models by their order", TEXT, claims, [table], [picture])
 
 
-def _lower(errors, first, second):
+def _count_lower(errors, first, second):
     return int((errors[first] < errors[second]).sum())
 
 
-def _degrees(as_thesis, least):
+def _claim_degrees(as_thesis, least):
     poly = "polynomial, degree 8", "polynomial, degree 2"
     koenderink = "Koenderink, order 8", "Koenderink, order 2"
-    counts = [_lower(e, *pair) for e in (as_thesis, least) for pair in (poly, koenderink)]
+    counts = [_count_lower(e, *pair) for e in (as_thesis, least) for pair in (poly, koenderink)]
     return Claim(
         "More parameters describe the samples better.",
         WHERE,
         "8 below 2, for both",
         f"polynomial {counts[0]} of 52, Koenderink {counts[1]} of 52; by least E {counts[2]} and "
         f"{counts[3]}",
-        verdict(min(counts[:2]) >= 0.9 * len(NUMBERS)),
+        to_verdict(min(counts[:2]) >= 0.9 * len(NUMBERS)),
         "In the samples that were fitted: 55 weights for 189 samples fit noise as well. Where "
         "bisquare takes a highlight for outliers, a higher degree may have the larger E.",
     )
 
 
-def _koenderink(as_thesis, least):
+def _claim_koenderink(as_thesis, least):
     pairs = [(f"Koenderink, order {n}", f"polynomial, degree {n}") for n in (2, 8)]
-    counts = [_lower(e, *pair) for e in (as_thesis, least) for pair in pairs]
+    counts = [_count_lower(e, *pair) for e in (as_thesis, least) for pair in pairs]
     return Claim(
         "Koenderink's basis has lower errors than the polynomial of the same order.",
         WHERE,
@@ -75,18 +80,18 @@ def _koenderink(as_thesis, least):
     )
 
 
-def _isotropic():
+def _claim_isotropic_counts():
     counts = [len(labels.model(f"koenderink:order={n}").weights()) for n in (2, 4, 8)]
     return Claim(
         "Koenderink's isotropic basis has 5, 14 and 55 parameters at orders 2, 4 and 8.",
         "3.1",
         "5 14 55",
         " ".join(map(str, counts)),
-        verdict(counts == [5, 14, 55]),
+        to_verdict(counts == [5, 14, 55]),
     )
 
 
-def _others():
+def _claim_anisotropic_counts():
     def count(order):
         return len(labels.model(f"koenderink:order={order},symmetry=anisotropic").weights())
 
@@ -96,7 +101,7 @@ def _others():
         "3.1",
         "14 55 295",
         " ".join(map(str, counts)),
-        verdict(counts == [14, 55, 295]),
+        to_verdict(counts == [14, 55, 295]),
         "No truncation of the reciprocal basis has these counts: 14 and 55 are those of the "
         "isotropic one at twice the order, whose next is 285.",
     )

@@ -1,14 +1,14 @@
-"""Neural reconstructions of measured materials [Sztrajman et al. 2021], and tables of them."""
+"""Decodes neural networks that represent measured BRDFs [Sztrajman et al. 2021] into tables."""
 
 import numpy as np
 
 from brdfkit.model.samples.table import Table
 
-WEIGHTS = 675  # of a network 6-21-21-3, with its biases
+WEIGHTS = 675  # of a network with layers of 6, 21, 21 and 3 numbers, biases included
 
 
 def evaluate_network(weights, theta_h, theta_d, phi_d):
-    """The BRDF (n, 3) in sr⁻¹, R, G, B, of a network at half/difference angles (n,) [rad].
+    """Return the BRDF (n, 3) [sr⁻¹] of a network at half and difference angles (n,) [rad].
 
     The network takes the half and the difference vector, has two layers of 21 with ReLU, and its
     result is ln(1 + f).
@@ -23,9 +23,9 @@ def evaluate_network(weights, theta_h, theta_d, phi_d):
 
 
 def decode_network(weights, shape):
-    """The `Table` of a network, at the centres of shape (θ_h, θ_d, φ_d) cells.
+    """Return the table of a network's BRDF, at the centres of shape (θ_h, θ_d, φ_d) cells.
 
-    Cells below the surface are NaN.
+    Cells with a direction below the surface are NaN.
     """
     table = Table(np.full((*shape, 3), np.nan))
     wi, wo = table.directions()

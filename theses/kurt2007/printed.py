@@ -1,10 +1,10 @@
-"""The printed tables, `printed.toml`, and the thesis's models by the labels of ours."""
+"""Reads the thesis's printed tables, and names its BRDF models by brdfkit's labels."""
 
 import tomllib
 from functools import cache
 from pathlib import Path
 
-# The seven nonlinear models, by their names in the thesis
+# The names of the seven nonlinear models in the thesis → brdfkit's labels
 SEVEN = {
     "Ashikhmin-Shirley": "ashikhmin_shirley",
     "Blinn-Phong": "blinn_phong",
@@ -18,7 +18,7 @@ KOENDERINK = "Koenderink (order 8)"
 
 
 @cache
-def printed(table):
-    """A table by its name, as ``"table_9_1"``."""
+def read_printed_table(table):
+    """Return a printed table of the thesis by its name, such as ``"table_9_1"``."""
     text = Path(__file__).with_name("printed.toml").read_text(encoding="utf-8")
     return tomllib.loads(text)[table]

@@ -1,10 +1,10 @@
-"""Table 9.2: nine models on five materials of CUReT."""
+"""Reproduces Table 9.2, errors of nine models on five materials of CUReT."""
 
 import numpy as np
-from brdfkit.theses.kurt2007.curet import BISQUARE, OLS, WLS, sample, scale
-from brdfkit.theses.kurt2007.printed import KOENDERINK, SEVEN, printed
+from brdfkit.theses.kurt2007.curet import BISQUARE, OLS, WLS, find_scale, load_sample
+from brdfkit.theses.kurt2007.printed import KOENDERINK, SEVEN, read_printed_table
 
-from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.claims import Claim, to_verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 6
@@ -21,16 +21,16 @@ not."""
 
 
 def run(sources, report):
-    """The table, and claims on it."""
-    table = printed("table_9_2")
+    """Check the claims on the errors of nine models on five materials, and return their section."""
+    table = read_printed_table("table_9_2")
     theirs = {name: np.array(errors) for name, errors in table["errors"].items()}
     ours = {name: np.zeros(len(table["materials"])) for name in MODELS}
     factors = []
     for column, number in enumerate(table["materials"].values()):
-        data = sample(sources, number)
-        factors.append(scale(data, {name: theirs[name][column] for name in SEVEN}))
+        data = load_sample(sources, number)
+        factors.append(find_scale(data, {name: theirs[name][column] for name in SEVEN}))
         for name, (label, how) in MODELS.items():
-            ours[name][column] = factors[-1] * data.error(label, how)
+            ours[name][column] = factors[-1] * data.compute_error(label, how)
         report(column + 1, len(table["materials"]))
     lines = [
         (name, *(f"{p:.4f} / {o:.4f}" for p, o in zip(theirs[name], ours[name], strict=True)))
@@ -38,18 +38,18 @@ def run(sources, report):
     ]
     lines.append(("factor", *(f"{f:.2f}" for f in factors)))
     shown = Table(("model", *table["materials"]), lines)
-    claims = _claims(theirs, ours, list(table["materials"]))
+    claims = _make_claims(theirs, ours, list(table["materials"]))
     return Section("Table 9.2: nine models on five materials", TEXT, claims, [shown])
 
 
-def _claims(theirs, ours, materials):
+def _make_claims(theirs, ours, materials):
     where = "Table 9.2"
     ratios = np.array([ours[name] / theirs[name] for name in SEVEN])
     near = np.abs(ratios - 1) <= 0.1
     worst = np.unravel_index(np.abs(np.log(ratios)).argmax(), ratios.shape)
     koenderink, polynomial = (ours[n] / theirs[n] for n in (KOENDERINK, POLYNOMIAL))
     eight = [*SEVEN, POLYNOMIAL]
-    won = [_won(errors, eight, materials) for errors in (theirs, ours)]
+    won = [_list_wins(errors, eight, materials) for errors in (theirs, ours)]
     best = [all((e[KOENDERINK] < e[n]).all() for n in eight) for e in (theirs, ours)]
     return [
         Claim(
@@ -57,7 +57,7 @@ def _claims(theirs, ours, materials):
             where,
             "35 errors",
             f"{near.sum()} of 35 within 10 %, largest ratio {ratios[worst]:.2f}",
-            verdict(near.mean() >= 0.9),
+            to_verdict(near.mean() >= 0.9),
             f"After the factor per material. Largest: {list(SEVEN)[worst[0]]} on "
             f"{materials[worst[1]]}. Where materials are coloured, the average over the channels "
             "is not what each of them is.",
@@ -65,25 +65,25 @@ def _claims(theirs, ours, materials):
         Claim(
             "The errors of Koenderink's basis of order 8.",
             where,
-            _list(theirs[KOENDERINK]),
-            _list(ours[KOENDERINK]),
-            verdict((np.abs(koenderink - 1) <= 0.15).all()),
+            _format_errors(theirs[KOENDERINK]),
+            _format_errors(ours[KOENDERINK]),
+            to_verdict((np.abs(koenderink - 1) <= 0.15).all()),
             "By plain least squares; tolerance 15 %.",
         ),
         Claim(
             "The errors of the polynomial, p = 7.",
             where,
-            _list(theirs[POLYNOMIAL]),
-            _list(ours[POLYNOMIAL]),
-            verdict((np.abs(polynomial - 1) <= 0.2).all()),
+            _format_errors(theirs[POLYNOMIAL]),
+            _format_errors(ours[POLYNOMIAL]),
+            to_verdict((np.abs(polynomial - 1) <= 0.2).all()),
             "By bisquare, 50 passes at most; tolerance 20 %.",
         ),
         Claim(
             "Koenderink's basis of order 8 has the lowest error on all five.",
             where,
-            _yes(best[0]),
-            _yes(best[1]),
-            verdict(best[0] == best[1]),
+            _format_answer(best[0]),
+            _format_answer(best[1]),
+            to_verdict(best[0] == best[1]),
             "With 55 weights a channel for 189 samples.",
         ),
         Claim(
@@ -91,7 +91,7 @@ def _claims(theirs, ours, materials):
             "9.2",
             f"on {won[0]}",
             f"on {won[1]}",
-            verdict(won[0] == won[1] and len(won[0].split(", ")) == 5),
+            to_verdict(won[0] == won[1] and len(won[0].split(", ")) == 5),
             "The thesis says that the polynomial represents BRDFs with as few parameters as "
             "possible; its own table has it first on three of five, with 19 numbers per channel "
             "against 7 to 9 for three channels.",
@@ -99,16 +99,16 @@ def _claims(theirs, ours, materials):
     ]  # fmt: skip
 
 
-def _won(errors, names, materials):
-    """The materials on which the last of `names` has the lowest error, in words."""
+def _list_wins(errors, names, materials):
+    """Return, as text, the materials on which the last model of `names` has the lowest error."""
     table = np.array([errors[name] for name in names])
     return ", ".join(m for m, best in zip(materials, table.argmin(axis=0), strict=True)
                      if best == len(names) - 1) or "none"  # fmt: skip
 
 
-def _list(errors):
+def _format_errors(errors):
     return " ".join(f"{e:.4f}" for e in errors)
 
 
-def _yes(answer):
+def _format_answer(answer):
     return "yes" if answer else "no"

@@ -1,15 +1,15 @@
-"""Table 9.3: eight models on five materials of MERL, their errors and their pictures."""
+"""Reproduces Table 9.3, errors and pictures of eight models on five materials of MERL."""
 
 import numpy as np
-from brdfkit.theses.kurt2007.curet import BISQUARE, BOUNDS, WLS, error
+from brdfkit.theses.kurt2007.curet import BISQUARE, BOUNDS, WLS, compute_error
 from brdfkit.theses.kurt2007.neural import decode_network
-from brdfkit.theses.kurt2007.printed import SEVEN, printed
+from brdfkit.theses.kurt2007.printed import SEVEN, read_printed_table
 
 from brdfkit.fitting.fit import fit
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.rendering import render
-from brdfkit.theses.claims import UNSTATED, Claim, verdict
+from brdfkit.theses.claims import UNSTATED, Claim, to_verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 110
@@ -31,8 +31,8 @@ order, compare. Cells: L2 error / PSNR [dB], printed → ours."""
 
 
 def run(sources, report):
-    """The table, and claims on it."""
-    names = printed("table_9_3")["materials"]
+    """Check the claims on errors and pictures of eight models; return their section of the page."""
+    names = read_printed_table("table_9_3")["materials"]
     error = {model: [] for model in MODELS}
     psnr = {model: [] for model in MODELS}
     with np.load(sources.path("nbrdf_derived/merl_nbrdf.npz")) as networks:
@@ -41,7 +41,7 @@ def run(sources, report):
             for name in names
         }
     for done, data in enumerate(materials.values()):
-        found = {model: _fit(label, how, data) for model, (label, how) in MODELS.items()}
+        found = {model: _fit_with_error(label, how, data) for model, (label, how) in MODELS.items()}
         pictures = render([data, *(f.model for f, _ in found.values())], spp=SPP, size=SIZE)
         if pictures.spp < SPP:  # Ctrl-C
             raise KeyboardInterrupt
@@ -49,24 +49,26 @@ def run(sources, report):
             error[model].append(e)
             psnr[model].append(decibels)
         report(done + 1, len(names))
-    ours = {"errors": _array(error), "psnr": _array(psnr)}
-    theirs = {key: _array(printed("table_9_3")[key]) for key in ours}
-    claims = [*_claims(theirs, ours, names)]
-    return Section("Table 9.3: eight models on MERL", TEXT, claims, [_table(theirs, ours, names)])
+    ours = {"errors": _stack_models(error), "psnr": _stack_models(psnr)}
+    theirs = {key: _stack_models(read_printed_table("table_9_3")[key]) for key in ours}
+    claims = [*_make_claims(theirs, ours, names)]
+    return Section(
+        "Table 9.3: eight models on MERL", TEXT, claims, [_make_table(theirs, ours, names)]
+    )
 
 
-def _fit(label, how, data):
-    """A fit, and its E by eq. 5.13."""
+def _fit_with_error(label, how, data):
+    """Return a model's fit to measured data, and its error E of eq. 5.13."""
     loss, robust = how
     found = fit(data, label, loss=loss, robust=robust, bounds=BOUNDS.get(label))
-    return found, error(found.model, select_samples(data, 80))
+    return found, compute_error(found.model, select_samples(data, 80))
 
 
-def _array(by_model):
+def _stack_models(by_model):
     return np.array([by_model[model] for model in MODELS])
 
 
-def _table(theirs, ours, names):
+def _make_table(theirs, ours, names):
     lines = []
     for row, model in enumerate(MODELS):
         cells = [
@@ -78,18 +80,18 @@ def _table(theirs, ours, names):
     return Table(("model", *(f"neural {name}" for name in names)), lines)
 
 
-def _claims(theirs, ours, names):
+def _make_claims(theirs, ours, names):
     models = list(MODELS)
     last = models.index(POLYNOMIAL)
-    best = [_names(t["psnr"].argmax(axis=0) == last, names) for t in (theirs, ours)]
-    lowest = [_names(_lowest(t["errors"], last), names) for t in (theirs, ours)]
-    order = [_rank_correlation(theirs[k], ours[k]) for k in ("errors", "psnr")]
+    best = [_select_names(t["psnr"].argmax(axis=0) == last, names) for t in (theirs, ours)]
+    lowest = [_select_names(_is_lowest(t["errors"], last), names) for t in (theirs, ours)]
+    order = [_compute_rank_correlation(theirs[k], ours[k]) for k in ("errors", "psnr")]
     yield Claim(
         "Where the polynomial of degree 5 has the best picture.",
         WHERE,
         ", ".join(best[0]),
         ", ".join(best[1]) or "nowhere",
-        verdict(best[0] == best[1]),
+        to_verdict(best[0] == best[1]),
         "Highest PSNR of eight models; ours in another light, on neural reconstructions.",
     )
     yield Claim(
@@ -97,7 +99,7 @@ def _claims(theirs, ours, names):
         WHERE,
         ", ".join(lowest[0]),
         ", ".join(lowest[1]) or "nowhere",
-        verdict(lowest[0] == lowest[1]),
+        to_verdict(lowest[0] == lowest[1]),
         "Alone, by the three digits that are printed or by all of ours.",
     )
     yield Claim(
@@ -105,7 +107,7 @@ def _claims(theirs, ours, names):
         "9.3",
         f"best picture on {len(best[0])} of 5, lowest error on {len(lowest[0])} of 5",
         f"best picture on {len(best[1])} of 5, lowest error on {len(lowest[1])} of 5",
-        verdict(len(best[1]) == len(lowest[1]) == len(names)),
+        to_verdict(len(best[1]) == len(lowest[1]) == len(names)),
         "Not even in the printed table. Bisquare takes highlights for outliers: on gloss its E is "
         "far above that of models that have a lobe, though a picture of the ball shows it little.",
     )
@@ -114,7 +116,7 @@ def _claims(theirs, ours, names):
         WHERE,
         "order of 8 models",
         f"rank correlation {order[0]:.2f} (mean of five)",
-        verdict(order[0] >= 0.7),
+        to_verdict(order[0] >= 0.7),
         "Spearman's, between printed and ours; confirmed from 0.7.",
     )
     yield Claim(
@@ -122,7 +124,7 @@ def _claims(theirs, ours, names):
         WHERE,
         "order of 8 models",
         f"rank correlation {order[1]:.2f} (mean of five)",
-        verdict(order[1] >= 0.7),
+        to_verdict(order[1] >= 0.7),
         "As before, of the PSNR.",
     )
     yield Claim(
@@ -136,17 +138,20 @@ def _claims(theirs, ours, names):
     )
 
 
-def _lowest(errors, row):
-    """Where a row has the lowest error; the thesis prints three digits, a tie is none."""
+def _is_lowest(errors, row):
+    """Return on which materials a row's error is the lowest alone.
+
+    The thesis prints three digits; equal errors are not lowest.
+    """
     others = np.delete(errors, row, axis=0)
     return errors[row] < others.min(axis=0)
 
 
-def _names(chosen, names):
+def _select_names(chosen, names):
     return [name for name, yes in zip(names, chosen, strict=True) if yes]
 
 
-def _rank_correlation(theirs, ours):
+def _compute_rank_correlation(theirs, ours):
     from scipy.stats import spearmanr
 
     return np.mean([spearmanr(t, o).statistic for t, o in zip(theirs.T, ours.T, strict=True)])

@@ -1,10 +1,10 @@
-"""Table 9.4: how long fits take, as ratios, because machines differ."""
+"""Reproduces Table 9.4, the times of fits, compared by their ratios because machines differ."""
 
 import numpy as np
-from brdfkit.theses.kurt2007.curet import BISQUARE, OLS, WLS, samples
-from brdfkit.theses.kurt2007.printed import SEVEN, printed
+from brdfkit.theses.kurt2007.curet import BISQUARE, OLS, WLS, load_samples
+from brdfkit.theses.kurt2007.printed import SEVEN, read_printed_table
 
-from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.claims import Claim, to_verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 2
@@ -17,17 +17,17 @@ Levenberg-Marquardt in compiled code, where the thesis ran SQP in MATLAB from a 
 
 
 def run(sources, report):
-    """The table, and the claim."""
-    found = samples(sources).values()
+    """Check the claims on the times of fits; return their section of the page."""
+    found = load_samples(sources).values()
 
-    def seconds(label, how):
+    def measure_median_seconds(label, how):
         times = [data.fit(label, how).seconds for data in found]
         report(1, 1)
         return float(np.median(times))
 
-    ours = {name: seconds(label, WLS) for name, label in SEVEN.items()}
-    polynomial = {how: seconds(LABEL, how) for how in (BISQUARE, OLS)}
-    theirs = printed("table_9_4")
+    ours = {name: measure_median_seconds(label, WLS) for name, label in SEVEN.items()}
+    polynomial = {how: measure_median_seconds(LABEL, how) for how in (BISQUARE, OLS)}
+    theirs = read_printed_table("table_9_4")
     least = theirs[POLYNOMIAL]
     lines = [
         (
@@ -54,7 +54,7 @@ def run(sources, report):
         f"{max(theirs[n] for n in SEVEN) / least:.1f} times as long",
         f"fastest rival {ratios[0]:.2f} times as long as bisquare, {ratios[1]:.1f} times as least "
         "squares",
-        verdict(ratios[0] >= 2),
+        to_verdict(ratios[0] >= 2),
         "About the programs, not the models: bisquare takes up to 50 passes, each a linear "
         "solution, and our nonlinear searches run all their starts in one kernel.",
     )

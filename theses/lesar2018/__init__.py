@@ -16,8 +16,8 @@ A claim is *confirmed* where our figures agree, *not confirmed* where they do no
 where the thesis gives no figure to compare ours to, and *not run* where what it needs is not at
 hand."""
 
-NEEDS: dict[str, str] = {}  # scans are used where they lie beside the measurements
-# The packages of the extra "volumes" that read scans
+NEEDS: dict[str, str] = {}  # scans are optional: they are looked for beside the measurements
+# The packages that read scans, by the scan's file
 MRI = "volumes/mni152_t1_1mm.nii.gz"
 PACKAGES = {MRI: "nibabel"}
 

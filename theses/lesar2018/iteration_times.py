@@ -1,23 +1,23 @@
-"""Table 7.1: the time of an iteration by renderer, size of the volume and size of the frame."""
+"""Reproduces Table 7.1, the time of an iteration by renderer, volume size and frame size."""
 
-from brdfkit.theses.lesar2018.iterations import cloud, iteration, stage
+from brdfkit.theses.lesar2018.iterations import make_cloud, make_renderer, make_stage
 from brdfkit.theses.lesar2018.renderers import RENDERERS
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import Claim, measure_least_seconds, verdict
+from brdfkit.theses.claims import Claim, measure_least_seconds, to_verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 60
 VOXELS, FRAMES = (64, 128, 256), (256, 512, 1024)
-MIDDLE = 128, 512  # the cell that both halves of the table share
+MIDDLE = 128, 512  # voxels and pixels of the cell to which other times are compared
 TIMES = 3
 PRINTED = {  # ms, by (voxels, frame)
     "phone": {(64, 512): 28, (128, 512): 65, (256, 512): 92, (128, 256): 35, (128, 1024): 98},
     "laptop": {(64, 512): 16, (128, 512): 28, (256, 512): 45, (128, 256): 16, (128, 1024): 55},
 }
-CLOSE = 1.5  # a factor of ratios that count as equal
-RATE = 20  # iterations per second
+CLOSE = 1.5  # two ratios count as equal within this factor
+RATE = 20  # iterations per second that the thesis claims
 TEXT = f"""Smoke by each renderer, one ray per pixel in an iteration, the least of {TIMES}. The
 thesis does not say which renderer its table is of, nor the steps of any; here the march takes 128
 steps, the others 256. Ours are seconds of CPU, of all cores together, over those of the middle
@@ -26,16 +26,16 @@ cell, as the printed ones; 16 ms is the least that a browser shows."""
 
 @in_turn
 def run(sources, report):
-    """The times, and the claims on them."""
+    """Check the claims on the time of an iteration; return their section of the page."""
     use_variant()
     cells = list(PRINTED["phone"])
     seconds, total = {}, len(cells) * len(RENDERERS)
     for name in RENDERERS:
         for cell in cells:
-            seconds[name, cell] = time_of(name, *cell)
+            seconds[name, cell] = measure_iteration(name, *cell)
             report(len(seconds), total)
-    printed = {name: over_middle(times) for name, times in PRINTED.items()}
-    ours = {name: over_middle({c: seconds[name, c] for c in cells}) for name in RENDERERS}
+    printed = {name: divide_by_middle(times) for name, times in PRINTED.items()}
+    ours = {name: divide_by_middle({c: seconds[name, c] for c in cells}) for name in RENDERERS}
     rows = [
         (name, *(f"{times[c]:.2f}" for c in cells), said)
         for name, times, said in [
@@ -46,34 +46,34 @@ def run(sources, report):
     heads = "", *(f"{v}³, {f}²" for v, f in cells), "middle"
     caption = f"Times over those of {MIDDLE[0]}³ voxels in a frame of {MIDDLE[1]}²."
     claims = [
-        ranking_claim({name: seconds[name, MIDDLE] for name in RENDERERS}),
-        growth_claim("64 times the voxels", (64, 512), (256, 512), ours),
-        growth_claim("16 times the pixels", (128, 256), (128, 1024), ours),
-        rate_claim(),
+        claim_ranking({name: seconds[name, MIDDLE] for name in RENDERERS}),
+        claim_growth("64 times the voxels", (64, 512), (256, 512), ours),
+        claim_growth("16 times the pixels", (128, 256), (128, 1024), ours),
+        claim_rate(),
     ]
     return Section("Times of an iteration", TEXT, claims, [Table(heads, rows, caption)])
 
 
-def time_of(renderer, voxels, frame):
-    """Seconds of CPU of an iteration."""
-    scene = stage(cloud(renderer, voxels), frame)
-    seeds, render = iter(range(1, 100)), iteration()
+def measure_iteration(renderer, voxels, frame):
+    """Return the CPU seconds of an iteration, by a renderer and sizes of volume and frame."""
+    scene = make_stage(make_cloud(renderer, voxels), frame)
+    seeds, render = iter(range(1, 100)), make_renderer()
 
     def once():
         render(scene, next(seeds)).numpy()
 
-    once()  # compiles
-    once()  # and is frozen
+    once()  # compiles the kernels, which is not timed
+    once()  # records the rendering, which later calls replay
     return measure_least_seconds(once, times=TIMES)
 
 
-def over_middle(times):
-    """Times over that of the middle cell."""
+def divide_by_middle(times):
+    """Return times relative to that of the table's middle cell, 128³ voxels and 512² pixels."""
     return {cell: t / times[MIDDLE] for cell, t in times.items()}
 
 
-def ranking_claim(seconds):
-    """Of the four."""
+def claim_ranking(seconds):
+    """Claim which of the four renderers are the fastest and the slowest."""
     order = sorted(seconds, key=seconds.get)
     said = ", ".join(f"{name} {seconds[name] / seconds[order[0]]:.1f}" for name in order)
     return Claim(
@@ -81,14 +81,14 @@ def ranking_claim(seconds):
         "ch. 7",
         "no figure",
         f"over the fastest: {said}",
-        verdict(order[0] == "maximum_intensity" and order[-1] == "single_scattering"),
+        to_verdict(order[0] == "maximum_intensity" and order[-1] == "single_scattering"),
         "Theirs may look fewer points up in an iteration. Ours finds the whole maximum, surface or "
         "sum in one, where scattering is one collision of a ray, and empty cells cost no look-up.",
     )
 
 
-def growth_claim(more, small, large, ours):
-    """How much longer a larger volume or frame takes."""
+def claim_growth(more, small, large, ours):
+    """Claim how much longer a larger volume or frame takes."""
     printed = {name: times[large] / times[small] for name, times in PRINTED.items()}
     found = {name: times[large] / times[small] for name, times in ours.items()}
     own, others = found["single_scattering"], found.values()
@@ -97,14 +97,14 @@ def growth_claim(more, small, large, ours):
         "Table 7.1",
         ", ".join(f"{ratio:.1f} times on a {name}" for name, ratio in printed.items()),
         f"{own:.1f} times by single_scattering, {min(others):.1f} to {max(others):.1f} by any",
-        verdict(min(printed.values()) / CLOSE < own < max(printed.values()) * CLOSE),
+        to_verdict(min(printed.values()) / CLOSE < own < max(printed.values()) * CLOSE),
         f"Confirmed within a factor of {CLOSE:g}. Their small cells are held up by the browser, "
         "and may leave parts of the graphics chip idle.",
     )
 
 
-def rate_claim():
-    """20 iterations per second."""
+def claim_rate():
+    """Claim that the printed times allow 20 iterations per second."""
     slowest = max(max(times.values()) for times in PRINTED.values())
     fit = sum(t <= 1000 / RATE for times in PRINTED.values() for t in times.values())
     cells = sum(map(len, PRINTED.values()))
@@ -113,6 +113,6 @@ def rate_claim():
         "ch. 7",
         "its conclusions have 10 and more",
         f"{fit} of the {cells} printed times allow {RATE}, the slowest {1000 / slowest:.1f}",
-        verdict(fit == cells),
+        to_verdict(fit == cells),
         "By the thesis's own table, which fits its conclusions.",
     )

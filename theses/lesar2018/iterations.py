@@ -1,4 +1,4 @@
-"""Iterations of a scene: what is left of them is the rendering, not how it is prepared."""
+"""Renders scenes again and again, recorded so that only the rendering takes time."""
 
 import gc
 from contextlib import contextmanager
@@ -13,15 +13,15 @@ from brdfkit.volumes.made import make_volume
 
 FOV = 30  # degrees
 DISTANCE = 3.95
-LAMP, SKY = 3.2, 0.35  # irradiance, radiance
+LAMP, SKY = 3.2, 0.35  # irradiances of the lamp and of the fill light
 
 
-def stage(integrator, size, eye=(0, -1, 0), up=(0, 0, 1), lit=True):
-    """A scene of a volume in the cube from -1 to 1, seen from the direction `eye`.
+def make_stage(integrator, size, eye=(0, -1, 0), up=(0, 0, 1), lit=True):
+    """Return a scene of a volume in the cube from -1 to 1, seen from the direction `eye`.
 
-    integrator : its dictionary, in which the volume is.
-    size : pixels along both edges.
-    lit : whether there are a lamp, to the left above the camera, and a sky that is not seen.
+    integrator : the dictionary of the integrator, which contains the volume.
+    size : pixels along both edges of the picture.
+    lit : whether there are a lamp, to the left above the camera, and a fill light.
     """
     import mitsuba as mi
 
@@ -42,35 +42,35 @@ def stage(integrator, size, eye=(0, -1, 0), up=(0, 0, 1), lit=True):
     return mi.load_dict(scene, parallel=False)
 
 
-EXTINCTION = 8.0  # where smoke is densest, of a cube of edge 2
-LEVEL = 0.35
+EXTINCTION = 8.0  # where smoke is densest, per unit of length; the cube's edge is 2
+LEVEL = 0.35  # of the smoke's isosurface
 
 
 @cache
-def smoke(voxels):
-    """The smoke."""
+def make_smoke(voxels):
+    """Return a cube of smoke with `voxels` along each edge."""
     return make_volume("smoke", (voxels,) * 3)
 
 
-def cloud(renderer, voxels):
-    """The dictionary of a renderer with smoke of `voxels`³."""
+def make_cloud(renderer, voxels):
+    """Return the dictionary of a renderer of smoke with `voxels` along each edge."""
     rgba = [[0.95, 0.8, 0.6, 0], [0.85, 0.9, 0.95, 1]]
-    coloured = smoke(voxels).scene_dict(TransferFunction([0, 1], rgba, EXTINCTION))
+    coloured = make_smoke(voxels).scene_dict(TransferFunction([0, 1], rgba, EXTINCTION))
     volume = {
         "maximum_intensity": {"volume": coloured},
-        "isosurface": {"volume": smoke(voxels).scene_dict(), "level": LEVEL},
+        "isosurface": {"volume": make_smoke(voxels).scene_dict(), "level": LEVEL},
         "emission_absorption": {"extinction": coloured},
         "single_scattering": {"extinction": coloured, "phase": {"type": "hg", "g": 0.3}},
     }
     return {"type": renderer, **volume[renderer]}
 
 
-def iteration(spp=1):
-    """A function (scene, seed) → the picture of `mi.render`, with so many samples per pixel.
+def make_renderer(spp=1):
+    """Return a function that renders a scene with a seed and so many samples per pixel.
 
-    Recorded at its first call, and replayed: Mitsuba prepares each render for as long as a small
-    picture takes. Dr.Jit records nothing while BSDFs of other scenes are alive, as in a notebook;
-    then each is prepared.
+    The rendering is recorded at the first call, and replayed: Mitsuba prepares each render for as
+    long as a small picture takes. Dr.Jit records nothing while BSDFs of other scenes are alive, as
+    in a notebook; then each render is prepared.
     """
     import mitsuba as mi
 
@@ -82,8 +82,8 @@ def iteration(spp=1):
     def call(state, scene, seed):
         if state["recorded"]:
             try:
-                # Ctrl-C is no reason to render once more
-                with raise_first_cause(), without_collection():
+                # Dr.Jit wraps Ctrl-C in a RuntimeError, which must not render once more
+                with raise_first_cause(), suspend_garbage_collection():
                     return recorded(scene, mi.UInt32(seed))
             except RuntimeError:
                 state["recorded"] = False
@@ -93,9 +93,8 @@ def iteration(spp=1):
 
 
 @contextmanager
-def without_collection():
-    """Collects no garbage within the block: Dr.Jit ends the process where a scene is freed while
-    it records."""
+def suspend_garbage_collection():
+    """Collect no garbage within the block: Dr.Jit crashes if a scene is freed while it records."""
     was_enabled = gc.isenabled()
     gc.disable()
     try:

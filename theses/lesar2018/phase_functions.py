@@ -1,19 +1,19 @@
-"""Chapter 4: phase functions as densities: their integrals, mean cosines and values."""
+"""Checks phase functions of chapter 4: their integrals, mean cosines and values."""
 
 import numpy as np
-from brdfkit.theses.lesar2018.phases import PLUGINS, moments, of_plugin
+from brdfkit.theses.lesar2018.phases import PLUGINS, compute_moments, make_phase_function
 
 from brdfkit.checks import directions
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import Claim, verdict
-from brdfkit.theses.drawing import COLOURS, figure, tidy
+from brdfkit.theses.claims import Claim, to_verdict
+from brdfkit.theses.drawing import COLOURS, make_figure, style_axes
 from brdfkit.theses.page import Picture, Section, Table
 from brdfkit.volumes.made import make_volume
 
 SECONDS = 2
 COSINES = (-1, -0.5, 0, 0.5, 1)
-APART = {  # p at COSINES [sr⁻¹], computed apart
+APART = {  # phase functions at COSINES [sr⁻¹], by an independent program
     "Henyey-Greenstein 0.6": (0.012434, 0.018560, 0.032112, 0.076869, 0.795775),
     "Henyey-Greenstein -0.3": (0.211124, 0.103131, 0.063634, 0.044189, 0.032961),
     "Schlick 0.8112": (0.008295, 0.013773, 0.027212, 0.077020, 0.763404),
@@ -22,8 +22,8 @@ APART = {  # p at COSINES [sr⁻¹], computed apart
     "Mie hazy": (0.039789, 0.039794, 0.041188, 0.075639, 0.397887),
     "Mie murky": (0.039789, 0.039789, 0.039789, 0.039921, 1.352817),
 }
-DIGIT = 0.65e-6  # half of the last digit apart, and rounding in single precision
-ALBEDO = 0.6  # of the BSDF
+DIGIT = 0.65e-6  # half of the last digit of these values, and rounding in single precision
+ALBEDO = 0.6  # of a BSDF that is used as a phase function
 TEXT = """p(μ) of the plugins of Mitsuba and of brdfkit, in single precision; μ is the cosine of the
 angle by which light is deflected, 1 is straight on. Integrals by quadrature with 200 points. The
 thesis writes each as a function of two directions, and does not say whether both point along the
@@ -32,50 +32,50 @@ light."""
 
 @in_turn
 def run(sources, report):
-    """The integrals, and the claims on them."""
+    """Check the claims on integrals and values of phase functions, and return their section."""
     use_variant()
-    phases = {name: of_plugin(entries) for name, entries in PLUGINS.items()}
-    found = {name: moments(p) for name, p in phases.items()}
+    phases = {name: make_phase_function(entries) for name, entries in PLUGINS.items()}
+    found = {name: compute_moments(p) for name, p in phases.items()}
     values = {name: p(COSINES) for name, p in phases.items()}
     claims = [
-        integral_claim(found),
-        mean_claim(found),
-        value_claim(values),
-        bsdf_claim(integral_of_bsdf()),
+        claim_integral(found),
+        claim_mean(found),
+        claim_value(values),
+        claim_bsdf(integrate_bsdf()),
     ]
     rows = [(name, f"{found[name][1]:.5f}", *(f"{v:.6f}" for v in values[name])) for name in phases]
     heads = "", "mean cosine", *(f"p({mu:g})" for mu in COSINES)
     caption = "The names have the mean cosine g of Henyey-Greenstein's, and the k of Schlick's."
-    picture = Picture("phase_functions", draw(phases), "Straight on is to the right.")
+    picture = Picture("phase_functions", draw_phases(phases), "Straight on is to the right.")
     return Section("Phase functions", TEXT, claims, [Table(heads, rows, caption)], [picture])
 
 
-def integral_claim(found):
-    """All of them are densities."""
+def claim_integral(found):
+    """Claim that all phase functions integrate to 1."""
     off = max(abs(integral - 1) for integral, _ in found.values())
     return Claim(
         "Phase functions integrate to 1 over the sphere.",
         "eq. 4.43",
         "1",
         f"off by {off:.0e} at most, of {len(found)}",
-        verdict(off < 1e-6),
+        to_verdict(off < 1e-6),
     )
 
 
-def mean_claim(found):
-    """What g is."""
+def claim_mean(found):
+    """Claim that g of Henyey-Greenstein's phase function is its mean cosine."""
     off = max(abs(found[f"Henyey-Greenstein {g}"][1] - g) for g in (0.6, -0.3))
     return Claim(
         "g of Henyey-Greenstein's is its mean cosine.",
         "eq. 4.58",
         "g",
         f"off by {off:.0e} at most, of 0.6 and -0.3",
-        verdict(off < 1e-6),
+        to_verdict(off < 1e-6),
     )
 
 
-def value_claim(values):
-    """Single values."""
+def claim_value(values):
+    """Claim that values are those of the formulas."""
     apart = [np.abs(values[name] - known) for name, known in APART.items()]
     equal = (np.array(apart) < DIGIT).sum()
     total = len(APART) * len(COSINES)
@@ -84,12 +84,12 @@ def value_claim(values):
         "eq. 4.58-4.63",
         f"{total} values, computed apart",
         f"{equal} of {total} equal to half of the last digit",
-        verdict(equal == total),
+        to_verdict(equal == total),
     )
 
 
-def integral_of_bsdf():
-    """∫ f |n·ωo| over all ωo, of a grey matte BSDF about a gradient."""
+def integrate_bsdf():
+    """Return ∫ f |n·ωo| over all directions ωo, for a grey matte BSDF f at a gradient as normal."""
     import mitsuba as mi
 
     grey = {"type": "diffuse", "reflectance": {"type": "rgb", "value": ALBEDO}}
@@ -103,22 +103,22 @@ def integral_of_bsdf():
     return float(np.array(value)[0] @ solid_angle)
 
 
-def bsdf_claim(integral):
-    """A BSDF in the place of a phase function."""
+def claim_bsdf(integral):
+    """Claim that a BSDF times a cosine integrates to 1, as a phase function does."""
     return Claim(
         "A BSDF times a cosine is a phase function.",
         "eq. 4.57",
         "eq. 4.43: it integrates to 1",
         f"{integral:.4f}, of a BSDF of albedo {ALBEDO:g}",
-        verdict(abs(integral - 1) < 1e-3),
+        to_verdict(abs(integral - 1) < 1e-3),
         "It integrates to the BSDF's albedo, and the cosine makes it change when light and view "
         "are exchanged. `bsdf_phase` draws by the BSDF, what is lost is the medium's own albedo.",
     )
 
 
-def draw(phases):
-    """All over the angle."""
-    drawn = figure(7, 3)
+def draw_phases(phases):
+    """Draw all phase functions over the angle."""
+    drawn = make_figure(7, 3)
     axes = drawn.subplots()
     degrees = np.linspace(-180, 0, 361)
     for (name, p), colour in zip(phases.items(), COLOURS, strict=False):
@@ -126,5 +126,5 @@ def draw(phases):
     axes.set_xlabel("deflection [degrees]")
     axes.set_xticks(np.arange(-180, 1, 45), [f"{-d}" for d in range(-180, 1, 45)])
     axes.legend(fontsize=7)
-    tidy(axes, "", "p [sr⁻¹]")
+    style_axes(axes, "", "p [sr⁻¹]")
     return drawn

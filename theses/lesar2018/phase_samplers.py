@@ -1,22 +1,22 @@
-"""Chapter 5: directions drawn by phase functions: inverses, mixtures, and what they cost."""
+"""Checks directions drawn by phase functions (chapter 5): their distributions and times."""
 
 import numpy as np
-from brdfkit.theses.lesar2018.phases import PLUGINS, TARGETS, fit
+from brdfkit.theses.lesar2018.phases import PLUGINS, TARGETS, fit_two_lobes
 from brdfkit.theses.lesar2018.sampler_times import (
     DRAWS,
     TURNS,
-    by_rayleigh,
-    over_the_first,
-    plugins,
-    samplers,
-    time_of,
-    time_of_picture,
+    divide_by_first,
+    list_plugins,
+    list_samplers,
+    measure_draws,
+    measure_picture,
+    sample_rayleigh,
 )
 
 from brdfkit.checks import directions
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.claims import Claim, to_verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 10
@@ -29,19 +29,19 @@ proposes such, and prints none."""
 
 @in_turn
 def run(sources, report):
-    """The samplers, their times, and the claims on them."""
+    """Check the claims on directions drawn by phase functions; return their section of the page."""
     use_variant()
-    rejected = [name for name, entries in PLUGINS.items() if p_value(entries) is None]
+    rejected = [name for name, entries in PLUGINS.items() if compute_p_value(entries) is None]
     report(1, 3)
-    fits = {name: fit(*target) for name, target in TARGETS.items()}
-    draws = over_the_first({name: time_of(draw) for name, draw in samplers().items()})
+    fits = {name: fit_two_lobes(*target) for name, target in TARGETS.items()}
+    draws = divide_by_first({name: measure_draws(draw) for name, draw in list_samplers().items()})
     report(2, 3)
-    seconds = over_the_first({name: time_of_picture(p) for name, p in plugins(fits).items()})
+    seconds = divide_by_first({name: measure_picture(p) for name, p in list_plugins(fits).items()})
     claims = [
-        inverse_claim(rejected),
-        rayleigh_claim(seconds),
-        faster_claim(seconds),
-        *(mie_claim(name, fits[name], seconds) for name in ("Mie hazy", "Mie murky")),
+        claim_inverse(rejected),
+        claim_rayleigh(seconds),
+        claim_faster(seconds),
+        *(claim_mie(name, fits[name], seconds) for name in ("Mie hazy", "Mie murky")),
     ]
     times = [(n, f"{draws[n]:.2f}", f"{s:.2f}") for n, s in seconds.items()]
     times = Table(
@@ -54,8 +54,8 @@ def run(sources, report):
     return Section("Directions drawn", TEXT, claims, [times, Table(heads, rows, caption)])
 
 
-def p_value(entries):
-    """Of the χ² test that a plugin draws by its density; None if that is rejected."""
+def compute_p_value(entries):
+    """Return the p-value of a χ² test that a plugin draws by its density, None if rejected."""
     import mitsuba as mi
 
     phase, it = mi.load_dict(entries, parallel=False), mi.MediumInteraction3f()
@@ -70,26 +70,26 @@ def p_value(entries):
     )
 
 
-def inverse_claim(rejected):
-    """All samplers against their densities."""
+def claim_inverse(rejected):
+    """Claim that all samplers draw by their densities."""
     said = f"χ² tests reject {len(rejected)} of {len(PLUGINS)}"
     return Claim(
         "Inverses of the distributions draw by the phase functions.",
         "eq. 5.58-5.67",
         "formulas",
         f"{said}: {', '.join(rejected)}" if rejected else said,
-        verdict(not rejected),
+        to_verdict(not rejected),
         f"{directions.SAMPLES:,} draws of each plugin, significance {directions.SIGNIFICANCE:g} of "
         "all together. Schlick's with the sign of Henyey-Greenstein's.",
     )
 
 
-def rayleigh_claim(seconds):
-    """Eq. 5.67, by which power, and how slow."""
+def claim_rayleigh(seconds):
+    """Claim that Rayleigh's inverse is too slow to draw from."""
     u = np.linspace(0.001, 0.999, 999)
     with np.errstate(invalid="ignore"):
-        by_power = np.isnan(by_rayleigh(u, lambda x: x ** (1 / 3))).sum()
-    mu = by_rayleigh(u, np.cbrt)
+        by_power = np.isnan(sample_rayleigh(u, lambda x: x ** (1 / 3))).sum()
+    mu = sample_rayleigh(u, np.cbrt)
     off = np.abs(0.5 + mu * (3 + mu * mu) / 8 - u).max()
     ratio = seconds["Rayleigh"]
     return Claim(
@@ -98,27 +98,27 @@ def rayleigh_claim(seconds):
         "no figure",
         f"a picture takes {ratio:.2f} times as long as by Henyey-Greenstein's; the inverse is off "
         f"by {off:.0e}",
-        verdict(ratio > 1.5),
+        to_verdict(ratio > 1.5),
         f"With real cube roots: a power of 1/3 is no number for {by_power} of {len(u)} ξ. A draw "
         "is a small part of what a collision costs. Confirmed above 1.5.",
     )
 
 
-def faster_claim(seconds):
-    """Schlick's against Henyey-Greenstein's."""
+def claim_faster(seconds):
+    """Claim that Schlick's phase function is faster to draw from than Henyey-Greenstein's."""
     ratio = 1 / seconds["Schlick"]
     return Claim(
         "Schlick's is noticeably faster to draw from than Henyey-Greenstein's.",
         "eq. 5.63",
         "no figure",
         f"a picture is made {ratio:.2f} times as fast",
-        verdict(ratio > 1.1),
+        to_verdict(ratio > 1.1),
         "Eq. 5.59, the other inverse, has no power either. Confirmed above 1.1.",
     )
 
 
-def mie_claim(name, found, seconds):
-    """Two lobes in the place of a Mie approximation that can be drawn exactly."""
+def claim_mie(name, found, seconds):
+    """Claim that two lobes are faster than a Mie approximation, which can be drawn exactly."""
     _, error, largest = found
     ratio = seconds[name] / seconds["two of Schlick's"]
     return Claim(
@@ -127,7 +127,7 @@ def mie_claim(name, found, seconds):
         "no fit, no figure",
         f"a picture takes {ratio:.2f} times as long as by two lobes, which are off by {error:.3f}, "
         f"{100 * largest:.0f} % at most",
-        verdict(ratio > 1.5),
+        to_verdict(ratio > 1.5),
         "It is an equal mixture of even light and of a power, whose inverse is a root: "
         "μ = 2 ξ^(1/(n+1)) - 1. Confirmed above 1.5 times.",
     )

@@ -1,6 +1,6 @@
-"""The four renderers of the thesis, each with a volume of one of the scans."""
+"""Describes the four renderers of the thesis, each with a volume of one of the scans."""
 
-from brdfkit.theses.lesar2018.iterations import stage
+from brdfkit.theses.lesar2018.iterations import make_stage
 
 from brdfkit.volumes import TransferFunction
 
@@ -11,39 +11,39 @@ CLAY = {
 }
 
 
-def maximum_intensity(scan):
-    """Largest values, in the colours of a map."""
+def describe_maximum_intensity(scan):
+    """Return the volume of a maximum-intensity picture, in the colours of a colour map."""
     low, high = scan.window
     function = TransferFunction.from_colormap("magma", (low, high), opacity=[(0, 1), (1, 1)])
     return {"volume": scan.density.scene_dict(function)}
 
 
-def isosurface(scan):
-    """A surface of clay."""
+def describe_isosurface(scan):
+    """Return the volume, level and clay material of an isosurface."""
     volume = scan.density.scene_dict()
     return {"volume": volume, "level": scan.level, "bsdf": CLAY, "shadows": True}
 
 
-def emission_absorption(scan):
-    """Tissues that glow."""
+def describe_emission_absorption(scan):
+    """Return the volume of a picture by emission and absorption."""
     return {"extinction": scan.coloured.scene_dict(scan.function)}
 
 
-def single_scattering(scan):
-    """Tissues in the light."""
+def describe_single_scattering(scan):
+    """Return the volume of a picture by scattered light."""
     return {"extinction": scan.coloured.scene_dict(scan.function)}
 
 
 RENDERERS = {
-    "maximum_intensity": maximum_intensity,
-    "isosurface": isosurface,
-    "emission_absorption": emission_absorption,
-    "single_scattering": single_scattering,
+    "maximum_intensity": describe_maximum_intensity,
+    "isosurface": describe_isosurface,
+    "emission_absorption": describe_emission_absorption,
+    "single_scattering": describe_single_scattering,
 }
-LIT = "isosurface", "single_scattering"
+LIT = "isosurface", "single_scattering"  # the renderers that need lights
 
 
-def scene_of(scan, name, size):
-    """The scene of a scan by a renderer, with `size` pixels along both edges."""
+def make_scan_scene(scan, name, size):
+    """Return the scene of a scan by a renderer, with `size` pixels along both edges."""
     integrator = {"type": name, **RENDERERS[name](scan)}
-    return stage(integrator, size, scan.eye, scan.up, lit=name in LIT)
+    return make_stage(integrator, size, scan.eye, scan.up, lit=name in LIT)

@@ -1,60 +1,63 @@
-"""How long a draw by each phase function takes, and a picture with it."""
+"""Measures the time of drawing from each phase function, and of a picture with it."""
 
 import drjit as dr
 
 from brdfkit.mitsuba_bridge import phase_functions
 from brdfkit.theses.claims import measure_least_seconds
 
-DRAWS, TURNS = 1 << 20, 16  # of which the time is taken
-SIZE, SPP = 256, 16  # of the picture
+DRAWS, TURNS = 1 << 20, 16  # threads, and draws of each, whose time is measured
+SIZE, SPP = 256, 16  # pixels along an edge of the measured picture, and samples of each
 G, K = 0.6, 0.8112
 
 
-def henyey_greenstein(u):
-    """μ by eq. 5.59."""
+def sample_henyey_greenstein(u):
+    """Return the cosine μ for a random number u, by Henyey-Greenstein's inverse, eq. 5.59."""
     s = 2 * u - 1
     return (1 + G * G - dr.square((1 - G * G) / (1 + G * s))) / (2 * G)
 
 
-def by_schlick(k, u):
-    """μ by eq. 5.63, with the sign of Henyey-Greenstein's."""
+def sample_schlick(k, u):
+    """Return the cosine μ for a random number u, by Schlick's inverse; k > 0 is forward."""
     s = 2 * u - 1
     return (s + k) / (1 + k * s)
 
 
-def by_rayleigh(u, root=dr.cbrt):
-    """μ by eq. 5.67."""
+def sample_rayleigh(u, root=dr.cbrt):
+    """Return the cosine μ for a random number u, by Rayleigh's inverse, eq. 5.67."""
     s = 4 * u - 2
     r = (s * s + 1) ** 0.5
     return root(s + r) + root(s - r)
 
 
-def two_lobes(u):
-    """μ of one of two lobes of Schlick's: those of the fit to `Mie hazy`."""
+def sample_two_lobes(u):
+    """Return the cosine μ by one of two of Schlick's lobes, which were fitted to `Mie hazy`."""
     first = u < 0.1738
     u = dr.select(first, u / 0.1738, (u - 0.1738) / (1 - 0.1738))
-    return by_schlick(dr.select(first, -0.4460, 0.7297), u)
+    return sample_schlick(dr.select(first, -0.4460, 0.7297), u)
 
 
-def mie(u, n):
-    """μ of `mie_hazy` or `mie_murky`; one number both chooses the half and places μ in it."""
-    return phase_functions.draw_even_and_forward_cosine(n, u, dr.select(u < 0.5, 2 * u, 2 * u - 1))
+def sample_mie(u, n):
+    """Return the cosine μ of `mie_hazy` or `mie_murky`.
+
+    One number u both chooses the half of the mixture and places μ in it.
+    """
+    return phase_functions.draw_cosine(n, u, dr.select(u < 0.5, 2 * u, 2 * u - 1))
 
 
-def samplers():
-    """Name → a function from ξ to μ."""
+def list_samplers():
+    """Return functions from random numbers to cosines, by name."""
     return {
-        "Henyey-Greenstein": henyey_greenstein,
-        "Schlick": lambda u: by_schlick(K, u),
-        "Rayleigh": by_rayleigh,
-        "Mie hazy": lambda u: mie(u, 8),
-        "Mie murky": lambda u: mie(u, 32),
-        "two of Schlick's": two_lobes,
+        "Henyey-Greenstein": sample_henyey_greenstein,
+        "Schlick": lambda u: sample_schlick(K, u),
+        "Rayleigh": sample_rayleigh,
+        "Mie hazy": lambda u: sample_mie(u, 8),
+        "Mie murky": lambda u: sample_mie(u, 32),
+        "two of Schlick's": sample_two_lobes,
     }
 
 
-def plugins(fits):
-    """Name → the phase function as a plugin, the last one the fit to `Mie hazy`."""
+def list_plugins(fits):
+    """Return the phase functions as plugins by name, the last one the fit to `Mie hazy`."""
     r, *ks = fits["Mie hazy"][0]
     lobes = ({"type": "schlick", "k": float(k)} for k in ks)
     mixture = {"type": "blendphase", "weight": 1 - float(r), **dict(zip("ab", lobes, strict=True))}
@@ -68,14 +71,14 @@ def plugins(fits):
     }
 
 
-def over_the_first(seconds):
-    """Times over that of the first."""
+def divide_by_first(seconds):
+    """Return times relative to that of the first."""
     first = next(iter(seconds.values()))
     return {name: s / first for name, s in seconds.items()}
 
 
-def time_of_picture(phase):
-    """Seconds of CPU of a picture of even smoke with a phase function."""
+def measure_picture(phase):
+    """Return the CPU seconds of a picture of even smoke with a phase function."""
     import mitsuba as mi
 
     camera = mi.ScalarTransform4f().look_at([1.9, 1.1, 2.2], [0.5, 0.5, 0.5], [0, 1, 0])
@@ -94,24 +97,24 @@ def time_of_picture(phase):
     def picture():
         mi.render(scene, spp=SPP).numpy()
 
-    picture()  # compiles
+    picture()  # compiles the kernels, which is not timed
     return measure_least_seconds(picture)
 
 
-def time_of(draw):
-    """Seconds of CPU of the draws of a sampler, one kernel that keeps a sum of each thread."""
+def measure_draws(draw):
+    """Return the CPU seconds of the draws of a sampler, in one kernel that sums them."""
     import mitsuba as mi
 
     def drawn():
         numbers = mi.PCG32(DRAWS)
 
-        def turn(i, total, numbers):
+        def add_draw(i, total, numbers):
             return i + 1, total + draw(numbers.next_float32()), numbers
 
         state = mi.UInt32(0), mi.Float(0), numbers
-        _, total, _ = dr.while_loop(state, lambda i, *_: i < TURNS, turn)
+        _, total, _ = dr.while_loop(state, lambda i, *_: i < TURNS, add_draw)
         dr.eval(total)
         dr.sync_thread()
 
-    drawn()  # compiles
+    drawn()  # compiles the kernel, which is not timed
     return measure_least_seconds(drawn)

@@ -1,4 +1,4 @@
-"""The data: an MRI scan, a frog of labels, and a phantom that is made."""
+"""Loads the volumes of the pictures: an MRI scan, a frog of labels, and a made phantom."""
 
 from dataclasses import dataclass, replace
 from typing import Any
@@ -11,9 +11,9 @@ from brdfkit.volumes import TransferFunction, Volume
 
 FROG = "volumes/frog_tissues.vti"
 PHANTOM = 96  # voxels along an edge
-DENSE = 40.0  # optical depth of the longest edge, where A is 1
-SKELETON = 13  # the frog's label of it
-# Of the head: share of the range, R, G, B, A
+DENSE = 40.0  # optical depth of the cube's edge at the opacity A = 1
+SKELETON = 13  # the label of the frog's skeleton
+# The head's transfer function: share of the range of values, R, G, B, A
 HEAD = (
     (0.0, 0.5, 0.25, 0.2, 0.0),
     (0.12, 0.6, 0.3, 0.24, 0.0),
@@ -28,9 +28,13 @@ HEAD = (
 class Scan:
     """A volume within the cube from -1 to 1, with what its pictures need.
 
-    `density`: values of which the largest and a level mean something; `coloured`: those that have
-    colours, labels or the same; `function`: their colours; `level`: of the surface; `window`: the
-    densities that are black and white; `eye`: the direction of the camera; `up`: that way is up.
+    density : values for which the largest and a level mean something.
+    coloured : values that have colours, labels or the densities themselves.
+    function : the colours of `coloured`.
+    level : the level of the surface.
+    window : the densities that are black and white.
+    eye : the direction of the camera.
+    up : the direction that is up in pictures.
     """
 
     name: str
@@ -43,39 +47,41 @@ class Scan:
     up: Any
 
 
-def scans(sources, fewer=1):
-    """Those scans that are at hand, and the phantom; `fewer`: times along each edge."""
+def find_scans(sources, fewer=1):
+    """Return the scans whose files exist, and the phantom, with edges `fewer` times as short."""
     found = []
     if sources.find_beside(MRI):
-        found.append(mri(sources.find_beside(MRI), fewer))
+        found.append(load_head(sources.find_beside(MRI), fewer))
     if sources.find_beside(FROG):
-        found.append(frog(sources.find_beside(FROG), 2 * fewer))
-    return [*found, phantom(fewer)]
+        found.append(load_frog(sources.find_beside(FROG), 2 * fewer))
+    return [*found, make_phantom(fewer)]
 
 
-def mri(path, fewer):
-    """A head without its skull."""
-    head = within_cube(volumes.load(path, downsample=fewer))
+def load_head(path, fewer):
+    """Return an MRI scan of a head without its skull."""
+    head = fit_into_cube(volumes.load(path, downsample=fewer))
     function = TransferFunction([row[0] for row in HEAD], [row[1:] for row in HEAD])
     function = function.scaled_to(*head.range)
-    return Scan("MRI", head, head, dense(function), 110, (150, 255), (1.3, 1.6, 0.9), (0, 0, 1))
+    return Scan(
+        "MRI", head, head, set_optical_depth(function), 110, (150, 255), (1.3, 1.6, 0.9), (0, 0, 1)
+    )
 
 
-def frog(path, fewer):
-    """Tissues by their names; and densities, ours: of the skeleton 1, of others less."""
-    labels = within_cube(volumes.load(path, downsample=fewer, labels=True))
+def load_frog(path, fewer):
+    """Return tissues of a frog by labels, and made densities: 1 in the skeleton, else less."""
+    labels = fit_into_cube(volumes.load(path, downsample=fewer, labels=True))
     n = int(labels.range[1]) + 1
     a = np.array([0, *[0.3] * (n - 1)])
     a[SKELETON] = 1
     density = Volume(a[labels.values], labels.to_world, labels.name)
     rgb = np.random.default_rng(4).uniform(0.2, 0.95, (n, 3))
     rgb[SKELETON] = 0.9, 0.87, 0.8
-    function = dense(TransferFunction(np.arange(n), np.column_stack([rgb, a])))
+    function = set_optical_depth(TransferFunction(np.arange(n), np.column_stack([rgb, a])))
     return Scan("frog", density, labels, function, 0.15, (0, 1), (0.4, -0.5, 2), (1, 0, 0))
 
 
-def phantom(fewer):
-    """Shepp and Logan's, without its skull, and without the octant before the camera."""
+def make_phantom(fewer):
+    """Return Shepp and Logan's phantom, without its skull and the octant nearest to the camera."""
     found = volumes.load("shepp_logan", size=2 * PHANTOM // fewer)
     values = np.where(found.values > 0.9, 0, found.values)
     n = PHANTOM // fewer
@@ -88,18 +94,18 @@ def phantom(fewer):
         0.3: (0.95, 0.6, 0.2, 0.7),
         0.4: (0.95, 0.25, 0.2, 1),
     }
-    function = dense(TransferFunction(list(colours), list(colours.values())))
+    function = set_optical_depth(TransferFunction(list(colours), list(colours.values())))
     return Scan("phantom", volume, volume, function, 0.1, (0, 0.4), (-0.9, -2.0, 1.1), (0, 0, 1))
 
 
-def within_cube(volume):
-    """The volume moved and shrunk into the cube from -1 to 1."""
+def fit_into_cube(volume):
+    """Return the volume moved and shrunk into the cube from -1 to 1."""
     low, high = volume.bounds
     fit = np.diag([*[2 / (high - low).max()] * 3, 1.0])
     fit[:3, 3] = -fit[0, 0] * (low + high) / 2
     return Volume(volume.values, fit @ volume.to_world, volume.name, volume.labels)
 
 
-def dense(function, depth=DENSE):
-    """The function with the extinction by which the cube's edge has an optical depth."""
+def set_optical_depth(function, depth=DENSE):
+    """Return a transfer function with an extinction that gives the cube's edge an optical depth."""
     return replace(function, extinction=depth / 2)

@@ -1,4 +1,4 @@
-"""Chapter 6: light scattered once in a slab, against closed forms and another renderer."""
+"""Checks light scattered once in a slab against closed forms and another renderer."""
 
 import math
 
@@ -6,12 +6,12 @@ import numpy as np
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.theses.claims import Claim, verdict
+from brdfkit.theses.claims import Claim, to_verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 3
 SIZE, SPP = 64, 256
-SLABS = {  # σ, α, g, D, d_z: the radiance by volpath, apart
+SLABS = {  # extinction σ, albedo α, g, depth D, d_z of the sun: the radiance by volpath
     (1, 0.8, 0.6, 2, -1): 0.172089,
     (1, 0.8, 0.6, 2, 1): 0.004868,
     (2, 0.5, -0.3, 1, 0.5): 0.017210,
@@ -26,12 +26,12 @@ states the steps, and leaves albedo, lights and the ray to the light open."""
 
 @in_turn
 def run(sources, report):
-    """The radiance of the slabs, and the claim on it."""
+    """Check the claims on light scattered once in slabs; return their section of the page."""
     use_variant()
     rows, z = [], []
     for done, (slab, apart) in enumerate(SLABS.items()):
-        known = closed_form(*slab)
-        mean, error = radiance(*slab)
+        known = compute_closed_form(*slab)
+        mean, error = render_radiance(*slab)
         z.append((mean - known) / error)
         ours = f"{mean:.6f} ({z[-1]:+.1f})"
         rows.append((*(f"{v:g}" for v in slab), f"{known:.6f}", ours, f"{apart:.6f}"))
@@ -41,7 +41,7 @@ def run(sources, report):
         "ch. 6, 8",
         f"{len(SLABS)} slabs in closed form",
         f"{min(z):+.1f} to {max(z):+.1f} standard errors",
-        verdict(max(map(abs, z)) < 3.3),
+        to_verdict(max(map(abs, z)) < 3.3),
         "Collisions by Woodcock tracking, ratio tracking to the sun. Confirmed below 3.3.",
     )
     heads = "σ", "α", "g", "D", "d_z", "closed form", "here", "Mitsuba's volpath, apart"
@@ -49,8 +49,11 @@ def run(sources, report):
     return Section("Single scattering", TEXT, [claim], [Table(heads, rows, caption)])
 
 
-def closed_form(sigma, albedo, g, depth, cosine):
-    """The radiance of a slab."""
+def compute_closed_form(sigma, albedo, g, depth, cosine):
+    """Return the radiance of light scattered once in a slab, in closed form.
+
+    `cosine` is that of the sun's rays to z.
+    """
     phase = (1 - g * g) / (4 * math.pi * (1 + g * g + 2 * g * cosine) ** 1.5)
     if cosine > 0:
         there_and_back = 1 + 1 / cosine
@@ -60,8 +63,8 @@ def closed_form(sigma, albedo, g, depth, cosine):
     return sigma * albedo * phase * math.exp(-sigma * depth / -cosine) * length
 
 
-def radiance(sigma, albedo, g, depth, cosine):
-    """The radiance of a slab by `single_scattering`, and its standard error."""
+def render_radiance(sigma, albedo, g, depth, cosine):
+    """Return the radiance of a slab by `single_scattering`, and its standard error."""
     import mitsuba as mi
 
     wide = mi.ScalarTransform4f().scale([1000, 1000, depth]).translate([-0.5, -0.5, 0])

@@ -1,9 +1,9 @@
-"""Ten settings in which `single_scattering` and Mitsuba's `volpath` should show the same light."""
+"""Defines ten settings in which `single_scattering` and Mitsuba's `volpath` show the same light."""
 
 import time
 
 import numpy as np
-from brdfkit.theses.lesar2018.iterations import iteration
+from brdfkit.theses.lesar2018.iterations import make_renderer
 
 from brdfkit.lighting.sampling.emitter import make_small_sky
 from brdfkit.volumes import TransferFunction
@@ -11,14 +11,14 @@ from brdfkit.volumes import TransferFunction
 SIZE = 16  # pixels along the edges of a picture
 
 
-def settings():
-    """Name → a function of an integrator's name that returns its scene, a dictionary.
+def make_settings():
+    """Return by name a function from an integrator's name to the dictionary of its scene.
 
-    Lights: directions, points, spots, surfaces, environments. Media: even, of grids, coloured,
-    by transfer functions; with surfaces in them and behind; scattering once and more. Two errors
-    of `volpath` (Mitsuba 3.9.1) are left out. It loses the collisions nearer than 1.3e-4 to where
-    rays enter a medium, for σ = 400 5 % of the light; and light of a sphere that shines from near,
-    up to a tenth. `test_single_scattering.py` holds both to what they should be.
+    Lights: directions, points, spots, surfaces, environments. Media: even, of grids, coloured, by
+        transfer functions; with surfaces in them and behind; scattering once and more. Two errors
+        of `volpath` (Mitsuba 3.9.1) are left out. It loses the collisions nearer than 1.3e-4 to
+        where rays enter a medium, for σ = 400 5 % of the light; and light of a sphere that shines
+        from near, up to a tenth. `test_single_scattering.py` holds both to what they should be.
     """
     import mitsuba as mi
 
@@ -49,41 +49,52 @@ def settings():
     tinted = {"type": "constvolume", "value": {"type": "rgb", "value": [0.9, 0.5, 0.2]}}
     hg = {"type": "hg", "g": 0.6}
     plastic = {"type": "roughplastic", "alpha": 0.3}
-    glossy = {"type": "bsdf_phase", "bsdf": plastic, "density": _grid(mi)}
+    glossy = {"type": "bsdf_phase", "bsdf": plastic, "density": _make_grid(mi)}
     function = TransferFunction(
         [0, 2, 6], [[0.9, 0.3, 0.1, 0], [0.2, 0.8, 0.4, 0.2], [0.4, 0.4, 0.9, 1]], extinction=8
     )
     return {
-        "even medium, sun": _setting(1.5, sun, phase=hg),
-        "even medium, point": _setting(4.0, point, albedo=0.6),
-        "grid, panel": _setting(_grid(mi), panel, phase=glossy),
-        "grid, even sky": _setting(_grid(mi), even, phase={"type": "rayleigh"}),
-        "grid, sky of Mitsuba's": _setting(_grid(mi), map_of_mitsuba, phase={"type": "schlick"}),
-        "grid, sky by blocks": _setting(_grid(mi), map_of_ours, phase={"type": "mie_hazy"}),
-        "coloured, spot and sky": _setting(_grid(mi), spot | even, albedo=tinted, phase=hg),
-        "half of a grid, disk": _setting(_grid(mi), disk, scale=0.5, albedo=tinted),
-        "transfer function, surfaces": _setting(
-            _grid(mi, values=True), sun | even | surfaces, function=function, phase=hg
+        "even medium, sun": _make_setting(1.5, sun, phase=hg),
+        "even medium, point": _make_setting(4.0, point, albedo=0.6),
+        "grid, panel": _make_setting(_make_grid(mi), panel, phase=glossy),
+        "grid, even sky": _make_setting(_make_grid(mi), even, phase={"type": "rayleigh"}),
+        "grid, sky of Mitsuba's": _make_setting(
+            _make_grid(mi), map_of_mitsuba, phase={"type": "schlick"}
         ),
-        "scattered five times": _setting(
-            _grid(mi), panel | even, albedo=tinted, phase=hg, scale=2.0, max_depth=6
+        "grid, sky by blocks": _make_setting(
+            _make_grid(mi), map_of_ours, phase={"type": "mie_hazy"}
+        ),
+        "coloured, spot and sky": _make_setting(
+            _make_grid(mi), spot | even, albedo=tinted, phase=hg
+        ),
+        "half of a grid, disk": _make_setting(_make_grid(mi), disk, scale=0.5, albedo=tinted),
+        "transfer function, surfaces": _make_setting(
+            _make_grid(mi, values=True), sun | even | surfaces, function=function, phase=hg
+        ),
+        "scattered five times": _make_setting(
+            _make_grid(mi), panel | even, albedo=tinted, phase=hg, scale=2.0, max_depth=6
         ),
     }
 
 
-def _grid(mi, values=False):
-    """A volume of random voxels in the unit cube, a third of them empty."""
+def _make_grid(mi, values=False):
+    """Return a volume of random voxels in the unit cube, a third of them empty."""
     rng = np.random.default_rng(5)
     voxels = rng.uniform(0, 6, (7, 8, 9, 1)).astype(np.float32)
     voxels[voxels < 2] = 0
     return {"type": "gridvolume", "grid": mi.VolumeGrid(voxels), "raw": values}
 
 
-def _setting(extinction, others, albedo=0.8, phase=None, function=None, scale=1.0, max_depth=2):
-    """A function of an integrator's name: the scene of a medium in the unit cube, and others."""
+def _make_setting(
+    extinction, others, albedo=0.8, phase=None, function=None, scale=1.0, max_depth=2
+):
+    """Return a function from an integrator's name to the scene of a medium in the unit cube.
+
+    `others` are further entries of the scene, such as lights.
+    """
     phase = phase or {"type": "isotropic"}
 
-    def scene(integrator):
+    def make_scene(integrator):
         import mitsuba as mi
 
         t = mi.ScalarTransform4f
@@ -109,18 +120,18 @@ def _setting(extinction, others, albedo=0.8, phase=None, function=None, scale=1.
         own = {"type": integrator, "max_depth": max_depth, "rr_depth": 1000}
         return {"type": "scene", "integrator": own, "sensor": sensor, "cube": cube, **others}
 
-    return scene
+    return make_scene
 
 
-def pictures(scene, integrator, spp, passes=16, first=0):
-    """Pictures (passes, SIZE, SIZE, 3) of seeds from `first` on, and the CPU seconds of each.
+def render_passes(scene, integrator, spp, passes=16, first=0):
+    """Render pictures (passes, SIZE, SIZE, 3) with seeds from `first` on, and measure CPU seconds.
 
-    scene : one of `settings()`.
-    spp : samples of a pixel in each pass.
+    scene : a value of `make_settings()`.
+    spp : samples per pixel in each pass.
     """
     import mitsuba as mi
 
-    render = iteration(spp)
+    render = make_renderer(spp)
     loaded, found, seconds = mi.load_dict(scene(integrator), parallel=False), [], []
     for seed in range(first, first + passes):
         start = time.process_time()
@@ -129,10 +140,11 @@ def pictures(scene, integrator, spp, passes=16, first=0):
     return np.stack(found), np.array(seconds)
 
 
-def z_scores(ours, others, tiles=2):
-    """How far the means of two sets of `pictures` are apart: (tiles, tiles, 3) of their parts.
+def compute_z_scores(ours, others, tiles=2):
+    """Return the differences of two sets of pictures in standard errors, (tiles, tiles, 3).
 
-    In standard errors, of independent pixels, which are found from the passes.
+    They are differences of the means of parts of the pictures. Pixels are taken to be independent,
+    and their errors are found from the passes.
     """
     means, errors, edge = [], [], SIZE // tiles
     for found in (ours, others):

@@ -8,7 +8,7 @@ from statistics import mean, median
 from make_models import join_paragraphs, make_table
 
 from brdfkit.core.version import find_versions
-from brdfkit.theses.drawing import COLOURS, figure, tidy
+from brdfkit.theses.drawing import COLOURS, make_figure, style_axes
 
 PAGE = Path(__file__).parents[2] / "leaderboard.md"
 INTRODUCTION = """Every model, fitted to every measurement at hand, and how far it is off. Made by
@@ -259,7 +259,7 @@ def make_differences_table(heads, rows):
 
 def draw_errors(log):
     """Return the figure that shows on how many materials some models stay within an error."""
-    drawn = figure(7.2, 3.6)
+    drawn = make_figure(7.2, 3.6)
     axes = drawn.subplots()
     some = [
         "lambert",
@@ -274,6 +274,6 @@ def draw_errors(log):
         axes.step(sorted(errors), range(1, len(errors) + 1), label=name, color=colour, where="post")
     axes.set_xscale("log")
     axes.set_xlabel("ε")
-    tidy(axes, "", "materials within ε")
+    style_axes(axes, "", "materials within ε")
     drawn.legend(loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     return drawn

@@ -6,7 +6,7 @@ import numpy as np
 from leaderboard.page import describe_versions
 from make_models import join_paragraphs, make_table
 
-from brdfkit.theses.drawing import COLOURS, figure, tidy
+from brdfkit.theses.drawing import COLOURS, make_figure, style_axes
 
 PAGE = Path(__file__).parents[2] / "shadow_map_gradients.md"
 RESOLUTION = 512  # texels along a side of a map
@@ -192,7 +192,7 @@ def write_advice(found):
 
 def draw_derivatives(found):
     """Return the figure of measured derivatives over exact ones, of plain and of hard scenes."""
-    drawn = figure(11, 4.6)
+    drawn = make_figure(11, 4.6)
     for axes, scenes in zip(drawn.subplots(1, 2), (PLAIN, HARD), strict=True):
         for its, colour in zip((*MOMENTS, "depth"), (*COLOURS[:5], "0.6"), strict=True):
             true, by_map = join_patches(found, scenes, its, "focused", RESOLUTION)
@@ -201,6 +201,6 @@ def draw_derivatives(found):
         most = 1.1 * np.abs(true).max()
         axes.plot([-most, most], [-most, most], color="0.3", linewidth=0.8)
         axes.set(xlim=(-most, most), ylim=(-most, most), xlabel="exact derivative")
-        tidy(axes, " and ".join(scenes), "derivative by the map")
+        style_axes(axes, " and ".join(scenes), "derivative by the map")
     drawn.axes[0].legend(frameon=False)
     return drawn

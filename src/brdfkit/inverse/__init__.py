@@ -1,4 +1,4 @@
-"""Estimates parameters from pictures: `refine` of whole scenes, `svbrdf` of flat samples."""
+"""Estimate parameters from pictures: `refine` those of a scene, `svbrdf` maps of a flat sample."""
 
 import lazy_loader
 

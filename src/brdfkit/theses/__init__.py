@@ -1,4 +1,4 @@
-"""`reproduce` runs the claims of a thesis and writes a page of them.
+"""Run the claims of a thesis again and write a page of them, with the function `reproduce`.
 
 A folder here is a thesis and is found by itself. Its `__init__.py` has TITLE, INTRODUCTION, NEEDS
 (the measured files) and PARTS, the names of its files in the order of the page. A part is one table
@@ -13,5 +13,5 @@ from brdfkit.theses.reproducing import Reproduction as Reproduction
 from brdfkit.theses.reproducing import list_theses as list_theses
 from brdfkit.theses.reproducing import reproduce as reproduce
 
-# The theses themselves lie beside `plugins/`; the wheel contains a copy of them here
+# In the repository the theses' folders are beside `plugins/`; a wheel has copies of them here
 __path__.append(str(Path(__file__).resolve().parents[3] / "theses"))

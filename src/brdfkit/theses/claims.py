@@ -1,4 +1,4 @@
-"""`Claim`: a claim of a thesis, with the printed figures, the figures here and a verdict."""
+"""Defines `Claim`: a claim of a thesis, its printed figures, the figures here and a verdict."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -7,14 +7,14 @@ from typing import Any
 
 
 def measure_cpu_seconds(function: Callable[..., Any], *arguments: Any) -> float:
-    """Measure the CPU seconds of a call of a function."""
+    """Measure the CPU seconds that a call of a function takes."""
     start = time.process_time()
     function(*arguments)
     return time.process_time() - start
 
 
 def measure_least_seconds(function: Callable[..., Any], *arguments: Any, times: int = 3) -> float:
-    """Measure the least CPU seconds of a few calls of a function."""
+    """Measure the least CPU seconds of a few calls, which other processes disturb least."""
     return min(measure_cpu_seconds(function, *arguments) for _ in range(times))
 
 
@@ -24,12 +24,12 @@ VERDICTS = CONFIRMED, REFUTED, UNSTATED, NOT_RUN
 
 @dataclass(frozen=True)
 class Claim:
-    """One claim of a thesis.
+    """A claim of a thesis, and whether it holds here.
 
     Attributes
     ----------
     says : str
-        The claim.
+        The claim as a sentence.
     where : str
         The table, equation or page of the claim.
     printed : str
@@ -55,8 +55,8 @@ class Claim:
             raise ValueError(f"{self.verdict!r} is no verdict; there are {', '.join(VERDICTS)}")
 
 
-def verdict(holds: bool) -> str:
-    """Return the verdict on a claim that `holds` or not."""
+def to_verdict(holds: bool) -> str:
+    """Return the verdict on a claim: confirmed if it `holds`, else not confirmed."""
     return CONFIRMED if holds else REFUTED
 
 

@@ -9,15 +9,15 @@ COLOURS = "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#8c
 GRID = "#dddddd"
 
 
-def figure(width: float, height: float) -> Any:
-    """Make an empty figure of a size in inches."""
+def make_figure(width: float, height: float) -> Any:
+    """Make an empty matplotlib figure of a size in inches."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def tidy(axes: Any, title: str, ylabel: str) -> None:
-    """Give axes a title, a label and a faint grid."""
+def style_axes(axes: Any, title: str, ylabel: str) -> None:
+    """Give axes a title, a label of the vertical axis and a faint grid."""
     axes.set_title(title, size=10)
     axes.set_ylabel(ylabel)
     axes.grid(color=GRID, linewidth=0.6)
@@ -26,7 +26,7 @@ def tidy(axes: Any, title: str, ylabel: str) -> None:
 
 
 def draw_curves(axes: Any, curves: Mapping[str, AnyArray], title: str, ylabel: str) -> None:
-    """Draw curves over the number of the sample, on a logarithmic scale; the last one is thick."""
+    """Draw curves over the number of the sample on a logarithmic scale, the last one thick."""
     last = list(curves)[-1]
     colours = {**dict(zip(curves, COLOURS, strict=False)), last: COLOURS[-1]}
     for name, values in curves.items():
@@ -34,4 +34,4 @@ def draw_curves(axes: Any, curves: Mapping[str, AnyArray], title: str, ylabel: s
         axes.plot(range(1, len(values) + 1), values, label=name, color=colours[name], **thick)
     axes.set_yscale("log")
     axes.margins(x=0.01)
-    tidy(axes, title, ylabel)
+    style_axes(axes, title, ylabel)

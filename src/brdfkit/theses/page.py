@@ -10,12 +10,17 @@ from brdfkit.core.files import write_safely
 from brdfkit.theses.claims import Claim, count_verdicts
 
 HEAD = "claim", "where", "printed", "ours", "verdict"
-RESOLUTION = 90  # dots per inch
+RESOLUTION = 90  # dots per inch of the figures
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of texts under the names of `columns`."""
+    """A table of texts on the page.
+
+    columns : the headings.
+    rows : the texts of each row, one per heading.
+    caption : Markdown below the table.
+    """
 
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
@@ -24,7 +29,12 @@ class Table:
 
 @dataclass(frozen=True)
 class Picture:
-    """A matplotlib figure; `name` is that of its file without the suffix."""
+    """A figure on the page.
+
+    name : the name of its file without the suffix.
+    figure : the figure of matplotlib.
+    caption : Markdown below the figure.
+    """
 
     name: str
     figure: Any = field(repr=False)
@@ -33,7 +43,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Section:
-    """A part of a page; `text` holds paragraphs of Markdown."""
+    """A part of a thesis's page: a heading, paragraphs of Markdown, claims, tables and figures."""
 
     title: str
     text: str = ""
@@ -49,16 +59,16 @@ def write_page(
     sections: Sequence[Section],
     missing: Sequence[str] = (),
 ) -> list[Path]:
-    """Write a page, and its pictures into the same folder; return all paths.
+    """Write a page as Markdown, and its figures into the same folder; return all paths.
 
-    `missing` are the titles of parts that were not finished.
+    `missing` holds the titles of parts that were not finished.
     """
     file = Path(file)
     pictures = [picture for section in sections for picture in section.pictures]
-    paths = {picture.name: _picture_path(file, picture) for picture in pictures}
+    paths = {picture.name: _make_picture_path(file, picture) for picture in pictures}
     for picture in pictures:
         with write_safely(paths[picture.name]) as beside:
-            beside.write_bytes(_encode_png(picture.figure))
+            beside.write_bytes(_encode_small_png(picture.figure))
     with write_safely(file) as beside:
         beside.write_text(
             _format_page(file, title, introduction, sections, missing), encoding="utf-8"
@@ -69,7 +79,7 @@ def write_page(
 def _format_page(
     file: Path, title: str, introduction: str, sections: Sequence[Section], missing: Sequence[str]
 ) -> str:
-    """Return the page as Markdown."""
+    """Return the text of the page in Markdown: a table of all claims, then the sections."""
     claims = [claim for section in sections for claim in section.claims]
     blocks = [f"# {title}", introduction.strip()]
     if missing:
@@ -82,7 +92,7 @@ def _format_page(
         for table in section.tables:
             blocks += [_format_table(table.columns, table.rows), table.caption]
         for picture in section.pictures:
-            path = _picture_path(file, picture).name
+            path = _make_picture_path(file, picture).name
             blocks += [f"![{section.title}]({path})", picture.caption]
     return "\n\n".join(filter(None, blocks)) + "\n"
 
@@ -93,7 +103,7 @@ def _format_claim(claim: Claim) -> tuple[str, ...]:
 
 
 def _format_reason(claim: Claim) -> str:
-    """Return a list item that says why the figures of a claim differ."""
+    """Return a list item of Markdown that says why the figures of a claim differ."""
     return f"- *{claim.says}* **{claim.verdict}.** {claim.why}"
 
 
@@ -104,17 +114,17 @@ def _format_table(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 def _format_cell(text: object) -> str:
-    """Return a text for the cell of a Markdown table."""
+    """Return a text for a cell of a Markdown table: one line without vertical bars."""
     return " ".join(str(text).split()).replace("|", "∣")
 
 
-def _picture_path(file: Path, picture: Picture) -> Path:
-    """Return the path of a picture of the page `file`."""
+def _make_picture_path(file: Path, picture: Picture) -> Path:
+    """Return the path of a figure of the page `file`."""
     return file.with_name(f"{file.stem}_{picture.name}.png")
 
 
-def _encode_png(figure: Any) -> bytes:
-    """Return a figure as a PNG with a palette, which is a third of the size."""
+def _encode_small_png(figure: Any) -> bytes:
+    """Return a figure as a PNG with a palette, a third as large as one without."""
     from PIL import Image
 
     full_colour = io.BytesIO()

@@ -1,4 +1,4 @@
-"""`reproduce`: runs the claims of a thesis and writes them to a page."""
+"""Runs the claims of a thesis and writes them to a page, by the public function `reproduce`."""
 
 from __future__ import annotations
 
@@ -136,7 +136,10 @@ def reproduce(
 
 
 def _require_packages(thesis: ModuleType, sources: Sources) -> None:
-    """Raise `BrdfkitError`, before the work, where a package is missing that a file needs."""
+    """Raise `BrdfkitError` if a package that one of the measured files needs is not installed.
+
+    A claim in the middle of a long run would fail for it otherwise.
+    """
     for file, package in getattr(thesis, "PACKAGES", {}).items():
         if sources.find_beside(file) and find_spec(package) is None:
             raise BrdfkitError(
@@ -145,13 +148,13 @@ def _require_packages(thesis: ModuleType, sources: Sources) -> None:
 
 
 def _import_thesis(name: str) -> ModuleType:
-    """Import the package of a thesis."""
+    """Import the package of a thesis, whose claims are its modules."""
     return importlib.import_module(f"{__package__}.{name}")
 
 
 def _scale_progress(report: Progress, before: int, seconds: int, total: int) -> Progress:
-    """Return a progress function for one part, which reports the progress of all parts.
+    """Return a progress function for one part of a thesis, which reports the progress of all parts.
 
-    The parts count by the seconds that they take; `before` are the seconds of the parts before.
+    The parts count by the `seconds` that they take; `before` are the seconds of earlier parts.
     """
-    return lambda done, of: report(before + seconds * done / of, total)  # type: ignore[arg-type]  # a share of seconds
+    return lambda done, of: report(before + seconds * done / of, total)  # type: ignore[arg-type]  # progress in shares of a second

@@ -12,9 +12,10 @@ VARIABLE = "BRDFKIT_DATA"
 
 @dataclass(frozen=True)
 class Sources:
-    """The folder of measurements, and the folder of `tables` transcribed from theses.
+    """The folders with files that a thesis's claims need.
 
-    Both are None where no folder is named; a thesis without NEEDS allows that.
+    folder : the folder of measurements, or None where none is named and the thesis needs none.
+    tables : the folder of tables transcribed from theses, or None.
     """
 
     folder: Path | None
@@ -26,15 +27,15 @@ class Sources:
         return self.folder / name
 
     def find_beside(self, name: str) -> Path | None:
-        """Return the path of a file beside the folder, such as ``environments/grace.hdr``.
+        """Return the path of a file in the parent folder, such as ``environments/grace.hdr``.
 
-        None where there is no such file.
+        Returns None where there is no such file.
         """
         path = self.folder and self.folder.resolve().parent / name
         return path if path and path.is_file() else None
 
     def table(self, name: str) -> Path | None:
-        """Return the path of a transcribed table, None where there is no such table."""
+        """Return the path of a table transcribed from a thesis, or None where it is missing."""
         path = self.tables and self.tables / name
         return path if path and path.is_file() else None
 
@@ -42,11 +43,11 @@ class Sources:
 def find_sources(
     data: str | Path | None, tables: str | Path | None, needs: Mapping[str, str]
 ) -> Sources:
-    """Find the sources in the folder `data`, or in the folder that BRDFKIT_DATA names.
+    """Find the files of a thesis in the folder `data`, or in the one that BRDFKIT_DATA names.
 
-    `tables` is a folder, by default ``thesis`` beside `data`; `needs` says where to get each file,
-    by the file's name. Raises `BrdfkitError` where files are needed and no folder is named, and for
-    a missing file.
+    `tables` is a folder, by default ``thesis`` beside `data`; `needs` maps the name of each file to
+    the place where to get it. Raises `BrdfkitError` where files are needed and no folder is named,
+    and for a missing file.
     """
     named = data or os.environ.get(VARIABLE)
     if not named and not needs:

@@ -72,13 +72,13 @@ def svbrdf(
     """
     from brdfkit.cli.arguments import use_results_folder
     from brdfkit.inverse.photographs import svbrdf as fit_maps
-    from brdfkit.inverse.photographs.result.files import check_folder
+    from brdfkit.inverse.photographs.result.files import make_output_folder
     from brdfkit.model import labels
 
     values, output = parse_settings(fixed, "--fixed"), output or folder / "maps"
     interrupted = False
     with use_results_folder(output), console.progress("fit maps") as progress:
-        check_folder(labels.model(labels.load_files(model)), output)
+        make_output_folder(labels.model(labels.load_files(model)), output)
         try:
             maps = fit_maps(
                 folder,

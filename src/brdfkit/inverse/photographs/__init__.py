@@ -1,14 +1,14 @@
 """Estimates maps of a flat sample (an SVBRDF) from photographs of it under known lights.
 
-The maps are textures of a model's parameters and of the surface normal. `svbrdf.py` holds the
+The maps are textures of a BRDF model's parameters and of the surface normal. `svbrdf.py` holds the
 public function, which runs the parts below one after the other:
 
-- `capture/` reads photographs with the positions of cameras and lights, and collects what they show
+- `capture/` reads photographs with the positions of cameras and lights, and collects the radiances
   of each texel (a pixel of the maps).
 - `maps/` defines the numbers of a texel, the radiance that follows from them, and the maps as a
   Mitsuba scene.
-- `search/` fits the numbers of all texels: coarse maps first, then finer ones, at last corrected by
-  Mitsuba's renderings of the maps.
+- `search/` fits the numbers of all texels: coarse maps first, then finer ones, and at last corrects
+  them by Mitsuba's renderings of the maps.
 - `result/` estimates standard errors, and makes the `Svbrdf` that users receive, its files and its
   report.
 """

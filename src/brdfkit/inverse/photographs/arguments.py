@@ -1,4 +1,4 @@
-"""Checks the arguments of `svbrdf` and converts them; each error is one sentence."""
+"""Checks the arguments of `svbrdf` and converts them to the objects that its search needs."""
 
 from collections.abc import Mapping
 from os import PathLike
@@ -12,16 +12,16 @@ from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.capture.capture import SMALLEST_MAP, Capture
 from brdfkit.inverse.photographs.capture.capture_file import load_capture
-from brdfkit.inverse.photographs.maps.maps import find_pair
+from brdfkit.inverse.photographs.maps.maps import find_width_pair
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 from brdfkit.model import labels
 
-DEFAULT_LONGEST_SIDE = 512  # texels, at most
-SMALLEST_SMOOTHNESS = 0.003  # below, the steps of a search end before the maps are as smooth
+DEFAULT_LONGEST_SIDE = 512  # the most texels along the maps' longer side by default
+SMALLEST_SMOOTHNESS = 0.003  # smoother maps would need more steps than a search takes
 
 
 def check_variant() -> None:
-    """Raise `BrdfkitError` if Mitsuba's variant has no RGB pictures, or no derivatives."""
+    """Raise `BrdfkitError` unless Mitsuba's variant renders RGB and LLVM computes derivatives."""
     variant = use_variant()
     if not variant.endswith("_rgb"):
         raise BrdfkitError(
@@ -32,7 +32,7 @@ def check_variant() -> None:
 
 
 def to_capture(value: object, accept_8_bit: bool) -> tuple[str, Capture]:
-    """Return the sample's name and the `Capture`, from a folder or a `Capture`."""
+    """Return a sample's name and its `Capture`, from the folder of photographs or a `Capture`."""
     if isinstance(value, Capture):
         return "sample", value
     if not isinstance(value, str | PathLike):
@@ -43,10 +43,10 @@ def to_capture(value: object, accept_8_bit: bool) -> tuple[str, Capture]:
 def to_texel_parameters(
     label: str, anisotropic: bool, fixed: Mapping[str, float] | None
 ) -> TexelParameters:
-    """Return the layout of a texel's numbers for a model's label.
+    """Return the layout of the numbers that describe a texel, for a model's label.
 
-    Raises `BrdfkitError` for unknown parameters, values beyond their bounds, and a model whose
-    weights may be negative.
+    `fixed` holds shape parameters with one value everywhere. Raises `BrdfkitError` for unknown
+    parameters, values beyond their bounds, and a model whose weights may be negative.
     """
     model = labels.model(label)
     if model.has_signed_weights():
@@ -59,14 +59,14 @@ def to_texel_parameters(
                 f"{label}: {name} is not searched; fixed can be {join_words(shapes)}."
             )
     defaults = model().values
-    # Also the f0 of each part of a sum, such as ggx_1_f0
+    # A sum of models has an f0 for each of them, such as ggx_1_f0
     held: dict[str, Any] = {
         name: defaults[name] for name in shapes if name == "f0" or name.endswith("_f0")
     }
     held |= {name: to_number(name, value) for name, value in fixed.items()}
     model(**held)  # raises an error for values beyond the bounds
     names = tuple(name for name in shapes if name not in held)
-    return TexelParameters(model, names, held, find_pair(model, names))
+    return TexelParameters(model, names, held, find_width_pair(model, names))
 
 
 def to_smoothness(value: float | None) -> float | None:
@@ -75,7 +75,7 @@ def to_smoothness(value: float | None) -> float | None:
 
 
 def to_shape(capture: Capture, resolution: int | None) -> tuple[int, int]:
-    """Return the shape (height, width) of the maps."""
+    """Return the shape (height, width) of the maps, whose longer side is `resolution` texels."""
     if resolution is None:
         return capture.default_shape(DEFAULT_LONGEST_SIDE)
     longer = to_whole_number("resolution", resolution, SMALLEST_MAP)

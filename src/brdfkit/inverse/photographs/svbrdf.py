@@ -21,14 +21,14 @@ from brdfkit.inverse.photographs.arguments import (
     to_texel_parameters,
 )
 from brdfkit.inverse.photographs.capture.capture import Capture, downsample
-from brdfkit.inverse.photographs.capture.observations import Observations, sample_pictures
+from brdfkit.inverse.photographs.capture.observations import Observations, sample_at_texels
 from brdfkit.inverse.photographs.maps.maps import Maps, to_error_maps
 from brdfkit.inverse.photographs.maps.residuals import describe_misfit
 from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
 from brdfkit.inverse.photographs.maps.undetermined import describe_undetermined
 from brdfkit.inverse.photographs.result.levelling import describe_capture, describe_normals
 from brdfkit.inverse.photographs.result.result import Svbrdf
-from brdfkit.inverse.photographs.result.simulated_errors import simulate_errors
+from brdfkit.inverse.photographs.result.simulated_errors import simulate_standard_errors
 from brdfkit.inverse.photographs.search.fitting_maps import UnfinishedMaps, estimate_steps, fit_maps
 from brdfkit.inverse.photographs.search.problem import Problem
 from brdfkit.inverse.photographs.search.through_renderer import (
@@ -117,11 +117,11 @@ def svbrdf(
     problem = Problem(parameters, observed, report)
 
     def make_result(fitted: UnfinishedMaps, notes: tuple[str, ...], **known: Any) -> Svbrdf:
-        """Return the `Svbrdf` of maps; `known` holds what only finished searches have."""
+        """Return the `Svbrdf` of fitted maps; `known` are attributes that only some maps have."""
         return Svbrdf(
             name=name,
             model=model,
-            maps=Maps.from_rows(parameters, fitted.x, shape, photographs.size).maps,
+            maps=Maps.from_texel_numbers(parameters, fitted.x, shape, photographs.size).maps,
             fixed=parameters.fixed,
             size=photographs.size,
             smoothness=float(fitted.tau),
@@ -132,13 +132,15 @@ def svbrdf(
             **known,
         )
 
-    def conclude(rendered: RenderedMaps, errors: FloatArray) -> Svbrdf:
-        """Return the `Svbrdf` of a finished search, with notes and standard errors (n, count)."""
+    def make_final_result(rendered: RenderedMaps, errors: FloatArray) -> Svbrdf:
+        """Return the `Svbrdf` of a finished search, with standard errors (texels, numbers)."""
         fitted, pictures = rendered.fitted, rendered.pictures
-        maps = Maps.from_rows(parameters, fitted.x, shape, photographs.size).maps
-        beyond = sample_pictures(photographs, photographs.pictures - pictures, shape)
+        maps = Maps.from_texel_numbers(parameters, fitted.x, shape, photographs.size).maps
+        beyond = sample_at_texels(photographs, photographs.pictures - pictures, shape)
         misfit = measure_misfit(beyond, fitted.noise, observed)
-        diffuse = maps.get("diffuse_reflectance", np.ones(CHANNELS))[..., observed.lit_channels()]
+        diffuse = maps.get("diffuse_reflectance", np.ones(CHANNELS))[
+            ..., observed.find_lit_channels()
+        ]
         differences = summarise_differences(photographs, pictures)
         is_overdetermined = CHANNELS * lights > parameters.count
         noise = fitted.noise**0.5 if is_overdetermined else 0.0
@@ -152,28 +154,28 @@ def svbrdf(
             notes,
             uncertainty=to_error_maps(parameters, errors, fitted.x, shape),
             misfit=misfit.reshape(shape),
-            **_compare(rendered, photographs),
+            **_compare_with_photographs(rendered, photographs),
         )
 
     fitted = rendered = None
     try:
         fitted = fit_maps(problem, smoothness)
         rendered, rounds = refine_through_renderer(problem, fitted, photographs)
-        errors = simulate_errors(problem, rendered, rounds, photographs)
-        return conclude(rendered, errors)
+        errors = simulate_standard_errors(problem, rendered, rounds, photographs)
+        return make_final_result(rendered, errors)
     except KeyboardInterrupt as stop:
         best = (stop.best if isinstance(stop, Interrupted) else rendered) or fitted
         if best is None:
             raise
         if isinstance(best, RenderedMaps):
-            known = _compare(best, photographs)
+            known = _compare_with_photographs(best, photographs)
             result = make_result(best.fitted, (INTERRUPTED,), **known)
         else:
             result = make_result(best, (INTERRUPTED,))
         raise Interrupted(result, f"{name}: there are maps so far") from None
 
 
-def _compare(rendered: RenderedMaps, capture: Capture) -> dict[str, Any]:
+def _compare_with_photographs(rendered: RenderedMaps, capture: Capture) -> dict[str, Any]:
     """Return the attributes of an `Svbrdf` that compare renderings with the photographs."""
     psnr = compute_psnr(capture, rendered.pictures)
     return {"residual": rendered.difference, "predicted": psnr, "rendered": rendered.pictures}

@@ -4,9 +4,9 @@
 
 - `problem/` defines what is minimised: the scene, the parameters to search, the pictures to match,
   and the weight of each pixel.
-- `search/` minimises it. `gauss_newton.py` handles up to 32 numbers, whose derivatives are rendered
-  one picture each; `descent.py` handles textures and volumes, with thousands of numbers.
-- `result/` estimates how certain the numbers are and makes the `Refinement` that users receive.
+- `search/` minimises it. `gauss_newton.py` handles up to 32 numbers, with a rendered picture of
+  derivatives for each; `descent.py` handles the thousands of numbers of textures and volumes.
+- `result/` estimates standard errors of the numbers and makes the `Refinement` that users receive.
 """
 
 from brdfkit.inverse.scenes.refine import refine as refine

@@ -1,6 +1,8 @@
 """The public function `refine`, which finds parameters of a scene from pictures of it."""
 
-from __future__ import annotations  # so that `help` says Pictures, not what that stands for
+from __future__ import (
+    annotations,
+)  # so that `help` prints the name Pictures, not its long definition
 
 import time
 from collections.abc import Callable, Iterable, Mapping
@@ -19,20 +21,24 @@ from brdfkit.core.progress_bar import Progress, count_steps
 from brdfkit.inverse.scenes.problem.parameters import PARAMETER_LIMIT, choose_unknowns
 from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
 from brdfkit.inverse.scenes.problem.targets import Pictures, Target, read_targets
-from brdfkit.inverse.scenes.problem.unseen_parameters import no_effect_error
+from brdfkit.inverse.scenes.problem.unseen_parameters import make_no_effect_error
 from brdfkit.inverse.scenes.problem.views import Views, silence_samplers
-from brdfkit.inverse.scenes.result.conclusions import conclude_search
+from brdfkit.inverse.scenes.result.conclusions import make_refinement
 from brdfkit.inverse.scenes.result.refinement import Refinement
-from brdfkit.inverse.scenes.result.second_look import (
-    SecondLook,
-    conclude_checked_search,
-    take_second_look,
+from brdfkit.inverse.scenes.result.search_check import (
+    SearchCheck,
+    check_search,
+    make_checked_refinement,
 )
-from brdfkit.inverse.scenes.search.descent import count_descent_steps, descend
-from brdfkit.inverse.scenes.search.far_starts import FINALISTS, default_start_count, find_start
+from brdfkit.inverse.scenes.search.descent import count_descent_steps, minimise_by_descent
+from brdfkit.inverse.scenes.search.far_starts import (
+    FINALISTS,
+    count_default_starts,
+    find_best_start,
+)
 from brdfkit.inverse.scenes.search.gauss_newton import Search, run_gauss_newton
 
-STEP_LIMIT = 30  # the default; nearly all searches converge earlier
+STEP_LIMIT = 30  # the default of `steps`; nearly all searches converge earlier
 NO_ERRORS = "descent, the search for many numbers, gives no standard errors"
 
 
@@ -145,51 +151,53 @@ def refine(
     try:
         if by_descent:
             report = count_steps(progress, count_descent_steps(smoothness, steps))
-            state, weight = descend(views, smoothness, steps, spp, seed_of_search, report)
+            state, weight = minimise_by_descent(
+                views, smoothness, steps, spp, seed_of_search, report
+            )
             how = "by held-out pixels" if smoothness is None else "as given"
             notes: tuple[str, ...] = f"smoothness {weight:g}, {how}", NO_ERRORS
-            return conclude_search(views, state, time.perf_counter() - began, notes=notes)
-        count = default_start_count(views) if starts is None else starts
+            return make_refinement(views, state, time.perf_counter() - began, notes=notes)
+        count = count_default_starts(views) if starts is None else starts
         report = count_steps(progress, (count + FINALISTS if count > 1 else 0) + steps)
         with silence_samplers():
-            x = find_start(views, count, seed, report)
-            state, second_look = _search(views, x, steps, spp, seed_of_search, report)
-        return conclude_checked_search(views, state, second_look, time.perf_counter() - began)
+            x = find_best_start(views, count, seed, report)
+            state, search_check = _search_and_check(views, x, steps, spp, seed_of_search, report)
+        return make_checked_refinement(views, state, search_check, time.perf_counter() - began)
     except Interrupted as stop:
         notes = (NO_ERRORS,) if by_descent else ()
         seconds = time.perf_counter() - began
-        best = conclude_search(views, stop.best, seconds, notes=notes, interrupted=True)
+        best = make_refinement(views, stop.best, seconds, notes=notes, interrupted=True)
         raise Interrupted(best, f"refine: the best so far leaves {best.loss:.3g}") from None
 
 
-def _search(
+def _search_and_check(
     views: Views, x: FloatArray, steps: int, spp: int, seed: int, report: Callable[[], object]
-) -> tuple[Search, SecondLook | None]:
-    """Search from `x` with half of the samples, and check the end with all of them.
+) -> tuple[Search, SearchCheck | None]:
+    """Search from the coordinates `x` with half of the samples, and check the end with all.
 
     If the check disagrees, go on with all samples, and check the end with twice as many.
     """
     state = _search_visible(views, x, steps - steps // 2, spp // 2, seed, report)
-    state, second_look = take_second_look(views, state, seed)
-    agreed = state.converged and not (second_look and second_look.notes())
+    state, search_check = check_search(views, state, seed)
+    agreed = state.converged and not (search_check and search_check.describe_differences())
     if agreed or state.steps == steps:
-        return state, second_look
+        return state, search_check
     left = steps - state.steps
     longer = _search_visible(views, state.residuals.x, left, spp, seed + 200, report)
     longer.steps += state.steps
     longer.history[:0] = state.history
-    return take_second_look(views, longer, seed + 200)
+    return check_search(views, longer, seed + 200)
 
 
 def _search_visible(
     views: Views, x: FloatArray, steps: int, spp: int, seed: int, report: Callable[[], object]
 ) -> Search:
-    """Search from `x`; numbers that have no effect on the pictures keep the scene's own values."""
+    """Search from `x`; numbers that pictures do not depend on keep the scene's own values."""
     state = run_gauss_newton(views, x, steps, spp, seed, report)
     assert state.equations is not None
-    unseen = state.equations.find_unseen(views, state.residuals.x)
+    unseen = state.equations.find_unseen_numbers(views, state.residuals.x)
     if unseen.all():
-        raise no_effect_error(views)
+        raise make_no_effect_error(views)
     own = np.where(unseen, views.start, state.residuals.x)
     state.residuals = replace(state.residuals, x=own)
     return state
@@ -200,7 +208,7 @@ def _make_views(
     targets: list[Target],
     parameters: Iterable[str] | Mapping[str, tuple[float, float] | None] | None,
 ) -> Views:
-    """Return the `Views` of the arguments of `refine`."""
+    """Return the scene, its searched parameters and its target pictures as `Views`."""
     import mitsuba as mi
 
     loaded = load_scene(scene, targets[0].size)

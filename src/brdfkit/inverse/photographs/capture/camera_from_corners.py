@@ -1,7 +1,7 @@
-"""Finds where a camera was from the positions of the sample's corners in its picture.
+"""Finds position and orientation of a camera from the four corners of the sample in its picture.
 
 A camera sees the plane z = 0 through a homography H ~ [r_1 r_2 t] [Zhang 2000]. Its columns are the
-sample's x and y axes and the vector to the sample's centre, as seen from the camera.
+sample's x and y axes and the vector to the sample's centre, in coordinates of the camera.
 """
 
 import numpy as np
@@ -12,30 +12,28 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole, check_fov
 
-TOLERANCE = (
-    0.01  # of the picture's width: the largest RMS distance of the corners from their places
-)
+TOLERANCE = 0.01  # largest RMS distance of projected from given corners, over the picture's width
 
 
-def camera_from_corners(
+def find_camera(
     places: FloatArray, corners: FloatArray, picture_size: tuple[int, int], fov: float
 ) -> Pinhole:
-    """Return the camera that sees the `corners` of the sample at `places` in its picture.
+    """Return the camera in whose picture the sample's corners appear at the given places.
 
     `corners` (4, 3) [m] have z = 0, `places` (4, 2) are columns and rows in a picture of
-    `picture_size` (width, height) [pixels], and `fov` is the angle across its width [degrees].
-    Raises `BrdfkitError` if there is no such camera.
+    `picture_size` (width, height) [pixels], and `fov` is the field of view across its width
+    [degrees]. Raises `BrdfkitError` if there is no such camera.
     """
     check_fov(fov)
-    start = _estimate_pose(_to_slopes(places, picture_size, fov), corners)
+    start = _estimate_pose(_find_ray_slopes(places, picture_size, fov), corners)
 
-    def distances(pose: FloatArray) -> FloatArray:
-        """Return how far (8,) the corners are from their places, in widths of the picture."""
-        shown = _make_pinhole(pose, fov).project(corners, picture_size)
-        return np.nan_to_num((shown - places).ravel() / picture_size[0], nan=1e3)
+    def measure_distances(pose: FloatArray) -> FloatArray:
+        """Return the distances (8,) of projected from given corners, for a camera's pose (6,)."""
+        projected = _make_pinhole(pose, fov).project(corners, picture_size)
+        return np.nan_to_num((projected - places).ravel() / picture_size[0], nan=1e3)
 
     if np.isfinite(start).all() and start[2] > 0:
-        result = least_squares(distances, start, x_scale=[start[2]] * 3 + [1] * 3)
+        result = least_squares(measure_distances, start, x_scale=[start[2]] * 3 + [1] * 3)
         if np.sqrt((result.fun**2).mean()) < TOLERANCE:
             return _make_pinhole(result.x, fov)
     raise BrdfkitError(
@@ -44,21 +42,24 @@ def camera_from_corners(
     )
 
 
-def _to_slopes(places: FloatArray, picture_size: tuple[int, int], fov: float) -> FloatArray:
-    """Return the slopes (4, 2), to the right and upwards, of the rays through `places`."""
+def _find_ray_slopes(places: FloatArray, picture_size: tuple[int, int], fov: float) -> FloatArray:
+    """Return the slopes x / z and y / z (4, 2) of the camera's rays through pixels (4, 2)."""
     middle = np.array(picture_size) / 2
     return (places - middle) * [1, -1] / middle[0] * np.tan(np.radians(fov) / 2)
 
 
 def _estimate_pose(slopes: FloatArray, corners: FloatArray) -> FloatArray:
-    """Return an approximate pose (6,), position and rotation vector, from a homography."""
+    """Return an approximate pose of the camera, position and rotation vector (6,), by a homography.
+
+    `slopes` (4, 2) are those of its rays to the sample's `corners` (4, 3) [m].
+    """
     rows = []
     for (u, v), (x, y, _) in zip(slopes, corners, strict=True):
         rows += [[x, y, 1, 0, 0, 0, -u * x, -u * y, -u], [0, 0, 0, x, y, 1, -v * x, -v * y, -v]]
     h = np.linalg.svd(np.array(rows))[2][-1].reshape(3, 3)
     h *= np.sign(h[2, 2]) / max(np.sqrt(np.linalg.norm(h[:, 0]) * np.linalg.norm(h[:, 1])), 1e-300)
     r_1, r_2, t = h.T
-    # Right, up and forward are left-handed axes, but scipy rotates right-handed ones: use backward
+    # Right, up and forward are left-handed axes, but scipy's rotations need right-handed ones
     axes = np.column_stack([r_1, r_2, -np.cross(r_1, r_2)]) * [[1], [1], [-1]]
     u, _, v = np.linalg.svd(axes)
     axes = u @ np.diag([1, 1, np.linalg.det(u @ v)]) @ v
@@ -66,6 +67,6 @@ def _estimate_pose(slopes: FloatArray, corners: FloatArray) -> FloatArray:
 
 
 def _make_pinhole(pose: FloatArray, fov: float) -> Pinhole:
-    """Return the camera at pose[:3] whose axes right, up, backward are rotated by pose[3:]."""
+    """Return the camera at the position pose[:3] whose axes are rotated by the vector pose[3:]."""
     _, up, backward = Rotation.from_rotvec(pose[3:]).as_matrix()
     return Pinhole(pose[:3], pose[:3] - np.linalg.norm(pose[:3]) * backward, up, fov)

@@ -11,10 +11,10 @@ from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
 from brdfkit.inverse.photographs.capture.checks import check_capture
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole
 
-CLIPPED_SHARE = 1e-4  # if a larger share of the numbers equals the largest, it is clipped
-SMALLEST_COSINE = 0.05  # below, light grazes the sample, and its bumps cast shadows
-SMALLEST_MAP = 4  # texels along a side
-PIXELS_PER_TEXEL = 1.4  # along a side: so many remain at least in photographs made smaller
+CLIPPED_SHARE = 1e-4  # if more of the pixels have the largest value, these pixels are clipped
+SMALLEST_COSINE = 0.05  # under light of a smaller cosine, bumps of the sample cast shadows
+SMALLEST_MAP = 4  # the fewest texels along a side of a map
+PIXELS_PER_TEXEL = 1.4  # the fewest, along a side, that reduced photographs keep
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +63,7 @@ class Capture:
 
     @property
     def cameras(self) -> tuple[Pinhole, ...]:
-        """The camera of each picture."""
+        """The cameras of all pictures, in their order, which may be one and the same."""
         if isinstance(self.camera, Pinhole):
             return (self.camera,) * len(self.pictures)
         return tuple(self.camera)
@@ -71,7 +71,7 @@ class Capture:
     def texel_centres(self, shape: tuple[int, int]) -> FloatArray:
         """Return the centres (n, 3) [m] of the texels of maps of `shape` (height, width).
 
-        They go row by row from the sample's upper edge.
+        The texels go row by row from the sample's upper edge.
         """
         height, width = shape
         x = ((np.arange(width) + 0.5) / width - 0.5) * self.size[0]
@@ -80,23 +80,28 @@ class Capture:
         return np.stack([x, y, np.zeros_like(x)], axis=-1).reshape(-1, 3)
 
     def default_shape(self, longest_side: int) -> tuple[int, int]:
-        """Return the shape (height, width) of maps with square texels about as large as pixels."""
+        """Return the shape (height, width) of maps with square texels about as large as pixels.
+
+        The maps are made coarser where they would have more than `longest_side` texels along a
+        side.
+        """
         sides = np.array([self.pixel_size(camera) for camera in self.cameras])
         width, height = np.array(self.size) / np.sqrt(sides.prod(axis=1)).mean()
         shrink = min(1.0, longest_side / max(width, height))
         return max(SMALLEST_MAP, round(height * shrink)), max(SMALLEST_MAP, round(width * shrink))
 
     def pixel_size(self, camera: Pinhole) -> FloatArray:
-        """Return width and height (2,) [m] of a camera's pixel in the middle of the sample."""
+        """Return the width and height (2,) [m] of a camera's pixel in the middle of the sample."""
         step = 1e-4 * min(self.size)
         points = np.array([[0, 0, 0], [step, 0, 0], [0, step, 0]])
         middle, right, above = camera.project(points, self.picture_size)
         return step / np.linalg.norm([right - middle, above - middle], axis=1)
 
     def is_shown(self, k: int, points: FloatArray) -> BoolArray:
-        """Return which points (..., 2) [m] picture `k` shows reliably.
+        """Return which points (..., 2) [m] of the sample can be measured in picture `k`.
 
-        They lie a pixel or more within the sample, and their light does not graze it.
+        These points lie at least a pixel inside the sample's edge, and the light does not graze
+        them.
         """
         margin = np.array(self.size) / 2 - self.pixel_size(self.cameras[k])
         inside = np.all(np.abs(points) < margin, axis=-1)
@@ -107,7 +112,7 @@ class Capture:
 
     @cached_property
     def counted(self) -> BoolArray:
-        """The mask (lights, height, width, 3) of numbers that show the sample and are not lost."""
+        """The mask (lights, height, width, 3) of usable values: of the sample, and not excluded."""
         shown = [
             self.is_shown(k, camera.on_sample(self.picture_size))
             for k, camera in enumerate(self.cameras)
@@ -121,9 +126,9 @@ class Capture:
 
     @cached_property
     def clipped(self) -> BoolArray:
-        """The mask (lights, height, width, 3) of numbers at the largest value of the camera.
+        """The mask (lights, height, width, 3) of values at which the camera's sensor is saturated.
 
-        Each colour has its own largest value, because a white balance scales them.
+        Each colour is saturated at a value of its own, because a white balance scales the colours.
         """
         largest = self.pictures.max(axis=(0, 1, 2))
         at_end = (self.pictures == largest) & (largest > 0)  # a colour without light is all 0
@@ -132,7 +137,7 @@ class Capture:
 
     @property
     def excluded(self) -> BoolArray:
-        """The mask (lights, height, width, 3) of numbers that do not count: lost or clipped."""
+        """The mask (lights, height, width, 3) of values that no fit may use: `lost` or clipped."""
         return self.clipped if self.lost is None else self.lost
 
 
@@ -140,7 +145,7 @@ def downsample(capture: Capture, shape: tuple[int, int]) -> Capture:
     """Return a `Capture` with as few pixels as maps of `shape` (height, width) need.
 
     Square blocks of pixels are averaged. Their sides are odd, so that a picture can be padded by
-    equal numbers of pixels on both sides.
+    equal numbers of pixels on both sides, and the camera's axis stays in its middle.
     """
     height, width = shape
     texel = np.array(capture.size) / (width, height)
@@ -154,26 +159,26 @@ def downsample(capture: Capture, shape: tuple[int, int]) -> Capture:
     lost = np.pad(capture.excluded, around, constant_values=True)
     pictures = np.pad(capture.pictures, around)
     scale = pictures.shape[2] / capture.picture_size[0]
-    cameras = [replace(camera, fov=_widen(camera.fov, scale)) for camera in capture.cameras]
+    cameras = [replace(camera, fov=_widen_fov(camera.fov, scale)) for camera in capture.cameras]
     return replace(
         capture,
-        pictures=_split_blocks(pictures, side).mean(axis=(2, 4)),
-        lost=np.any(_split_blocks(lost, side), axis=(2, 4)),
+        pictures=_split_into_blocks(pictures, side).mean(axis=(2, 4)),
+        lost=np.any(_split_into_blocks(lost, side), axis=(2, 4)),
         camera=cameras[0] if len(set(map(id, capture.cameras))) == 1 else tuple(cameras),
     )
 
 
 def _find_padding(pixels: int, side: int) -> int:
-    """Return how many pixels to add at both ends so that an odd `side` divides their number."""
+    """Return how many pixels at both ends make the length of a row a multiple of the odd `side`."""
     return next(n for n in range(side) if (pixels + 2 * n) % side == 0)
 
 
-def _widen(fov: float, scale: float) -> float:
-    """Return the field of view [degrees] of a picture that is `scale` times as wide."""
+def _widen_fov(fov: float, scale: float) -> float:
+    """Return the field of view [degrees] of a picture that is padded to `scale` times its width."""
     return float(2 * np.degrees(np.arctan(scale * np.tan(np.radians(fov) / 2))))
 
 
-def _split_blocks(values: AnyArray, side: int) -> AnyArray:
-    """Return pictures (k, height, width, c) as blocks (k, rows, side, columns, side, c)."""
+def _split_into_blocks(values: AnyArray, side: int) -> AnyArray:
+    """Return pictures (k, height, width, c) as square blocks (k, rows, side, columns, side, c)."""
     lights, height, width, channels = values.shape
     return values.reshape(lights, height // side, side, width // side, side, channels)

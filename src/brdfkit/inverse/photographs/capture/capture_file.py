@@ -10,27 +10,27 @@ import numpy as np
 from brdfkit.core.arguments import to_number, wrong_value_error
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.inverse.photographs.capture.camera_from_corners import camera_from_corners
+from brdfkit.inverse.photographs.capture.camera_from_corners import find_camera
 from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole, find_corners
 from brdfkit.mitsuba_bridge.properties.picture_file import read_photograph
 
 NAME = "capture.toml"
-AT_CAMERA = "camera"  # the position of a flash light
+AT_CAMERA = "camera"  # the word for the position of a flash, which is that of the camera
 CAMERA_KEYS = "origin", "target", "up", "fov", "corners"
-POSITION_KEYS = "origin", "corners"  # either one says where a camera was
-LARGEST_NUMBER = 1e30  # so that squares of lengths, and their sums, stay finite
+POSITION_KEYS = "origin", "corners"  # either entry determines the position of a camera
+LARGEST_NUMBER = 1e30  # squares of larger lengths, and sums of them, could overflow
 
 
 def load_capture(folder: str | Path, accept_8_bit: bool = False) -> Capture:
-    """Return the `Capture` in a folder; docs/how_to/photographs.md describes its file.
+    """Return the `Capture` in a folder; docs/how_to/photographs.md describes the file capture.toml.
 
     Raises `BrdfkitError` for entries that are missing, misspelt or wrong, for pictures of different
-    sizes, and for pictures of 8 bits unless `accept_8_bit`, which inverts sRGB's curve.
+    sizes, and for pictures of 8 bits unless `accept_8_bit`; the sRGB curve of those is inverted.
     """
     folder = Path(folder)
     path = folder / NAME
-    tables = _read_file(folder, path)
+    tables = _read_tables(folder, path)
     sample = tables.get("sample", {})
     _check_keys(path, sample, ("width", "height"), "[sample]")
     width, height = (
@@ -51,22 +51,25 @@ def load_capture(folder: str | Path, accept_8_bit: bool = False) -> Capture:
     return Capture(pictures, np.array(places), np.array(intensities), cameras, size, names)
 
 
-def _read_file(folder: Path, path: Path) -> dict[str, Any]:
-    """Return the tables of the file, after a check of their names."""
+def _read_tables(folder: Path, path: Path) -> dict[str, Any]:
+    """Return the top-level tables of a folder's file capture.toml, whose names are checked."""
     if not folder.is_dir():
         raise BrdfkitError(f"{folder}: there is no such folder; check the path.")
     if not path.is_file():
         raise BrdfkitError(f"{folder}: there is no {NAME} in it, which says where the lights are.")
     try:
         tables = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except ValueError as error:  # not TOML, not UTF-8, or a number with too many digits
+    except ValueError as error:  # the text is no TOML, no UTF-8, or has a number of too many digits
         raise BrdfkitError(f"{path}: it is no TOML ({error}).") from error
     _check_keys(path, tables, ("sample", "camera", "light"), "the file")
     return tables
 
 
 def _read_lights(path: Path, tables: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return the tables of the lights, after a check that each has a picture of its own."""
+    """Return the tables `[[light]]` of the file capture.toml, one for each picture.
+
+    Raises `BrdfkitError` unless each of them names a picture that no other one names.
+    """
     lights = tables.get("light")
     if not isinstance(lights, list) or not lights:
         raise BrdfkitError(f"{path}: it names no [[light]]; there should be one for each picture.")
@@ -83,7 +86,7 @@ def _read_lights(path: Path, tables: dict[str, Any]) -> list[dict[str, Any]]:
 def _read_positions(
     path: Path, lights: list[dict[str, Any]]
 ) -> tuple[list[FloatArray | None], list[FloatArray]]:
-    """Return the positions and intensities (3,) of the lights; a flash has the position None."""
+    """Return the positions and intensities (3,) of the lights; the position of a flash is None."""
     positions: list[FloatArray | None] = []
     intensities = []
     for light in lights:
@@ -97,7 +100,7 @@ def _read_positions(
 
 
 def _read_pictures(folder: Path, names: tuple[str, ...], accept_8_bit: bool) -> FloatArray:
-    """Return the pictures (lights, height, width, 3) with these names in the folder."""
+    """Return the pictures (lights, height, width, 3) with the given file names in a folder."""
     pictures = [read_photograph(folder / name, accept_8_bit) for name in names]
     for name, picture in zip(names, pictures, strict=True):
         if picture.shape != pictures[0].shape:
@@ -112,10 +115,10 @@ def _read_pictures(folder: Path, names: tuple[str, ...], accept_8_bit: bool) -> 
 def _read_cameras(
     path: Path, tables: dict[str, Any], size: tuple[float, float], picture_size: tuple[int, int]
 ) -> tuple[Pinhole, ...]:
-    """Return the camera of each light.
+    """Return the camera of each picture, from the table `[camera]` and those in the lights' tables.
 
-    The table `camera` of a light adds to that of the file, or replaces its position. `size` is that
-    of the sample [m], `picture_size` is (width, height) [pixels].
+    A light's table `camera` completes the common one, or replaces its position. `size` is the
+    sample's width and height [m], and `picture_size` the pictures' width and height [pixels].
     """
     common, lights = tables.get("camera", {}), tables["light"]
     _check_keys(path, common, CAMERA_KEYS, "[camera]")
@@ -138,7 +141,10 @@ def _make_camera(
     size: tuple[float, float],
     picture_size: tuple[int, int],
 ) -> Pinhole:
-    """Return the camera of a table, from its origin or from the corners of the sample."""
+    """Return the camera that a table describes by its origin, or by the sample's corners.
+
+    `path` and `where` name the table in errors; `size` is the sample's width and height [m].
+    """
     what = f"{path}: {where}"
     fov = _read_number(f"{what} fov", table.get("fov"))
     if "corners" in table:
@@ -146,7 +152,7 @@ def _make_camera(
             raise BrdfkitError(f"{what} has an origin and corners; one of them is enough.")
         places = _read_numbers(f"{what} corners", table["corners"], (4, 2))
         try:
-            return camera_from_corners(places, find_corners(size), picture_size, fov)
+            return find_camera(places, find_corners(size), picture_size, fov)
         except BrdfkitError as error:
             raise BrdfkitError(f"{what} corners: {error}") from None
     defaults = {"origin": None, "target": [0, 0, 0], "up": [0, 1, 0]}
@@ -161,15 +167,18 @@ def _make_camera(
 
 
 def _read_number(what: str, value: object) -> float:
-    """Return an entry of the file as a number, which errors call `what`."""
+    """Return an entry of capture.toml as a number; `what` names the entry in errors."""
     return to_number(what, value, -LARGEST_NUMBER, LARGEST_NUMBER)
 
 
 def _read_numbers(what: str, value: object, shape: tuple[int, ...]) -> FloatArray:
-    """Return lists of numbers in the file as an array of the given shape."""
+    """Return nested lists of capture.toml as an array of a given shape.
+
+    `what` names the entry in errors.
+    """
     try:
         numbers: AnyArray = np.array(value)
-    except ValueError:  # lists of different lengths
+    except ValueError:  # nested lists of different lengths make no array
         numbers = np.array("")
     if numbers.shape == shape and numbers.dtype.kind in "if":
         array: FloatArray = numbers.astype(float)
@@ -179,7 +188,7 @@ def _read_numbers(what: str, value: object, shape: tuple[int, ...]) -> FloatArra
 
 
 def _check_keys(path: Path, table: object, known: Iterable[str], where: str) -> None:
-    """Raise `BrdfkitError` unless an entry of the file is a table with `known` keys."""
+    """Raise `BrdfkitError` unless an entry of capture.toml is a table with `known` keys alone."""
     if not isinstance(table, dict):
         raise BrdfkitError(f"{path}: {where} should be a table, of {', '.join(known)}.")
     for name in table:

@@ -1,4 +1,4 @@
-"""Checks the photographs, cameras and lights of a `Capture`; each error is one sentence."""
+"""Checks the photographs, cameras and lights of a `Capture`."""
 
 from typing import Any
 
@@ -8,29 +8,26 @@ from brdfkit.core.arguments import to_array
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole, find_corners
 
-SMALLEST_SAMPLE = 8  # pixels along its longer side in a photograph
+SMALLEST_SAMPLE = 8  # the fewest pixels along the sample's longer side in a photograph
 
 
 def check_capture(capture: Any) -> None:
-    """Convert the fields of a new `Capture` to arrays and check them.
-
-    Raises `BrdfkitError` for fields that are wrong.
-    """
-    _set(capture, "pictures", to_array("pictures", capture.pictures))
+    """Convert the fields of a new `Capture` to arrays, and raise `BrdfkitError` for wrong ones."""
+    _set_field(capture, "pictures", to_array("pictures", capture.pictures))
     shape, count = capture.pictures.shape, len(np.atleast_1d(capture.pictures))
     if len(shape) != 4 or shape[3] != 3 or not capture.pictures.size:
         raise BrdfkitError(f"pictures: their shape {shape} should be (lights, height, width, 3).")
     for name in ("positions", "intensities"):
-        _set(capture, name, to_array(name, getattr(capture, name), (count, 3)))
+        _set_field(capture, name, to_array(name, getattr(capture, name), (count, 3)))
     size = to_array("size", capture.size, (2,))
     if not (size > 0).all():
         raise BrdfkitError("size: the sample's width and height should be above 0 [m].")
-    _set(capture, "size", tuple(size.tolist()))
-    _set(capture, "names", tuple(map(str, capture.names)))
+    _set_field(capture, "size", tuple(size.tolist()))
+    _set_field(capture, "names", tuple(map(str, capture.names)))
     if len(capture.names) != count or len(set(capture.names)) != count:
         raise BrdfkitError(f"names: there should be {count}, one for each picture, all different.")
     if capture.lost is not None:
-        _set(capture, "lost", np.asarray(capture.lost, bool))
+        _set_field(capture, "lost", np.asarray(capture.lost, bool))
         if capture.lost.shape != shape:
             raise BrdfkitError(
                 f"lost: its shape {capture.lost.shape} should be that of the pictures, {shape}."
@@ -40,13 +37,13 @@ def check_capture(capture: Any) -> None:
     _check_cameras(capture, count)
 
 
-def _set(capture: Any, name: str, value: object) -> None:
-    """Set a field of a frozen `Capture`."""
+def _set_field(capture: Any, name: str, value: object) -> None:
+    """Set a field of a `Capture`, which is frozen."""
     object.__setattr__(capture, name, value)
 
 
 def _check_pictures(capture: Any) -> None:
-    """Raise `BrdfkitError` for pictures that are not finite, or black."""
+    """Raise `BrdfkitError` for photographs that are black or have values that are not finite."""
     for name, picture in zip(capture.names, capture.pictures, strict=True):
         if not np.isfinite(picture).all():
             bad = int((~np.isfinite(picture)).any(axis=2).sum())
@@ -56,7 +53,7 @@ def _check_pictures(capture: Any) -> None:
 
 
 def _check_lights(capture: Any) -> None:
-    """Raise `BrdfkitError` for lights behind the sample, or without intensity."""
+    """Raise `BrdfkitError` for lights behind the sample, and for lights without intensity."""
     for name, position in zip(capture.names, capture.positions, strict=True):
         if not position[2] > 0:
             raise BrdfkitError(
@@ -68,7 +65,7 @@ def _check_lights(capture: Any) -> None:
 
 
 def _check_cameras(capture: Any, count: int) -> None:
-    """Raise `BrdfkitError` unless there are one or `count` cameras, which all see the sample."""
+    """Raise `BrdfkitError` unless one or `count` cameras are above the sample and see all of it."""
     value = capture.camera
     if not isinstance(value, Pinhole | tuple | list) or not all(
         isinstance(camera, Pinhole) for camera in capture.cameras
@@ -89,7 +86,10 @@ def _check_cameras(capture: Any, count: int) -> None:
 
 
 def _check_corners(capture: Any, name: str, camera: Pinhole) -> None:
-    """Raise `BrdfkitError` unless the sample's corners are in the picture, and far enough apart."""
+    """Raise `BrdfkitError` unless a picture contains the sample's corners, 8 pixels apart or more.
+
+    `name` is the picture's.
+    """
     width, height = capture.picture_size
     places = camera.project(find_corners(capture.size), (width, height))
     inside = (places >= -1) & (places <= np.array([width, height]) + 1)

@@ -1,4 +1,4 @@
-"""Collects what the photographs show of each texel: radiances, and the directions of the lights."""
+"""Collects the radiances that photographs show of each texel, with the directions of the lights."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.capture import Capture
 
 ARRAYS = "radiance", "weights", "to_light", "irradiance", "to_camera"
-POOLED_TEXELS = 8  # along a side of a large texel: more of them add nothing
-DARK_OFFSET = 0.05  # times the mean radiance, added so that relative errors stay finite
+POOLED_TEXELS = 8  # the most small texels along a side whose observations a large texel takes over
+DARK_OFFSET = 0.05  # mean radiances, added to a radiance so that its relative error stays finite
 
 
 @dataclass(frozen=True)
 class Observations:
-    """The content of k photographs at n texels.
+    """Radiances of n texels in k photographs, each under one light, with the geometry behind them.
 
-    radiance : (k, n, 3) [W/(m² sr)].
-    weights : (k, n, 3), the weights of squared errors: about 1 / radiance², 0 if lost or clipped.
-    to_light : (k, n, 3), unit vectors.
-    irradiance : (k, n, 3), on a surface that faces the light [W/m²].
-    to_camera : (k, n, 3), unit vectors.
-    shape : (height, width) of the map.
+    radiance : radiances in the photographs, (k, n, 3) [W/(m² sr)].
+    weights : weights of squared errors, (k, n, 3): about 1 / radiance², 0 where lost or clipped.
+    to_light : unit vectors from the texels to the lights, (k, n, 3).
+    irradiance : irradiances of a surface that faces the light, (k, n, 3) [W/m²].
+    to_camera : unit vectors from the texels to the cameras, (k, n, 3).
+    shape : height and width of the map that the texels form.
     """
 
     radiance: FloatArray
@@ -37,17 +37,17 @@ class Observations:
 
     @classmethod
     def collect(cls, capture: Capture, shape: tuple[int, int]) -> Observations:
-        """Return what a `Capture` shows of the texels of maps of `shape` (height, width).
+        """Return the observations of a `Capture` at the texels of maps of `shape` (height, width).
 
-        Raises `BrdfkitError` for a photograph that shows nothing of the sample that counts.
+        Raises `BrdfkitError` for a photograph without any usable value of the sample.
         """
         points = capture.texel_centres(shape)
-        radiance = sample_pictures(capture, capture.pictures, shape)
-        lost = sample_pictures(capture, capture.excluded, shape) > 0
-        to_light, irradiance = illuminate(points, capture.positions, capture.intensities)
-        to_camera = np.array([directions_to(camera.origin, points) for camera in capture.cameras])
+        radiance = sample_at_texels(capture, capture.pictures, shape)
+        lost = sample_at_texels(capture, capture.excluded, shape) > 0
+        to_light, irradiance = illuminate_points(points, capture.positions, capture.intensities)
+        to_camera = np.array([find_directions(camera.origin, points) for camera in capture.cameras])
         scale = np.maximum(radiance, 0) + DARK_OFFSET * radiance.mean()
-        # Pixels at the edge also see what lies beside the sample; neighbours decide there
+        # A pixel at the edge also sees the sample's surroundings; its texel follows the neighbours
         for light in range(len(lost)):
             lost[light] |= ~capture.is_shown(light, points[:, :2])[:, None]
         weights = np.where(lost, 0, 1 / scale**2)
@@ -56,21 +56,21 @@ class Observations:
         for name, is_shown in zip(capture.names, shown, strict=True):
             if not is_shown:
                 raise BrdfkitError(
-                    f"{name}: nothing of the sample counts in it, as all is clipped, lost, within "
-                    "a pixel of the edge, or under a light that grazes; leave this picture out."
+                    f"{name}: it has no usable value of the sample, as all is clipped, lost, "
+                    "within a pixel of the edge, or under a grazing light; leave this picture out."
                 )
         return cls(radiance, weights, to_light, irradiance, to_camera, shape)
 
     def select_lights(self, lights: IntArray) -> Observations:
-        """Return the observations under some of the lights."""
-        return self._map_arrays(lambda values: values[lights], self.shape)
+        """Return the observations in the photographs with the given indices."""
+        return self._apply_to_arrays(lambda values: values[lights], self.shape)
 
     def select_texels(self, texels: IntArray | slice) -> Observations:
-        """Return the observations of some of the texels, as a map of one row."""
-        part = self._map_arrays(lambda values: values[:, texels], (1, 0))
+        """Return the observations of the texels with the given indices, as a map of one row."""
+        part = self._apply_to_arrays(lambda values: values[:, texels], (1, 0))
         return replace(part, shape=(1, part.radiance.shape[1]))
 
-    def pool(self, side: int) -> Observations:
+    def pool_texels(self, side: int) -> Observations:
         """Return the observations of texels that are `side` times as large.
 
         A large texel receives all observations of the texels within it, or of 8 × 8 of them.
@@ -84,24 +84,27 @@ class Observations:
         step = max(1, side // POOLED_TEXELS)
         blocks = blocks[:, step // 2 :: step, :, step // 2 :: step]
         blocks = blocks.transpose(1, 3, 0, 2).reshape(-1, rows * columns)
-        return self._map_arrays(
+        return self._apply_to_arrays(
             lambda values: values[:, blocks].reshape(-1, rows * columns, 3), (rows, columns)
         )
 
-    def lit_channels(self) -> BoolArray:
-        """Return which of red, green and blue (3,) are observed at all; lights may be coloured."""
+    def find_lit_channels(self) -> BoolArray:
+        """Return which of red, green and blue (3,) any light has; the others cannot be observed."""
         return np.any(self.weights * self.irradiance > 0, axis=(0, 1))
 
-    def _map_arrays(
+    def _apply_to_arrays(
         self, function: Callable[[FloatArray], FloatArray], shape: tuple[int, int]
     ) -> Observations:
-        """Return the observations with a function applied to each array."""
+        """Return observations for maps of another `shape`, a function applied to each array."""
         arrays = {name: function(getattr(self, name)) for name in ARRAYS}
         return Observations(**arrays, shape=shape)
 
 
-def sample_pictures(capture: Capture, pictures: AnyArray, shape: tuple[int, int]) -> FloatArray:
-    """Return the values (k, n, c) of pictures (k, height, width, c) at the texels of maps."""
+def sample_at_texels(capture: Capture, pictures: AnyArray, shape: tuple[int, int]) -> FloatArray:
+    """Return the values (k, n, c) of pictures (k, height, width, c) at the centres of the n texels.
+
+    `shape` is the height and width of the maps, in texels.
+    """
     points = capture.texel_centres(shape)
     return np.array(
         [
@@ -111,18 +114,19 @@ def sample_pictures(capture: Capture, pictures: AnyArray, shape: tuple[int, int]
     )
 
 
-def directions_to(place: FloatArray, points: FloatArray) -> FloatArray:
+def find_directions(place: FloatArray, points: FloatArray) -> FloatArray:
     """Return the unit vectors (n, 3) from `points` (n, 3) to a `place` (3,)."""
     away = place - points
     return away / np.linalg.norm(away, axis=1, keepdims=True)
 
 
-def illuminate(
+def illuminate_points(
     points: FloatArray, positions: FloatArray, intensities: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the unit vectors from points to lights, and the irradiance on surfaces facing them.
 
-    Both are (k, n, 3), for `points` (n, 3) [m], `positions` (k, 3) [m] and `intensities` (k, 3).
+    Both are (k, n, 3), for `points` (n, 3) [m] and for k point lights at `positions` (k, 3) [m]
+    with `intensities` (k, 3) [W/sr].
     """
     away = positions[:, None] - points
     square = (away**2).sum(axis=2, keepdims=True)
@@ -132,7 +136,7 @@ def illuminate(
 def _interpolate(picture: AnyArray, places: FloatArray) -> FloatArray:
     """Return the values (n, c) of a picture between its pixels, by bilinear interpolation.
 
-    The picture is (height, width, c); `places` (n, 2) are columns and rows.
+    The picture is (height, width, c); `places` (n, 2) are columns and rows [pixels].
     """
     height, width = picture.shape[:2]
     x, y = (places - 0.5).T

@@ -1,4 +1,4 @@
-"""Defines `Pinhole`, the camera of a photograph, which projects points to pixels."""
+"""Defines `Pinhole`, the camera of a photograph, which projects points of the sample to pixels."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import make_axes, make_rigid_matrix, project_points
 
-CLIP_DISTANCES = 1e-2, 1e4  # near and far, in heights of the camera above the sample
-SMALLEST_SINE = 1e-5  # with a smaller angle between view and up, Mitsuba finds no axes
+CLIP_DISTANCES = 1e-2, 1e4  # of Mitsuba's camera, near and far, in heights above the sample
+SMALLEST_SINE = 1e-5  # of the angle between view and up; for a smaller one Mitsuba finds no axes
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,15 +61,15 @@ class Pinhole:
         return make_axes(backward / np.linalg.norm(backward), self.up / np.linalg.norm(self.up))
 
     def camera(self, size: tuple[int, int]) -> Camera:
-        """Return the camera with matrices for pictures of `size` (width, height) [pixels]."""
+        """Return the camera with projection matrices, for pictures of `size` (2,) in pixels."""
         slope, clips = np.tan(np.radians(self.fov) / 2), self.clips()
         view = make_rigid_matrix(self.axes, self.origin)
         return Camera(view, slope, slope * size[1] / size[0], clips["near_clip"], clips["far_clip"])
 
     def project(self, points: FloatArray, size: tuple[int, int]) -> FloatArray:
-        """Return the places (n, 2) of points (n, 3) in a picture of `size` (width, height).
+        """Return the places (n, 2) of points (n, 3) [m] in a picture of `size` (width, height).
 
-        They are columns from the left and rows from the top edge [pixels]; nan for points behind
+        Places are columns from the left and rows from the top edge [pixels], nan for points behind
         the camera.
         """
         camera = self.camera(size)
@@ -79,10 +79,10 @@ class Pinhole:
         return np.where(camera.compute_depths(points)[:, None] > 0, places, np.nan)
 
     def on_sample(self, size: tuple[int, int]) -> FloatArray:
-        """Return where the middle of each pixel of a picture is in the plane z = 0.
+        """Return the point in the plane z = 0 that each pixel of a picture shows.
 
-        The result holds x and y (height, width, 2) [m], inf where the pixel looks beside the plane;
-        `size` is (width, height) [pixels].
+        The result holds x and y (height, width, 2) [m], inf where a pixel does not show the plane;
+        `size` is the picture's width and height [pixels].
         """
         ray = self.camera(size).make_pixel_rays(size)
         steps = np.where(ray[..., 2] < 0, -self.origin[2] / np.minimum(ray[..., 2], -1e-12), np.inf)
@@ -90,12 +90,12 @@ class Pinhole:
             return np.nan_to_num((self.origin + steps[..., None] * ray)[..., :2], nan=np.inf)
 
     def clips(self) -> dict[str, float]:
-        """Return the clip distances [m] for Mitsuba, whose default hides all within 1 cm."""
+        """Return near and far clip distances [m], as Mitsuba's default hides all within 1 cm."""
         height = abs(float(self.origin[2])) or 1.0
         return {"near_clip": CLIP_DISTANCES[0] * height, "far_clip": CLIP_DISTANCES[1] * height}
 
     def scene_dict(self, size: tuple[int, int]) -> dict[str, Any]:
-        """Return the dictionary of a Mitsuba sensor, for pictures of `size` (width, height)."""
+        """Return the camera as a dictionary for Mitsuba, for pictures of `size` (width, height)."""
         import mitsuba as mi
 
         at = mi.ScalarTransform4f()
@@ -124,6 +124,6 @@ def check_fov(fov: float) -> None:
 
 
 def find_corners(size: tuple[float, float]) -> FloatArray:
-    """Return the corners (4, 3) of a sample of `size` [m], clockwise from the upper left."""
+    """Return the corners (4, 3) [m] of a sample of `size` (2,), clockwise from the upper left."""
     w, h = np.array(size) / 2
     return np.array([[-w, h, 0], [w, h, 0], [w, -h, 0], [-w, -h, 0]])

@@ -1,1 +1,1 @@
-"""Defines the numbers of each texel, the radiance that follows from them, and maps of them."""
+"""Defines the numbers that describe a texel, the radiance that they cause, and maps of them."""

@@ -1,4 +1,8 @@
-"""Converts between maps, images of a model's parameters and of the normal, and rows of numbers."""
+"""Converts maps of a sample to the numbers of its texels, and back.
+
+The maps are images of a BRDF model's parameters and of the normal. A search works on an array
+(texels, numbers) instead, whose columns `TexelParameters` describes.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.inverse.photographs.capture.observations import Observations, directions_to
+from brdfkit.inverse.photographs.capture.observations import Observations, find_directions
 from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE
 from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
 from brdfkit.model import Model, labels
@@ -17,7 +21,7 @@ from brdfkit.model import Model, labels
 
 @dataclass(frozen=True)
 class Maps:
-    """The maps of a sample.
+    """The fitted textures of a flat sample: images of a BRDF model's parameters and of the normal.
 
     model : the model's class.
     fixed : the values of the shape parameters that have no map.
@@ -31,14 +35,17 @@ class Maps:
     maps: dict[str, FloatArray]
 
     @classmethod
-    def from_rows(
+    def from_texel_numbers(
         cls,
         parameters: TexelParameters,
         x: FloatArray,
         shape: tuple[int, int],
         size: tuple[float, float],
     ) -> Maps:
-        """Return the maps of `shape` (height, width) of texels with the numbers `x` (n, count)."""
+        """Return the maps of `shape` (height, width) for the texels' numbers `x` (texels, numbers).
+
+        `parameters` describes the columns of `x`; `size` is the sample's width and height [m].
+        """
         maps = {}
         for lobe, name in enumerate(parameters.lobes):
             weights = x[:, CHANNELS * lobe : CHANNELS * (lobe + 1)]
@@ -53,12 +60,12 @@ class Maps:
         return cls(parameters.model, parameters.fixed, size, maps)
 
 
-def to_rows(svbrdf: Any) -> tuple[TexelParameters, FloatArray]:
-    """Return the layout and the numbers (n, count) of the texels of `Maps` or an `Svbrdf`."""
+def to_texel_numbers(svbrdf: Any) -> tuple[TexelParameters, FloatArray]:
+    """Return the layout and the values (texels, numbers) of an `Svbrdf`'s numbers of each texel."""
     model, maps = labels.model(svbrdf.model), svbrdf.maps
     weights = model.weights()
     names = tuple(name for name in maps if name not in (*weights, "normal", ANGLE))
-    pair = find_pair(model, names) if ANGLE in maps else None
+    pair = find_width_pair(model, names) if ANGLE in maps else None
     parameters = TexelParameters(model, names, svbrdf.fixed, pair)
     columns = [maps[name].reshape(-1, CHANNELS) for name in weights]
     shapes = [numbers.reshape(-1, 1) for numbers in parameters.shapes.to_numbers(maps)]
@@ -66,8 +73,11 @@ def to_rows(svbrdf: Any) -> tuple[TexelParameters, FloatArray]:
     return parameters, np.concatenate([*columns, *shapes, normals], axis=1)
 
 
-def find_pair(model: type[Model], names: Iterable[str]) -> tuple[str, str] | None:
-    """Return the shape parameters (u, v) among `names` that are widths along two directions."""
+def find_width_pair(model: type[Model], names: Iterable[str]) -> tuple[str, str] | None:
+    """Return the shape parameters (u, v) among `names` that are lobe widths along two directions.
+
+    Returns None for an isotropic model.
+    """
     return next(
         ((p.follows, name) for name, p in model.parameters.items() if p.follows and name in names),
         None,
@@ -77,9 +87,10 @@ def find_pair(model: type[Model], names: Iterable[str]) -> tuple[str, str] | Non
 def to_error_maps(
     parameters: TexelParameters, errors: FloatArray, x: FloatArray, shape: tuple[int, int]
 ) -> dict[str, FloatArray]:
-    """Return maps (height, width) of standard errors from the `errors` (n, count) of numbers `x`.
+    """Return maps (height, width) of standard errors, from those of the texels' numbers.
 
-    Colours have the RMS error of their channels, normals that of their direction [radians].
+    `errors` and the numbers `x` are (texels, numbers). A colour has the RMS error of its channels,
+    a normal the error of its direction [radians].
     """
     by_name = {}
     for lobe, name in enumerate(parameters.lobes):
@@ -91,16 +102,17 @@ def to_error_maps(
     return {name: error.reshape(shape) for name, error in by_name.items()}
 
 
-def predict(
+def predict_radiances(
     svbrdf: Any, points: FloatArray, to_light: FloatArray, irradiance: FloatArray, eye: FloatArray
 ) -> FloatArray:
-    """Return the radiances (k, height, width, 3) of an `Svbrdf`, for direct light alone.
+    """Return the radiances (k, height, width, 3) of an `Svbrdf` in the direct light of k lamps.
 
-    `points` (n, 3) [m] are its texels, `to_light` (k, n, 3) unit vectors to the lights,
-    `irradiance` (k, n, 3) that on surfaces facing them, and `eye` (3,) [m] the viewer's position.
+    `points` (n, 3) [m] are the centres of the texels, `to_light` (k, n, 3) unit vectors to the
+    lights, `irradiance` (k, n, 3) that of surfaces facing them, and `eye` (3,) [m] the viewer's
+    position.
     """
-    to_camera = np.broadcast_to(directions_to(eye, points), to_light.shape)
+    to_camera = np.broadcast_to(find_directions(eye, points), to_light.shape)
     nothing = np.zeros_like(to_light)
     observed = Observations(nothing, nothing, to_light, irradiance, to_camera, (1, 1))
-    parameters, x = to_rows(svbrdf)
+    parameters, x = to_texel_numbers(svbrdf)
     return parameters.compute_radiances(x, observed).reshape(-1, *svbrdf.shape, CHANNELS)

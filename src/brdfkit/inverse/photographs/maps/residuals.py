@@ -1,4 +1,4 @@
-"""Measures what the maps leave unexplained in the photographs, and describes likely causes."""
+"""Measures how far the maps' radiances are from the photographs, and describes likely causes."""
 
 import numpy as np
 
@@ -6,18 +6,19 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.capture.observations import Observations
 
-UNEXPLAINED = 3  # a texel with residuals of so many times the noise is not explained
-UNEXPLAINED_SHARE = 0.03  # if so many texels are not explained, a sentence says so
-LARGEST_NOISE = 0.04  # relative: cameras hardly have more
-LARGEST_RESIDUAL = 0.5  # relative, over all texels: more means that some lie beside the sample
-OUTLIER = 2.5  # a photograph with so many times the median residual is named
-PALEST, DARKEST = 1.05, 0.004  # median reflectances beyond these are hardly any sample's
+UNEXPLAINED = 3  # times the noise: the maps do not explain a texel with larger residuals
+UNEXPLAINED_SHARE = 0.03  # of the texels: if more are unexplained, a sentence says so
+LARGEST_NOISE = 0.04  # relative to the radiance: cameras hardly have more noise
+LARGEST_RESIDUAL = 0.5  # relative RMS over all texels: if it is larger, some lie beside the sample
+OUTLIER = 2.5  # times the median residual: photographs with larger ones are named
+PALEST, DARKEST = 1.05, 0.004  # hardly any sample has a median reflectance beyond these
 
 
 def compute_misfit(errors: FloatArray, noise: float, observed: Observations) -> FloatArray:
-    """Return the residuals (n,) of texels in units of the noise, given their E² (n,).
+    """Return the RMS residual (n,) of each texel in units of the photographs' noise.
 
-    `noise` is the variance of relative radiances.
+    `errors` (n,) are sums of weighted squared residuals, and `noise` is the variance of relative
+    radiances.
     """
     counted = (observed.weights > 0).sum(axis=(0, 2))
     return np.sqrt(errors / np.maximum(counted * noise, 1e-300))
@@ -26,11 +27,12 @@ def compute_misfit(errors: FloatArray, noise: float, observed: Observations) -> 
 def describe_misfit(
     misfit: FloatArray, noise: float, differences: dict[str, float], diffuse: float
 ) -> tuple[str, ...]:
-    """Return sentences on what the maps do not explain.
+    """Return sentences for the user on residuals of the maps that are larger than noise.
 
-    `misfit` (n,) is from `compute_misfit`. `noise` is the relative standard deviation of a value,
-    or 0 if there are too few lights to estimate it. `differences` maps the name of each photograph
-    to the RMS relative difference of its picture, and `diffuse` is the median diffuse reflectance.
+    `misfit` (texels,) is from `compute_misfit`. `noise` is the relative standard deviation of a
+    value, or 0 if there are too few lights to estimate it. `differences` maps the name of each
+    photograph to the RMS relative difference of its rendering, and `diffuse` is the median diffuse
+    reflectance.
     """
     sentences = []
     values = list(differences.values())

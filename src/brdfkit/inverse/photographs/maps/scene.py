@@ -1,4 +1,4 @@
-"""Writes the sample as a Mitsuba scene: a rectangle whose textures are the maps."""
+"""Describes the sample as a Mitsuba scene: a rectangle whose textures are the maps."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -11,8 +11,8 @@ from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE
 from brdfkit.model import labels
 
 
-def sample_dict(svbrdf: Any) -> dict[str, Any]:
-    """Return the dictionary of the sample of an `Svbrdf` or `Maps`, in the plane z = 0."""
+def make_sample_dict(svbrdf: Any) -> dict[str, Any]:
+    """Return the sample of an `Svbrdf` or `Maps` as a Mitsuba dictionary: a rectangle at z = 0."""
     import mitsuba as mi
 
     use_variant()
@@ -20,36 +20,36 @@ def sample_dict(svbrdf: Any) -> dict[str, Any]:
     return {
         "type": "rectangle",
         "to_world": mi.ScalarTransform4f().scale([width / 2, height / 2, 1]),
-        "bsdf": bsdf_dict(svbrdf),
+        "bsdf": make_bsdf_dict(svbrdf),
     }
 
 
-def bsdf_dict(svbrdf: Any) -> dict[str, Any]:
-    """Return the dictionary of the sample's BSDF."""
+def make_bsdf_dict(svbrdf: Any) -> dict[str, Any]:
+    """Return the material of an `Svbrdf` or `Maps` as a Mitsuba dictionary, textured by maps."""
     maps = svbrdf.maps
-    textures = {name: _bitmap(maps[name]) for name in _parameter_names(maps)}
-    material = {**_plugin(svbrdf.model), **svbrdf.fixed, **textures}
+    textures = {name: _make_bitmap_texture(maps[name]) for name in _list_parameter_maps(maps)}
+    material = {**_make_plugin_dict(svbrdf.model), **svbrdf.fixed, **textures}
     if ANGLE in maps:
-        # Angles jump by π at a seam, across which interpolation would be wrong
-        angle = _bitmap(maps[ANGLE]) | {"filter_type": "nearest"}
+        # Angles jump by π along a line of the map, where interpolated ones would be wrong
+        angle = _make_bitmap_texture(maps[ANGLE]) | {"filter_type": "nearest"}
         material = {"type": "tangent_rotation", "angle": angle, "bsdf": material}
-    normals = _bitmap((maps["normal"] + 1) / 2)
+    normals = _make_bitmap_texture((maps["normal"] + 1) / 2)
     return {"type": "normalmap", "normalmap": normals, "bsdf": material}
 
 
-def _parameter_names(maps: Iterable[str]) -> list[str]:
-    """Return the names of the maps that are parameters of the model."""
+def _list_parameter_maps(maps: Iterable[str]) -> list[str]:
+    """Return the names of the maps that are parameters of the BRDF model."""
     return [name for name in maps if name not in ("normal", ANGLE)]
 
 
-def _plugin(label: str) -> dict[str, Any]:
-    """Return the type and the options of the Mitsuba plugin for a model's label."""
+def _make_plugin_dict(label: str) -> dict[str, Any]:
+    """Return the type and the options of the Mitsuba plugin for a BRDF model's label."""
     model = labels.model(label)
     return {"type": model.type_name(), **model.changed_options()}
 
 
-def _bitmap(values: FloatArray) -> dict[str, Any]:
-    """Return the dictionary of a texture with the values of a map."""
+def _make_bitmap_texture(values: FloatArray) -> dict[str, Any]:
+    """Return the dictionary of a Mitsuba texture with the values of a map."""
     import mitsuba as mi
 
     # Mitsuba puts the first row of a bitmap at the lower edge of a rectangle
@@ -63,8 +63,8 @@ def _bitmap(values: FloatArray) -> dict[str, Any]:
     }
 
 
-def scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
-    """Return the text of a scene: the sample under the first light, in the first photograph.
+def format_scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
+    """Return a Mitsuba scene as XML: the sample in the first photograph's light and camera.
 
     `files` maps the name of each map to its file, which lies beside the scene and whose first row
     is the sample's upper edge.
@@ -73,18 +73,23 @@ def scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
     capture = svbrdf.capture
     camera, size = capture.cameras[0], capture.picture_size
     textures = "\n".join(
-        f"        {_file_texture(name, files[name])}" for name in _parameter_names(svbrdf.maps)
+        f"        {_format_texture(name, files[name])}"
+        for name in _list_parameter_maps(svbrdf.maps)
     )
     turning, inner, end = "", "", ""
     if ANGLE in svbrdf.maps:
-        angle = _file_texture("angle", files[ANGLE], "nearest")
+        angle = _format_texture("angle", files[ANGLE], "nearest")
         turning, end = f'<bsdf type="tangent_rotation">\n        {angle}\n        ', "</bsdf>"
         inner = 'name="bsdf" '
+    look = " ".join(
+        f'{name}="{_to_csv(getattr(camera, name))}"' for name in ("origin", "target", "up")
+    )
     clips = "\n".join(f'    <float name="{n}" value="{v!r}"/>' for n, v in camera.clips().items())
-    plugin = _plugin(svbrdf.model)
+    plugin = _make_plugin_dict(svbrdf.model)
     values = {**{name: v for name, v in plugin.items() if name != "type"}, **svbrdf.fixed}
     numbers = "\n".join(
-        f'        <{_tag(value)} name="{name}" value="{value}"/>' for name, value in values.items()
+        f'        <{_name_xml_type(value)} name="{name}" value="{value}"/>'
+        for name, value in values.items()
     )
     return f"""<!-- Load after "import brdfkit", or render with: brdfkit render sample.xml -->
 <scene version="3.0.0">
@@ -94,7 +99,7 @@ def scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
     <string name="fov_axis" value="x"/>
 {clips}
     <transform name="to_world">
-      <lookat origin="{_csv(camera.origin)}" target="{_csv(camera.target)}" up="{_csv(camera.up)}"/>
+      <lookat {look}/>
     </transform>
     <film type="hdrfilm">
       <integer name="width" value="{size[0]}"/>
@@ -104,13 +109,13 @@ def scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
     <sampler type="multijitter"><integer name="sample_count" value="16"/></sampler>
   </sensor>
   <emitter type="point" id="lamp">
-    <point name="position" {_xyz(capture.positions[0])}/>
-    <rgb name="intensity" value="{_csv(capture.intensities[0])}"/>
+    <point name="position" {_format_xyz(capture.positions[0])}/>
+    <rgb name="intensity" value="{_to_csv(capture.intensities[0])}"/>
   </emitter>
   <shape type="rectangle" id="sample">
     <transform name="to_world"><scale x="{width / 2!r}" y="{height / 2!r}" z="1"/></transform>
     <bsdf type="normalmap">
-      {_file_texture("normalmap", files["normal"])}
+      {_format_texture("normalmap", files["normal"])}
       {turning}<bsdf {inner}type="{plugin["type"]}">
 {textures}
 {numbers}
@@ -121,8 +126,8 @@ def scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
 """
 
 
-def _file_texture(name: str, file: str, interpolation: str = "bilinear") -> str:
-    """Return the XML of a texture that is read from a file."""
+def _format_texture(name: str, file: str, interpolation: str = "bilinear") -> str:
+    """Return the XML of a Mitsuba texture that is read from a file."""
     return (
         f'<texture type="bitmap" name="{name}"><string name="filename" value="{file}"/>'
         '<boolean name="raw" value="true"/><string name="wrap_mode" value="clamp"/>'
@@ -132,16 +137,16 @@ def _file_texture(name: str, file: str, interpolation: str = "bilinear") -> str:
     )
 
 
-def _tag(value: float | str) -> str:
-    """Return the element of Mitsuba's XML for a value, by its type."""
+def _name_xml_type(value: float | str) -> str:
+    """Return the name of Mitsuba's XML element for values of this type."""
     return {int: "integer", float: "float", str: "string"}[type(value)]
 
 
-def _csv(numbers: Iterable[float]) -> str:
-    """Return numbers separated by commas."""
+def _to_csv(numbers: Iterable[float]) -> str:
+    """Return numbers as text, separated by commas."""
     return ", ".join(repr(float(number)) for number in numbers)
 
 
-def _xyz(numbers: Iterable[float]) -> str:
-    """Return three numbers as the attributes x, y and z."""
+def _format_xyz(numbers: Iterable[float]) -> str:
+    """Return three numbers as the XML attributes x, y and z."""
     return " ".join(f'{axis}="{float(n)!r}"' for axis, n in zip("xyz", numbers, strict=True))

@@ -1,8 +1,8 @@
 """Converts the shape parameters of a texel to numbers that a least-squares search can step along.
 
-A parameter that is declared logarithmic is searched by its logarithm. Two widths u and v whose
-directions turn about the normal by an angle ψ become three numbers, which have no seam and no point
-where a direction is undefined:
+A parameter that is declared logarithmic is searched by its logarithm. The two widths u and v of an
+anisotropic lobe, whose directions are turned about the normal by an angle ψ, become three numbers
+m, p and q, which stay continuous where the angle jumps or, for equal widths, is undefined:
 
     m = (log u + log v) / 2,    (p, q) = (log u - log v) / 2 · (cos 2ψ, sin 2ψ)
 """
@@ -17,16 +17,18 @@ from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.model import Model
 
 ANGLE = "anisotropy_angle"  # [radians] from the sample's x to the direction of u, counterclockwise
-P_OFFSET = 1e-7  # added to p, because an angle has no derivatives at p = q = 0
-LARGEST_P = 2.0  # also of q: one width is then about 50 times the other
+P_OFFSET = 1e-7  # added to p, because the angle has no derivatives at p = q = 0
+LARGEST_P = 2.0  # bound of |p| and |q|: one width is then about 50 times the other
 UNKNOWN_ANGLE_ERROR = np.pi / np.sqrt(12)  # standard deviation of a random direction [radians]
 
 
 @dataclass(frozen=True)
 class ShapeParameters:
-    """The shape parameters `names` of a `model` that are searched.
+    """The shape parameters of a BRDF model that are searched, and their conversion to numbers.
 
-    `pair` holds the names of two widths (u, v) whose directions turn about the normal, or is None.
+    model : the model's class.
+    names : the names of the parameters that are searched.
+    pair : the names of two lobe widths (u, v) whose directions turn about the normal, or None.
     """
 
     model: type[Model]
@@ -35,25 +37,25 @@ class ShapeParameters:
 
     @property
     def single(self) -> list[str]:
-        """The names of the parameters that are one number each."""
+        """The names of the parameters that one number represents, without the pair of widths."""
         return [name for name in self.names if name not in (self.pair or ())]
 
     @property
     def number_names(self) -> list[str]:
-        """A name for each number; the last three are those of the pair."""
+        """A name for each searched number; the last three belong to the pair of widths."""
         return [*self.single, *((*self.pair, ANGLE) if self.pair else ())]
 
-    def limits(self) -> FloatArray:
-        """Return the lowest and the highest numbers as two rows."""
+    def find_limits(self) -> FloatArray:
+        """Return the lowest and the highest value of each searched number, as two rows."""
         names = [*self.single, *(self.pair or ())[:1]]
         ends = [self._to_number(n, np.array(self.model.parameters[n].bounds)) for n in names]
         turning = [(-LARGEST_P, LARGEST_P)] * 2 if self.pair else []
         return np.array([*ends, *turning]).reshape(-1, 2).T
 
     def to_values(self, numbers: Any, math: Any = np) -> dict[str, Any]:
-        """Return the parameters by name, with the `ANGLE` of a pair, at numbers, an array each.
+        """Return the parameters by name, and the `ANGLE` of a pair of widths, from their numbers.
 
-        `math` is the module for the arrays: numpy or drjit.
+        `numbers` holds an array for each searched number, of the module `math`: numpy or drjit.
         """
         single = self.single
         values = {n: self._to_value(n, x, math) for n, x in zip(single, numbers, strict=False)}
@@ -70,7 +72,7 @@ class ShapeParameters:
         return values
 
     def to_numbers(self, values: Mapping[str, Any]) -> list[AnyArray]:
-        """Return the numbers, an array each, at parameters by name; inverts `to_values`."""
+        """Return an array for each searched number, from parameters by name."""
         numbers = [self._to_number(name, values[name]) for name in self.single]
         if self.pair:
             u, v = (self._to_number(name, values[name]) for name in self.pair)
@@ -79,13 +81,13 @@ class ShapeParameters:
         return numbers
 
     def propagate_errors(self, numbers: FloatArray, errors: FloatArray) -> dict[str, FloatArray]:
-        """Return the standard errors of the parameters by name, given those of the numbers.
+        """Return the standard errors of the parameters by name, from those of the searched numbers.
 
         Both arguments are (numbers, n), for n texels.
         """
         values, count = self.to_values(numbers), len(self.single)
         by_name = {
-            name: self._slope(name, values[name]) * error
+            name: self._find_slope(name, values[name]) * error
             for name, error in zip(self.single, errors, strict=False)
         }
         if self.pair:
@@ -94,19 +96,22 @@ class ShapeParameters:
             along = np.hypot(p * error_p, q * error_q) / half
             across = np.hypot(q * error_p, p * error_q) / half
             for name in self.pair:
-                by_name[name] = self._slope(name, values[name]) * np.hypot(error_m, along)
+                by_name[name] = self._find_slope(name, values[name]) * np.hypot(error_m, along)
             by_name[ANGLE] = np.minimum(across / (2 * half), UNKNOWN_ANGLE_ERROR)
         return by_name
 
     def _to_number(self, name: str, value: AnyArray) -> AnyArray:
-        """Return the number for a value of the parameter `name`."""
+        """Return the number that a search uses for a value of the parameter `name`.
+
+        It is the logarithm of the value if the parameter is logarithmic, else the value itself.
+        """
         with np.errstate(divide="ignore"):
             return np.log(value) if self.model.parameters[name].log else value
 
     def _to_value(self, name: str, number: Any, math: Any) -> Any:
-        """Return the value of the parameter `name` for a number."""
+        """Return the value of the parameter `name` for the number that a search uses."""
         return math.exp(number) if self.model.parameters[name].log else number
 
-    def _slope(self, name: str, value: AnyArray) -> Any:
-        """Return the derivative of the parameter `name` by its number, at a value."""
+    def _find_slope(self, name: str, value: AnyArray) -> Any:
+        """Return the derivative of the parameter `name` by its searched number, at a value."""
         return value if self.model.parameters[name].log else 1.0

@@ -1,9 +1,9 @@
 """Defines the numbers of a texel that are searched, and computes its radiances from them.
 
-A texel has the weights a_l of the model's lobes in red, green and blue, the shape parameters, and x
-and y of its normal n. Light i arrives from the direction l_i and would cause the irradiance E_i on
-a surface facing it; v is the direction to the camera, and the lobes f_l are evaluated in the
-texel's frame around n. The texel then has the radiance
+A texel has the weights a_l of the BRDF model's lobes l in red, green and blue, the shape
+parameters, and x and y of its normal n. Light i arrives from the direction l_i and would cause the
+irradiance E_i on a surface facing it; v is the direction to the camera, and the lobes f_l are
+evaluated in the texel's frame around n. The texel then has the radiance
 
     L_i = E_i max(n · l_i, 0) Σ_l a_l f_l(v, l_i).
 """
@@ -21,23 +21,23 @@ from brdfkit.inverse.photographs.capture.observations import Observations
 from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE, ShapeParameters
 from brdfkit.model import Model
 
-STEEPEST_SLANT = 0.65  # the largest |x| or |y| of a normal
+STEEPEST_SLANT = 0.65  # the largest |x| or |y| of a unit normal that a search may reach
 CHANNELS = 3
 
-Lobes = list[FloatArray]  # radiances (k, n) of each lobe under a weight and an irradiance of 1
+Lobes = list[FloatArray]  # radiance (k, n) of each lobe, for a weight and an irradiance of 1
 
 
 @dataclass(frozen=True)
 class TexelParameters:
-    """The layout of a texel's row of numbers, for one model.
+    """The layout of the searched numbers of a texel, which form a row, for one BRDF model.
 
     A row holds the weights (lobe by lobe, red, green and blue), the numbers of the shape
     parameters, and x and y of the normal.
 
     model : the model's class.
-    names : the shape parameters that are searched.
+    names : the names of the shape parameters that are searched.
     fixed : the values of the other shape parameters.
-    pair : the names of two widths whose directions turn about the normal, or None.
+    pair : the names of two lobe widths whose directions turn about the normal, or None.
     """
 
     model: type[Model]
@@ -47,45 +47,48 @@ class TexelParameters:
 
     @property
     def lobes(self) -> tuple[str, ...]:
-        """The names of the lobes' weights."""
+        """The names of the weights of the model's lobes."""
         return tuple(self.model.weights())
 
     @property
     def shapes(self) -> ShapeParameters:
-        """The shape parameters and their numbers."""
+        """The shape parameters that are searched, with their conversion to numbers."""
         return ShapeParameters(self.model, self.names, self.pair)
 
     @property
     def shape_columns(self) -> slice:
-        """The columns of the shape parameters in a row of numbers."""
+        """The columns that the shape parameters have in a texel's row of numbers."""
         first = CHANNELS * len(self.lobes)
         return slice(first, first + len(self.shapes.number_names))
 
     @property
     def normal_columns(self) -> slice:
-        """The columns of x and y of the normal in a row of numbers."""
+        """The columns that x and y of the normal have in a texel's row of numbers."""
         return slice(self.shape_columns.stop, self.shape_columns.stop + 2)
 
     @property
     def count(self) -> int:
-        """The number of columns, which is that of the numbers of a texel."""
+        """How many numbers describe a texel."""
         return int(self.normal_columns.stop)
 
     @property
     def number_names(self) -> list[str]:
-        """A name for each number of a row, such as "diffuse_reflectance[0]"."""
+        """A name for each number of a texel, such as "diffuse_reflectance[0]"."""
         weights = [f"{name}[{c}]" for name in self.lobes for c in range(CHANNELS)]
         return [*weights, *self.shapes.number_names, "normal[x]", "normal[y]"]
 
-    def limits(self) -> tuple[FloatArray, FloatArray]:
-        """Return the lowest and the highest numbers of a row, each (count,)."""
+    def find_limits(self) -> tuple[FloatArray, FloatArray]:
+        """Return the lowest and the highest values (numbers,) of the numbers of a texel."""
         low, high = np.zeros(self.count), np.full(self.count, np.inf)
-        low[self.shape_columns], high[self.shape_columns] = self.shapes.limits()
+        low[self.shape_columns], high[self.shape_columns] = self.shapes.find_limits()
         low[self.normal_columns], high[self.normal_columns] = -STEEPEST_SLANT, STEEPEST_SLANT
         return low, high
 
     def compute_radiances(self, x: FloatArray, observed: Observations) -> FloatArray:
-        """Return the radiances (k, n, 3) of texels with the numbers `x` (n, count)."""
+        """Return the radiances (lights, n, 3) of n texels with the numbers `x` (texels, numbers).
+
+        `observed` holds the directions of the lights and cameras, and the irradiances.
+        """
         lobes, _ = self.evaluate_lobes(x, observed, differentiate=False)
         weights = x[:, : self.shape_columns.start].reshape(len(x), -1, CHANNELS)
         shown = sum(lobe[..., None] * weights[:, k] for k, lobe in enumerate(lobes))
@@ -96,10 +99,11 @@ class TexelParameters:
     def evaluate_lobes(
         self, x: FloatArray, observed: Observations, differentiate: bool = True
     ) -> tuple[Lobes, list[Lobes]]:
-        """Return the lobes of texels with the numbers `x` (n, count), and their derivatives.
+        """Return the model's lobes for texels with numbers `x`, and their derivatives.
 
         The derivatives are by each number of the shapes and the normal; there are none unless
-        `differentiate`.
+        `differentiate`. `x` is (texels, numbers), `observed` holds the directions of lights and
+        cameras.
         """
         lights, texels = observed.to_light.shape[:2]
         arrays = [
@@ -111,7 +115,7 @@ class TexelParameters:
         if differentiate:
             for array in arrays:
                 dr.enable_grad(array)
-        lobes = self._evaluate(arrays, to_light, to_camera)
+        lobes = self._evaluate_in_drjit(arrays, to_light, to_camera)
         values, derivatives = [dr.detach(lobe) for lobe in lobes], []
         for array in arrays if differentiate else ():
             dr.clear_grad(lobes)
@@ -119,20 +123,20 @@ class TexelParameters:
             dr.enqueue(dr.ADMode.Forward, array)
             dr.traverse(dr.ADMode.Forward, dr.ADFlag.ClearInterior)
             derivatives.append([dr.grad(lobe) for lobe in lobes])
-        dr.eval(values, derivatives)  # all of them in one kernel
+        dr.eval(values, derivatives)  # in one kernel, so that common parts are computed once
 
         def to_numpy(lobes: Sequence[JitFloat]) -> Lobes:
-            """Return lobes of Dr.Jit as arrays (lights, texels)."""
+            """Return the lobes' arrays of Dr.Jit as arrays of NumPy (lights, texels)."""
             return [np.array(lobe).reshape(lights, texels) for lobe in lobes]
 
         return to_numpy(values), [to_numpy(lobes) for lobes in derivatives]
 
-    def _evaluate(
+    def _evaluate_in_drjit(
         self, arrays: list[JitFloat], to_light: JitVector, to_camera: JitVector
     ) -> list[JitFloat]:
-        """Return each lobe times the cosine, over all lights and texels.
+        """Return each lobe times the cosine to the normal, for all pairs of lights and texels.
 
-        `arrays` holds the numbers of the shapes and of the normal.
+        `arrays` holds the numbers of the shape parameters and of the normal.
         """
         *shapes, x, y = arrays
         z = dr.sqrt(dr.maximum(1 - x * x - y * y, 1e-4))
@@ -143,31 +147,31 @@ class TexelParameters:
         values = self.shapes.to_values(shapes, dr)
         if self.pair:
             sine, cosine = dr.sincos(values.pop(ANGLE))
-            tangent = tangent * cosine + _cross(normal, tangent) * sine
-        frame = tangent, _cross(normal, tangent), normal
-        wi, wo = _to_local(to_camera, frame), _to_local(to_light, frame)
+            tangent = tangent * cosine + _cross_product(normal, tangent) * sine
+        frame = tangent, _cross_product(normal, tangent), normal
+        wi, wo = _to_frame(to_camera, frame), _to_frame(to_light, frame)
         lit = (wi.z > 1e-3) & (wo.z > 1e-3)
         up = double_precision.Vector(0 * x, 0 * x, 0 * x + 1)
-        wi, safe_wo = _select(lit, wi, up), _select(lit, wo, up)
+        wi, safe_wo = _select_vector(lit, wi, up), _select_vector(lit, wo, up)
         values |= {name: double_precision.to_scalar(v) for name, v in self.fixed.items()}
         lobes = [lobe for _, lobe in self.model.bind(values).terms()]
         return [dr.select(lit, (lobe.eval(wi, safe_wo) + 0 * x) * safe_wo.z, 0) for lobe in lobes]
 
 
-def _cross(a: JitVector, b: JitVector) -> JitVector:
+def _cross_product(a: JitVector, b: JitVector) -> JitVector:
     """Return the cross product of two vectors."""
     return double_precision.Vector(
         a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x
     )
 
 
-def _to_local(w: JitVector, frame: tuple[JitVector, JitVector, JitVector]) -> JitVector:
-    """Return the coordinates of a vector along tangent, bitangent and normal."""
+def _to_frame(w: JitVector, frame: tuple[JitVector, JitVector, JitVector]) -> JitVector:
+    """Return the coordinates of a vector in a frame of tangent, bitangent and normal."""
     return double_precision.Vector(*(w.x * a.x + w.y * a.y + w.z * a.z for a in frame))
 
 
-def _select(condition: JitMask, a: JitVector, b: JitVector) -> JitVector:
-    """Return `a` where the condition holds, else `b`."""
+def _select_vector(condition: JitMask, a: JitVector, b: JitVector) -> JitVector:
+    """Return the vector `a` where a condition holds, else `b`."""
     return double_precision.Vector(
         *(dr.select(condition, getattr(a, k), getattr(b, k)) for k in "xyz")
     )

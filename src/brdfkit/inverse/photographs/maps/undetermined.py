@@ -1,4 +1,4 @@
-"""Finds numbers that the photographs do not determine, and describes them."""
+"""Finds numbers of texels that the photographs do not determine, and describes them to the user."""
 
 import numpy as np
 
@@ -6,26 +6,28 @@ from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
 from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 
-SMALLEST_EIGENVALUE = 1e-4  # below it, a combination of numbers is undetermined
-MAIN_PART = 0.3  # relative to the largest entry: such numbers take part in a combination
-MENTIONED_SHARE = 0.25  # a number is named if it is undetermined in more of these texels
-UNDETERMINED_SHARE = 0.05  # if so many texels are undetermined, a sentence says so
+SMALLEST_EIGENVALUE = 1e-4  # of scaled Hessians: a combination with a smaller one is undetermined
+MAIN_PART = 0.3  # of the largest entry of an eigenvector: larger entries count as taking part
+MENTIONED_SHARE = 0.25  # of the undetermined texels: a number that takes part in more is named
+UNDETERMINED_SHARE = 0.05  # of the texels: if more are undetermined, a sentence says so
 
 
 def describe_undetermined(
     parameters: TexelParameters, hessian: FloatArray, lights: int
 ) -> tuple[str, ...]:
-    """Return sentences on the numbers that many texels do not determine by themselves.
+    """Return sentences for the user on numbers that many texels do not determine by themselves.
 
-    `hessian` (n, count, count) is from the equations of the n texels, without their neighbours.
+    `hessian` (texels, numbers, numbers) holds the second derivatives of each texel's own squared
+    residuals, without its neighbours; `lights` is the number of lights.
     """
     sentences = []
     if lights == 1:
         sentences.append(
             "One light: roughness and strength trade off here, and the normal with both."
         )
-    hessian = hessian[np.diagonal(hessian, axis1=1, axis2=2).any(axis=1)]  # not at the edge
-    columns, scaled = _scale_observed(hessian)
+    # Texels at the edge have no observations, hence a Hessian of 0
+    hessian = hessian[np.diagonal(hessian, axis1=1, axis2=2).any(axis=1)]
+    columns, scaled = _scale_observed_hessians(hessian)
     values, vectors = np.linalg.eigh(scaled)
     undetermined = values[:, 0] < SMALLEST_EIGENVALUE
     if undetermined.mean() < UNDETERMINED_SHARE:
@@ -46,17 +48,23 @@ def describe_undetermined(
 
 
 def is_observed(hessian: FloatArray) -> BoolArray:
-    """Return which numbers (count,) have any effect; colours without light have none."""
+    """Return which numbers have any effect on the photographs; colours without light have none.
+
+    `hessian` (texels, numbers, numbers) holds the second derivatives of the squared residuals.
+    """
     return np.any(np.diagonal(hessian, axis1=1, axis2=2), axis=0)
 
 
 def is_undetermined(hessian: FloatArray) -> BoolArray:
-    """Return which texels (n,) leave a combination of numbers undetermined."""
-    return np.linalg.eigvalsh(_scale_observed(hessian)[1])[:, 0] < SMALLEST_EIGENVALUE
+    """Return which texels (n,) leave a combination of their numbers undetermined.
+
+    `hessian` (n, numbers, numbers) holds the second derivatives of the squared residuals.
+    """
+    return np.linalg.eigvalsh(_scale_observed_hessians(hessian)[1])[:, 0] < SMALLEST_EIGENVALUE
 
 
-def _scale_observed(hessian: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Return the indices of the observed numbers, and their Hessians with unit diagonal."""
+def _scale_observed_hessians(hessian: FloatArray) -> tuple[IntArray, FloatArray]:
+    """Return the indices of the observed numbers, and the texels' Hessians with unit diagonal."""
     columns = np.flatnonzero(is_observed(hessian))
     hessian = hessian[:, columns[:, None], columns]
     scale = 1 / np.sqrt(np.maximum(np.diagonal(hessian, axis1=1, axis2=2), 1e-300))

@@ -1,4 +1,4 @@
-"""Writes the files of an `Svbrdf`: maps, a Mitsuba scene, and a report."""
+"""Writes the files of an `Svbrdf`: maps as OpenEXR, a Mitsuba scene, and an HTML report."""
 
 from pathlib import Path
 from typing import Any
@@ -8,19 +8,20 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.files import make_folder, require_writable, write_safely
 from brdfkit.core.jit.threads import use_two_threads
-from brdfkit.inverse.photographs.maps.scene import scene_xml
+from brdfkit.inverse.photographs.maps.scene import format_scene_xml
 from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE
 from brdfkit.inverse.photographs.result.report import write_report
 from brdfkit.model import Model
 
 MISFIT, SCENE, REPORT = "misfit.exr", "sample.xml", "report.html"
-ERROR = "_error"  # the end of the name of a map of standard errors
+ERROR = "_error"  # suffix of the names of maps that hold standard errors
 
 
-def check_folder(model: type[Model], folder: str | Path) -> None:
-    """Make the folder, and raise `BrdfkitError` for any file of `write_files` that it cannot hold.
+def make_output_folder(model: type[Model], folder: str | Path) -> None:
+    """Make a folder for the files of an `Svbrdf`, before a long search for its maps begins.
 
-    `model` is the class whose maps will be written.
+    Raises `BrdfkitError` unless every file that `write_files` may write can be written there;
+    `model` is the class whose maps will be searched.
     """
     make_folder(folder)
     maps = *model.parameters, "normal", ANGLE
@@ -30,27 +31,30 @@ def check_folder(model: type[Model], folder: str | Path) -> None:
 
 
 def write_files(svbrdf: Any, folder: str | Path) -> list[Path]:
-    """Write all files of an `Svbrdf`, and return their paths."""
+    """Write all files of an `Svbrdf` to a folder, and return their paths."""
     folder = Path(folder)
     make_folder(folder)
     files = {name: f"{name}.exr" for name in svbrdf.maps}
     written = []
     for name, values in svbrdf.maps.items():
-        # As colours, normals have green along the sample's y
+        # Components of normals, -1 to 1, become colours, 0 to 1
         pixels = (values + 1) / 2 if name == "normal" else values
         written += _write_or_remove(folder / files[name], pixels)
         written += _write_or_remove(folder / f"{name}{ERROR}.exr", svbrdf.uncertainty.get(name))
     written += _write_or_remove(folder / MISFIT, svbrdf.misfit)
     scene = folder / SCENE
     with write_safely(scene) as beside:
-        Path(beside).write_text(scene_xml(svbrdf, files), encoding="utf-8")
+        Path(beside).write_text(format_scene_xml(svbrdf, files), encoding="utf-8")
     report = folder / REPORT
     write_report(svbrdf, report)
     return [*written, scene, report]
 
 
 def _write_or_remove(path: Path, values: FloatArray | None) -> list[Path]:
-    """Write a map and return its path in a list; without values, remove the file of older maps."""
+    """Write a map and return its path in a list, or remove the file if there is no map.
+
+    A file that an earlier result wrote would not belong to the maps beside it.
+    """
     if values is None:
         path.unlink(missing_ok=True)
         return []
@@ -60,6 +64,6 @@ def _write_or_remove(path: Path, values: FloatArray | None) -> list[Path]:
     with write_safely(path) as beside, use_two_threads():
         try:
             mi.Bitmap(pixels).write(str(beside))
-        except RuntimeError as error:  # a full disk, for instance
+        except RuntimeError as error:  # Mitsuba's exception for a full disk, among others
             raise OSError(str(error).splitlines()[0]) from error
     return [path]

@@ -1,4 +1,4 @@
-"""Checks whether the normals are those of a flat sample, and what the photographs do not show."""
+"""Describes to the user what photographs leave out, and whether normals suit a flat sample."""
 
 import numpy as np
 
@@ -8,15 +8,20 @@ from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.observations import Observations
 
 COLOURS = "red", "green", "blue"
-LONG_PIXEL = 1.25  # texels, the length of a pixel from which a sentence says so
-LARGEST_LEAN, LARGEST_BULGE = 2.0, 8.0  # degrees, in the middle and towards the edges
-FEWEST_TEXELS = 32  # along a side: with fewer, bumps of the sample itself make normals lean
+LONG_PIXEL = 1.25  # texels: if pixels are longer, a sentence says so
+LARGEST_LEAN, LARGEST_BULGE = 2.0, 8.0  # degrees by which a flat sample's normals may lean
+FEWEST_TEXELS = 32  # along a side: with fewer, bumps of the sample do not average to zero
 
 
 def describe_capture(capture: Capture, clipped: float, observed: Observations) -> tuple[str, ...]:
-    """Return sentences on missing colours, on large pixels and on the share that is `clipped`."""
+    """Return sentences on colours and details that the photographs do not show.
+
+    `clipped` is the share of clipped values, which a sentence also mentions.
+    """
     sentences = []
-    dark = [name for name, lit in zip(COLOURS, observed.lit_channels(), strict=True) if not lit]
+    dark = [
+        name for name, lit in zip(COLOURS, observed.find_lit_channels(), strict=True) if not lit
+    ]
     if dark:
         sentences.append(f"Nothing is seen in {join_words(dark)}: there the maps say nothing.")
     texel = np.array(capture.size) / observed.shape[::-1]
@@ -33,7 +38,7 @@ def describe_capture(capture: Capture, clipped: float, observed: Observations) -
 
 
 def describe_normals(normals: FloatArray) -> tuple[str, ...]:
-    """Return a sentence on normals (height, width, 3) that lean as a whole or towards the edges."""
+    """Return a sentence on normals (height, width, 3) that lean on average or towards the edges."""
     if min(normals.shape[:2]) < FEWEST_TEXELS:
         return ()
     lean, bulge = _measure_lean(normals)
@@ -46,7 +51,11 @@ def describe_normals(normals: FloatArray) -> tuple[str, ...]:
 
 
 def _measure_lean(normals: FloatArray) -> tuple[float, float]:
-    """Return by how many degrees normals lean in the middle, and by how many more at the edges."""
+    """Return the mean slant of normals, and how much larger it is at the edges [degrees].
+
+    The slant is fitted by a plane over the map; normals (height, width, 3) of a bulging sample lean
+    outwards at its edges.
+    """
     height, width = normals.shape[:2]
     y, x = np.mgrid[-1 : 1 : height * 1j, -1 : 1 : width * 1j]
     terms = np.stack([np.ones_like(x), x, y], axis=-1).reshape(-1, 3)

@@ -1,4 +1,4 @@
-"""Writes the HTML report of an `Svbrdf`: maps, standard errors, and photographs beside pictures."""
+"""Writes the HTML report of an `Svbrdf`: maps, errors, and photographs beside renderings."""
 
 from pathlib import Path
 from typing import Any
@@ -9,18 +9,18 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.pages import page
 from brdfkit.core.pages.images import apply_colour_map, encode_jpeg, encode_png, shrink
 from brdfkit.core.version import __version__
-from brdfkit.inverse.photographs.capture.observations import sample_pictures
+from brdfkit.inverse.photographs.capture.observations import sample_at_texels
 from brdfkit.inverse.photographs.maps.residuals import UNEXPLAINED
 
-WIDEST = 512  # pixels of a picture on the page
+WIDEST = 512  # pixels: wider pictures are made smaller for the page
 VALUE_SCALE, DIFFERENCE_SCALE = "viridis", "RdBu_r"
-LARGEST_MISFIT = 2 * UNEXPLAINED  # times the noise, the end of the colour scale
-LARGEST_DIFFERENCE = 0.2  # relative, the ends of the colour scale
-DARK_OFFSET = 0.05  # times white, added so that relative differences stay finite
+LARGEST_MISFIT = 2 * UNEXPLAINED  # times the noise: the misfit at the end of the colour scale
+LARGEST_DIFFERENCE = 0.2  # relative difference at the ends of the colour scale
+DARK_OFFSET = 0.05  # times white: added to radiances, so that relative differences are finite
 
 
 def write_report(svbrdf: Any, path: Path) -> None:
-    """Write the HTML page of an `Svbrdf`."""
+    """Write the HTML report of an `Svbrdf` to a file."""
     document = svbrdf.document()
     table, *paragraphs = document.parts
     misfit = svbrdf.misfit
@@ -32,7 +32,7 @@ def write_report(svbrdf: Any, path: Path) -> None:
         rows=table.rows,
         notes=[paragraph.text for paragraph in paragraphs],
         maps=[_describe_map(svbrdf, name) for name in svbrdf.maps],
-        misfit=None if misfit is None else _to_png(misfit, 0, LARGEST_MISFIT),
+        misfit=None if misfit is None else _to_colour_png(misfit, 0, LARGEST_MISFIT),
         largest_misfit=LARGEST_MISFIT,
         photographs=[] if misfit is None else _describe_photographs(svbrdf),
         version=__version__,
@@ -40,7 +40,7 @@ def write_report(svbrdf: Any, path: Path) -> None:
 
 
 def _describe_map(svbrdf: Any, name: str) -> dict[str, str | None]:
-    """Return what the template shows of a map: its picture, its range, and its standard errors."""
+    """Return the template's entries for a map: its picture, its range and its standard errors."""
     values, errors = svbrdf.maps[name], svbrdf.uncertainty.get(name)
     if name == "normal":
         picture, scale = (
@@ -52,21 +52,24 @@ def _describe_map(svbrdf: Any, name: str) -> dict[str, str | None]:
         picture, scale = encode_jpeg(shrink(values / white, WIDEST)), f"white is {white:.3g}"
     else:
         low, high = np.quantile(values, (0.01, 0.99))
-        picture, scale = _to_png(values, low, high), f"{low:.3g} (dark) to {high:.3g} (bright)"
+        picture, scale = (
+            _to_colour_png(values, low, high),
+            f"{low:.3g} (dark) to {high:.3g} (bright)",
+        )
     shown = {"name": name, "picture": picture, "scale": scale, "error": None, "error_scale": None}
     if errors is not None:
         unit, errors = ("°", np.degrees(errors)) if name == "normal" else ("", errors)
-        high = float(np.quantile(errors, 0.9))  # those at the edge are much larger
-        shown["error"] = _to_png(errors, 0, high)
+        high = float(np.quantile(errors, 0.9))  # errors at the edge are much larger than others
+        shown["error"] = _to_colour_png(errors, 0, high)
         shown["error_scale"] = f"standard error, 0 (dark) to {high:.2g}{unit} (bright)"
     return shown
 
 
 def _describe_photographs(svbrdf: Any) -> list[dict[str, str]]:
-    """Return what the template shows of each photograph, the worst predicted first."""
+    """Return the template's entries for each photograph and its rendering, the worst one first."""
     capture = svbrdf.capture
     photographs, predictions = (
-        sample_pictures(capture, pictures, svbrdf.shape).reshape(-1, *svbrdf.shape, 3)
+        sample_at_texels(capture, pictures, svbrdf.shape).reshape(-1, *svbrdf.shape, 3)
         for pictures in (capture.pictures, svbrdf.rendered)
     )
     shown = []
@@ -82,13 +85,16 @@ def _describe_photographs(svbrdf: Any) -> list[dict[str, str]]:
                 "psnr": f"PSNR {svbrdf.predicted[capture.names[k]]:.1f} dB",
                 "photograph": encode_jpeg(shrink(photograph / white, WIDEST)),
                 "prediction": encode_jpeg(shrink(prediction / white, WIDEST)),
-                "difference": _to_png(difference, *scale),
+                "difference": _to_colour_png(difference, *scale),
             }
         )
     return shown
 
 
-def _to_png(values: FloatArray, low: float, high: float, scale: str = VALUE_SCALE) -> str:
-    """Return the address of a picture of values (height, width) in the colours of a scale."""
+def _to_colour_png(values: FloatArray, low: float, high: float, scale: str = VALUE_SCALE) -> str:
+    """Return values (height, width) as a PNG in a data URL, coloured from `low` to `high`.
+
+    `scale` is the name of a colour map of matplotlib.
+    """
     shares = (shrink(values[..., None], WIDEST)[..., 0] - low) / max(high - low, 1e-12)
     return encode_png(apply_colour_map(scale, shares)[..., :3])

@@ -15,7 +15,7 @@ from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.documents.parts import SOFT
 from brdfkit.inverse.photographs.capture.capture import Capture
-from brdfkit.inverse.photographs.capture.observations import illuminate
+from brdfkit.inverse.photographs.capture.observations import illuminate_points
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -83,7 +83,7 @@ class Svbrdf(Shown):
 
     @property
     def shape(self) -> tuple[int, int]:
-        """The height and width of the maps."""
+        """The height and width of the maps, in texels."""
         height, width = self.maps["normal"].shape[:2]
         return height, width
 
@@ -121,19 +121,21 @@ class Svbrdf(Shown):
         >>> picture = maps.relight((0.1, 0.2, 0.5))    # doctest: +SKIP
         """
         points = self.capture.texel_centres(self.shape)
-        eye = self.capture.cameras[0].origin if viewer is None else _to_place("viewer", viewer)
-        place = _to_place("position", position)[None]
+        eye = (
+            self.capture.cameras[0].origin if viewer is None else _to_point_above("viewer", viewer)
+        )
+        place = _to_point_above("position", position)[None]
         power = _to_intensity(intensity)
-        from brdfkit.inverse.photographs.maps.maps import predict
+        from brdfkit.inverse.photographs.maps.maps import predict_radiances
 
-        to_light, irradiance = illuminate(points, place, power)
-        return predict(self, points, to_light, irradiance, eye)[0]
+        to_light, irradiance = illuminate_points(points, place, power)
+        return predict_radiances(self, points, to_light, irradiance, eye)[0]
 
     def scene_dict(self) -> dict[str, Any]:
         """Return the dictionary for `mitsuba.load_dict`: a rectangle with the sample's material."""
-        from brdfkit.inverse.photographs.maps.scene import sample_dict
+        from brdfkit.inverse.photographs.maps.scene import make_sample_dict
 
-        return sample_dict(self)
+        return make_sample_dict(self)
 
     def write(self, folder: str | Path) -> list[Path]:
         """Write the maps, a Mitsuba scene and a report.
@@ -164,7 +166,7 @@ class Svbrdf(Shown):
         return write_files(self, folder)
 
     def document(self) -> Document:
-        """Return a table with a row for each map, notes, and how well the maps predict."""
+        """Return the printed summary: a row for each map, notes, and the errors of renderings."""
         rows = tuple(
             (
                 name,
@@ -200,18 +202,25 @@ def _describe_fixed(values: dict[str, float]) -> tuple[str, ...]:
 
 
 def _describe_difference(residual: float, psnr: Collection[float]) -> tuple[Paragraph, ...]:
-    """Return a sentence on how near Mitsuba's pictures come to the photographs, if rendered."""
+    """Return a sentence on the difference of Mitsuba's renderings from the photographs.
+
+    `residual` is the RMS relative difference, and `psnr` holds the PSNR [dB] of each rendering;
+    there is no sentence without renderings.
+    """
     if not psnr:
         return ()
     text = (
-        f"Mitsuba's pictures of the maps are the photographs but for {100 * residual:.2g} % (RMS); "
-        f"PSNR {min(psnr):.1f} to {max(psnr):.1f} dB."
+        f"Mitsuba's renderings of the maps differ from the photographs by {100 * residual:.2g} % "
+        f"(RMS); PSNR {min(psnr):.1f} to {max(psnr):.1f} dB."
     )
     return (Paragraph(text),)
 
 
 def _format_quantiles(name: str, values: FloatArray) -> tuple[str, ...]:
-    """Return 5 %, median and 95 % of a map as text; of normals the angle to z in degrees."""
+    """Return the quantiles 5 %, 50 % and 95 % of a map as text.
+
+    For normals they are those of the angle to the sample's z axis, in degrees.
+    """
     if name == "normal":
         angle = np.degrees(np.arccos(np.clip(values[..., 2], -1, 1)))
         return tuple(f"{q:.2g}°" for q in np.quantile(angle, (0.05, 0.5, 0.95)))
@@ -219,15 +228,18 @@ def _format_quantiles(name: str, values: FloatArray) -> tuple[str, ...]:
 
 
 def _format_error(name: str, errors: FloatArray | None) -> str:
-    """Return the median of standard errors as text, of normals in degrees; "" if unknown."""
+    """Return the median of a map's standard errors as text, "" if they are unknown.
+
+    The errors of normals are in radians, and their text is in degrees.
+    """
     if errors is None:
         return ""
     median = float(np.median(errors))
     return f"{np.degrees(median):.2g}°" if name == "normal" else f"{median:.2g}"
 
 
-def _to_place(what: str, point: Any) -> FloatArray:
-    """Return a point above the sample as an array (3,) [m]."""
+def _to_point_above(what: str, point: Any) -> FloatArray:
+    """Return a user's point as an array (3,) [m]; raise `BrdfkitError` unless it has z > 0."""
     place = to_array(what, point, (3,))
     if place[2] <= 0:
         raise wrong_value_error(what, point, "above the sample, its z [m] above 0")
@@ -235,7 +247,7 @@ def _to_place(what: str, point: Any) -> FloatArray:
 
 
 def _to_intensity(value: Any) -> FloatArray:
-    """Return the intensity of a light, one number or three, as an array (1, 3)."""
+    """Return a user's intensity of a light, one number or three, as an array (1, 3)."""
     intensity = to_array("intensity", value)
     if (
         intensity.shape not in ((), (1,), (3,))

@@ -1,1 +1,1 @@
-"""Fits the maps to the photographs: starts, steps, smoothness, and the correction by rendering."""
+"""Fits maps to photographs: starting values, steps, smoothness, and corrections by rendering."""

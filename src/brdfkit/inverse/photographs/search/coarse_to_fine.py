@@ -1,4 +1,4 @@
-"""Fits maps of a few large texels first, and then maps that are twice as fine, and so on.
+"""Fits maps of a few large texels first, then maps that are twice as fine, and so on.
 
 A small texel alone may mistake a highlight for its colour; a large part of the sample less so.
 """
@@ -12,24 +12,24 @@ from brdfkit.inverse.photographs.search.least_squares import fit_all_texels, fit
 from brdfkit.inverse.photographs.search.problem import Problem
 from brdfkit.inverse.photographs.search.starts import (
     WIDTHS,
-    make_start,
+    make_starting_numbers,
     propagate_from_neighbours,
     restart_unexplained,
 )
 
-DEFAULT_TAU = 0.1  # the typical difference of neighbours, in their units
+DEFAULT_TAU = 0.1  # the smoothness: the typical difference of neighbours, in units of the numbers
 COARSEST_SIDE = 4  # texels along the longer side of the first maps
-NOISE_ROUNDS = 5  # searches until the estimate of the noise settles, at most
-SETTLED = 0.7  # they end when the noise is more than this share of the previous noise
-SWEEPS = 2  # times that neighbours take over better numbers
+NOISE_ROUNDS = 5  # the most searches in which the noise is estimated anew
+SETTLED = 0.7  # the searches end when the noise is above this share of the previous estimate
+SWEEPS = 2  # how often texels take over better numbers of their neighbours
 
 
 def fit_coarse_to_fine(problem: Problem) -> Iterator[tuple[FloatArray, float, tuple[int, int]]]:
     """Yield the texels' numbers, the variance of the noise and the shape of ever finer maps."""
     finest = problem.observed
     side = 2 ** max(0, int(np.ceil(np.log2(max(finest.shape) / COARSEST_SIDE))))
-    level = problem.on(finest.pool(side))
-    trials = [fit_each_texel(level, make_start(level, width)) for width in WIDTHS]
+    level = problem.with_observations(finest.pool_texels(side))
+    trials = [fit_each_texel(level, make_starting_numbers(level, width)) for width in WIDTHS]
     errors = np.array([error for _, error in trials])
     best = errors.argmin(axis=0)
     x = np.array([x for x, _ in trials])[best, np.arange(len(best))]
@@ -37,31 +37,38 @@ def fit_coarse_to_fine(problem: Problem) -> Iterator[tuple[FloatArray, float, tu
     yield x, noise, level.observed.shape
     while side > 1:
         side //= 2
-        coarse, level = level.observed.shape, problem.on(finest.pool(side))
-        x = enlarge(x, coarse, level.observed.shape, 2)
-        x, noise = _settle_noise(level, x, noise)
-        strength = level.compute_strength(level.compute_equations(x).hessian, noise, DEFAULT_TAU)
-        x = finish_level(level, x, strength, noise)
+        coarse, level = level.observed.shape, problem.with_observations(finest.pool_texels(side))
+        x = enlarge_map(x, coarse, level.observed.shape, 2)
+        x, noise = _fit_with_noise(level, x, noise)
+        strength = level.compute_smoothness_weights(
+            level.compute_equations(x).hessian, noise, DEFAULT_TAU
+        )
+        x = fit_with_restarts(level, x, strength, noise)
         noise = level.estimate_noise(level.compute_errors(x))
         yield x, noise, level.observed.shape
 
 
-def _settle_noise(problem: Problem, x: FloatArray, noise: float) -> tuple[FloatArray, float]:
-    """Return the texels' numbers and the variance of the noise, after searches from coarser maps.
+def _fit_with_noise(problem: Problem, x: FloatArray, noise: float) -> tuple[FloatArray, float]:
+    """Return the texels' numbers and the variance of the noise, after repeated searches.
 
-    Coarse maps leave more than noise. With that as the noise, finer maps would be too smooth.
+    `x` and `noise` are from coarser maps, whose residuals are larger than noise. Taken for noise,
+    they would make the finer maps too smooth.
     """
     for _ in range(NOISE_ROUNDS):
         hessian = problem.compute_equations(x).hessian
-        x = fit_all_texels(problem, x, problem.compute_strength(hessian, noise, DEFAULT_TAU))
+        x = fit_all_texels(
+            problem, x, problem.compute_smoothness_weights(hessian, noise, DEFAULT_TAU)
+        )
         before, noise = noise, problem.estimate_noise(problem.compute_errors(x))
         if noise > SETTLED * before:
             break
     return x, noise
 
 
-def enlarge(x: FloatArray, coarse: tuple[int, int], fine: tuple[int, int], side: int) -> FloatArray:
-    """Return the texels' numbers of maps of the shape `coarse` for maps of the shape `fine`.
+def enlarge_map(
+    x: FloatArray, coarse: tuple[int, int], fine: tuple[int, int], side: int
+) -> FloatArray:
+    """Return the texels' numbers of `coarse` maps for maps of the shape `fine` (height, width).
 
     Each texel is repeated `side` × `side` times.
     """
@@ -69,8 +76,14 @@ def enlarge(x: FloatArray, coarse: tuple[int, int], fine: tuple[int, int], side:
     return grid[: fine[0], : fine[1]].reshape(fine[0] * fine[1], -1)
 
 
-def finish_level(problem: Problem, x: FloatArray, strength: FloatArray, noise: float) -> FloatArray:
-    """Return the numbers of texels that are fitted together, after restarts of unexplained ones."""
+def fit_with_restarts(
+    problem: Problem, x: FloatArray, strength: FloatArray, noise: float
+) -> FloatArray:
+    """Return the numbers of all texels, fitted together, then restarted where they fit badly.
+
+    `x` is (texels, numbers), `strength` (numbers,) the weight of squared differences of neighbours,
+    and `noise` the variance of relative radiances.
+    """
     x = fit_all_texels(problem, x, strength)
     other = restart_unexplained(problem, x, noise)
     for _ in range(SWEEPS):

@@ -11,24 +11,24 @@ from brdfkit.inverse.photographs.maps.residuals import UNEXPLAINED, compute_misf
 from brdfkit.inverse.photographs.maps.undetermined import is_observed, is_undetermined
 from brdfkit.inverse.photographs.search.coarse_to_fine import (
     DEFAULT_TAU,
-    enlarge,
-    finish_level,
+    enlarge_map,
     fit_coarse_to_fine,
+    fit_with_restarts,
 )
 from brdfkit.inverse.photographs.search.problem import Equations, Problem
 
-TAUS = 1.0, 0.3, 0.1, 0.03  # typical differences of neighbours, among which held-out lights choose
-PATCH_SIDE = 48  # texels: the part of the maps on which they choose
+TAUS = 1.0, 0.3, 0.1, 0.03  # the typical differences τ of neighbouring texels that are tried
+PATCH_SIDE = 48  # texels along a side of the part of the maps on which differences τ are tried
 FEWEST_LIGHTS_TO_HOLD_OUT = 8
 
 
 @dataclass(frozen=True)
 class UnfinishedMaps:
-    """Maps from a search that may have been interrupted.
+    """Numbers of the texels of maps, from a search that may have been interrupted.
 
-    x : the numbers (n, count) of the n texels.
-    tau : the typical difference of neighbours, in their units.
-    held_out : the relative error of held-out photographs, by each τ that was tried.
+    x : the numbers (texels, numbers) of the n texels.
+    tau : the smoothness τ, the typical difference of neighbouring texels in units of their numbers.
+    held_out : the relative error of held-out photographs for each τ that was tried.
     """
 
     x: FloatArray
@@ -38,11 +38,11 @@ class UnfinishedMaps:
 
 @dataclass(frozen=True)
 class FittedMaps(UnfinishedMaps):
-    """Maps from a finished search.
+    """Numbers of the texels of maps, from a finished search, with what their errors depend on.
 
-    equations : the `Equations` at x.
+    equations : the normal equations of the texels at their numbers `x`.
     noise : the variance of relative radiances.
-    strength : the weights (count,) of squared differences of neighbours.
+    strength : the weights (numbers,) of squared differences of neighbours.
     """
 
     equations: Equations
@@ -51,15 +51,16 @@ class FittedMaps(UnfinishedMaps):
 
 
 def estimate_steps(lights: int, smoothness: float | None) -> int:
-    """Return about how many steps a search for maps takes, for its progress."""
+    """Return about how many steps a search for maps takes, as the total of its progress bar."""
     chooses = smoothness is None and lights >= FEWEST_LIGHTS_TO_HOLD_OUT
     return 250 + 300 * chooses
 
 
 def fit_maps(problem: Problem, smoothness: float | None = None) -> FittedMaps:
-    """Return the maps fitted to the observations; without a `smoothness` (τ), choose it.
+    """Return the maps fitted to the observations, with a given or the best smoothness τ.
 
-    On Ctrl-C `Interrupted` holds the finest `UnfinishedMaps`, if there are any.
+    Without a `smoothness`, τ is chosen so that photographs held out are predicted best. On Ctrl-C
+    `Interrupted` holds the finest `UnfinishedMaps`, if there are any.
     """
     finest = None
     try:
@@ -70,10 +71,12 @@ def fit_maps(problem: Problem, smoothness: float | None = None) -> FittedMaps:
         if tau is None:
             tau = DEFAULT_TAU
             if len(problem.observed.radiance) >= FEWEST_LIGHTS_TO_HOLD_OUT:
-                held_out = _predict_held_out(problem, noise)
+                held_out = _measure_held_out_errors(problem, noise)
                 tau = min(held_out, key=held_out.__getitem__)
-        strength = problem.compute_strength(problem.compute_equations(start).hessian, noise, tau)
-        x = finish_level(problem, start, strength, noise)
+        strength = problem.compute_smoothness_weights(
+            problem.compute_equations(start).hessian, noise, tau
+        )
+        x = fit_with_restarts(problem, start, strength, noise)
     except KeyboardInterrupt:
         if finest is None:
             raise
@@ -82,24 +85,29 @@ def fit_maps(problem: Problem, smoothness: float | None = None) -> FittedMaps:
     return FittedMaps(x, tau, held_out, problem.compute_equations(x), noise, strength)
 
 
-def _predict_held_out(problem: Problem, noise: float) -> dict[float, float]:
-    """Return the RMS relative error of held-out photographs for each τ, on a patch of the maps."""
-    patch = _select_patch(problem.observed)
+def _measure_held_out_errors(problem: Problem, noise: float) -> dict[float, float]:
+    """Return the RMS relative error of held-out photographs for each τ, on a patch of the maps.
+
+    τ is the typical difference of neighbouring texels.
+    """
+    patch = _select_middle_patch(problem.observed)
     lights = np.arange(len(patch.radiance))
     held_out = lights[1 :: max(2, len(lights) // 3)]
-    fitted = problem.on(patch.select_lights(np.setdiff1d(lights, held_out)))
-    hidden = problem.on(patch.select_lights(held_out))
+    fitted = problem.with_observations(patch.select_lights(np.setdiff1d(lights, held_out)))
+    hidden = problem.with_observations(patch.select_lights(held_out))
     *_, (start, _, _) = fit_coarse_to_fine(fitted)
     hessian, errors = fitted.compute_equations(start).hessian, {}
     for tau in TAUS:
-        x = finish_level(fitted, start, fitted.compute_strength(hessian, noise, tau), noise)
+        x = fit_with_restarts(
+            fitted, start, fitted.compute_smoothness_weights(hessian, noise, tau), noise
+        )
         error = hidden.compute_errors(x).sum()
         errors[tau] = float(np.sqrt(error / max(1, (hidden.observed.weights > 0).sum())))
     return errors
 
 
-def _select_patch(observed: Observations) -> Observations:
-    """Return the observations of a patch in the middle."""
+def _select_middle_patch(observed: Observations) -> Observations:
+    """Return the observations of a square patch in the middle of the maps."""
     height, width = observed.shape
     rows, columns = min(height, PATCH_SIDE), min(width, PATCH_SIDE)
     top, left = (height - rows) // 2, (width - columns) // 2
@@ -111,22 +119,25 @@ def _select_patch(observed: Observations) -> Observations:
 def _enlarge_unfinished(
     shape: tuple[int, int], x: FloatArray, coarse: tuple[int, int]
 ) -> UnfinishedMaps:
-    """Return coarser maps as they are, enlarged to `shape`."""
-    side = 1  # a power of 2, as in `fit_coarse_to_fine`
+    """Return the maps of an interrupted search enlarged to `shape` (height, width).
+
+    `x` (texels, numbers) are the numbers of their texels, `coarse` is their height and width.
+    """
+    side = 1  # becomes the power of 2 by which `fit_coarse_to_fine` reduced the maps
     while side * coarse[0] < shape[0] or side * coarse[1] < shape[1]:
         side *= 2
-    return UnfinishedMaps(enlarge(x, coarse, shape, side), DEFAULT_TAU, {})
+    return UnfinishedMaps(enlarge_map(x, coarse, shape, side), DEFAULT_TAU, {})
 
 
 def compute_standard_errors(problem: Problem, fitted: FittedMaps) -> FloatArray:
-    """Return the standard errors (n, count) of all numbers, with the neighbours taken as known.
+    """Return the standard errors (texels, numbers) of the texels' numbers, for given neighbours.
 
-    Those of unexplained texels are scaled by their residuals. Where the photographs leave numbers
-    of a texel undetermined, they do so in the neighbours, too; there each number has half of its
-    range, or its unit, as an error instead.
+    Where the residuals of a texel exceed the noise, its errors are scaled by the excess. Where the
+    photographs leave numbers of a texel undetermined, they leave those of its neighbours
+    undetermined, too; there each number has half of its range, or its unit, as an error instead.
     """
     noise, own = fitted.noise, fitted.equations.hessian
-    ranges, (low, high) = problem.find_units(own), problem.parameters.limits()
+    ranges, (low, high) = problem.find_number_units(own), problem.parameters.find_limits()
     is_limited = np.isfinite(high - low)
     ranges[is_limited] = (high - low)[is_limited] / 2
     prior = np.diag(noise / ranges**2)

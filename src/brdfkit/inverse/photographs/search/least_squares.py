@@ -1,8 +1,8 @@
 """Fits the numbers of all texels by damped Gauss-Newton steps.
 
-The search minimises the weighted squares of the residuals of each texel t, plus the squared
-differences of neighbouring texels t and t' in units of τ. With the modelled radiances L_i, the
-photographed ones J_i, the weights w and the variance σ² of the noise,
+The search minimises the weighted squared residuals of each texel t, plus the squared differences of
+neighbouring texels t and t', whose typical size is τ. With the modelled radiances L_i, the
+photographed ones J_i, their weights w, the texels' numbers x and the variance σ² of the noise,
 
     E² = Σ_t Σ_i w (L_i - J_i)² + (σ² / τ²) Σ_t,t' |x_t - x_t'|².
 
@@ -15,18 +15,20 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.inverse.photographs.search.problem import Equations, Problem
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 
-STEPS = 12  # for a texel by itself
-STEPS_TOGETHER = 6
-DAMPING, DAMPING_TOGETHER = 1e-2, 1e-3  # at the start
-SMALLEST_GAIN = 1e-4  # relative to E²: a smaller gain ends the search of all texels
-SOLVER_ROUNDS, SOLVER_TOLERANCE = 40, 1e-3  # limits of the conjugate gradients
+STEPS, STEPS_TOGETHER = 12, 6  # the most steps of texels fitted alone, and of all together
+DAMPING, DAMPING_TOGETHER = 1e-2, 1e-3  # damping of the first step, of texels alone and together
+SMALLEST_GAIN = 1e-4  # relative to E²: a step with a smaller gain ends a search of all texels
+SOLVER_ROUNDS, SOLVER_TOLERANCE = 40, 1e-3  # conjugate gradients: most rounds, relative residual
 
 
 def fit_each_texel(
     problem: Problem, x: FloatArray, steps: int = STEPS
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the numbers (n, count) of texels that are each fitted alone from `x`, and E² (n,)."""
-    low, high = problem.parameters.limits()
+    """Return the fitted numbers of texels, each by itself, and their squared residuals (texels,).
+
+    The search begins at the numbers `x` (texels, numbers).
+    """
+    low, high = problem.parameters.find_limits()
     x = np.clip(x, low, high)
     damping = np.full(len(x), DAMPING)
     now = problem.compute_equations(x)
@@ -37,7 +39,7 @@ def fit_each_texel(
         better = there.error < now.error
         damping *= np.where(better, 0.2, 6)
         x[better] = trial[better]
-        now.replace(better, there)
+        now.overwrite(better, there)
         problem.report()
     return x, now.error
 
@@ -45,16 +47,17 @@ def fit_each_texel(
 def fit_all_texels(
     problem: Problem, x: FloatArray, strength: FloatArray, steps: int = STEPS_TOGETHER
 ) -> FloatArray:
-    """Return the numbers (n, count) of texels that are fitted together from `x`, and smoothly.
+    """Return the fitted numbers of texels, all together, so that maps are smooth.
 
-    `strength` (count,) holds σ² / τ² for each number.
+    The search begins at `x` (texels, numbers). `strength` (numbers,) is the weight of squared
+    differences of neighbours in each number.
     """
-    low, high = problem.parameters.limits()
+    low, high = problem.parameters.find_limits()
     shape, damping = problem.observed.shape, DAMPING_TOGETHER
     now = problem.compute_equations(x)
     total = now.error.sum() + (strength * sum_squared_differences(x, shape)).sum()
     for _ in range(steps):
-        step = _solve(now, x, strength, shape, damping)
+        step = _solve_step(now, x, strength, shape, damping)
         trial = np.clip(x + step, low, high)
         there = problem.compute_equations(trial)
         error = there.error.sum() + (strength * sum_squared_differences(trial, shape)).sum()
@@ -68,20 +71,21 @@ def fit_all_texels(
     return x
 
 
-def _solve(
+def _solve_step(
     now: Equations, x: FloatArray, strength: FloatArray, shape: tuple[int, int], damping: float
 ) -> FloatArray:
-    """Return the step (n, count) s that solves (H + D + A) s = -(g + A x) for all texels.
+    """Return the damped Gauss-Newton step (texels, numbers) of all texels together.
 
-    H and g are the Hessian and gradient of the texels, D the damping, and A the Laplacian of
-    neighbouring texels times their strength. The method is conjugate gradients
-    [Hestenes & Stiefel 1952] with the blocks of the texels as the preconditioner.
+    It solves (H + D + A) s = -(g + A x), where H and g are the Hessian and gradient of the texels,
+    D is the damping, and A the Laplacian of neighbouring texels times their `strength` (numbers,).
+    The method is conjugate gradients [Hestenes & Stiefel 1952] with the blocks of the texels as
+    preconditioner.
     """
     matrix = now.damp(damping)
     inverse = np.linalg.inv(matrix + 4 * np.diag(strength))
 
-    def multiply(s: FloatArray) -> FloatArray:
-        """Return (H + D + A) s."""
+    def multiply_matrix(s: FloatArray) -> FloatArray:
+        """Return the product (texels, numbers) of the system's matrix, H + D + A, and a vector."""
         return np.einsum("npq,nq->np", matrix, s) + strength * apply_laplacian(s, shape)
 
     residual = -(now.gradient + strength * apply_laplacian(x, shape))
@@ -92,7 +96,7 @@ def _solve(
     for _ in range(SOLVER_ROUNDS):
         if not size > SOLVER_TOLERANCE**2 * first:
             break
-        image = multiply(direction)
+        image = multiply_matrix(direction)
         along = size / (direction * image).sum()
         step += along * direction
         residual -= along * image
@@ -103,7 +107,10 @@ def _solve(
 
 
 def sum_squared_differences(x: FloatArray, shape: tuple[int, int]) -> FloatArray:
-    """Return the sums (count,) of squared differences of neighbours with numbers `x` (n, count)."""
+    """Return the sum (numbers,) of squared differences of neighbouring texels, for each number.
+
+    `x` (texels, numbers) are the texels' numbers, in maps of `shape` (height, width).
+    """
     grid = x.reshape(*shape, -1)
     down, right = np.diff(grid, axis=0), np.diff(grid, axis=1)
     sums: FloatArray = (down**2).sum(axis=(0, 1)) + (right**2).sum(axis=(0, 1))
@@ -111,7 +118,10 @@ def sum_squared_differences(x: FloatArray, shape: tuple[int, int]) -> FloatArray
 
 
 def apply_laplacian(x: FloatArray, shape: tuple[int, int]) -> FloatArray:
-    """Return half of the derivative (n, count) of `sum_squared_differences`."""
+    """Return the Laplacian (texels, numbers) of `x`, half the slope of its squared differences.
+
+    `shape` is the height and width of the map.
+    """
     grid = x.reshape(*shape, -1)
     result = np.zeros_like(grid)
     down, right = np.diff(grid, axis=0), np.diff(grid, axis=1)

@@ -1,7 +1,8 @@
 """Defines the least-squares problem of the texels: residuals, their derivatives, noise and units.
 
-A difference of one unit times τ between neighbouring texels counts as much as a residual of one
-standard deviation of the noise. So maps are smoothed more where the photographs are noisy.
+Neighbouring texels are drawn to each other: a difference of their numbers of τ units counts as much
+as a residual of one standard deviation of the noise. So maps are smoother where the photographs are
+noisy.
 """
 
 from __future__ import annotations
@@ -15,17 +16,17 @@ from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.inverse.photographs.capture.observations import Observations
 from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
 
-BLOCK = 8192  # texels whose equations are computed at once
-RIDGE = 1e-9  # relative to the diagonal; it keeps undetermined numbers from making H singular
+BLOCK = 8192  # texels whose equations are computed at once, to limit the memory
+RIDGE = 1e-9  # relative to the diagonal of a Hessian: undetermined numbers would make it singular
 
 
 @dataclass
 class Equations:
-    """The normal equations of n texels, each by itself.
+    """The Gauss-Newton equations of n texels, each by itself, without differences of neighbours.
 
-    error : E² (n,) without the differences of neighbours.
-    gradient : half of its gradient (n, count).
-    hessian : half of its Gauss-Newton Hessian (n, count, count).
+    error : the sums (n,) of weighted squared residuals.
+    gradient : half of their gradients (texels, numbers) by the numbers of the texel.
+    hessian : half of their Gauss-Newton Hessians (texels, numbers, numbers).
     """
 
     error: FloatArray
@@ -33,14 +34,17 @@ class Equations:
     hessian: FloatArray
 
     def damp(self, damping: FloatArray | float) -> FloatArray:
-        """Return the Hessians with a diagonal that is larger by a factor `damping` and a ridge."""
+        """Return the Hessians (texels, numbers, numbers), damped so that steps are shorter.
+
+        Their diagonals are multiplied by 1 + `damping`, and a small ridge is added.
+        """
         diagonal = np.diagonal(self.hessian, axis1=1, axis2=2)
         floor = RIDGE * diagonal.max(axis=1, keepdims=True) + 1e-300
         added = np.einsum("np,pq->npq", damping * diagonal + floor, np.eye(diagonal.shape[1]))
         return self.hessian + added
 
-    def replace(self, texels: BoolArray, other: Equations) -> None:
-        """Take over the equations of some texels from `other`."""
+    def overwrite(self, texels: BoolArray, other: Equations) -> None:
+        """Overwrite the equations of the `texels` in a mask (n,) by those of `other`."""
         self.error[texels] = other.error[texels]
         self.gradient[texels] = other.gradient[texels]
         self.hessian[texels] = other.hessian[texels]
@@ -48,31 +52,31 @@ class Equations:
 
 @dataclass(frozen=True)
 class Problem:
-    """The least-squares problem of n texels, whose numbers `x` (n, count) are sought.
+    """The least-squares problem of n texels, whose numbers `x` (texels, numbers) are searched.
 
     parameters : the layout of the numbers.
-    observed : the content of the photographs at the texels.
-    report : called after each step of a search.
+    observed : the radiances in photographs and the directions of lights and cameras.
+    report : a function that is called after each step of a search.
     """
 
     parameters: TexelParameters
     observed: Observations
     report: Callable[[], object] = lambda: None
 
-    def on(self, observed: Observations) -> Problem:
-        """Return the problem for other observations."""
+    def with_observations(self, observed: Observations) -> Problem:
+        """Return the same problem for other observations."""
         return replace(self, observed=observed)
 
     def compute_errors(self, x: FloatArray) -> FloatArray:
-        """Return E² (n,) of the texels at `x`, without the differences of neighbours."""
-        return self._compute(x, differentiate=False).error
+        """Return the sum (n,) of weighted squared residuals of each texel, at numbers `x`."""
+        return self._compute_equations(x, differentiate=False).error
 
     def compute_equations(self, x: FloatArray) -> Equations:
-        """Return the `Equations` of the texels at `x`."""
-        return self._compute(x, differentiate=True)
+        """Return the Gauss-Newton equations of each texel, at numbers `x` (texels, numbers)."""
+        return self._compute_equations(x, differentiate=True)
 
-    def _compute(self, x: FloatArray, differentiate: bool) -> Equations:
-        """Return the `Equations` at `x`; unless `differentiate`, only their error is set."""
+    def _compute_equations(self, x: FloatArray, differentiate: bool) -> Equations:
+        """Return the equations at numbers `x`; unless `differentiate`, they have no derivatives."""
         texels, count, lobes = len(x), self.parameters.count, len(self.parameters.lobes)
         error = np.zeros(texels)
         gradient = np.zeros((texels, count) if differentiate else 0)
@@ -108,32 +112,35 @@ class Problem:
         return Equations(error, gradient, hessian)
 
     def estimate_noise(self, errors: FloatArray) -> float:
-        """Return the variance of relative radiances, from E² (n,) of the texels.
+        """Return the variance of relative radiances, from the squared residuals (n,) of texels.
 
-        The median over texels is robust against those that the maps do not explain.
+        The median over texels is robust against texels that the maps do not explain.
         """
         counted = (self.observed.weights > 0).sum(axis=(0, 2))
         free = np.maximum(counted - self.parameters.count, 0.2 * counted)
         return max(float(np.median(errors / np.maximum(free, 1))), 1e-10)
 
-    def compute_strength(self, hessian: FloatArray, noise: float, tau: float) -> FloatArray:
-        """Return the weights (count,) of squared differences, σ² / τ², for each number in its unit.
+    def compute_smoothness_weights(
+        self, hessian: FloatArray, noise: float, tau: float
+    ) -> FloatArray:
+        """Return the weights (numbers,) of squared differences of neighbours in each number.
 
-        `noise` is σ², `tau` is τ, and `hessian` (n, count, count) determines the units.
+        They are σ² / (τ u)² for numbers with the units u, where `noise` is σ², `tau` is τ, and
+        `hessian` (texels, numbers, numbers) determines the units.
         """
-        return noise / (tau * self.find_units(hessian)) ** 2
+        return noise / (tau * self.find_number_units(hessian)) ** 2
 
-    def find_units(self, hessian: FloatArray) -> FloatArray:
-        """Return the units (count,) of differences, from the Hessians of the texels.
+    def find_number_units(self, hessian: FloatArray) -> FloatArray:
+        """Return a typical size of differences for each number (numbers,), from texels' Hessians.
 
-        The unit of a weight is the one with which its lobe alone would be as bright as the
-        photographs. The current weight would be a bad unit: one near 0 would then stay there.
+        The unit of a weight is the weight with which its lobe alone would be as bright as the
+        photographs. The current weight would be a bad unit: a weight near 0 would stay there.
         """
         of_weights = slice(0, self.parameters.shape_columns.start)
         brightness = np.diagonal(hessian, axis1=1, axis2=2)[:, of_weights]
         counted = (self.observed.weights > 0).sum(axis=(0, 2))[:, None] / CHANNELS
         alone = np.sqrt(counted / np.maximum(brightness, 1e-12 * counted + 1e-300))
-        units, lit = np.ones(self.parameters.count), self.observed.lit_channels()
+        units, lit = np.ones(self.parameters.count), self.observed.find_lit_channels()
         median = np.median(alone[counted[:, 0] > 0], axis=0).reshape(-1, CHANNELS)
         units[of_weights] = np.repeat(median[:, lit].mean(axis=1), CHANNELS)
         return units

@@ -1,7 +1,7 @@
-"""Chooses where the search for a texel begins, and restarts texels in a poor local minimum.
+"""Chooses the numbers with which the search for a texel begins, and restarts badly fitted texels.
 
-All texels begin matt and flat, with a few widths of the highlight. Restarted texels begin there
-again, or with the numbers of their neighbours.
+All texels begin matt and flat, with highlights of a few widths. Texels in a poor local minimum
+begin there again, or with the numbers of their neighbours.
 """
 
 import numpy as np
@@ -14,21 +14,22 @@ from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
 from brdfkit.inverse.photographs.search.least_squares import fit_each_texel
 from brdfkit.inverse.photographs.search.problem import Problem
 
-WIDTHS = 0.08, 0.2, 0.45  # highlights to begin with, as shares of the shape parameters' range
-START_WEIGHT = 0.1  # every lobe begins with it, except for the first, which is diffuse
-MATT_SHARE = 0.6  # this share of the observations, the darker ones, counts as without highlights
-DOUBTFUL = 2  # times the noise, from which a texel is restarted
+WIDTHS = 0.08, 0.2, 0.45  # of highlights at the start, as shares of the shape parameters' range
+START_WEIGHT = 0.1  # the first weight of every lobe except for the diffuse one
+MATT_SHARE = 0.6  # the share of observations, the darker ones, that are taken to have no highlight
+DOUBTFUL = 2  # times the noise: texels with larger residuals are restarted
 RESTART_STEPS = 10
+# Shifts (down, right) to the eight texels whose numbers are tried, one and three texels away
 OFFSETS = [(way * a, way * b) for way in (1, 3) for a, b in ((0, 1), (1, 0), (0, -1), (-1, 0))]
 
 
-def make_start(problem: Problem, width: float) -> FloatArray:
-    """Return the numbers (n, count) with which n texels begin, flat and isotropic.
+def make_starting_numbers(problem: Problem, width: float) -> FloatArray:
+    """Return the numbers (texels, numbers) with which n flat, isotropic texels begin a search.
 
     `width` is the width of the highlight, as a share of the range of the shape parameters.
     """
     parameters, at = problem.parameters, problem.parameters.shape_columns
-    low, high = parameters.limits()
+    low, high = parameters.find_limits()
     x = np.zeros((problem.observed.radiance.shape[1], parameters.count))
     x[:, :CHANNELS] = _estimate_albedos(problem.observed)
     x[:, CHANNELS : at.start] = START_WEIGHT
@@ -39,10 +40,10 @@ def make_start(problem: Problem, width: float) -> FloatArray:
 
 
 def _estimate_albedos(observed: Observations) -> FloatArray:
-    """Return the albedos (n, 3) of a matt and flat surface, from the darker observations.
+    """Return the albedos (n, 3) of texels as if they were matt and flat, by darker observations.
 
     Normals from photometric stereo [Woodham 1980] are no better a start: with all lights near the
-    camera, as flashes are, they lean by 40°, from where the search does not return.
+    camera, as flashes are, they lean by 40°, and the search does not return from there.
     """
     cosine = np.maximum(observed.to_light[..., 2], 0.05)
     ratio = (observed.radiance / np.maximum(observed.irradiance, 1e-30)).mean(axis=2)
@@ -55,29 +56,32 @@ def _estimate_albedos(observed: Observations) -> FloatArray:
 
 
 def restart_unexplained(problem: Problem, x: FloatArray, noise: float) -> FloatArray:
-    """Return the texels' numbers `x` (n, count), searched anew where residuals are large."""
+    """Return the texels' numbers (texels, numbers), searched anew where residuals of `x` are large.
+
+    `noise` is the variance of relative radiances, by which residuals are judged.
+    """
     errors = problem.compute_errors(x)
     wrong = np.flatnonzero(compute_misfit(errors, noise, problem.observed) > DOUBTFUL)
     if not len(wrong):
         return x
-    part, x = problem.on(problem.observed.select_texels(wrong)), x.copy()
+    part, x = problem.with_observations(problem.observed.select_texels(wrong)), x.copy()
     for width in WIDTHS:
-        trial, error = fit_each_texel(part, make_start(part, width), RESTART_STEPS)
+        trial, error = fit_each_texel(part, make_starting_numbers(part, width), RESTART_STEPS)
         better = error < errors[wrong]
         x[wrong[better]], errors[wrong[better]] = trial[better], error[better]
     return x
 
 
 def propagate_from_neighbours(problem: Problem, x: FloatArray) -> FloatArray:
-    """Return the texels' numbers `x` (n, count), replaced where other numbers fit better.
+    """Return the numbers of texels, taken over from neighbours where these fit better.
 
-    The candidates are the median around the texel and the numbers of texels nearby, so that good
-    numbers spread as matches do in [Barnes et al. 2009].
+    `x` is (texels, numbers). The candidates are the median around the texel and the numbers of
+    texels nearby, so that good numbers spread, as matches do in [Barnes et al. 2009].
     """
     grid = x.reshape(*problem.observed.shape, -1)
     errors = problem.compute_errors(x)
     median = median_filter(grid, size=(3, 3, 1), mode="nearest")
-    for candidate in (median, *(_shift(grid, *offset) for offset in OFFSETS)):
+    for candidate in (median, *(_shift_grid(grid, *offset) for offset in OFFSETS)):
         candidate = candidate.reshape(x.shape)
         there = problem.compute_errors(candidate)
         better = there < errors
@@ -86,8 +90,8 @@ def propagate_from_neighbours(problem: Problem, x: FloatArray) -> FloatArray:
     return x
 
 
-def _shift(grid: FloatArray, down: int, right: int) -> FloatArray:
-    """Return the grid (height, width, count) shifted by texels; the edge is repeated."""
+def _shift_grid(grid: FloatArray, down: int, right: int) -> FloatArray:
+    """Return a grid (height, width, count) shifted by whole texels; its edge is repeated."""
     height, width = grid.shape[:2]
     rows = np.clip(np.arange(height) + down, 0, height - 1)
     columns = np.clip(np.arange(width) + right, 0, width - 1)

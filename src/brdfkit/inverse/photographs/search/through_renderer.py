@@ -1,8 +1,9 @@
 """Corrects fitted maps by Mitsuba's renderings of them, which include the blur of pixels.
 
-The formula L of a texel ignores that a pixel covers parts of several texels. Mitsuba therefore
-renders the photographs R of the maps with rows x. What the real photographs P show beyond them is
-added to the radiance of each texel t, and the maps are fitted to that again:
+The formula for the radiance of a texel ignores that a pixel covers parts of several texels.
+Therefore Mitsuba renders pictures R(x) of the maps with the numbers x, like the photographs P. The
+difference at each texel t is added to the radiance L_t of the formula, and the maps are fitted to
+the sum:
 
     L_t ← L_t(x) + (P - R(x))_t
 
@@ -22,28 +23,28 @@ from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.observations import (
     DARK_OFFSET,
     Observations,
-    sample_pictures,
+    sample_at_texels,
 )
 from brdfkit.inverse.photographs.maps.maps import Maps
 from brdfkit.inverse.photographs.maps.residuals import compute_misfit
-from brdfkit.inverse.photographs.maps.scene import sample_dict
+from brdfkit.inverse.photographs.maps.scene import make_sample_dict
 from brdfkit.inverse.photographs.search.fitting_maps import FittedMaps
 from brdfkit.inverse.photographs.search.least_squares import fit_all_texels
 from brdfkit.inverse.photographs.search.problem import Problem
 
-SAMPLES = 16  # per pixel, evenly spread
-ROUND_LIMIT = 5
-STEPS_PER_ROUND = 3  # few, because each round begins near its end
-LARGEST_REMAINDER = 0.9  # a round that leaves a larger share of the difference found only noise
+SAMPLES = 16  # of a pixel in renderings, evenly spread
+ROUND_LIMIT = 5  # the most rounds of correction
+STEPS_PER_ROUND = 3  # few, because the fit of each round begins near its minimum
+LARGEST_REMAINDER = 0.9  # a round that leaves a larger share of the difference is not kept
 
 
 @dataclass(frozen=True)
 class RenderedMaps:
-    """Fitted maps with Mitsuba's renderings of the photographs.
+    """Fitted maps with Mitsuba's renderings of them, in the photographs' cameras and lights.
 
     fitted : the maps.
     pictures : the renderings (lights, height, width, 3).
-    difference : the RMS relative difference from the photographs.
+    difference : the RMS relative difference of the renderings from the photographs.
     """
 
     fitted: FittedMaps
@@ -54,7 +55,7 @@ class RenderedMaps:
 def refine_through_renderer(
     problem: Problem, fitted: FittedMaps, capture: Capture
 ) -> tuple[RenderedMaps, int]:
-    """Return the best maps with their renderings, and the number of rounds that led to them.
+    """Return the corrected maps with their renderings, and the number of rounds it took.
 
     On Ctrl-C `Interrupted` holds the `RenderedMaps` so far, or None.
     """
@@ -75,49 +76,51 @@ def refine_through_renderer(
 def correct_maps(
     problem: Problem, rendered: RenderedMaps, is_first: bool, capture: Capture
 ) -> FittedMaps:
-    """Return the maps after one round of correction.
+    """Return the maps after one round of correction by their renderings.
 
     The first round adds the whole difference between photographs and renderings. Later ones add
     only what exceeds the noise in each texel, so that noise is not sharpened [Wiener 1949].
     """
     fitted, observed = rendered.fitted, problem.observed
-    beyond = sample_pictures(capture, capture.pictures - rendered.pictures, observed.shape)
+    beyond = sample_at_texels(capture, capture.pictures - rendered.pictures, observed.shape)
     if not is_first:
         misfit = np.maximum(measure_misfit(beyond, fitted.noise, observed), 1)
         beyond *= (1 - 1 / misfit**2)[:, None]
     radiance = problem.parameters.compute_radiances(fitted.x, observed) + beyond
-    target = problem.on(replace(observed, radiance=radiance))
-    # The Hessian does not depend on the radiances
-    strength = target.compute_strength(fitted.equations.hessian, fitted.noise, fitted.tau)
+    target = problem.with_observations(replace(observed, radiance=radiance))
+    # The Hessian does not depend on the radiances, so that of the earlier fit is used
+    strength = target.compute_smoothness_weights(fitted.equations.hessian, fitted.noise, fitted.tau)
     x = fit_all_texels(target, fitted.x.copy(), strength, STEPS_PER_ROUND)
     return replace(fitted, x=x, equations=target.compute_equations(x), strength=strength)
 
 
 def measure_misfit(differences: FloatArray, noise: float, observed: Observations) -> FloatArray:
-    """Return the size (n,) of differences (k, n, 3) of radiances, in units of the noise."""
+    """Return the RMS (n,) of radiance differences (k, n, 3) per texel, in units of the noise."""
     return compute_misfit((observed.weights * differences**2).sum(axis=(0, 2)), noise, observed)
 
 
 def render_maps(problem: Problem, fitted: FittedMaps, capture: Capture) -> RenderedMaps:
-    """Return fitted maps with Mitsuba's renderings of the photographs."""
+    """Return fitted maps with Mitsuba's renderings in the photographs' cameras and lights."""
     shape = problem.observed.shape
-    maps = Maps.from_rows(problem.parameters, fitted.x, shape, capture.size)
-    pictures = _render_photographs(maps, capture, problem.report)
-    relative = _compare(capture, pictures)[capture.counted]
+    maps = Maps.from_texel_numbers(problem.parameters, fitted.x, shape, capture.size)
+    pictures = _render_like_photographs(maps, capture, problem.report)
+    relative = _compute_relative_differences(capture, pictures)[capture.counted]
     return RenderedMaps(fitted, pictures, float(np.sqrt((relative**2).mean())))
 
 
-def _compare(capture: Capture, pictures: FloatArray) -> FloatArray:
-    """Return the relative differences (lights, height, width, 3) from the photographs."""
+def _compute_relative_differences(capture: Capture, pictures: FloatArray) -> FloatArray:
+    """Return the relative differences (lights, height, width, 3) of pictures from photographs."""
     scale = np.maximum(capture.pictures, 0) + DARK_OFFSET * capture.pictures.mean()
     return (pictures - capture.pictures) / scale
 
 
-def _render_photographs(maps: Maps, capture: Capture, report: Callable[[], object]) -> FloatArray:
-    """Render maps with the cameras and lights of a `Capture`: (lights, height, width, 3)."""
+def _render_like_photographs(
+    maps: Maps, capture: Capture, report: Callable[[], object]
+) -> FloatArray:
+    """Return renderings (lights, height, width, 3) of maps in a capture's cameras and lights."""
     import mitsuba as mi
 
-    sample = mi.load_dict(sample_dict(maps))
+    sample = mi.load_dict(make_sample_dict(maps))
     sampler = {"type": "multijitter", "sample_count": SAMPLES}
     pictures: FloatArray = np.empty(capture.pictures.shape, np.float32)
     for k, camera in enumerate(capture.cameras):
@@ -138,13 +141,18 @@ def _render_photographs(maps: Maps, capture: Capture, report: Callable[[], objec
 
 
 def summarise_differences(capture: Capture, pictures: FloatArray) -> dict[str, float]:
-    """Return the RMS relative difference of each picture from its photograph, by name."""
-    parts = zip(capture.names, _compare(capture, pictures), capture.counted, strict=True)
+    """Return the RMS relative difference of each rendering from its photograph, by name."""
+    parts = zip(
+        capture.names,
+        _compute_relative_differences(capture, pictures),
+        capture.counted,
+        strict=True,
+    )
     return {name: float(np.sqrt((off[counted] ** 2).mean())) for name, off, counted in parts}
 
 
 def compute_psnr(capture: Capture, pictures: FloatArray) -> dict[str, float]:
-    """Return the PSNR [dB] of each picture beside its photograph, over the pixels that count."""
+    """Return the PSNR [dB] of each rendering against its photograph, over the usable pixels."""
     parts = zip(capture.names, capture.pictures, pictures, capture.counted, strict=True)
     return {
         name: psnr(photograph, picture, counted) for name, photograph, picture, counted in parts

@@ -1,9 +1,10 @@
-"""Corrects gradients for leverage, so that standard errors are not too small.
+"""Corrects gradients for the leverage of pixels, so that standard errors are not too small.
 
 A highlight covers few pixels but determines the parameters nearly alone. The fit then passes close
-to these pixels, their residuals are small, and so would be the standard errors. The part of the
-gradient from a block of pixels, its score, is therefore divided by the square root of (1 - its
-leverage), where the leverage of a block is a matrix [Bell & McCaffrey 2002].
+to these pixels, so their residuals are small, and standard errors that follow from residuals would
+be too small. The part of the gradient that comes from a block of pixels, its score, is therefore
+divided by the square root of 1 - leverage, where the leverage of a block is a matrix
+[Bell & McCaffrey 2002].
 """
 
 import numpy as np
@@ -11,24 +12,22 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, IntArray, MitsubaObject
 
 NEGLIGIBLE_TRACE = 0.02  # blocks whose leverage matrix has a smaller trace are not corrected
-SMALLEST_REMAINDER = (
-    0.05  # for 1 - leverage, as a block that decides alone says nothing about its error
-)
+SMALLEST_REMAINDER = 0.05  # for 1 - leverage, which is 0 for a block that decides alone
 
-Blocks = tuple[IntArray, int]
+Blocks = tuple[IntArray, int]  # the block of each pixel (pixels,), and the number of blocks
 
 
-def number_blocks(scene: MitsubaObject, counted: BoolArray) -> Blocks:
+def group_pixels_by_block(scene: MitsubaObject, counted: BoolArray) -> Blocks:
     """Group the pixels of all sensors into square blocks as wide as the camera's filter.
 
-    The filter correlates the noise of pixels within a block. Returns the block number of each pixel
-    (pixels,), and how many blocks there are. Blocks without a `counted` pixel get no number; their
-    pixels, whose weight is 0, are assigned to block 0.
+    The filter correlates the noise of pixels within a block. Returns the block of each pixel
+    (pixels,), and the number of blocks. Only blocks with a `counted` pixel are numbered; pixels of
+    other blocks, whose weight is 0, are assigned to block 0.
     """
     parts, count = [], 0
     for sensor in scene.sensors():
         width, height = sensor.film().crop_size()
-        side = block_side(sensor)
+        side = find_block_side(sensor)
         rows, columns = np.arange(height) // side, np.arange(width) // side
         across = columns[-1] + 1
         parts.append((count + rows[:, None] * across + columns).ravel())
@@ -38,22 +37,22 @@ def number_blocks(scene: MitsubaObject, counted: BoolArray) -> Blocks:
     return np.maximum(np.searchsorted(blocks, numbers), 0), len(blocks)
 
 
-def block_side(sensor: MitsubaObject) -> int:
-    """Return the width of a camera's reconstruction filter in pixels, at least 1."""
+def find_block_side(sensor: MitsubaObject) -> int:
+    """Return the side of blocks with independent noise: a camera's filter width in pixels."""
     return max(1, round(2 * sensor.film().rfilter().radius()))
 
 
 def sum_by_block(values: AnyArray, blocks: Blocks) -> FloatArray:
-    """Return the sums (n, blocks) of `values` (n, pixels) over the blocks of `number_blocks`."""
+    """Return the sums (n, blocks) of `values` (n, pixels) over the blocks of pixels."""
     index, count = blocks
     return np.array([np.bincount(index, row, count) for row in values])
 
 
 def correct_for_leverage(scores: FloatArray, jacobian: AnyArray, blocks: Blocks) -> FloatArray:
-    """Return the `scores` (n, blocks) corrected for the leverage of each block.
+    """Return the `scores` (n, blocks), divided by the square root of the matrix 1 - leverage.
 
-    They are divided by the square root of the matrix 1 - leverage. `jacobian` (n, pixels, channels)
-    holds the derivatives of the pixels by the n parameters, times the square roots of the weights.
+    A score is a block's part of the gradient by the n parameters. `jacobian` (n, pixels, channels)
+    holds the derivatives of the pixels by the parameters, times the square roots of the weights.
     """
     n = len(jacobian)
     flat = jacobian.reshape(n, -1).astype(float)

@@ -10,23 +10,23 @@ from brdfkit.core.arguments import to_number_pair
 from brdfkit.core.array_types import AnyArray, FloatArray, IntArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.inverse.scenes.problem.scene_parameters import (
-    default_bounds,
-    find_model,
-    find_searchable,
+    find_default_bounds,
+    find_owner_model,
+    find_searchable_entries,
     has_wrong_derivatives,
-    read_numbers,
-    short_name,
+    read_entry_numbers,
+    shorten_key,
 )
 from brdfkit.inverse.scenes.problem.tensors import (
-    find_shape,
+    find_independent_shape,
+    index_numbers_by_texel,
+    is_environment_map,
     is_tensor,
-    number_texels,
     read_tensor,
-    wraps_around,
 )
 from brdfkit.model import Model
 
-PARAMETER_LIMIT = 32  # numbers; for each of them a picture of derivatives is rendered
+PARAMETER_LIMIT = 32  # numbers that Gauss-Newton steps search, with a picture of derivatives each
 
 Bounds = tuple[float, float]
 
@@ -35,8 +35,8 @@ Bounds = tuple[float, float]
 class Unknown:
     """An entry of a scene whose numbers `refine` searches.
 
-    The search works on coordinates: between finite bounds they go from 0 to 1, otherwise they are
-    the values themselves.
+    The search works on coordinates of the numbers: between finite bounds they go from 0 to 1,
+    otherwise they are the values themselves.
 
     key : the entry's name in `mitsuba.traverse`.
     name : the key without ".value" at its end.
@@ -47,10 +47,10 @@ class Unknown:
     is_colour : whether each number changes only its own channel of the pictures.
     is_linear : whether pictures of direct light are linear in the numbers.
     low, high : the bounds of the values.
-    is_log : whether coordinates are in proportion to the logarithm of the values.
+    is_log : whether coordinates are proportional to the logarithm of the values.
     shape : the shape of a tensor's numbers; () for other entries.
-    texels : which number each texel of a tensor holds; None for other entries.
-    wraps : whether the last column of a tensor is beside its first one.
+    texels : the index of the number that each texel of a tensor holds; None for other entries.
+    wraps : whether the last column of a tensor is a neighbour of its first one.
     has_wrong_derivatives : whether Mitsuba's derivatives by this entry are wrong.
     """
 
@@ -72,13 +72,13 @@ class Unknown:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """A name for each number."""
+        """A name for each number of the entry, such as "bsdf.alpha" or "bsdf.reflectance[0]"."""
         if len(self.start) == 1:
             return (self.name,)
         return tuple(f"{self.name}[{i}]" for i in range(len(self.start)))
 
     def to_values(self, coordinates: FloatArray) -> FloatArray:
-        """Return the values at coordinates."""
+        """Return the values of the numbers (n,) at their search coordinates."""
         if self.is_log:
             return self.low * (self.high / self.low) ** coordinates
         if self.is_bounded:
@@ -86,20 +86,23 @@ class Unknown:
         return np.array(coordinates)
 
     def to_coordinates(self, values: FloatArray) -> FloatArray:
-        """Return the coordinates of values; the inverse of `to_values`."""
+        """Return the search coordinates (n,) of values; the inverse of `to_values`."""
         values = np.asarray(values)
         if self.is_log:
             return np.log(values / self.low) / np.log(self.high / self.low)
         return (values - self.low) / (self.high - self.low) if self.is_bounded else values
 
     def differentiate_values(self, coordinates: FloatArray) -> FloatArray:
-        """Return the derivatives of the values by their coordinates."""
+        """Return the derivatives (n,) of the values by their search coordinates."""
         if self.is_log:
             return self.to_values(coordinates) * np.log(self.high / self.low)
         return np.full_like(coordinates, self.high - self.low if self.is_bounded else 1.0)
 
-    def sum_copies(self, derivatives: FloatArray) -> FloatArray:
-        """Return derivatives by the numbers (n,), given those by all texels, copies included."""
+    def sum_over_copies(self, derivatives: FloatArray) -> FloatArray:
+        """Return the derivatives by the numbers (n,) as sums of derivatives by all texels.
+
+        Some texels of an environment map are copies that hold the same number.
+        """
         if self.texels is None:
             return derivatives
         sums: AnyArray = np.bincount(self.texels.ravel(), derivatives, len(self.start))
@@ -107,31 +110,31 @@ class Unknown:
 
     @property
     def is_bounded(self) -> bool:
-        """Whether both bounds are finite."""
+        """Whether both bounds of the values are finite."""
         return bool(np.isfinite(self.high - self.low))
 
     @property
     def limits(self) -> Bounds:
-        """The lowest and the highest coordinate."""
+        """The lowest and the highest search coordinate of the entry's numbers."""
         return (0.0, 1.0) if self.is_bounded else (self.low, self.high)
 
 
 def choose_unknowns(
     parameters: MitsubaObject, requested: str | Iterable[str] | Mapping[str, Bounds | None] | None
 ) -> list[Unknown]:
-    """Return the `Unknown`s that a user requested.
+    """Return the entries of a scene that a user wants to be searched, as `Unknown`s.
 
-    `parameters` is what `mitsuba.traverse` returns for the scene. `requested` holds names, or names
-    with their bounds (low, high), where None stands for the default bounds; if it is None itself,
-    all numbers of brdfkit's models are chosen. Raises `BrdfkitError` for unknown names, for entries
-    that cannot be searched, for wrong bounds, and where nothing is left to search.
+    `parameters` is the result of `mitsuba.traverse` for the scene. `requested` holds names, or
+    names with their bounds (low, high), where None stands for the default bounds; if it is None
+    itself, all numbers of brdfkit's models are chosen. Raises `BrdfkitError` for unknown names, for
+    entries that cannot be searched, for wrong bounds, and where nothing is left to search.
     """
     if isinstance(requested, str):
         requested = [requested]
-    known = find_searchable(parameters)
+    known = find_searchable_entries(parameters)
     if requested is None:
         single = {name: key for name, key in known.items() if not is_tensor(parameters[key])}
-        requested = [name for name, key in single.items() if find_model(parameters, key)[0]]
+        requested = [name for name, key in single.items() if find_owner_model(parameters, key)[0]]
         if not requested:
             raise BrdfkitError(
                 "the scene has no number of a brdfkit model to search; name its parameters, "
@@ -139,31 +142,31 @@ def choose_unknowns(
             )
     bounds = dict(requested) if isinstance(requested, Mapping) else dict.fromkeys(requested, None)
     for name in bounds:
-        if name in parameters and short_name(name) not in known:
+        if name in parameters and shorten_key(name) not in known:
             kind = type(parameters[name]).__name__
             raise BrdfkitError(
                 f"{name}: its type {kind} cannot be searched; numbers, colours, vectors and "
                 "textures that Mitsuba differentiates can."
             )
-        if short_name(name) not in known:
+        if shorten_key(name) not in known:
             raise no_such_error("parameter", name, known, "the scene")
     if not bounds:
         raise BrdfkitError("parameters is empty; name some, as mitsuba.traverse does.")
-    once = {known[short_name(name)]: limits for name, limits in bounds.items()}
+    once = {known[shorten_key(name)]: limits for name, limits in bounds.items()}
     return [_make_unknown(parameters, key, limits) for key, limits in once.items()]
 
 
 def _make_unknown(parameters: MitsubaObject, key: str, bounds: Bounds | None) -> Unknown:
-    """Return the `Unknown` for the entry `key`; without `bounds` it has the default ones."""
-    value, (model, owner, parameter) = parameters[key], find_model(parameters, key)
+    """Return the `Unknown` for the scene entry `key`; without `bounds` it has the default ones."""
+    value, (model, owner, parameter) = parameters[key], find_owner_model(parameters, key)
     kind = type(value).__name__
     texels: IntArray | None = None
     shape: tuple[int, ...] = ()
     wraps = False
-    numbers = read_numbers(value)
+    numbers = read_entry_numbers(value)
     if numbers is None:
-        texels, wraps = number_texels(parameters, key), wraps_around(parameters, key)
-        shape, numbers = find_shape(texels, wraps), read_tensor(value, texels)
+        texels, wraps = index_numbers_by_texel(parameters, key), is_environment_map(parameters, key)
+        shape, numbers = find_independent_shape(texels, wraps), read_tensor(value, texels)
     widest = -np.inf, np.inf
     if model:
         declared = model.parameters[parameter]
@@ -171,15 +174,15 @@ def _make_unknown(parameters: MitsubaObject, key: str, bounds: Bounds | None) ->
         is_log, is_linear = declared.log, declared.linear
     else:
         low = -np.inf if kind.startswith(("Point", "Vector")) else 0.0
-        low, high = default_bounds(parameters, key, (low, np.inf))
-        is_log, is_linear = low > 0, kind.startswith("Color")  # only roughnesses have low > 0
+        low, high = find_default_bounds(parameters, key, (low, np.inf))
+        is_log, is_linear = low > 0, kind.startswith("Color")  # only roughnesses have a bound > 0
     if bounds is not None:
         low, high = _to_bounds(key, bounds, *widest)
     elif (numbers < low).any():
         raise BrdfkitError(f"{key}: it begins below 0; give its bounds, as {{name: (low, high)}}.")
     return Unknown(
         key,
-        short_name(key),
+        shorten_key(key),
         owner,
         parameter,
         model,
@@ -197,7 +200,7 @@ def _make_unknown(parameters: MitsubaObject, key: str, bounds: Bounds | None) ->
 
 
 def _to_bounds(key: str, value: Any, lowest: float, highest: float) -> Bounds:
-    """Return bounds (low, high) that a user gave, which must lie within `lowest` to `highest`."""
+    """Return a user's bounds (low, high), which must lie within `lowest` to `highest`."""
     low, high = to_number_pair(f"{key}: bounds", value)
     if not lowest <= low < high <= highest:
         raise BrdfkitError(

@@ -13,7 +13,7 @@ from brdfkit.model import Model
 from brdfkit.regression import Fit
 from brdfkit.rendering.scenes.ball import ball
 
-# Integrators without derivatives of pictures, and the plugin that computes the same light with them
+# An integrator without derivatives of pictures → one that renders the same light and has them
 DIFFERENTIABLE = {
     "PathIntegrator": "prb",
     "DirectIntegrator": "prb",
@@ -23,7 +23,7 @@ DIFFERENTIABLE = {
 
 
 def load_scene(thing: Any, size: tuple[int, int]) -> MitsubaObject:
-    """Return the `mitsuba.Scene` that `thing` is or describes.
+    """Return the Mitsuba scene that a user gave, loaded if it is a file or a dictionary.
 
     `thing` is a scene, its dictionary or .xml file, or a material, which is then put on the ball of
     `brdfkit.render`, in pictures of `size` (width, height). Raises `BrdfkitError` for what Mitsuba
@@ -39,16 +39,17 @@ def load_scene(thing: Any, size: tuple[int, int]) -> MitsubaObject:
         scene = _load_dictionary(thing, "the scene")
     else:
         material = to_material(thing)
-        scene = _load_dictionary(ball(_with_coloured_weights(material), size), material.name)
+        scene = _load_dictionary(ball(_colour_weights(material), size), material.name)
     if not scene.sensors():
-        raise BrdfkitError("the scene has no sensor to see it with; add one.")
+        raise BrdfkitError("the scene has no sensor; add one.")
     return scene
 
 
 def make_integrator(scene: MitsubaObject) -> MitsubaObject:
-    """Return the scene's integrator, or one that computes the same light and has derivatives.
+    """Return the scene's integrator, or one that renders the same light and has derivatives.
 
-    Raises `BrdfkitError` for integrators without such a counterpart.
+    Raises `BrdfkitError` for an integrator of Mitsuba without derivatives and without such a
+    counterpart.
     """
     import mitsuba as mi
 
@@ -68,7 +69,7 @@ def make_integrator(scene: MitsubaObject) -> MitsubaObject:
 
 
 def _read_depths(integrator: MitsubaObject, kind: str) -> dict[str, int]:
-    """Return the options max_depth and rr_depth of an integrator of class `kind`."""
+    """Return the path length limits max_depth and rr_depth of an integrator of class `kind`."""
     if kind == "DirectIntegrator":
         return {"max_depth": 2}
     depths = dict(re.findall(r"(max_depth|rr_depth) = (-?\d+)", str(integrator)))
@@ -77,7 +78,7 @@ def _read_depths(integrator: MitsubaObject, kind: str) -> dict[str, int]:
 
 
 def _load_dictionary(scene: dict[str, Any], name: str) -> MitsubaObject:
-    """Load a scene's dictionary; equal BSDFs stay apart, as merging would change their names."""
+    """Load a scene's dictionary; Mitsuba may not merge equal BSDFs, which would rename them."""
     import mitsuba as mi
 
     return load_by_mitsuba(
@@ -85,8 +86,11 @@ def _load_dictionary(scene: dict[str, Any], name: str) -> MitsubaObject:
     )
 
 
-def _with_coloured_weights(material: Any) -> dict[str, Any]:
-    """Return a material's dictionary in which each weight of a lobe has one number per channel."""
+def _colour_weights(material: Any) -> dict[str, Any]:
+    """Return a material's dictionary in which each lobe's weight is a colour.
+
+    A weight that is one number would be searched as one number, though materials are coloured.
+    """
     entries: dict[str, Any] = material.scene_dict()
     model = material.model if isinstance(material, Fit) else material
     if isinstance(model, Model):

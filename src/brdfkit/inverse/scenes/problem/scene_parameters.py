@@ -1,6 +1,7 @@
-"""Reads and writes the entries of a scene that `mitsuba.traverse` lists, and knows their bounds.
+"""Reads and writes the entries of a scene that `mitsuba.traverse` lists, and finds their bounds.
 
-`parameters` is always the object that `mitsuba.traverse` returns, and a `key` is a name in it.
+In this file `parameters` is always the object that `mitsuba.traverse` returns, and `key` is the
+name of an entry in it.
 """
 
 from collections.abc import Mapping
@@ -11,46 +12,46 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.inverse.scenes.problem.tensors import (
-    find_shape,
+    find_independent_shape,
+    index_numbers_by_texel,
+    is_environment_map,
     is_tensor,
     make_tensor,
-    number_texels,
-    wraps_around,
 )
 from brdfkit.model import Model
 
-ROUGHNESS_BOUNDS = 0.001, 1.0  # below, samples meet the lobe as rarely as that of a mirror
+ROUGHNESS_BOUNDS = 0.001, 1.0  # samples of the renderer hardly ever meet a narrower lobe
 SHARE_BOUNDS = 0.0, 1.0
 MITSUBA_BOUNDS = {
     **dict.fromkeys(("alpha", "alpha_u", "alpha_v", "roughness"), ROUGHNESS_BOUNDS),
-    # Parameters of blendbsdf and mask
+    # These are parameters of the plugins blendbsdf and mask
     **dict.fromkeys(("weight", "opacity"), SHARE_BOUNDS),
-    # Parameters of principled and principledthin
+    # These are parameters of the plugins principled and principledthin
     **dict.fromkeys(("anisotropic", "clearcoat", "clearcoat_gloss", "flatness"), SHARE_BOUNDS),
     **dict.fromkeys(("metallic", "sheen", "sheen_tint", "spec_tint"), SHARE_BOUNDS),
     **dict.fromkeys(("spec_trans", "specular"), SHARE_BOUNDS),
 }
 # Parameters by which Mitsuba's derivatives of pictures are wrong: roughplastic tabulates functions
-# of alpha and eta without derivatives, which then are 0.5 to 0.7 of the true ones; those by the
-# colour below a smooth coat are 1.1 times the true ones
+# of alpha and eta without derivatives, so those are 0.5 to 0.7 times the true ones; those by
+# the colour below a smooth coat are 1.1 times the true ones
 WRONG_DERIVATIVES = {"RoughPlastic": ("alpha", "eta"), "SmoothPlastic": ("diffuse_reflectance",)}
 
 
-def find_searchable(parameters: MitsubaObject) -> dict[str, str]:
+def find_searchable_entries(parameters: MitsubaObject) -> dict[str, str]:
     """Return the keys of all numbers, colours, vectors and tensors of a scene, by short name."""
     return {
-        short_name(key): key
+        shorten_key(key): key
         for key in parameters.properties
-        if read_numbers(parameters[key]) is not None or is_tensor(parameters[key])
+        if read_entry_numbers(parameters[key]) is not None or is_tensor(parameters[key])
     }
 
 
-def find_model(parameters: MitsubaObject, key: str) -> tuple[type[Model] | None, str, str]:
-    """Return the brdfkit model whose parameter an entry is, its BSDF's name, and the parameter's.
+def find_owner_model(parameters: MitsubaObject, key: str) -> tuple[type[Model] | None, str, str]:
+    """Return the brdfkit model that an entry belongs to, its BSDF's name, and the parameter's.
 
     The model is None, and the BSDF's name empty, for entries that belong to no brdfkit model.
     """
-    *path, parameter = short_name(key).removesuffix(".data").split(".")
+    *path, parameter = shorten_key(key).removesuffix(".data").split(".")
     texture = parameters.properties[key][2]
     parent = parameters.hierarchy.get(texture, (None, 0))[0]
     model = getattr(parent, "model", None)
@@ -59,8 +60,8 @@ def find_model(parameters: MitsubaObject, key: str) -> tuple[type[Model] | None,
     return model, ".".join(path), parameter
 
 
-def read_numbers(value: MitsubaObject) -> FloatArray | None:
-    """Return the numbers (n,) of an entry, n ≤ 4; None for tensors and for what has no numbers."""
+def read_entry_numbers(value: MitsubaObject) -> FloatArray | None:
+    """Return the numbers (n,) of a scene entry with up to four numbers; None for other entries."""
     import drjit as dr
 
     if isinstance(value, bool) or not (dr.is_array_v(value) and dr.is_float_v(value)):
@@ -70,8 +71,8 @@ def read_numbers(value: MitsubaObject) -> FloatArray | None:
     return numbers if is_vector and len(numbers) <= 4 else None
 
 
-def short_name(key: str) -> str:
-    """Return a key without the ".value" at its end, which may occur twice."""
+def shorten_key(key: str) -> str:
+    """Return an entry's key without the ".value" at its end, which may occur twice."""
     while key.endswith(".value"):
         key = key.removesuffix(".value")
     return key
@@ -84,10 +85,10 @@ def read_model_values(
 
     Returns None where one of the parameters is a texture.
     """
-    known, values = find_searchable(parameters), {}
+    known, values = find_searchable_entries(parameters), {}
     for name, declared in model.parameters.items():
         key = known.get(f"{owner}.{name}")
-        numbers = None if key is None else read_numbers(parameters[key])
+        numbers = None if key is None else read_entry_numbers(parameters[key])
         if numbers is not None:
             values[name] = tuple(map(float, numbers)) if len(numbers) > 1 else float(numbers[0])
         elif key is not None or not declared.follows:
@@ -95,12 +96,12 @@ def read_model_values(
     return values
 
 
-def put_values(scene: MitsubaObject, values: Mapping[str, Any]) -> None:
-    """Write `values`, by the names of `Unknown`s, into a Mitsuba scene."""
+def write_values(scene: MitsubaObject, values: Mapping[str, Any]) -> None:
+    """Write `values`, by the short names of their entries, into a Mitsuba scene."""
     import mitsuba as mi
 
     parameters = mi.traverse(scene)
-    known = find_searchable(parameters)
+    known = find_searchable_entries(parameters)
     for name, value in values.items():
         if name not in known:
             raise no_such_error("parameter", name, known)
@@ -113,14 +114,14 @@ def _to_entry(parameters: MitsubaObject, key: str, value: Any) -> MitsubaObject:
     kind = type(parameters[key])
     if not isinstance(value, np.ndarray):
         return kind(*value) if isinstance(value, tuple) else kind(value)
-    texels = number_texels(parameters, key)
-    shape = find_shape(texels, wraps_around(parameters, key))
+    texels = index_numbers_by_texel(parameters, key)
+    shape = find_independent_shape(texels, is_environment_map(parameters, key))
     if shape != value.shape:
         raise BrdfkitError(f"{key}: it has the shape {shape}, and its values {value.shape}.")
     return make_tensor(value, texels)
 
 
-def default_bounds(
+def find_default_bounds(
     parameters: MitsubaObject, key: str, otherwise: tuple[float, float]
 ) -> tuple[float, float]:
     """Return the bounds (low, high) of a share or a roughness of one of Mitsuba's own BSDFs.

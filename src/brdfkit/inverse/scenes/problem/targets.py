@@ -13,9 +13,9 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_file
 from brdfkit.mitsuba_bridge.properties.picture_file import read_photograph, read_pixels
 
-DARK_OFFSET = 0.02  # times the mean brightness, added to each pixel so that weights stay finite
-WHITE_QUANTILE = 0.99  # the share of numbers that are darker than white
-CLIPPED_SHARE = 1e-3  # if a larger share of the numbers equals the largest, it is clipped
+DARK_OFFSET = 0.02  # times the mean brightness: added to each pixel, so that weights are finite
+WHITE_QUANTILE = 0.99  # the share of a picture's values that are darker than its white level
+CLIPPED_SHARE = 1e-3  # if more of the values equal the largest one, these values are clipped
 
 Pictures = FloatArray | str | Path | Iterable[FloatArray | str | Path]
 
@@ -27,9 +27,9 @@ class Target:
     pixels : linear values (height, width, channels).
     weights : the weight of each squared difference, in the same shape; 0 where the pixel is masked
         or clipped.
-    count : the sum of the mask over the numbers that are not clipped.
-    clipped : the share of numbers that are clipped.
-    unmasked : which pixels (height, width) the mask lets through.
+    count : the sum of the mask over the values that are not clipped.
+    clipped : the share of values that are clipped.
+    unmasked : the mask (height, width) of pixels that count.
     """
 
     pixels: FloatArray
@@ -40,14 +40,14 @@ class Target:
 
     @property
     def size(self) -> tuple[int, int]:
-        """The width and height in pixels."""
+        """The width and height of the picture in pixels."""
         return self.pixels.shape[1], self.pixels.shape[0]
 
 
 def read_targets(
     pictures: Pictures, accept_8_bit: bool = False, mask: Pictures | None = None
 ) -> list[Target]:
-    """Return the `Target`s of one picture or several, arrays (height, width[, channels]) or paths.
+    """Return the `Target`s of one or several pictures, arrays (height, width[, channels]) or paths.
 
     `mask` is as for `read_masks`. Raises `BrdfkitError` for what is not a picture, for pixels that
     are not finite, and for pictures of 8 bits unless `accept_8_bit`, which inverts sRGB's curve.
@@ -65,15 +65,15 @@ def read_targets(
 
 
 def _read_target(picture: Any, name: str, accept_8_bit: bool, mask: FloatArray | None) -> Target:
-    """Return the `Target` of one picture, which errors call `name`."""
+    """Return the `Target` of one picture; `name` is its name in errors."""
     if isinstance(picture, str | Path):
         picture, name = read_photograph(picture, accept_8_bit), str(picture)
     pixels: FloatArray = np.asarray(picture)
     if pixels.dtype == np.uint8:
         if not accept_8_bit:
             raise BrdfkitError(
-                f"{name}: its numbers have 8 bits, behind a curve for screens; give linear pixels, "
-                "as of an OpenEXR file, or give accept_8_bit=True to invert sRGB's curve."
+                f"{name}: it has 8 bits and so is not linear; give linear pixels, as of an OpenEXR "
+                "file, or give accept_8_bit=True to invert sRGB's curve."
             )
         pixels = from_srgb(pixels / 255.0)
     if pixels.ndim == 2:
@@ -108,36 +108,39 @@ def _read_target(picture: Any, name: str, accept_8_bit: bool, mask: FloatArray |
 
 
 def _find_clipped(pixels: FloatArray, counted: BoolArray) -> BoolArray:
-    """Return which of the `counted` numbers are clipped at the largest value of the camera."""
+    """Return the mask of `counted` values that are clipped at the largest value of the camera."""
     at_end = counted & (pixels == pixels.max())
     many = at_end.sum() > max(8, CLIPPED_SHARE * counted.sum())
     return at_end if many else np.zeros_like(at_end)
 
 
 def _weigh_pixels(pixels: FloatArray, unmasked: BoolArray) -> FloatArray:
-    """Return the weight of each squared difference, in the shape of `pixels`.
+    """Return the weight of each squared difference of a rendered pixel, in the shape of `pixels`.
 
     The weight is the squared slope of sRGB's curve at the pixel's brightness, so that differences
-    count as a screen shows them; for pixels brighter than white, relative differences count. The
-    curve itself would bias noisy renderings, but its slope at the target picture does not. White
-    level and means are taken over the `unmasked` pixels (height, width).
+    count as they are seen on a screen; for pixels brighter than white, relative differences count.
+    The curve itself would bias noisy renderings, but its slope at the target picture does not.
+    White level and means are taken over the `unmasked` pixels (height, width).
     """
-    white = find_white(pixels[unmasked])
+    white = find_white_level(pixels[unmasked])
     x = (_average_neighbours(pixels, unmasked) + DARK_OFFSET * pixels[unmasked].mean()) / white
     shown = np.minimum(x, 1)
     slope = np.where(shown <= 0.0031308, 12.92, 1.055 / 2.4 * shown ** (1 / 2.4 - 1))
     return (slope / (white * np.maximum(x, 1))) ** 2
 
 
-def find_white(pixels: AnyArray) -> Any:
-    """Return the white level, exceeded by 1 % of the numbers; the largest if that is 0."""
+def find_white_level(pixels: AnyArray) -> Any:
+    """Return the white level of a picture: 1 % of its values are brighter.
+
+    Where most pixels are black, it is the largest value.
+    """
     return np.quantile(pixels, WHITE_QUANTILE) or pixels.max()
 
 
 def _average_neighbours(pixels: FloatArray, unmasked: BoolArray) -> FloatArray:
-    """Return the mean of the `unmasked` pixels within 5 × 5 pixels around each.
+    """Return the mean of the `unmasked` pixels within 5 × 5 pixels around each pixel.
 
-    Weights from single pixels would correlate with the pixels' noise and bias the result.
+    A weight from a single pixel would correlate with its noise and bias the result.
     """
     from scipy.ndimage import uniform_filter
 
@@ -147,11 +150,11 @@ def _average_neighbours(pixels: FloatArray, unmasked: BoolArray) -> FloatArray:
 
 
 def read_masks(mask: Any, count: int) -> list[FloatArray | None]:
-    """Return a mask (height, width) of weights for each of `count` pictures.
+    """Return a mask (height, width) of weights for each of `count` pictures, or None without masks.
 
-    `mask` is None, an array or a path if there is one picture, or a sequence of these. A result of
-    None means that all pixels count. Raises `BrdfkitError` for a wrong number of masks, and for a
-    mask that is not a picture of weights ≥ 0, or is 0 everywhere.
+    `mask` is None, an array or a path if there is one picture, or a sequence of these. Raises
+    `BrdfkitError` for a wrong number of masks, and for a mask that is not a picture of weights ≥ 0,
+    or is 0 everywhere.
     """
     if mask is None:
         return [None] * count

@@ -11,8 +11,8 @@ from brdfkit.inverse.scenes.problem.scene_parameters import read_model_values
 from brdfkit.inverse.scenes.problem.views import Views
 
 
-def no_effect_error(views: Views) -> BrdfkitError:
-    """Return the error for parameters of which none has an effect on any picture."""
+def make_no_effect_error(views: Views) -> BrdfkitError:
+    """Return the error for searched parameters that have no effect on any picture."""
     names = ", ".join(unknown.name for unknown in views.unknowns)
     zero = {name for u in views.unknowns for name in _find_zero_weights(views.parameters, u)}
     hidden = f"{', '.join(sorted(zero))} = 0 hides it, " if zero else ""
@@ -38,9 +38,10 @@ def describe_zero_weights(views: Views, determined: Collection[str]) -> tuple[st
 
 
 def _find_zero_weights(parameters: MitsubaObject, unknown: Unknown) -> list[str]:
-    """Return the names of the weights that are 0 in the BSDF of an unknown shape parameter.
+    """Return the names of lobe weights that are 0 in the BSDF of an unknown shape parameter.
 
-    Weights themselves are not hidden by others, and only brdfkit's models have known weights.
+    A weight of 0 hides the shape parameters of its lobe. Weights are not hidden by others, and only
+    brdfkit's models have known weights.
     """
     if not unknown.model or unknown.is_linear:
         return []

@@ -10,7 +10,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.loops import raise_first_cause
-from brdfkit.inverse.scenes.problem.leverage import number_blocks
+from brdfkit.inverse.scenes.problem.leverage import group_pixels_by_block
 from brdfkit.inverse.scenes.problem.parameters import Unknown
 from brdfkit.inverse.scenes.problem.targets import Target
 from brdfkit.inverse.scenes.problem.tensors import make_tensor
@@ -21,16 +21,16 @@ BOUND_DISTANCE = 1e-6  # a coordinate that is closer to a bound counts as being 
 class Views:
     """A scene, the parameters to search in it, and a target picture for each of its sensors.
 
-    The n numbers of all unknowns form one vector of coordinates `x` (n,), which all methods take.
-    The pixels of all sensors form one axis.
+    The n numbers of all unknowns form one vector of search coordinates `x` (n,), which all methods
+    take. The pixels of all sensors form one axis.
 
     scene, integrator : Mitsuba's objects.
     targets : a `Target` for each sensor.
-    parameters : what `mitsuba.traverse` returns for the scene.
+    parameters : the result of `mitsuba.traverse` for the scene.
     unknowns : the entries to search.
     target_pixels, weights : the targets' pixels and weights, (pixels, channels).
-    counted : which pixels (pixels,) have a weight above 0.
-    blocks : the blocks of pixels whose noise is correlated, from `number_blocks`.
+    counted : the mask (pixels,) of pixels with a weight above 0.
+    blocks : the blocks of pixels whose noise is correlated.
     names : a name for each number.
     start : the coordinates (n,) of the scene's own values, where the search begins.
     lower_bounds, upper_bounds : the bounds (n,) of the coordinates.
@@ -52,49 +52,54 @@ class Views:
         self.scene, self.integrator = scene, integrator
         self.targets, self.parameters, self.unknowns = targets, parameters, unknowns
         self.ends = np.cumsum([len(unknown.start) for unknown in unknowns])
-        _check_sizes(scene, targets)
+        _check_picture_sizes(scene, targets)
         self.target_pixels = self.join_pictures([target.pixels for target in targets])
         self.weights = self.join_pictures([target.weights for target in targets])
         self.weights /= sum(target.count for target in targets)
         self.counted: BoolArray = np.any(self.weights > 0, axis=1)
-        self.blocks = number_blocks(scene, self.counted)
+        self.blocks = group_pixels_by_block(scene, self.counted)
         self.names = tuple(name for unknown in unknowns for name in unknown.names)
         self.start = np.concatenate([u.to_coordinates(u.start) for u in unknowns])
 
-        def repeat(values: Iterable[Any]) -> AnyArray:
+        def repeat_by_number(values: Iterable[Any]) -> AnyArray:
             """Return one value for each unknown, repeated for each of its numbers: (n,)."""
             return np.repeat(list(values), [len(unknown.start) for unknown in unknowns])
 
-        self.lower_bounds = repeat(u.limits[0] for u in unknowns)
-        self.upper_bounds = repeat(u.limits[1] for u in unknowns)
-        self.is_linear = repeat(u.is_linear for u in unknowns)
-        self.is_nonlinear_share = repeat(u.is_bounded and not u.is_linear for u in unknowns)
-        self.is_unlimited_weight = repeat(
+        self.lower_bounds = repeat_by_number(u.limits[0] for u in unknowns)
+        self.upper_bounds = repeat_by_number(u.limits[1] for u in unknowns)
+        self.is_linear = repeat_by_number(u.is_linear for u in unknowns)
+        self.is_nonlinear_share = repeat_by_number(
+            u.is_bounded and not u.is_linear for u in unknowns
+        )
+        self.is_unlimited_weight = repeat_by_number(
             u.model is not None and u.is_linear and not u.is_bounded for u in unknowns
         )
-        self.has_wrong_derivatives = repeat(u.has_wrong_derivatives for u in unknowns)
+        self.has_wrong_derivatives = repeat_by_number(u.has_wrong_derivatives for u in unknowns)
         self.cost = 0.0
 
     def to_values(self, x: FloatArray) -> list[FloatArray]:
-        """Return the numbers of each unknown at the coordinates `x`."""
-        return [u.to_values(part) for u, part in zip(self.unknowns, self.split(x), strict=True)]
+        """Return the numbers of each unknown at the search coordinates `x`."""
+        return [
+            u.to_values(part)
+            for u, part in zip(self.unknowns, self.split_by_unknown(x), strict=True)
+        ]
 
     def differentiate_values(self, x: FloatArray) -> FloatArray:
-        """Return the derivatives (n,) of the values by their coordinates."""
-        parts = zip(self.unknowns, self.split(x), strict=True)
+        """Return the derivatives (n,) of the values by their search coordinates `x`."""
+        parts = zip(self.unknowns, self.split_by_unknown(x), strict=True)
         return np.concatenate([unknown.differentiate_values(part) for unknown, part in parts])
 
     def is_on_bound(self, x: FloatArray) -> BoolArray:
-        """Return which coordinates (n,) are on a bound, up to rounding."""
+        """Return which search coordinates (n,) are on a bound, up to rounding."""
         return (x <= self.lower_bounds + BOUND_DISTANCE) | (x >= self.upper_bounds - BOUND_DISTANCE)
 
-    def split(self, x: AnyArray) -> list[AnyArray]:
-        """Return an array (n,) split into the parts that belong to each unknown."""
+    def split_by_unknown(self, x: AnyArray) -> list[AnyArray]:
+        """Return an array (n,) of all numbers, split into the part of each unknown."""
         return np.split(np.asarray(x), self.ends[:-1])
 
     def render_residuals(self, x: FloatArray, spp: int, seed: int) -> FloatArray:
         """Return rendered minus target pixels (pixels, channels) at `x`, with `spp` samples."""
-        self.put(x)
+        self.write_to_scene(x)
         self.cost += spp
         with raise_first_cause():
             pictures = [
@@ -113,7 +118,7 @@ class Views:
         return pictures
 
     def join_pictures(self, pictures: Iterable[Any]) -> FloatArray:
-        """Return one picture per sensor as pixels (pixels, channels); invert `split_pictures`."""
+        """Return one picture per sensor as pixels (pixels, channels) of all sensors."""
         arrays = [np.array(picture, float) for picture in pictures]
         channels = self.targets[0].pixels.shape[2]
         films = {min(a.shape[2], 3) for a in arrays}
@@ -124,22 +129,22 @@ class Views:
             )
         return np.concatenate([a[..., :channels].reshape(-1, channels) for a in arrays])
 
-    def put(self, x: FloatArray) -> None:
-        """Write the values at `x` into the scene."""
-        self.put_entries(self.to_entries(x))
+    def write_to_scene(self, x: FloatArray) -> None:
+        """Write the values at the search coordinates `x` into the scene."""
+        self.write_entries(self.make_entries(x))
 
-    def to_entries(self, x: FloatArray) -> list[MitsubaObject]:
+    def make_entries(self, x: FloatArray) -> list[MitsubaObject]:
         """Return the values at `x` as Mitsuba's arrays or tensors, one per unknown."""
         entries = []
         for unknown, values in zip(self.unknowns, self.to_values(x), strict=True):
             if unknown.texels is not None:
                 entries.append(make_tensor(values, unknown.texels))
             else:
-                entries.append(make_opaque(type(self.parameters[unknown.key]), values))
+                entries.append(make_opaque_array(type(self.parameters[unknown.key]), values))
         return entries
 
-    def put_entries(self, entries: list[MitsubaObject]) -> None:
-        """Write entries from `to_entries` into the scene."""
+    def write_entries(self, entries: list[MitsubaObject]) -> None:
+        """Write Mitsuba's arrays or tensors, one per unknown, into the scene."""
         for unknown, entry in zip(self.unknowns, entries, strict=True):
             self.parameters[unknown.key] = entry
         with raise_first_cause():
@@ -148,7 +153,7 @@ class Views:
 
 @contextmanager
 def silence_samplers() -> Iterator[None]:
-    """Suppress Mitsuba's warnings in the block: samplers warn whenever they round up a count."""
+    """Suppress Mitsuba's warnings within a block: samplers warn whenever they round up a count."""
     import mitsuba as mi
 
     level = mi.log_level()
@@ -159,7 +164,7 @@ def silence_samplers() -> Iterator[None]:
         mi.set_log_level(level)
 
 
-def make_opaque(kind: type, values: AnyArray) -> MitsubaObject:
+def make_opaque_array(kind: type, values: AnyArray) -> MitsubaObject:
     """Return a Dr.Jit array of type `kind` whose numbers do not become constants of kernels.
 
     All values then share one kernel, which is compiled once.
@@ -170,7 +175,7 @@ def make_opaque(kind: type, values: AnyArray) -> MitsubaObject:
     return numbers[0] if len(numbers) == 1 and kind is mi.Float else kind(*numbers)
 
 
-def _check_sizes(scene: MitsubaObject, targets: list[Target]) -> None:
+def _check_picture_sizes(scene: MitsubaObject, targets: list[Target]) -> None:
     """Raise `BrdfkitError` unless there is a target of the right size for each sensor."""
     sensors = scene.sensors()
     if len(sensors) != len(targets):

@@ -12,13 +12,13 @@ from brdfkit.inverse.scenes.problem.unseen_parameters import describe_zero_weigh
 from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.result.refinement import Refinement, Value
 from brdfkit.inverse.scenes.result.residual_noise import ResidualNoise
-from brdfkit.inverse.scenes.search.gauss_newton import Search, find_free, solve_step
+from brdfkit.inverse.scenes.search.gauss_newton import Search, find_free_numbers, solve_step
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 from brdfkit.regression import Fit
 from brdfkit.regression.certainty import Certainty, compute_certainty_from_derivatives
 
 
-def conclude_search(
+def make_refinement(
     views: Views,
     state: Search,
     seconds: float,
@@ -34,7 +34,7 @@ def conclude_search(
     here, noise = state.residuals, ResidualNoise.measure(views, state.residuals)
     certainty = estimate_certainty(views, state, noise)
     x = here.x if x is None else x
-    views.put(x)
+    views.write_to_scene(x)
     values = {
         unknown.name: _to_value(unknown, part)
         for unknown, part in zip(views.unknowns, views.to_values(x), strict=True)
@@ -69,17 +69,17 @@ def conclude_search(
 
 
 def _to_value(unknown: Unknown, numbers: FloatArray) -> Value:
-    """Return the numbers of an unknown as an array for tensors, else as a tuple or a float."""
+    """Return the numbers of an unknown as an array for a tensor, else as a tuple or a float."""
     if unknown.shape:
         return np.array(numbers).reshape(unknown.shape)
     return tuple(map(float, numbers)) if len(numbers) > 1 else float(numbers[0])
 
 
 def estimate_certainty(views: Views, state: Search, noise: ResidualNoise) -> Certainty:
-    """Return the `Certainty` of the values, with blocks of pixels as independent samples.
+    """Return the covariance of the values, with blocks of pixels as independent samples.
 
-    The covariance grows where the residuals are not `noise`, and by the next step where the search
-    has not converged. Tensors have no standard errors.
+    The covariance grows where the residuals are more than `noise`, and by the next step where the
+    search has not converged. Tensors have no standard errors.
     """
     here, equations = state.residuals, state.equations
     slopes = views.differentiate_values(here.x)
@@ -87,11 +87,11 @@ def estimate_certainty(views: Views, state: Search, noise: ResidualNoise) -> Cer
     tensors = any(unknown.shape for unknown in views.unknowns)
     if tensors or equations is None or _has_too_few_blocks(state):
         return nothing
-    free = find_free(views, here, equations) & ~views.is_on_bound(here.x)
+    free = find_free_numbers(views, here, equations) & ~views.is_on_bound(here.x)
     if not free.any():
         return nothing
     hessian, scores = equations.hessian[np.ix_(free, free)], equations.scores[free]
-    unseen = equations.find_unseen(views, here.x)[free]
+    unseen = equations.find_unseen_numbers(views, here.x)[free]
     hessian[unseen] = hessian[:, unseen] = scores[unseen] = 0
     scale = 1 / np.sqrt(np.where(np.diagonal(hessian) > 0, np.diagonal(hessian), 1))
     blocks = scores.shape[1]
@@ -116,22 +116,22 @@ def estimate_certainty(views: Views, state: Search, noise: ResidualNoise) -> Cer
 
 def _find_on_bounds(views: Views, x: FloatArray) -> tuple[str, ...]:
     """Return the names of the unknowns with a number on a bound, except for tensors."""
-    on_bound = views.split(views.is_on_bound(x))
+    on_bound = views.split_by_unknown(views.is_on_bound(x))
     return tuple(
         unknown.name
         for unknown, part in zip(views.unknowns, on_bound, strict=True)
-        if part.any() and not unknown.shape  # some texels of a tensor always are
+        if part.any() and not unknown.shape  # some texel of a tensor is nearly always on a bound
     )
 
 
 def _has_too_few_blocks(state: Search) -> bool:
-    """Return whether the pictures have too few blocks of pixels to estimate errors."""
+    """Return whether there are too few blocks of pixels to estimate standard errors."""
     equations = state.equations
     return equations is not None and equations.scores.shape[1] <= len(equations.scores)
 
 
 def _describe_end(state: Search, interrupted: bool) -> str:
-    """Return why the search ended."""
+    """Return the reason why the search ended, as text."""
     if interrupted:
         return "interrupted: the best so far"
     if state.converged:
@@ -144,7 +144,7 @@ def _describe_end(state: Search, interrupted: bool) -> str:
 
 
 def _describe_clipping(views: Views) -> tuple[str, ...]:
-    """Return a sentence on clipped pixels of the targets, if there are any."""
+    """Return a sentence on clipped pixels of the given pictures, if there are any."""
     clipped = [target.clipped for target in views.targets]
     if max(clipped) == 0:
         return ()
@@ -155,7 +155,7 @@ def _describe_clipping(views: Views) -> tuple[str, ...]:
 
 
 def _describe_rendering_noise(views: Views, here: Residuals) -> tuple[str, ...]:
-    """Return a sentence if rendering is noisier than the residuals."""
+    """Return a sentence if the noise of rendering is larger than the residuals."""
     if here.compute_noise(views) < max(here.error, 0):
         return ()
     return ("rendering is noisier than the residuals; more samples would make errors smaller",)
@@ -200,13 +200,13 @@ def _make_fits(views: Views, result: Refinement) -> dict[str, Fit]:
             message=result.message,
             at_bounds=tuple(names[name] for name in result.at_bounds if name in names),
             notes=tuple(note.replace(f"{owner}.", "") for note in result.notes),
-            certainty=_select_model(result.certainty, owner),
+            certainty=_select_certainty(result.certainty, owner),
             versions=dict(find_versions()),
         )
     return fits
 
 
-def _select_model(certainty: Certainty, owner: str) -> Certainty:
+def _select_certainty(certainty: Certainty, owner: str) -> Certainty:
     """Return the part of a `Certainty` about the BSDF `owner`, with short parameter names."""
     rows = [row for row, name in enumerate(certainty.names) if name.startswith(f"{owner}.")]
     covariance = certainty.make_covariance_matrix()[np.ix_(rows, rows)]

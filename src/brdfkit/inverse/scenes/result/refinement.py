@@ -1,4 +1,4 @@
-"""Defines `Refinement`, the result of `refine`: values, standard errors, and how it got there."""
+"""Defines `Refinement`, the result of `refine`: values of parameters and their standard errors."""
 
 from __future__ import annotations
 
@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.core.documents import Cell, Document, Paragraph, Picture, Shown, Table
-from brdfkit.core.documents.parts import BAD, SOFT
+from brdfkit.core.documents import Document, Shown
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.inverse.scenes.problem.targets import find_white
+from brdfkit.inverse.scenes.problem.targets import find_white_level
+from brdfkit.inverse.scenes.result.summary import describe_refinement
 from brdfkit.regression import Fit
 from brdfkit.regression.certainty import Certainty, make_intervals
-from brdfkit.rendering.montage import TILE
-from brdfkit.rendering.result import WIDEST, Rendering
+from brdfkit.rendering.result import Rendering
 
 Value = float | tuple[float, ...] | FloatArray
 
@@ -98,7 +97,7 @@ class Refinement(Shown):
 
     @property
     def fit(self) -> Fit:
-        """The fit of the model, if exactly one was searched.
+        """The fit of the model, if exactly one model's parameters were searched.
 
         Raises `BrdfkitError` where there is none or several; ``fits`` has all of them.
         """
@@ -110,12 +109,13 @@ class Refinement(Shown):
     @property
     def standard_errors(self) -> dict[str, Value]:
         """The standard errors of `values`; NaN for values that are on a bound or undetermined."""
-        return self._by_value(self.certainty.compute_standard_errors())
+        return self._arrange_like_values(self.certainty.compute_standard_errors())
 
     @property
     def intervals(self) -> dict[str, Any]:
         """The 95 % confidence intervals (low, high) of `values`, from Student's t distribution."""
-        return make_intervals(self.values, self._by_value(self.certainty.compute_half_widths()))
+        half_widths = self.certainty.compute_half_widths()
+        return make_intervals(self.values, self._arrange_like_values(half_widths))
 
     @property
     def covariance(self) -> FloatArray:
@@ -158,7 +158,7 @@ class Refinement(Shown):
             )
         target, picture = self.targets[sensor], self.pictures[sensor]
         unmasked = np.asarray(np.isfinite(target).all(axis=2))
-        white = find_white(target[unmasked])
+        white = find_white_level(target[unmasked])
         shown = {
             name: np.where(unmasked[..., None], pixels / white, 0) * np.ones(3, np.float32)
             for name, pixels in (("given", target), ("found", picture))
@@ -190,15 +190,15 @@ class Refinement(Shown):
         >>> mitsuba.render(result.put_into("scene.xml"), spp=256)    # doctest: +SKIP
         """
         from brdfkit.inverse.scenes.problem.scene import load_scene
-        from brdfkit.inverse.scenes.problem.scene_parameters import put_values
+        from brdfkit.inverse.scenes.problem.scene_parameters import write_values
 
         height, width = self.pictures[0].shape[:2]
         scene = load_scene(scene, (width, height))
-        put_values(scene, self.values)
+        write_values(scene, self.values)
         return scene
 
     def __eq__(self, other: object) -> bool:
-        """Return whether all but times, costs and pictures is equal."""
+        """Return whether two results are equal but for their times, costs and pictures."""
         if not isinstance(other, Refinement):
             return NotImplemented
         plain = [f.name for f in fields(self) if f.compare and f.name != "values"]
@@ -210,8 +210,8 @@ class Refinement(Shown):
 
     __hash__ = None  # type: ignore[assignment]
 
-    def _by_value(self, known: dict[str, float]) -> dict[str, Any]:
-        """Arrange numbers by name as `values` are, in tuples and arrays; NaN if unknown."""
+    def _arrange_like_values(self, known: dict[str, float]) -> dict[str, Any]:
+        """Return numbers by name in the shapes of `values`: tuples and arrays, NaN if unknown."""
         nan = float("nan")
         return {
             name: np.full(value.shape, nan)
@@ -222,50 +222,6 @@ class Refinement(Shown):
             for name, value in self.values.items()
         }
 
-    def _picture(self, sensor: int) -> Picture:
-        """Return the picture of `look` for a notebook, which draws it when it is shown."""
-        width = min(WIDEST, 2 * max(self.pictures[sensor].shape[1], TILE))
-        alt_text = f"given and found pictures {sensor}, and their difference"
-        return Picture(lambda: self.look(sensor).drawn(), alt_text, width)
-
     def document(self) -> Document:
-        """Return the values with their standard errors, the pictures, and the notes."""
-        errors = self.standard_errors
-        rows = tuple(
-            (
-                name,
-                Cell(_format_numbers(value, errors[name]), colour=_to_colour(value)),
-                Cell("on its bound", kind=BAD) if name in self.at_bounds else "",
-            )
-            for name, value in self.values.items()
-        )
-        several = "s" * (self.steps != 1)
-        early = f"Not converged, and the values are not final: {self.message}."
-        return Document(
-            f"Refined: the residual is {100 * self.loss:.2g} % of white (RMS)",
-            (
-                *(Paragraph(early, kind=BAD) for _ in range(not self.converged)),
-                Table(rows),
-                *(self._picture(sensor) for sensor in range(len(self.pictures))),
-                *(Paragraph(note) for note in self.notes),
-                Paragraph(
-                    f"{self.message}; {self.steps} step{several}, the last at {self.samples} "
-                    f"samples per pixel, {self.seconds:.1f} s",
-                    kind=SOFT,
-                ),
-            ),
-        )
-
-
-def _format_numbers(value: Any, error: Any) -> str:
-    """Return a value with its standard errors as text; of an array its shape and range."""
-    if isinstance(value, np.ndarray):
-        shape = " × ".join(map(str, value.shape))
-        return f"{shape}, {value.min():.3g} to {value.max():.3g}, mean {value.mean():.4g}"
-    pairs = zip(np.atleast_1d(value), np.atleast_1d(error), strict=True)
-    return "  ".join(f"{v:.5g}" if np.isnan(e) else f"{v:.5g} ± {e:.2g}" for v, e in pairs)
-
-
-def _to_colour(value: Value) -> tuple[float, ...]:
-    """Return a value to show as a colour chip, if it is one; else ()."""
-    return value if isinstance(value, tuple) and len(value) == 3 and min(value) >= 0 else ()
+        """Return the printed summary: values with errors, pictures and notes."""
+        return describe_refinement(self)

@@ -1,8 +1,8 @@
 """Tests whether the residuals of the pictures are noise, or something the scene cannot explain.
 
 Noise of one pixel is independent of noise in others, beyond the width of the camera's
-reconstruction filter. Residuals that correlate farther than that are model error. Correlated pixels
-also count as fewer independent ones, which makes standard errors larger.
+reconstruction filter. Residuals that correlate over larger distances come from model errors.
+Correlated pixels also count as fewer independent ones, which makes standard errors larger.
 """
 
 from __future__ import annotations
@@ -12,17 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-from brdfkit.inverse.scenes.problem.leverage import block_side
+from brdfkit.inverse.scenes.problem.leverage import find_block_side
 from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 
-CLIP_DEVIATIONS = (
-    3  # robust standard deviations, at which residuals are clipped: edges would decide
-)
-LAGS = 6  # filter widths, the largest distance at which pixels are compared
-SMALLEST_CORRELATION = 0.1  # smaller ones may be chance
-SIGNIFICANT = 5  # standard errors: noise does not correlate by more
-CLEAR_CHI2 = 1.25  # per degree of freedom: clearly above 1
+CLIP_DEVIATIONS = 3  # robust standard deviations: larger residuals, as at edges, are clipped
+LAGS = 6  # filter widths: the largest distance at which pixels are compared
+SMALLEST_CORRELATION = 0.1  # a smaller correlation may be chance
+SIGNIFICANT = 5  # standard errors: the correlation of noise is hardly ever larger
+CLEAR_CHI2 = 1.25  # χ² per degree of freedom that is clearly above 1, the value for noise
 
 
 @dataclass(frozen=True)
@@ -31,7 +29,7 @@ class ResidualNoise:
 
     chi2 : a lower estimate of χ² per degree of freedom, squared residuals over those of pure noise.
     significance : the correlation of neighbours in units of its standard error.
-    area : the number of blocks, as wide as the filter, whose residuals agree.
+    area : the number of blocks, as wide as the filter, whose residuals are correlated.
     """
 
     chi2: float
@@ -40,22 +38,25 @@ class ResidualNoise:
 
     @property
     def is_noise(self) -> bool:
-        """Whether the residuals may be noise alone."""
+        """Whether the residuals may be noise, as neighbours hardly correlate or χ² is near 1."""
         return self.significance < SIGNIFICANT or self.chi2 < CLEAR_CHI2
 
     @classmethod
     def measure(cls, views: Views, here: Residuals) -> ResidualNoise:
-        """Return the correlations of the two halves of `here`, to which rendering adds none."""
+        """Return the correlations between neighbouring pixels of the residuals `here`.
+
+        They are taken between the two renderings of `here`, whose own noise is independent.
+        """
         root = np.sqrt(views.weights)
         parts = (views.split_pictures(part) for part in (root, root * here.a, root * here.b))
         sums, near = np.zeros((2, 2 * LAGS + 1, 2 * LAGS + 1)), np.zeros(3)
         for sensor, weights, a, b in zip(views.scene.sensors(), *parts, strict=True):
-            side, counted = block_side(sensor), (weights > 0).astype(float)
-            a, b = _clip(a, b, counted)
+            side, counted = find_block_side(sensor), (weights > 0).astype(float)
+            a, b = _clip_outliers(a, b, counted)
             sums += _correlate_pictures(a, b, counted, side)
             near += _compare_rows(a, b, counted, side)
             a, b, counted = (array.swapaxes(0, 1) for array in (a, b, counted))
-            near += _compare_rows(a, b, counted, side)  # columns in place of rows
+            near += _compare_rows(a, b, counted, side)  # after the swap these are the columns
         products, squares, variance = near
         if not (squares > 0 and variance > 0):
             return cls(1.0, 0.0, 1.0)
@@ -66,8 +67,13 @@ class ResidualNoise:
         return cls(float(1 / (1 - share)), float(products / np.sqrt(variance)), float(area))
 
 
-def _clip(a: FloatArray, b: FloatArray, counted: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return both halves clipped at three robust standard deviations of their mean."""
+def _clip_outliers(
+    a: FloatArray, b: FloatArray, counted: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return both residuals clipped at three robust standard deviations of their mean.
+
+    `a` and `b` are from two renderings of one picture, `counted` is its mask of usable values.
+    """
     size = np.abs(a + b)[counted > 0] / 2
     size = size[size > 0]
     limit = CLIP_DEVIATIONS * 1.4826 * np.median(size) if len(size) else 0.0
@@ -75,16 +81,16 @@ def _clip(a: FloatArray, b: FloatArray, counted: FloatArray) -> tuple[FloatArray
 
 
 def _compare_rows(a: FloatArray, b: FloatArray, counted: FloatArray, side: int) -> FloatArray:
-    """Compare pixels with those `side` rows below, in pictures (height, width, channels).
+    """Compare pixels with those `side` rows below, in residuals (height, width, channels).
 
-    Returns three sums: of the products of both pixels, of their squares, and the squared standard
-    error of the first.
+    Returns three sums: the products of both pixels, their squares, and the squared standard error
+    of the first sum. `a` and `b` are from two renderings; `counted` is the mask of usable values.
     """
     upper, lower = (np.s_[:-side], np.s_[side:])
     both = counted[upper] * counted[lower]
     products = (both * (a[upper] * b[lower] + b[upper] * a[lower]) / 2).sum(axis=2)
     squares = (both * (a[upper] * b[upper] + a[lower] * b[lower]) / 2).sum()
-    # Noise is correlated within the filter, so the standard error is that of whole blocks
+    # Noise is correlated within the filter, so blocks as wide as it are the independent samples
     height, width = (n // side for n in products.shape)
     blocks = products[: height * side, : width * side].reshape(height, side, width, side)
     return np.array([products.sum(), squares, (blocks.sum(axis=(1, 3)) ** 2).sum()])
@@ -93,8 +99,9 @@ def _compare_rows(a: FloatArray, b: FloatArray, counted: FloatArray, side: int) 
 def _correlate_pictures(a: FloatArray, b: FloatArray, counted: FloatArray, side: int) -> FloatArray:
     """Return sums (2, lags, lags) of the products and of the squares of pixels that are apart.
 
-    The distances are multiples of `side` up to `LAGS`, along both axes. The sums are computed by
-    Fourier transforms of the pictures, with margins of zeros.
+    The distances are multiples of `side` up to six, along both axes; `a` and `b` are residuals of
+    two renderings. The sums are computed by Fourier transforms of the pictures, with margins of
+    zeros.
     """
     from scipy.fft import irfft2, next_fast_len, rfft2
 
@@ -102,7 +109,7 @@ def _correlate_pictures(a: FloatArray, b: FloatArray, counted: FloatArray, side:
     at = np.arange(-LAGS, LAGS + 1) * side
 
     def correlate(one: FloatArray, other: FloatArray) -> FloatArray:
-        """Return the cross-correlation (lags, lags), summed over channels."""
+        """Return the cross-correlation (lags, lags) of two pictures, summed over channels."""
         spectrum = np.conj(rfft2(one, shape, axes=(0, 1))) * rfft2(other, shape, axes=(0, 1))
         correlation: FloatArray = irfft2(spectrum.sum(axis=2), shape, axes=(0, 1))
         return correlation[np.ix_(at, at)]

@@ -1,7 +1,8 @@
-"""Computes E² of rendered pictures and its derivatives by thousands of numbers at once.
+"""Computes the difference of pictures and its derivatives by thousands of numbers at once.
 
-E² compares a target picture J with two renderings I_A and I_B, whose samples are independent so
-that noise does not bias it (see `normal_equations.py`). With a weight w for each pixel,
+The squared difference E² of a target picture J is from two renderings I_A and I_B, whose samples
+are independent so that noise does not bias it (see `normal_equations.py`). With a weight w for each
+pixel,
 
     E² = Σ w (I_A - J)(I_B - J),    ∂E²/∂I_A = w (I_B - J).
 
@@ -21,9 +22,10 @@ from brdfkit.inverse.scenes.search.forward_derivatives import DERIVATIVE_COST, t
 def compute_error_and_gradient(
     views: Views, x: FloatArray, spp: int, seed: int, weights: FloatArray
 ) -> tuple[float, FloatArray]:
-    """Return E² and its gradient (n,) by the coordinates `x`.
+    """Return the squared difference from the targets and its gradient (n,) by the coordinates `x`.
 
-    Each of the two renderings has `spp` samples; `weights` (pixels, channels) are those of E².
+    Each of the two renderings has `spp` samples; `weights` (pixels, channels) are those of the
+    squared differences.
     """
     a, b = (views.render_residuals(x, spp, seed + 1000 * half) for half in (0, 1))
     gradient = np.zeros(len(x))
@@ -37,7 +39,11 @@ def compute_error_and_gradient(
 def _render_backward(
     views: Views, x: FloatArray, number: int, adjoint: AnyArray, spp: int, seed: int
 ) -> FloatArray:
-    """Return the derivatives (n,) of Σ `adjoint` · I by the values, I the picture of one sensor."""
+    """Return the derivatives (n,) of Σ `adjoint` · I by the values, I being one sensor's picture.
+
+    `number` is that of the sensor, and `adjoint` (height, width, channels) the derivative of the
+    loss by its pixels.
+    """
     import mitsuba as mi
 
     sensor = views.scene.sensors()[number]
@@ -55,7 +61,7 @@ def _render_backward(
         )
         by_entry = [np.array(dr.grad(entry), float).ravel() for entry in entries]
     parts = zip(views.unknowns, by_entry, strict=True)
-    return np.concatenate([unknown.sum_copies(part) for unknown, part in parts])
+    return np.concatenate([unknown.sum_over_copies(part) for unknown, part in parts])
 
 
 def _count_channels(sensor: MitsubaObject) -> int:

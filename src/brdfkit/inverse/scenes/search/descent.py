@@ -1,4 +1,4 @@
-"""Minimises E² over thousands of numbers, such as the texels of textures.
+"""Minimises the difference of pictures over thousands of numbers, such as the texels of textures.
 
 The gradient comes from renderings backwards, and L-BFGS-B [Byrd et al. 1995] steps along it with
 fixed samples. Several stages follow each other, each with more and with other samples.
@@ -11,25 +11,25 @@ import numpy as np
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.inverse.scenes.problem.parameters import Unknown
-from brdfkit.inverse.scenes.problem.unseen_parameters import no_effect_error
+from brdfkit.inverse.scenes.problem.unseen_parameters import make_no_effect_error
 from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search.backward_derivatives import compute_error_and_gradient
 from brdfkit.inverse.scenes.search.gauss_newton import Search
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 
 STAGE_SAMPLES = 4, 16, 64  # samples per pixel of each picture, stage by stage
-SMOOTHNESS_TRIALS = 0.3, 0.03, 0.003, 0.0003, 0.00003  # weights among which held-out pixels choose
+SMOOTHNESS_TRIALS = 0.3, 0.03, 0.003, 0.0003, 0.00003  # weights of the penalty that are tried
 TRIAL_STEPS = 8  # L-BFGS-B steps for each of these weights
 HELD_OUT_INTERVAL = 10  # one pixel of so many is held out
 
 
 def count_descent_steps(smoothness: float | None, steps: int) -> int:
-    """Return how many steps a descent may take in total, for its progress."""
+    """Return how many steps a descent may take in total, for its progress bar."""
     trials = TRIAL_STEPS * len(SMOOTHNESS_TRIALS) if smoothness is None else 0
     return trials + steps * len(STAGE_SAMPLES)
 
 
-def descend(
+def minimise_by_descent(
     views: Views,
     smoothness: float | None,
     steps: int,
@@ -40,11 +40,11 @@ def descend(
     """Return the `Search` from the scene's own values, and the weight of the smoothness penalty.
 
     `steps` is the limit of L-BFGS-B steps in each stage, `samples` that of samples per pixel.
-    Without a `smoothness`, held-out pixels choose it. `report()` is called after each step. On
-    Ctrl-C `Interrupted` holds the `Search` so far.
+    Without a `smoothness`, the weight that predicts held-out pixels best is taken. `report()` is
+    called after each step. On Ctrl-C `Interrupted` holds the `Search` so far.
     """
     x = views.start
-    # Replaced before it is read: every stage ends with residuals of its own
+    # The end of the first stage replaces None by residuals before anything reads them
     state = Search(residuals=None)  # type: ignore[arg-type]
     stages = [spp for spp in STAGE_SAMPLES if 2 * spp <= samples] or [max(1, samples // 2)]
     try:
@@ -52,12 +52,12 @@ def descend(
             x, smoothness = _choose_smoothness(views, x, stages[0], seed, state, report)
         for stage, spp in enumerate(stages):
             own_seed = seed + 10 * stage
-            x = _run_stage(views, x, spp, own_seed, views.weights, smoothness, steps, state, report)
-            state.residuals = Residuals.at(views, x, 2 * spp, own_seed + 5)
+            x = _run_lbfgs(views, x, spp, own_seed, views.weights, smoothness, steps, state, report)
+            state.residuals = Residuals.render(views, x, 2 * spp, own_seed + 5)
             state.history.append((2 * spp, state.residuals.error))
     except KeyboardInterrupt as stop:
         best = stop.best if isinstance(stop, Interrupted) else x
-        state.residuals = Residuals.at(views, best, 2 * stages[0], seed + 5)
+        state.residuals = Residuals.render(views, best, 2 * stages[0], seed + 5)
         raise Interrupted(state) from None
     return state, smoothness
 
@@ -65,16 +65,16 @@ def descend(
 def _choose_smoothness(
     views: Views, x: FloatArray, spp: int, seed: int, state: Search, report: Callable[[], object]
 ) -> tuple[FloatArray, float]:
-    """Return the weight of the penalty that predicts held-out pixels best, and its coordinates.
+    """Return the coordinates and the weight of the penalty that predict held-out pixels best.
 
     The trials go from strong to weak smoothness, each from the end of the one before. All of them
     are made: until a small light is sharp, a weaker weight may not improve the prediction.
     """
-    held_out = _hold_out(views, seed)
+    held_out = _choose_held_out_pixels(views, seed)
     fitted, hidden = views.weights * ~held_out[:, None], views.weights * held_out[:, None]
     best, least = (x, SMOOTHNESS_TRIALS[0]), np.inf
     for weight in SMOOTHNESS_TRIALS:
-        x = _run_stage(views, x, spp, seed, fitted, weight, TRIAL_STEPS, state, report)
+        x = _run_lbfgs(views, x, spp, seed, fitted, weight, TRIAL_STEPS, state, report)
         a, b = (views.render_residuals(x, 4 * spp, seed + 7 + 1000 * half) for half in (0, 1))
         error = float((hidden * a * b).sum())
         if error < least:
@@ -82,8 +82,8 @@ def _choose_smoothness(
     return best
 
 
-def _hold_out(views: Views, seed: int) -> BoolArray:
-    """Return which pixels (pixels,) are held out: one of every ten of similar brightness.
+def _choose_held_out_pixels(views: Views, seed: int) -> BoolArray:
+    """Return the mask (pixels,) of held-out pixels, one of every ten of similar brightness.
 
     So the few pixels of a highlight are never all held out or all fitted.
     """
@@ -97,7 +97,7 @@ def _hold_out(views: Views, seed: int) -> BoolArray:
     return held_out
 
 
-def _run_stage(
+def _run_lbfgs(
     views: Views,
     x: FloatArray,
     spp: int,
@@ -117,12 +117,12 @@ def _run_stage(
     last = x
 
     def compute_loss(x: FloatArray) -> tuple[float, FloatArray]:
-        """Return E² plus the smoothness penalty, and the gradient of the sum."""
+        """Return the squared difference of pictures plus the smoothness penalty, and the slope."""
         error, gradient = compute_error_and_gradient(views, x, spp, seed, weights)
-        penalty, slope = compute_penalty(views.unknowns, views.split(x))
+        penalty, slope = compute_smoothness_penalty(views.unknowns, views.split_by_unknown(x))
         return error + smoothness * penalty, gradient + smoothness * slope
 
-    def count_step(x: FloatArray) -> None:
+    def record_step(x: FloatArray) -> None:
         """Remember the coordinates after a step, and report it."""
         nonlocal last
         last = x.copy()
@@ -131,8 +131,8 @@ def _run_stage(
 
     _, gradient = compute_loss(x)
     if not gradient.any():
-        raise no_effect_error(views)
-    # The first step of L-BFGS is as long as the gradient, so that is scaled to 0.1 at most
+        raise make_no_effect_error(views)
+    # The first step of L-BFGS is as long as the gradient, so the gradient is scaled to 0.1 at most
     scale = 1 / max(abs(gradient).max(), 1e-300)
     try:
         result = minimize(
@@ -141,17 +141,17 @@ def _run_stage(
             jac=True,
             method="L-BFGS-B",
             bounds=list(zip(views.lower_bounds, views.upper_bounds, strict=True)),
-            callback=count_step,
+            callback=record_step,
             options={"maxiter": steps, "maxfun": 2 * steps, "maxls": 6, "ftol": 0, "gtol": 0},
         )
     except KeyboardInterrupt:
         raise Interrupted(last) from None
-    state.converged = result.status != 1  # status 1 means that the steps were used up
+    state.converged = result.status != 1  # SciPy's status 1 means that all steps were used up
     end: FloatArray = result.x
     return end
 
 
-def compute_penalty(
+def compute_smoothness_penalty(
     unknowns: Sequence[Unknown], parts: Sequence[FloatArray]
 ) -> tuple[float, FloatArray]:
     """Return the smoothness penalty of all tensors, and its gradient (n,).
@@ -175,9 +175,9 @@ def compute_penalty(
 
 
 def _penalise_tensor(values: FloatArray, wraps: bool) -> tuple[float, FloatArray]:
-    """Return the smoothness penalty of one tensor (..., channels), and its gradient.
+    """Return the mean squared difference of neighbours in a tensor, and its gradient.
 
-    If it `wraps`, the last column is a neighbour of the first one.
+    `values` is (..., channels). If it `wraps`, the last column is a neighbour of the first one.
     """
     total, gradient = 0.0, np.zeros_like(values)
     for axis in range(values.ndim - 1):

@@ -11,7 +11,10 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray, IntArray
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.inverse.scenes.problem.views import Views
-from brdfkit.inverse.scenes.search.forward_derivatives import group_tangents, store_by_channel
+from brdfkit.inverse.scenes.search.forward_derivatives import (
+    group_numbers_by_picture,
+    store_by_channel,
+)
 from brdfkit.inverse.scenes.search.gauss_newton import (
     Search,
     choose_initial_samples,
@@ -21,19 +24,20 @@ from brdfkit.inverse.scenes.search.normal_equations import Residuals
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.search.multistart import make_start_points
 
-FINALISTS = 3  # points that take steps
-FINALIST_STEPS = 2
-JUDGE_FACTOR = 2  # times the samples that chose the finalists, with which they are compared
-POINTS_PER_NUMBER = 8  # for each number in which pictures are not linear
-POINT_LIMIT = 32  # besides the scene's own values
+FINALISTS, FINALIST_STEPS = 3, 2  # how many of the best points take steps, and how many steps
+JUDGE_FACTOR = 2  # samples of the final comparison, over those that chose the finalists
+POINTS_PER_NUMBER = 8  # points that are tried for each number in which pictures are not linear
+POINT_LIMIT = 32  # the most points besides the scene's own values
 
 
-def default_start_count(views: Views) -> int:
+def count_default_starts(views: Views) -> int:
     """Return how many points a search tries by default, the scene's own values included."""
     return 1 + min(POINTS_PER_NUMBER * int(views.is_nonlinear_share.sum()), POINT_LIMIT)
 
 
-def find_start(views: Views, count: int, seed: int, report: Callable[[], object]) -> FloatArray:
+def find_best_start(
+    views: Views, count: int, seed: int, report: Callable[[], object]
+) -> FloatArray:
     """Return the coordinates where the search should begin, the best of `count` points.
 
     The scene's own values are one of the points; they are returned at once where pictures are
@@ -61,25 +65,27 @@ def find_start(views: Views, count: int, seed: int, report: Callable[[], object]
     except KeyboardInterrupt:
         if not tried:
             raise
-        raise Interrupted(Search(_find_best(finalists or tried))) from None
-    # Samples that chose none of the points compare them without favour
+        raise Interrupted(Search(_select_best_point(finalists or tried))) from None
+    # The samples that chose a point would favour it, so other samples compare the finalists
     candidates = [views.start, *(end.x for end in finalists)]
-    return _find_best(Residuals.at(views, x, JUDGE_FACTOR * spp, seed + 50) for x in candidates).x
+    return _select_best_point(
+        Residuals.render(views, x, JUDGE_FACTOR * spp, seed + 50) for x in candidates
+    ).x
 
 
-def _find_best(points: Iterable[Residuals]) -> Residuals:
-    """Return the `Residuals` with the smallest upper bound of E²."""
+def _select_best_point(points: Iterable[Residuals]) -> Residuals:
+    """Return the residuals of the point with the smallest upper bound of the squared residual."""
     return min(points, key=lambda residuals: residuals.bound)
 
 
 def _solve_linear_numbers(views: Views, x: FloatArray, spp: int, seed: int) -> Residuals:
-    """Return the `Residuals` at `x` after least squares for the numbers that enter linearly.
+    """Return the residuals at `x` after least squares for the numbers that enter linearly.
 
     The solution is exact for direct light.
     """
     linear = np.nonzero(views.is_linear)[0]
     if not len(linear):
-        return Residuals.at(views, x, spp, seed)
+        return Residuals.render(views, x, spp, seed)
     dark = np.where(views.is_linear, 0, x)
     (a, residuals_a), (b, residuals_b) = (
         _render_unit_changes(views, dark, linear, spp // 2, seed + 1000 * half) for half in (0, 1)
@@ -92,13 +98,13 @@ def _solve_linear_numbers(views: Views, x: FloatArray, spp: int, seed: int) -> R
     box = views.lower_bounds[None, linear], views.upper_bounds[None, linear]
     x = dark.copy()
     x[linear] = minimise_in_box(hessian[None], gradient[None], *box)[0]
-    return Residuals.at(views, x, spp, seed)
+    return Residuals.render(views, x, spp, seed)
 
 
 def _render_unit_changes(
     views: Views, x: FloatArray, numbers: IntArray, spp: int, seed: int
 ) -> tuple[AnyArray, FloatArray]:
-    """Return how the pixels change as each of the `numbers` goes from 0 to 1, and the residuals.
+    """Return the changes of pixels as each of the `numbers` goes from 0 to 1, and the residuals.
 
     The changes are (numbers, pixels, channels); the residuals (pixels, channels) are those with all
     `numbers` at 0, which `x` must hold.
@@ -106,7 +112,7 @@ def _render_unit_changes(
     residuals = views.render_residuals(x, spp, seed)
     changes = np.zeros((len(numbers), *residuals.shape), np.float32)
     rows = {number: row for row, number in enumerate(numbers)}
-    for group in group_tangents(views):
+    for group in group_numbers_by_picture(views):
         if not rows.keys() >= set(group):
             continue
         moved = np.array(x, float)

@@ -1,4 +1,4 @@
-"""Computes derivatives of rendered pictures by few numbers, one picture of derivatives for each."""
+"""Computes derivatives of rendered pictures by few numbers, with a rendered picture for each."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,25 +8,26 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray, MitsubaObject
 from brdfkit.core.jit.loops import raise_first_cause
-from brdfkit.inverse.scenes.problem.views import Views, make_opaque
+from brdfkit.inverse.scenes.problem.views import Views, make_opaque_array
 
 DERIVATIVE_COST = 2.3  # the time for a picture of derivatives, over that for a picture
-DIFFERENCE_STEP = 0.05  # of coordinates between bounds, or relative to those without
+DIFFERENCE_STEP = 0.05  # of coordinates between bounds, or relative to coordinates without bounds
+# Integrators of Mitsuba that cannot render a picture of derivatives
 BACKWARD_ONLY = "PRBVolpathIntegrator", "BasicVolumetricPrimitiveRadianceFieldIntegrator"
-NOT_ATTACHED = "not attached to the AD graph"  # Mitsuba's error if nothing has a derivative
+NOT_ATTACHED = "not attached to the AD graph"  # in Mitsuba's error if nothing has a derivative
 
 
 def compute_derivatives(views: Views, x: FloatArray, spp: int, seed: int) -> AnyArray:
     """Return the derivatives (n, pixels, channels) of all pixels by the coordinates `x`."""
     derivatives = np.zeros((len(x), *views.target_pixels.shape), np.float32)
-    for numbers in group_tangents(views):
+    for numbers in group_numbers_by_picture(views):
         picture = _compute_derivative(views, x, numbers, spp, seed)
         store_by_channel(picture, derivatives, numbers)
     return derivatives
 
 
-def group_tangents(views: Views) -> Iterator[list[int]]:
-    """Yield the indices of numbers whose derivatives fit into one picture.
+def group_numbers_by_picture(views: Views) -> Iterator[list[int]]:
+    """Yield groups of numbers, by index, whose derivatives fit into one picture.
 
     The three numbers of a colour each change their own channel alone, so they share a picture. All
     other numbers need a picture each.
@@ -48,18 +49,18 @@ def store_by_channel(picture: AnyArray, derivatives: AnyArray, rows: list[int]) 
 
 @contextmanager
 def track_derivatives(views: Views, x: FloatArray) -> Iterator[list[MitsubaObject]]:
-    """Let Dr.Jit track derivatives by the unknowns at `x` in the block; yield their entries.
+    """Track derivatives by the unknowns at `x` within a block; yield their Mitsuba arrays.
 
     Tracking ends with the block, even after an error: Dr.Jit's loops visit the BSDFs of all scenes,
-    so entries that were still tracked would make every other scene fail.
+    so arrays that were still tracked would make every other scene fail.
     """
-    entries = views.to_entries(x)
+    entries = views.make_entries(x)
     dr.enable_grad(entries)
     try:
-        views.put_entries(entries)
+        views.write_entries(entries)
         yield entries
     finally:
-        views.put(x)
+        views.write_to_scene(x)
 
 
 def _compute_derivative(
@@ -67,15 +68,15 @@ def _compute_derivative(
 ) -> FloatArray:
     """Return the derivative (pixels, channels) of the pixels as the `numbers` move together.
 
-    Finite differences replace Mitsuba's derivative where it is wrong or missing, such as that by
-    the position of a lamp.
+    Finite differences replace Mitsuba's derivative where it is wrong or missing, as it is for the
+    position of a lamp.
     """
     wrong = views.has_wrong_derivatives[numbers].any()
     if not wrong and type(views.integrator).__name__ not in BACKWARD_ONLY:
         picture = _render_derivative(views, x, numbers, spp, seed)
         if picture is not None and picture.any():
             return picture
-    return _compute_differences(views, x, numbers, spp, seed)
+    return _compute_finite_differences(views, x, numbers, spp, seed)
 
 
 def _render_derivative(
@@ -86,11 +87,11 @@ def _render_derivative(
     tangent = np.zeros(len(x))
     tangent[numbers] = views.differentiate_values(x)[numbers]
     try:
-        # Every unknown has a tangent, though most are 0, so that all derivatives share one kernel
+        # All derivatives share one kernel if every unknown has a tangent, though most are 0
         with raise_first_cause(), track_derivatives(views, x) as entries:
-            for entry, part in zip(entries, views.split(tangent), strict=True):
-                dr.set_grad(entry, make_opaque(type(entry), part))
-            # Propagate to what plugins computed from their parameters, as loops do not reach there
+            for entry, part in zip(entries, views.split_by_unknown(tangent), strict=True):
+                dr.set_grad(entry, make_opaque_array(type(entry), part))
+            # Loops do not propagate derivatives to values that plugins computed before rendering
             dr.enqueue(dr.ADMode.Forward, entries)
             dr.traverse(dr.ADMode.Forward, flags=dr.ADFlag.ClearEdges)
             return views.join_pictures(
@@ -111,7 +112,7 @@ def _render_derivative(
         return None
 
 
-def _compute_differences(
+def _compute_finite_differences(
     views: Views, x: FloatArray, numbers: list[int], spp: int, seed: int
 ) -> FloatArray:
     """Return the derivative of the pixels by central differences of pictures with equal samples."""

@@ -1,8 +1,8 @@
-"""Minimises E² by Gauss-Newton steps on rendered pictures.
+"""Minimises the difference of pictures by Gauss-Newton steps.
 
 A step needs all derivatives, which take most of the time, so there are few steps; the samples grow
 only as far as the noise of rendering demands. Damping is that of [Levenberg 1944] and
-[Marquardt 1963].
+[Marquardt 1963]. E² is the weighted squared difference of rendered and target pictures.
 """
 
 from collections.abc import Callable
@@ -19,27 +19,25 @@ from brdfkit.regression.problem.box_quadratic import minimise_in_box
 
 INITIAL_RAYS = 2**18  # for the first pictures, as rays cost little compared with starting a kernel
 INITIAL_SAMPLES = 8, 128  # per pixel, the fewest and the most of the first pictures
-GROWTH = 4, 16  # factors, the smallest and the largest by which the samples grow at once
-CONVERGED_GRADIENT = 0.1  # in units of its variance: less promises a gain below the noise
-QUIET_SHARE = 0.25  # rendering noise of at most this share of E² adds 12 % to the standard errors
-NONLINEAR_REACH = (
-    0.25  # relative to the range: farther away, derivatives of nonlinear numbers mean little
-)
-WEIGHT_REACH = 10  # times a weight or 1, the longest step: hidden weights have no other limit
-FRESH_SAMPLES = 3  # times that other samples are tried where no step is a gain
-NOISE_JUMP = 2  # times the noise: a trial that is so much noisier may have a small E² by luck
-DAMPING = 1e-2, 1e-6, 1e4  # the first, the smallest and the largest
+GROWTH = 4, 16  # the smallest and the largest factor by which the samples grow at once
+CONVERGED_GRADIENT = 0.1  # squared gradient over its variance: smaller ones promise no real gain
+QUIET_SHARE = 0.25  # of E²: noise of rendering of this size adds 12 % to the standard errors
+NONLINEAR_REACH = 0.25  # of the range: the longest step in numbers that enter nonlinearly
+WEIGHT_REACH = 10  # times a weight or 1: the longest step of weights without an upper bound
+FRESH_SAMPLES = 3  # how often other samples are tried where no step is a gain
+NOISE_JUMP = 2  # a trial with so many times the noise may have a small E² by luck
+DAMPING = 1e-2, 1e-6, 1e4  # the first, the smallest and the largest damping of steps
 BETTER, WORSE = 0.1, 8  # factors of the damping after a good and a bad step
 
 
 @dataclass
 class Search:
-    """The state of a search.
+    """The state of a search for the parameters of a scene.
 
-    residuals : the `Residuals` at the current point.
-    equations : the `Equations` there, if computed.
+    residuals : the residuals of the pictures at the current point.
+    equations : the Gauss-Newton equations there, if computed.
     steps : how many steps were taken.
-    history : (samples per pixel, E²) of each step.
+    history : the samples per pixel and the squared residual E² of each step.
     converged : whether no step would gain more than the noise.
     stuck : whether a step should gain, but none does, however short.
     worse : whether the search ended worse than the scene's own values, which then replace its end.
@@ -55,7 +53,7 @@ class Search:
 
 
 def choose_initial_samples(views: Views) -> int:
-    """Return the samples per pixel of the first steps."""
+    """Return the samples per pixel of the first steps, more for smaller pictures."""
     return int(np.clip(INITIAL_RAYS / len(views.target_pixels), *INITIAL_SAMPLES))
 
 
@@ -72,15 +70,15 @@ def run_gauss_newton(
     `report()` is called after each step. On Ctrl-C `Interrupted` holds the `Search` so far.
     """
     spp, damping, tries = min(choose_initial_samples(views), samples), DAMPING[0], 0
-    state = Search(Residuals.at(views, x, spp, seed))
+    state = Search(Residuals.render(views, x, spp, seed))
     if state.residuals.error == np.inf:
         raise BrdfkitError("the scene's pictures are not finite where the search begins.")
     state.history.append((spp, state.residuals.error))
     try:
         while True:
-            state.equations = equations = Equations.at(views, state.residuals, seed)
+            state.equations = equations = Equations.render(views, state.residuals, seed)
             grown = _grow_samples(views, state.residuals, spp, samples)
-            free = find_free(views, state.residuals, equations)
+            free = find_free_numbers(views, state.residuals, equations)
             at_rest = not free.any() or equations.test_gradient(free) < CONVERGED_GRADIENT
             if at_rest and grown == spp:
                 state.converged = True
@@ -91,14 +89,14 @@ def run_gauss_newton(
                 step, damping = _find_step(views, state, damping, seed, grown == spp)
                 at_rest = step is None or damping >= DAMPING[2]
                 if at_rest and grown == spp:
-                    # With these samples no step gains, however short; others may differ
+                    # With these samples no step gains, however short, but with others one may
                     tries += 1
                     state.stuck = tries > FRESH_SAMPLES
                     if state.stuck:
                         break
             if at_rest or step is None:
                 spp, seed, damping = grown, seed + 1, min(damping, DAMPING[0])
-                state.residuals = Residuals.at(views, state.residuals.x, spp, seed)
+                state.residuals = Residuals.render(views, state.residuals.x, spp, seed)
             else:
                 state.residuals, state.steps = step, state.steps + 1
                 state.history.append((spp, step.error))
@@ -111,19 +109,20 @@ def run_gauss_newton(
 def _find_step(
     views: Views, state: Search, damping: float, seed: int, is_last: bool
 ) -> tuple[Residuals | None, float]:
-    """Return the `Residuals` after a step that reduces E², and the damping for the next one.
+    """Return the residuals after a step that reduces E², and the damping for the next step.
 
-    The residuals are None where noise hides whether any step is a gain. With the last, largest
-    number of samples (`is_last`) such a step is taken all the same: the equations know more about a
-    small gain than two pictures do, whose samples move with the parameters.
+    E² is the squared residual. The residuals are None where noise hides whether any step is a gain.
+    With the last, largest number of samples (`is_last`) such a step is taken all the same: the
+    equations know more about a small gain than two pictures, whose samples move with the
+    parameters.
     """
     here, equations = state.residuals, state.equations
     assert equations is not None
     while True:
         step = solve_step(views, here, equations, damping)
-        trial = Residuals.at(views, here.x + step, 2 * here.spp, seed)
+        trial = Residuals.render(views, here.x + step, 2 * here.spp, seed)
         gain, noise = here.compute_gain(trial)
-        if _may_be_luck(here, trial):
+        if _may_gain_by_noise(here, trial):
             gain = -np.inf
         predicted = equations.predict_gain(step)
         hidden = predicted < CONFIDENCE * noise and gain > -CONFIDENCE * noise
@@ -134,13 +133,16 @@ def _find_step(
         damping *= WORSE
 
 
-def _may_be_luck(here: Residuals, trial: Residuals) -> bool:
-    """Return whether the gain of a trial may come from its larger noise alone."""
+def _may_gain_by_noise(here: Residuals, trial: Residuals) -> bool:
+    """Return whether the smaller residual of a trial may come from its larger noise alone."""
     return trial.deviation > NOISE_JUMP * here.deviation and trial.bound > here.bound
 
 
 def solve_step(views: Views, here: Residuals, equations: Equations, damping: float) -> FloatArray:
-    """Return the step (n,) that minimises the damped quadratic model within the bounds."""
+    """Return the step (n,) that minimises the damped quadratic model within the bounds.
+
+    The step is shorter where the model is no longer a good approximation.
+    """
     hessian, scale = equations.scale_hessian()
     damped = hessian + damping * np.eye(len(scale))
     reach = np.where(views.is_nonlinear_share, NONLINEAR_REACH, np.inf)
@@ -153,15 +155,15 @@ def solve_step(views: Views, here: Residuals, equations: Equations, damping: flo
     return np.clip(step * scale, low, high)
 
 
-def find_free(views: Views, here: Residuals, equations: Equations) -> BoolArray:
-    """Return which numbers (n,) may move downhill: those on no bound, or that leave it."""
+def find_free_numbers(views: Views, here: Residuals, equations: Equations) -> BoolArray:
+    """Return the mask (n,) of numbers that can move downhill without leaving their bounds."""
     x, gradient = here.x, equations.gradient
     at_low = (x <= views.lower_bounds) & (gradient >= 0)
     return ~at_low & ~((x >= views.upper_bounds) & (gradient <= 0))
 
 
 def _grow_samples(views: Views, here: Residuals, spp: int, samples: int) -> int:
-    """Return the next samples per pixel, so many that rendering is quieter than E²."""
+    """Return the next samples per pixel, so many that rendering is quieter than the residuals."""
     noise, error = here.compute_noise(views), max(here.error, 0)
     if noise <= QUIET_SHARE * error:
         return spp

@@ -10,9 +10,10 @@ rendered and compared with the target picture J. With a weight w per pixel that 
 
 are unbiased for any number of samples.
 
-If single samples hit a highlight, it is bright in one picture and missing in the other, and E² is
-far below 0. Among many points, the luckiest one would then win. Points are therefore compared by an
-upper bound, E² plus twice its standard deviation. The deviation is estimated as
+If a single sample hits a highlight, the highlight is bright in one picture and missing in the
+other, and E² is far below 0. Among many points, the luckiest one would then win. Points are
+therefore compared by an upper bound, E² plus twice its standard deviation. The deviation is
+estimated as
 
     ½ √Σ (w (I_A - J)² - w (I_B - J)²)²,
 
@@ -33,14 +34,14 @@ from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search.forward_derivatives import (
     DERIVATIVE_COST,
     compute_derivatives,
-    group_tangents,
+    group_numbers_by_picture,
 )
 
-DERIVATIVE_SHARE = 2.0  # the cost of all derivatives at most, over that of the residuals
+DERIVATIVE_SHARE = 2.0  # the largest cost of all derivatives, over that of the residuals
 ROUNDING = 1e-6  # relative to white: the rounding of pictures in single precision
 NOISE_FLOOR = 0.1  # relative to the power of derivatives: a smaller diagonal of H is noise
-CONFIDENCE = 2  # standard deviations, beyond which a difference is not by chance
-SMALLEST_EIGENVALUE = 1e-5  # smaller eigenvalues of H, with unit diagonal, are noise
+CONFIDENCE = 2  # standard deviations: a larger difference is taken not to be chance
+SMALLEST_EIGENVALUE = 1e-5  # of H with unit diagonal: smaller eigenvalues are noise
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ class Residuals:
 
     a, b : the residuals (pixels, channels) of the two pictures.
     spp : the samples per pixel of each picture.
-    terms : the contributions to E² of the pixels that count.
+    terms : the contributions of the pixels that count to the squared residual E².
     deviation : the standard deviation of E² due to the noise of rendering.
     """
 
@@ -61,7 +62,7 @@ class Residuals:
     deviation: float
 
     @classmethod
-    def at(cls, views: Views, x: FloatArray, spp: int, seed: int) -> Residuals:
+    def render(cls, views: Views, x: FloatArray, spp: int, seed: int) -> Residuals:
         """Render the residuals at `x`, with half of `spp` samples for each of the two pictures."""
         half = max(1, spp // 2)
         a, b = (views.render_residuals(x, half, seed + offset) for offset in (0, 1000))
@@ -71,7 +72,7 @@ class Residuals:
 
     @property
     def error(self) -> float:
-        """E², which noise may make negative.
+        """The squared residual E², which noise may make negative.
 
         Infinite if a picture is not finite, as where each bounce of light makes it brighter.
         """
@@ -80,11 +81,11 @@ class Residuals:
 
     @property
     def bound(self) -> float:
-        """The upper bound of E² within the confidence of two standard deviations."""
+        """The upper confidence bound of the squared residual, two standard deviations above it."""
         return self.error + CONFIDENCE * self.deviation if np.isfinite(self.error) else np.inf
 
     def compute_gain(self, other: Residuals) -> tuple[float, float]:
-        """Return how much smaller E² is in `other`, and the standard error of this gain.
+        """Return how much smaller the squared residual is in `other`, and its standard error.
 
         Both need the same number of samples.
         """
@@ -94,15 +95,15 @@ class Residuals:
         return float(change.sum()), float(change.std() * np.sqrt(len(change)))
 
     def compute_noise(self, views: Views) -> float:
-        """Return the variance that rendering adds to E² of the mean of both pictures."""
+        """Return the variance that rendering adds to the squared residual of the mean picture."""
         return float((views.weights * (self.a - self.b) ** 2).sum() / 4)
 
 
 @dataclass(frozen=True)
 class Equations:
-    """The quadratic approximation of E² around a point.
+    """The quadratic approximation of the squared residual E² around a point.
 
-    gradient : half of the gradient (n,).
+    gradient : half of the gradient (n,) by the coordinates.
     hessian : half of the Gauss-Newton Hessian (n, n).
     scores : the contributions (n, blocks) of blocks of pixels to the gradient, corrected for
         leverage.
@@ -115,11 +116,11 @@ class Equations:
     power: FloatArray
 
     @classmethod
-    def at(
+    def render(
         cls, views: Views, here: Residuals, seed: int, share: float = DERIVATIVE_SHARE
     ) -> Equations:
         """Render derivatives at the point of `here`, at no more than `share` of its cost."""
-        pictures = len(list(group_tangents(views)))
+        pictures = len(list(group_numbers_by_picture(views)))
         spp = max(1, round(here.spp * min(1, share / (DERIVATIVE_COST * pictures))))
         a, b = (compute_derivatives(views, here.x, spp, seed + 1000 * half) for half in (0, 1))
         _check_finite(views, a + b)
@@ -132,14 +133,17 @@ class Equations:
         power = ((weighed * a).sum(axis=(1, 2)) + (views.weights * b * b).sum(axis=(1, 2))) / 2
         return cls(scores.sum(axis=1), (hessian + hessian.T) / 2, corrected, power)
 
-    def find_unseen(self, views: Views, x: FloatArray) -> BoolArray:
-        """Return which numbers (n,) have no effect on the pictures around `x` beyond rounding."""
+    def find_unseen_numbers(self, views: Views, x: FloatArray) -> BoolArray:
+        """Return the mask (n,) of numbers on which the pictures around `x` do not depend.
+
+        Changes below the rounding of pixels do not count.
+        """
         is_bounded = np.isfinite(views.upper_bounds - views.lower_bounds)
         extent = np.where(is_bounded, 1, np.maximum(abs(x), 1))
         return np.sqrt(self.power) * extent <= ROUNDING
 
     def predict_gain(self, step: FloatArray) -> float:
-        """Return by how much the linearised problem predicts that a step (n,) reduces E²."""
+        """Return by how much a step (n,) reduces the squared residual of the linearised problem."""
         return -float(2 * self.gradient @ step + step @ self.hessian @ step)
 
     def scale_hessian(self) -> tuple[FloatArray, FloatArray]:
@@ -156,7 +160,7 @@ class Equations:
     def test_gradient(self, free: BoolArray) -> float:
         """Return the mean squared distance of the gradient from 0, in standard errors.
 
-        Only the numbers that are `free` (n,) enter. The value is about 1 if only noise is left.
+        Only the numbers in the mask `free` (n,) enter. The value is about 1 if only noise is left.
         """
         gradient, scores = self.gradient[free], self.scores[free]
         centred = scores - scores.mean(axis=1, keepdims=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.inverse.scenes.problem.views import Views
-from brdfkit.inverse.scenes.result.conclusions import conclude_search, estimate_certainty
+from brdfkit.inverse.scenes.result.conclusions import estimate_certainty, make_refinement
 from brdfkit.inverse.scenes.result.refinement import Refinement
 from brdfkit.inverse.scenes.result.residual_noise import ResidualNoise
 from brdfkit.inverse.scenes.search.gauss_newton import Search, choose_initial_samples, solve_step
@@ -22,18 +22,19 @@ from brdfkit.inverse.scenes.search.normal_equations import (
 )
 
 SAMPLE_FACTOR = 2  # the samples of the check, over those of the search's end
-CHANCE_LIMIT = 4  # standard errors: other samples move no number farther by chance
-AGREEMENT_SHARE = 0.5  # two renderings of derivatives should agree on so much of their power
-SEED_OFFSET = 7_000  # it keeps the check from using a seed of the search again
+CHANCE_LIMIT = 4  # standard errors: chance alone hardly ever moves a number farther
+AGREEMENT_SHARE = 0.5  # two renderings should agree on this share of the derivatives' power
+SEED_OFFSET = 7_000  # added to seeds of the search, so that the check has other samples
 
 
 @dataclass(frozen=True)
-class SecondLook:
+class SearchCheck:
     """The comparison of a search's end with a rendering of twice the samples.
 
     step : the step (n,) that the new equations suggest, in coordinates; 0 for uncertain numbers.
     moves : the size of this step for each number, by name, in standard errors.
-    error_change : how far E² is from that of the search, in standard deviations.
+    error_change : the difference of E², the squared residual, from the search's, in standard
+        deviations.
     poorly_sampled : the names of numbers whose derivatives depend on few light paths.
     """
 
@@ -42,8 +43,8 @@ class SecondLook:
     error_change: float
     poorly_sampled: tuple[str, ...]
 
-    def average(self, views: Views, x: FloatArray) -> FloatArray:
-        """Return the coordinates (n,) averaged over both searches, weighted by their samples.
+    def average_coordinates(self, views: Views, x: FloatArray) -> FloatArray:
+        """Return the mean coordinates (n,) of the search and the check, weighted by their samples.
 
         Where they differ by more than chance, this is `x`, the end of the search itself.
         """
@@ -52,8 +53,8 @@ class SecondLook:
         mean = x + SAMPLE_FACTOR / (1 + SAMPLE_FACTOR) * self.step
         return np.clip(mean, views.lower_bounds, views.upper_bounds)
 
-    def notes(self) -> tuple[str, ...]:
-        """Return a sentence on what differs with twice the samples, if anything does."""
+    def describe_differences(self) -> tuple[str, ...]:
+        """Return a sentence on differences with twice the samples, if there are any."""
         differences = [
             f"{name} moves by {size:.2g} standard errors"
             for name, size in self.moves.items()
@@ -71,35 +72,37 @@ class SecondLook:
         return (f"at twice the samples, {text}: take more samples, or other starts",)
 
 
-def take_second_look(views: Views, state: Search, seed: int) -> tuple[Search, SecondLook | None]:
-    """Return the `Search` with pictures and equations of twice the samples, and the comparison.
+def check_search(views: Views, state: Search, seed: int) -> tuple[Search, SearchCheck | None]:
+    """Return a search with pictures and equations of twice the samples, and how it differs.
 
-    If its end is worse than the scene's own values, return a `Search` at these, marked as `worse`,
-    and None.
+    If its end is worse than the scene's own values, the returned `Search` is at these and marked as
+    `worse`, and the second result is None.
     """
     spp = 2 * SAMPLE_FACTOR * state.residuals.spp
-    there = Residuals.at(views, state.residuals.x, spp, seed + SEED_OFFSET)
+    there = Residuals.render(views, state.residuals.x, spp, seed + SEED_OFFSET)
     if _is_worse_than_start(views, there, seed):
-        own = Residuals.at(views, views.start, spp, seed + SEED_OFFSET)
+        own = Residuals.render(views, views.start, spp, seed + SEED_OFFSET)
         return Search(own, None, state.steps, state.history, worse=True), None
-    equations = Equations.at(views, there, seed + SEED_OFFSET, DERIVATIVE_SHARE / SAMPLE_FACTOR)
+    equations = Equations.render(views, there, seed + SEED_OFFSET, DERIVATIVE_SHARE / SAMPLE_FACTOR)
     end = replace(state, residuals=there, equations=equations)
-    return end, _compare(views, state.residuals, end, equations)
+    return end, _compare_with_search(views, state.residuals, end, equations)
 
 
-def _compare(views: Views, before: Residuals, end: Search, equations: Equations) -> SecondLook:
-    """Return the `SecondLook` of one point: `before` of the search, `end` of other samples."""
+def _compare_with_search(
+    views: Views, before: Residuals, end: Search, equations: Equations
+) -> SearchCheck:
+    """Return the differences of a search's residuals, `before`, from the check of its `end`."""
     here = end.residuals
     certainty = estimate_certainty(views, end, ResidualNoise.measure(views, here))
     errors = certainty.compute_standard_errors()
     certain = np.array([name in errors for name in views.names])
     step = solve_step(views, here, equations, damping=0)
     moved = dict(zip(views.names, np.abs(views.differentiate_values(here.x) * step), strict=True))
-    # The search minimised E² of its own samples, so the gain of the step is not a difference
+    # The search minimised E² of its own samples, so a gain by a step of the check is no difference
     change = abs(here.error - before.error) - max(equations.predict_gain(step), 0)
     deviation = np.hypot(here.deviation, before.deviation)
     share = np.diagonal(equations.hessian) / np.maximum(equations.power, 1e-300)
-    return SecondLook(
+    return SearchCheck(
         np.where(certain, step, 0),
         {name: float(moved[name] / max(error, 1e-300)) for name, error in errors.items()},
         float(change / max(deviation, 1e-300)),
@@ -112,22 +115,23 @@ def _compare(views: Views, before: Residuals, end: Search, equations: Equations)
 
 
 def _is_worse_than_start(views: Views, there: Residuals, seed: int) -> bool:
-    """Return whether E² is certainly larger than at the scene's own values.
+    """Return whether the squared residual is certainly larger than at the scene's own values.
 
-    Few samples often suffice to tell that it is not.
+    `there` holds the residuals at the end of the search. Few samples often suffice to tell that it
+    is not worse.
     """
     for spp in (choose_initial_samples(views), 2 * there.spp):
-        own = Residuals.at(views, views.start, spp, seed + SEED_OFFSET)
+        own = Residuals.render(views, views.start, spp, seed + SEED_OFFSET)
         if own.error == np.inf or own.error - CONFIDENCE * own.deviation > there.bound:
             return False
     return there.bound > own.bound + CONFIDENCE * own.deviation
 
 
-def conclude_checked_search(
-    views: Views, state: Search, second_look: SecondLook | None, seconds: float
+def make_checked_refinement(
+    views: Views, state: Search, search_check: SearchCheck | None, seconds: float
 ) -> Refinement:
-    """Return the `Refinement` of a search and its second look, both from `take_second_look`."""
-    if second_look is None:
-        return conclude_search(views, state, seconds)
-    x = second_look.average(views, state.residuals.x)
-    return conclude_search(views, state, seconds, x, second_look.notes())
+    """Return the `Refinement` of a search and its check, both from `check_search`."""
+    if search_check is None:
+        return make_refinement(views, state, seconds)
+    x = search_check.average_coordinates(views, state.residuals.x)
+    return make_refinement(views, state, seconds, x, search_check.describe_differences())
