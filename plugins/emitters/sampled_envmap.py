@@ -116,7 +116,10 @@ class Alias:
 
 
 class AliasTable:
-    """Several alias tables, one after another: `thresholds` (n,) and `aliases` (n,) of entries."""
+    """Alias tables, one after another, for drawing entries in proportion to their weights.
+
+    `thresholds` (n,) and `aliases` (n,) are those of the entries of all tables.
+    """
 
     def __init__(self, thresholds: FloatArray, aliases: IntArray) -> None:
         self.thresholds, self.aliases = Rows(thresholds), Integers(aliases)
