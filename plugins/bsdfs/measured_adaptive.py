@@ -25,7 +25,7 @@ import numpy as np
 from brdfkit.core.array_types import JitColour, JitVector, MitsubaModule, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.bsdf.adaptive_lookup import AdaptiveLookup
-from brdfkit.mitsuba_bridge.bsdf.measured_base import define_measured_frame
+from brdfkit.mitsuba_bridge.bsdf.measured_base import define_measured_bsdf
 from brdfkit.mitsuba_bridge.channels import make_channels
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 
@@ -37,9 +37,9 @@ COSINE_SHARE = 0.02
 def define(mi: MitsubaModule) -> type:
     """Return the plugin's class for Mitsuba's current variant: a `mi.BSDF`."""
 
-    Frame: MitsubaObject = define_measured_frame(mi)
+    Base: MitsubaObject = define_measured_bsdf(mi)
 
-    class MeasuredAdaptive(Frame):
+    class MeasuredAdaptive(Base):
         def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             props = _read_rgl_arrays(props)

@@ -20,7 +20,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitColour, JitVector, MitsubaModule, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.mitsuba_bridge.bsdf.half_vector_table import HalfVectorTable
-from brdfkit.mitsuba_bridge.bsdf.measured_base import define_measured_frame
+from brdfkit.mitsuba_bridge.bsdf.measured_base import define_measured_bsdf
 from brdfkit.mitsuba_bridge.bsdf.table_lookup import find_corners
 from brdfkit.mitsuba_bridge.channels import make_channels
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
@@ -34,9 +34,9 @@ ANISOTROPIC = {"azimuths": 24, "angles": 16, "cells": (60, 32), "points": 1}
 def define(mi: MitsubaModule) -> type:
     """Return the plugin's class for Mitsuba's current variant: a `mi.BSDF`."""
 
-    Frame: MitsubaObject = define_measured_frame(mi)
+    Base: MitsubaObject = define_measured_bsdf(mi)
 
-    class MeasuredTable(Frame):
+    class MeasuredTable(Base):
         def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             self.table, wavelengths = _read_table(props)

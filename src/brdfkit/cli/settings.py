@@ -129,7 +129,7 @@ def fit_options(
         ) -> Any:
             from brdfkit.regression.solvers import AlbedoAtMost
 
-            _check_models(names)
+            _refuse_joined_models(names)
             how = {
                 name: kwargs.pop(name)
                 for name in ("loss", "robust", "solver", "max_angle", "anisotropic")
@@ -149,7 +149,7 @@ def fit_options(
     return add_options
 
 
-def _check_models(names: Iterable[str]) -> None:
+def _refuse_joined_models(names: Iterable[str]) -> None:
     """Raise `BrdfkitError` where one -m names several models, as in ggx,ward."""
     from brdfkit.model import labels
 

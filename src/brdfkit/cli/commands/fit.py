@@ -136,7 +136,7 @@ def _fit_one_file(
 
     errors = None  # errors of the pictures, if there are any
     with use_results_folder(output):
-        _check_output(output, names, rendered=pictures is not None)
+        _check_output_paths(output, names, rendered=pictures is not None)
         fits, failed, interrupted = _fit_each_model(names, material, how, output, console)
         paths = [to_fit_path(output, fit.name) for fit in fits] if output else []
         written = [path for path in paths if path.is_file()]
@@ -164,7 +164,7 @@ def _fit_one_file(
         click.get_current_context().exit(find_exit_status() if interrupted else 2)
 
 
-def _check_output(folder: Path | None, names: Sequence[str], rendered: bool) -> None:
+def _check_output_paths(folder: Path | None, names: Sequence[str], rendered: bool) -> None:
     """Raise `BrdfkitError` where a fit or a picture cannot be written to `folder`."""
     from brdfkit.cli.arguments import check_picture_path
     from brdfkit.core.files import require_writable

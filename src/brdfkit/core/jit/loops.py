@@ -43,8 +43,8 @@ def record_loops(function: Callable[P, R]) -> Callable[P, R]:
     """
 
     @wraps(function)
-    def call(*args: P.args, **settings: P.kwargs) -> R:
+    def call_with_recorded_loops(*args: P.args, **settings: P.kwargs) -> R:
         with dr.scoped_set_flag(dr.JitFlag.SymbolicLoops, True):
             return function(*args, **settings)
 
-    return call
+    return call_with_recorded_loops

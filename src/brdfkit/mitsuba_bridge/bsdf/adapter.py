@@ -15,7 +15,7 @@ from brdfkit.core.array_types import JitColour, JitMask, JitVector, MitsubaModul
 from brdfkit.core.geometry.quadrature import make_cosine_directions
 from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate_lobe_sum
 from brdfkit.mitsuba_bridge.bsdf.surface_response import Point
-from brdfkit.mitsuba_bridge.bsdf.textures import define_textured_frame
+from brdfkit.mitsuba_bridge.bsdf.textures import define_textured_bsdf
 from brdfkit.model import Model
 from brdfkit.model.lobes import group_components
 
@@ -30,7 +30,7 @@ def define_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
     kinds = find_component_kinds(mi, model, groups)
     components = find_component_flags(mi, model, kinds, signed)
 
-    Base: Any = define_textured_frame(mi, model)
+    Base: Any = define_textured_bsdf(mi, model)
 
     class Plugin(Base):
         def __init__(self, props: MitsubaObject) -> None:

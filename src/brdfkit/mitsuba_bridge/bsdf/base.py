@@ -24,7 +24,7 @@ COSINE_SHARE = 0.1
 COSINE = Cosine()
 
 
-def define_frame(mi: MitsubaModule) -> Any:
+def define_base_bsdf(mi: MitsubaModule) -> Any:
     """Define the base class of brdfkit's BSDFs in the current variant.
 
     A derived class defines `make_response(ctx, si, wi, active)`, which returns the BSDF at a point
@@ -38,7 +38,7 @@ def define_frame(mi: MitsubaModule) -> Any:
     """
     import drjit as dr
 
-    class Frame(mi.BSDF):
+    class BaseBsdf(mi.BSDF):
         def sample(
             self,
             ctx: MitsubaObject,
@@ -93,4 +93,4 @@ def define_frame(mi: MitsubaModule) -> Any:
                 kind = dr.select(component == k, other, kind)
             return kind
 
-    return Frame
+    return BaseBsdf

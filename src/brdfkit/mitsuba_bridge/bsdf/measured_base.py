@@ -15,11 +15,11 @@ from brdfkit.core.array_types import (
     MitsubaObject,
 )
 from brdfkit.core.geometry.vectors import mask_below_horizon
-from brdfkit.mitsuba_bridge.bsdf.base import COSINE, COSINE_SHARE, define_frame
+from brdfkit.mitsuba_bridge.bsdf.base import COSINE, COSINE_SHARE, define_base_bsdf
 from brdfkit.model.lobes import Sampling
 
 
-def define_measured_frame(mi: MitsubaModule) -> Any:
+def define_measured_bsdf(mi: MitsubaModule) -> Any:
     """Define the base class of a measurement's plugins in the current variant.
 
     A derived class calls `set_sampling` in its constructor and defines
@@ -32,9 +32,9 @@ def define_measured_frame(mi: MitsubaModule) -> Any:
     import drjit as dr
 
     flags = mi.BSDFFlags
-    Base: Any = define_frame(mi)
+    Base: Any = define_base_bsdf(mi)
 
-    class MeasuredFrame(Base):
+    class MeasuredBsdf(Base):
         def set_sampling(
             self, sampling: Sampling, anisotropic: bool, cosine_share: float = COSINE_SHARE
         ) -> None:
@@ -53,7 +53,7 @@ def define_measured_frame(mi: MitsubaModule) -> Any:
             wi, active = mask_below_horizon(si.wi, active)
             return mi.Spectrum(dr.select(active, self.albedo(wi, si), 0))
 
-    return MeasuredFrame
+    return MeasuredBsdf
 
 
 @dataclass(frozen=True, eq=False)

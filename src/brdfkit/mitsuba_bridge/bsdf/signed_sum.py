@@ -30,7 +30,7 @@ def tabulate_lobe_sum(model: Model, weights: AnyArray, lobes: list[int]) -> Half
     """
     weights = weights[lobes]
 
-    def f(wi: AnyArray, wo: AnyArray) -> AnyArray:
+    def evaluate_sum(wi: AnyArray, wo: AnyArray) -> AnyArray:
         values = np.empty((len(wi), weights.shape[1]))
         for start in range(0, len(wi), BATCH):
             rows = slice(start, start + BATCH)
@@ -38,7 +38,7 @@ def tabulate_lobe_sum(model: Model, weights: AnyArray, lobes: list[int]) -> Half
             values[rows] = plain[:, lobes] @ weights
         return np.maximum(values, 0)
 
-    return HalfVectorTable(f, **(ANISOTROPIC if model.is_anisotropic() else ISOTROPIC))
+    return HalfVectorTable(evaluate_sum, **(ANISOTROPIC if model.is_anisotropic() else ISOTROPIC))
 
 
 def average_texture(texture: MitsubaObject, default: ArrayLike) -> AnyArray:

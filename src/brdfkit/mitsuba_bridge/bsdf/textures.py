@@ -15,14 +15,14 @@ from brdfkit.core.array_types import (
     MitsubaModule,
     MitsubaObject,
 )
-from brdfkit.mitsuba_bridge.bsdf.base import define_frame
+from brdfkit.mitsuba_bridge.bsdf.base import define_base_bsdf
 from brdfkit.mitsuba_bridge.bsdf.signed_sum import average_texture
 from brdfkit.mitsuba_bridge.properties import conversions
 from brdfkit.model import Model, Parameter
 from brdfkit.model.lobes import Lobe
 
 
-def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
+def define_textured_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
     """Define the base class of the BSDF of a model in the current variant.
 
     Its `textures` hold a texture for every parameter, by name, except for parameters that follow
@@ -30,9 +30,9 @@ def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
     """
     defaults = model()
 
-    Base: Any = define_frame(mi)
+    Base: Any = define_base_bsdf(mi)
 
-    class TexturedFrame(Base):
+    class TexturedBsdf(Base):
         def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             self.textures = {}
@@ -121,8 +121,8 @@ def define_textured_frame(mi: MitsubaModule, model: type[Model]) -> Any:
             lines = [f"  {name} = {texture}" for name, texture in self.textures.items()]
             return "\n".join([f"{model.__name__}[", *lines, "]"])
 
-    TexturedFrame.model = model
-    return TexturedFrame
+    TexturedBsdf.model = model
+    return TexturedBsdf
 
 
 def clamp_to_bounds(value: Any, parameter: Parameter) -> Any:
