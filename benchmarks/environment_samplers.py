@@ -40,9 +40,9 @@ SAMPLERS = {
     "`alias`, compensated": OTHERS | {"sampler": "alias", "compensated": True},
 }
 SIZE, SPP = 24, 36
-# In a repeat: pictures whose variance is computed for each of Mitsuba's two samplers, and runs of
-# which the least time counts
+# Pictures in a repeat, whose variance is computed, for each of Mitsuba's two samplers
 PICTURES = 6
+# Runs in a repeat, of which the least time counts
 ROUNDS = 2
 
 HEAD = """# Environment samplers

@@ -26,8 +26,7 @@ def fixed_sphere_distance(p):
     return sphere_distance(p, P(0.35, 0, 2.5), 0.3)
 
 
-# By name: the value of a parameter, and a function from it to the light's centre and radius, and
-# the field
+# By name: a parameter's value, and a function from it to (light's centre, its radius, field)
 SCENES = {
     "light moves": (0.2, lambda x: (P(x, 0, 6), Float(1), fixed_sphere_distance)),
     "light grows": (1.0, lambda x: (P(0, 0, 6), x, fixed_sphere_distance)),

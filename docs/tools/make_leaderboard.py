@@ -39,9 +39,9 @@ FEW = (
     "specular-violet-phenolic",
     "light-brown-fabric",
 )
-# The main sums of models, and further models, which are fitted by the log loss only. In trials on a
-# few materials they had the least errors of all pairs of models, and of their variants
+# The main sums of models, which had the least errors of all pairs in trials on a few materials
 SUMS = "ggx+ggx", "abc+ggx", "abc+student_t"
+# Variants with small errors in the same trials, which are fitted by the log loss only
 MORE = (
     "abc+student_t:fresnel=coloured",
     "burley+abc+student_t:fresnel=coloured",
@@ -50,8 +50,7 @@ MORE = (
 )
 # Number of random starts with which the search is compared
 RESTARTS = 50
-# Models that are also fitted to measurements and by other losses, and checked on the materials FEW:
-# with full tables, and with random starts on coarse tables
+# Models that are also fitted to measurements and by other losses, and checked on the materials FEW
 SOME = "ggx", "student_t", "ggx+ggx", "abc+student_t"
 NETWORKS, MERL = "nbrdf_derived/merl_nbrdf.npz", "neural reconstruction"
 COLLECTIONS = {

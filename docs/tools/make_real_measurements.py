@@ -43,8 +43,7 @@ DIGITS = 4  # significant digits of the numbers in the JSON
 # Files of measurements in the folder, and the samples of CUReT's file that are used
 COLLECTIONS = "rgl/*.bsdf", "minidiff_paints/*.astm.xz", "cornell/*.[ab]*", "alta_retro/*.dat.xz"
 CURET = "curet/abrdf.dat", range(1, 61, 10)
-# Materials that are written as five kinds of files: these neural reconstructions of a network file,
-# and the isotropic tables that brdfkit ships
+# Neural reconstructions that are written as five kinds of files, like brdfkit's isotropic tables
 NETWORKS = "nbrdf_derived/merl_nbrdf.npz"
 RECONSTRUCTIONS = "nickel", "red-fabric", "specular-blue-phenolic", "white-paint"
 SHAPE = 90, 45, 90

@@ -22,14 +22,16 @@ from brdfkit.model.samples.measures import compute_measure
 MODELS = "ward_duer", "ggx", "ggx+ggx", "abc+student_t"
 LOSSES = "cosine", "log", "cbrt"
 MAPS = "room", "sky", "studio"
-# Number of pixels of each picture, and of directions that a pixel draws by the light, and by the
-# BRDF
-PIXELS, DIRECTIONS = 600, 48
+# Number of pixels of each picture
+PIXELS = 600
+# Number of directions that a pixel draws by the light, and again by the BRDF
+DIRECTIONS = 48
 # Edges of ranges of the difference angle [degrees] in which the hue of a highlight is measured
 HUES = 0, 20, 40, 60
-# Angles of incidence [degrees] at which albedos of fits and data are compared, and further angles
-# at which fits should not reflect more light than arrives
-ANGLES, OTHERS = (5, 45, 75), (30, 60, 80, 85, 89)
+# Angles of incidence [degrees] at which albedos of fits and data are compared
+ANGLES = 5, 45, 75
+# Further angles of incidence [degrees] at which fits should not reflect more light than arrives
+OTHERS = 30, 60, 80, 85, 89
 
 
 def measure_fits(data):

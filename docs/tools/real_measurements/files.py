@@ -5,9 +5,10 @@ import numpy as np
 import brdfkit as bk
 from brdfkit.core.geometry.directions import from_angles, from_half_difference
 
-# Steps of the goniometer's grid over the incident and outgoing polar angles [degrees], their limit,
-# and the number of azimuths, which become denser towards the mirror direction
-STEP_I, STEP_O, LAST, AZIMUTHS = 2.5, 1.25, 80, 72
+# Steps of the goniometer's grid over the incident and outgoing polar angles [degrees], and its end
+STEP_I, STEP_O, LAST = 2.5, 1.25, 80
+# Number of azimuths of the goniometer's grid, which become denser towards the mirror direction
+AZIMUTHS = 72
 # Numbers of samples in the files "cells" and "random"
 CELLS, ROWS = 60_000, 20_000
 # Suffixes by kind of file; the fits of the first one are the reference for the others

@@ -12,9 +12,10 @@ from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
 from brdfkit.regression.losses.loss import sum_squared_differences
 
 LOSSES = "cosine", "log", "cbrt", "plain"
-# A parameter counts as equal within the first share of its value; the albedo of a lobe also counts
-# as equal within the second share of all reflected light
-SAME, OF_ALL = 0.03, 0.01
+# A parameter counts as equal within this share of its value
+SAME = 0.03
+# The albedo of a lobe also counts as equal within this share of all reflected light
+OF_ALL = 0.01
 # An albedo counts as equal within this share of its value
 SAME_ALBEDO = 0.02
 # Number of cells of the table on which the losses of two fits are compared
@@ -23,9 +24,10 @@ PART = 40_000
 INNER = 70
 # Angles of incidence [degrees] at which albedos of single lobes are compared
 LOBES = 5, 75
-# The loss on the table distinguishes two fits if it differs by more than the first share; a file's
-# estimate of the loss of a given fit counts as wrong if it is off by more than the second
-TOLD, ESTIMATED = 0.005, 0.02
+# The loss on the table distinguishes two fits if it differs by more than this share
+TOLD = 0.005
+# A file's estimate of the loss of a given fit counts as wrong if it is off by more than this share
+ESTIMATED = 0.02
 CAUSES = {
     "flat": "The loss hardly tells the two fits apart: on the table, their errors differ by less "
     "than 0.5 %.",

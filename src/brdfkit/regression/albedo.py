@@ -20,16 +20,15 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.quadrature import directional_albedo, make_ring_rule
 from brdfkit.images.ball import Pixels
 
-# If the albedos of a fit and its data differ by more than the first factor, the fit is searched
-# once more; by more than the second, 1.25 less the error of the quadrature, a warning says so
-ACCEPTED_FACTOR, WRONG_FACTOR = 1.2, 1.24
-# Beyond this angle of incidence [degrees] an albedo that is too small counts as right: real
-# materials become brighter at grazing angles than most models can
+# A fit is searched once more if its albedo differs from the data's by more than this factor
+ACCEPTED_FACTOR = 1.2
+# A warning names an albedo that differs by more than this factor, 1.25 less errors of quadrature
+WRONG_FACTOR = 1.24
+# Beyond this angle of incidence [degrees] an albedo may be too small, as it is in most models
 STEEP_ANGLE = 60
 # Angles of incidence [degrees] at which the fit is also checked for an albedo above 1
 OTHER_ANGLES = 60.0, 80.0, 89.0
-# A larger albedo is wrong: no surface reflects more light than arrives, and the quadrature has an
-# error of less than 0.001
+# A larger albedo is wrong, as no surface reflects more than arrives; the quadrature is 0.001 off
 LARGEST_ALBEDO = 1.001
 # A measurement with a larger albedo has another unit than 1/sr, so its albedo means nothing
 LARGEST_MEASURED_ALBEDO = 2.0

@@ -13,9 +13,10 @@ from brdfkit.core.names import join_words
 
 # A parameter whose entry in an eigenvector of length 1 is smaller takes no part in the direction
 ABSENT = 1e-3
-# Sentences mention pairs of parameters with a larger correlation, and several parameters whose
-# matrix of correlations has a smaller eigenvalue
-HIGH_CORRELATION, SMALL_EIGENVALUE = 0.99, 1e-5
+# Sentences mention pairs of parameters with a larger correlation
+HIGH_CORRELATION = 0.99
+# Sentences mention several parameters if their matrix of correlations has a smaller eigenvalue
+SMALL_EIGENVALUE = 1e-5
 
 
 def describe_undetermined(

@@ -28,8 +28,7 @@ def find_undetermined_at_bounds(
     """
     is_open = np.zeros(len(free), bool)
     moving = free.copy()
-    # A shape parameter of a lobe without weight has derivatives of 0, and must not count as
-    # undetermined together with others
+    # Shape parameters of lobes without weight have derivatives of 0, and are left out here
     moving[:shapes] |= np.any([jacobian[:shapes].any(axis=1) for jacobian in jacobians], axis=0)
     if (moving != free).any():
         hessian, _, _, _ = _sum_hessian(jacobians, moving, shapes)

@@ -22,7 +22,7 @@ from brdfkit.model.samples import Samples
 from brdfkit.regression.losses.loss import Loss
 from brdfkit.regression.regression import Solution, regress
 
-# τ² is at least this share of the mean σ², so that samples whose stated σ is 0 do not rule the fit
+# τ² is at least this share of the mean σ², so that samples with σ = 0 do not rule the fit
 SMALLEST_MODEL_ERROR = 0.01
 # The note on a fit with such weights starts so, by which `Fit` recognises it
 BY_ERRORS = "samples count by their standard errors"
@@ -82,7 +82,6 @@ def _compute_variances(
         lambda value: loss.difference(value, measured, cos_i, cos_o),
         double_precision.to_array(model),
     )
-    # A σ of 0 only means that the few repeated measurements agreed; the smallest other σ replaces
-    # it
+    # A σ of 0 only means that few repeated measurements agreed; the smallest other σ replaces it
     known = sigma[sigma > 0]
     return (np.array(slope) * np.maximum(sigma, known.min() if len(known) else 0)) ** 2

@@ -10,9 +10,10 @@ import numpy as np
 
 from brdfkit.regression.refitting import Refit
 
-# A profile first extends to this number of standard errors. If the loss does not reach the level of
-# the confidence limit there, the range is doubled, up to this many times
-REACH, WIDENINGS = 3.0, 6
+# A profile first extends to this number of standard errors from the fitted value
+REACH = 3.0
+# Up to this many times the range of a profile is doubled, until the loss reaches its level
+WIDENINGS = 6
 # Within this number of standard errors of the fit, the least squared loss is nearly a parabola
 PARABOLA_STEP = 0.3
 

@@ -110,9 +110,9 @@ class Refit:
     ) -> tuple[dict[str, float], FloatArray, float]:
         """Search for the solution of a `problem`, by the same steps as the fit, from one start.
 
-        Return the solution (values, weights, E²). `values`: shape parameters of the start by name;
-        `weights` (1, channels, lobes): weights of its lobes; `rng`: a generator for the random
-        choices of robust fits and of fits with a corrected albedo.
+        Return the solution (values, weights, squared loss). `values`: shape parameters of the start
+        by name; `weights` (1, channels, lobes): weights of its lobes; `rng`: a generator for the
+        random choices of robust fits and of fits with a corrected albedo.
         """
         u = problem.space.to_coordinates(values)[None]
         given = problem.expand, u, weights, problem.least

@@ -126,7 +126,7 @@ def regress(
             raise KeyboardInterrupt from None
         points = ends.u
     limits = Constraints(constraints, whole) if constraints else None
-    objective = Objective.of(problems, points, seed, report, limits)
+    objective = Objective.from_problems(problems, points, seed, report, limits)
     solver = solver or choose_solver(constraints)
     stopped = False
     try:

@@ -22,10 +22,10 @@ from brdfkit.regression.certainty import Certainty, make_intervals
 from brdfkit.regression.measurement_noise import BY_ERRORS
 
 NAN = float("nan")
-# The printed fit mentions the number of effective samples if it is below this share of the samples;
-# a full table has more under the default loss. It mentions directions without samples from the
-# second share on
-FEW_EFFECTIVE, MANY_UNREPRESENTED = 0.49, 0.01
+# A fit prints its effective samples if they are fewer than this share; a full table has more
+FEW_EFFECTIVE = 0.49
+# A fit prints the share of directions without samples from this share on
+MANY_UNREPRESENTED = 0.01
 
 
 @dataclass(frozen=True, repr=False)
@@ -163,8 +163,9 @@ class Fit(Shown):
 
     @property
     def aic(self) -> float:
-        """Akaike's information criterion, N ln(E²) + 2 k, with N measured values and k parameters.
+        """Akaike's information criterion, N ln(E²) + 2 k, with the loss E.
 
+        N is the number of measured values and k the number of parameters.
         Less is better among models fitted to the same data under the same loss. The criterion
         assumes independent samples with Gaussian noise that is equal in the loss's differences, no
         robust weights, and no table. It is NaN for a fit to pictures, whose pixels show the same
@@ -180,7 +181,7 @@ class Fit(Shown):
     def bic(self) -> float:
         """The Bayesian information criterion, N ln(E²) + k ln N, to compare models like `aic`.
 
-        N is the number of measured values and k the number of parameters. Less is better.
+        E is the loss, N the number of measured values, k the number of parameters. Less is better.
         """
         return self._sample_certainty.compute_bic(self.loss) if self._sample_certainty else NAN
 

@@ -94,7 +94,7 @@ class Loss:
         return bool((np.abs(difference - kappa * (model - measured)) <= tolerance).all())
 
     def importance(self, samples: Any) -> FloatArray:
-        """Return the weights w (n,) of samples in E² = Σ w d², a sum over samples and channels."""
+        """Return the weights w (n,) of samples in the squared loss E² = Σ w d²."""
         weights = self._evaluate_weights(samples.wi[:, 2]) * samples.weight
         weights = weights * compute_measure(samples.extents, self.measure)
         total = weights.sum() * (samples.values.shape[1] if self.channel_mean else 1)

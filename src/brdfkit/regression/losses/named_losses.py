@@ -23,8 +23,7 @@ from brdfkit.regression.losses.picture import Picture
 
 # Name of the loss that a fit minimises by default
 DEFAULT = "cbrt"
-# This is added inside the logarithm, and to the measured value that divides a relative difference,
-# so that values below the noise of a measured table [sr⁻¹] count little
+# BRDF values below this [sr⁻¹], the noise of a measured table, count little in "log" and "relative"
 OFFSET = 1e-3
 # This is added inside the cube root, whose derivative at 0 is infinite
 CBRT_OFFSET = 1e-6

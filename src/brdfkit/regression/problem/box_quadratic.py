@@ -8,8 +8,7 @@ import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 
-# After this number of rounds only one variable changes at a time between free and on a bound; then
-# the rounds are sure to end
+# After this number of rounds only one variable moves onto or off a bound, which is sure to end
 PARALLEL_ROUNDS = 10
 
 

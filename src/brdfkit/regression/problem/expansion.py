@@ -61,7 +61,7 @@ class Expansion:
         return made if sums.gram is None else replace(made, hessian=made._make_hessian(change))
 
     def _make_hessian(self, change: FloatArray) -> FloatArray:
-        """Return half the Gauss-Newton Hessians (points, n, n) of E² by the n parameters.
+        """Return half the Gauss-Newton Hessians (points, n, n) of the squared loss E².
 
         `change`: matrices of the model's derivatives, from `make_derivative_matrix`.
         """

@@ -25,8 +25,7 @@ from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.sums import Sums, move_sums_to_weights, solve_weights
 
-# Problems are folded only if a node stands for at least this number of samples on average; with
-# fewer, folding saves no time
+# Folding saves time only if a node stands for at least this number of samples on average
 SAMPLES_PER_NODE = 20
 # From this number of samples per node on, one matrix product for each node is the fastest
 LONG_NODE = 1000

@@ -32,9 +32,10 @@ from brdfkit.regression.problem.subset import draw_subset
 
 UP = (0.0, 0.0, 1.0)
 LOG = named.by_sample["log"]
-# A fit to pictures uses about the first number of samples. Its first stage, which compares start
-# points, uses about the second number of samples and this share of the pixels
-SAMPLES, FEW_SAMPLES, PIXEL_SHARE = 20_000, 2_000, 1 / 12
+# A fit to pictures uses about this number of samples in addition to the pixels
+SAMPLES = 20_000
+# To compare start points, a fit to pictures uses about this number of samples, and share of pixels
+FEW_SAMPLES, PIXEL_SHARE = 2_000, 1 / 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +63,8 @@ class PixelBlock(Block):
 class PixelBlocks:
     """An iterable factory of the blocks of some pixels, for any number of points of a search.
 
-    `importance`: weights of the n pixels in E² (n,); `loss`: the loss that compares pixels.
+    `importance`: weights of the n pixels in the squared loss (n,); `loss`: the loss that compares
+    pixels.
     """
 
     def __init__(self, pixels: Pixels, importance: FloatArray, loss: Loss) -> None:

@@ -92,8 +92,9 @@ class Problem:
     def estimate_weights(self, u: FloatArray, evenly: bool = False) -> FloatArray:
         """Return weights (points, channels, lobes) to start from, given coordinates `u`.
 
-        For a linear loss these are the weights with the least E². Another loss is linearised at the
-        measured values, or if `evenly`, replaced by the plain difference of the values.
+        For a linear loss these are the weights with the least squared loss. Another loss is
+        linearised at the measured values, or if `evenly`, replaced by the plain difference of the
+        values.
         """
         sums = Sums.zeros(len(u), self.channels, len(self.columns))
         for block in self.blocks(len(u)):
@@ -115,7 +116,7 @@ class Problem:
         return solve_weights(self.columns, sums, self.least)
 
     def expand(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
-        """Return the quadratic approximation of E² about points.
+        """Return the quadratic approximation of the squared loss E² about points.
 
         It has no Hessian without `curvature`, which saves time. If E² is quadratic in the weights,
         the expansion is about the best weights in place of the given `weights`.
@@ -130,7 +131,7 @@ class Problem:
         return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 
     def compute_sums(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Sums:
-        """Return the sums over all samples at points, from which E² and derivatives follow."""
+        """Return the sums over all samples from which the squared loss and derivatives follow."""
         sums = Sums.zeros(len(u), self.channels, len(self.columns), curvature)
         for _, evaluated in self._evaluate_blocks(u, weights):
             sums.add_samples(*evaluated)
@@ -192,14 +193,14 @@ class Problem:
     def expand_at_weights(
         self, u: FloatArray, weights: FloatArray, curvature: bool = True
     ) -> Expansion:
-        """Return the quadratic approximation of E² about points, keeping their `weights`."""
+        """Return the quadratic approximation of the squared loss for the given `weights`."""
         sums = self.compute_sums(u, weights, curvature)
         return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 
     def compute_residuals(self, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
         """Return the residuals (n,) of the samples at one point, as a list by channel.
 
-        E² is the sum of their squares.
+        The squared loss E² is the sum of their squares.
         """
         parts: list[list[JitFloat]] = []
         for block in self.blocks(1):

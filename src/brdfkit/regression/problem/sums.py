@@ -21,7 +21,7 @@ PART_SIZE = 2**16
 
 @dataclass(eq=False)
 class Sums:
-    """Sums over samples from which E² and its derivatives follow, at several points of a search.
+    """Sums over samples from which the squared loss E² and its derivatives follow, at some points.
 
     T are the columns of the model at a sample, d is the difference of the loss, d' its derivative
     by the model's value, and w the weight of the sample.
@@ -41,7 +41,7 @@ class Sums:
         return cls(np.zeros(points), np.zeros((points, channels, columns)), gram)
 
     def is_finite(self) -> bool:
-        """Return whether the sums for E² and its gradient are finite."""
+        """Return whether the sums for the squared loss and its gradient are finite."""
         return bool(np.isfinite(self.error).all() and np.isfinite(self.moment).all())
 
     @np.errstate(invalid="ignore")  # callers use `is_finite`, and raise a clearer error
@@ -70,7 +70,7 @@ class Sums:
 
 
 def solve_weights(columns: Columns, sums: Sums, low: FloatArray) -> FloatArray:
-    """Return the lobes' weights (points, channels, lobes) that minimise E² to second order.
+    """Return the lobes' weights (points, channels, lobes) that minimise the squared loss.
 
     `columns`: columns of the model; columns that are multiplied by a squared weight are ignored;
     `sums`: sums where all weights are 0; `low` (lobes,): lower bounds of the weights.

@@ -22,8 +22,7 @@ from brdfkit.regression.robust.reweighting import (
     require_more_samples,
 )
 
-# The derivative of a median residual is estimated from the samples with residuals next to the
-# median: one of this number of samples
+# One of this many samples, with a residual next to the median, estimates the median's derivative
 MEDIAN_SHARE = 200
 # Step of the central difference for the derivative of a weight by the scaled residual r
 DIFFERENCE_STEP = 1e-5
@@ -72,8 +71,7 @@ class RobustProblem:
         self.function, self.tune, self.rho = WEIGHTS[name]
         self.rank = u.shape[1] + weights.shape[2]
         require_more_samples(len(problem.samples.wi), self.rank)
-        # Leverages, smallest scales and the metric that measures changes of the fitted values are
-        # computed once, and stay the same in all passes
+        # Leverages, smallest scales and the metric of changes stay the same in all passes
         self.metric = self.part.expand_at_weights(u, weights).hessian[0]
         root = np.sqrt(problem.importance / problem.importance.mean())
         root[root == 0] = 1.0  # a sample with w = 0 has residuals of 0, which any divisor keeps

@@ -49,8 +49,7 @@ def _piecewise(
     return evaluate_piecewise
 
 
-# By name: (the weight function ω of the scaled residual r, its constant `tune`, the integral ρ of
-# ω r). With a larger `tune` fewer samples lose weight
+# By name: the weight function ω(r), its constant `tune`, and the integral ρ(r) of ω r
 WEIGHTS = {
     "andrews": (_andrews_weight, 1.339, _piecewise(np.pi, lambda r: 1 - np.cos(r), lambda r: 2.0)),
     "bisquare": (

@@ -30,8 +30,7 @@ SMALLEST_CURVATURE = 0.02
 PASSES = 150
 # With more samples than this, the search starts on a part with half this number of them
 MANY_SAMPLES = 80_000
-# The passes have converged if the next one would change the fitted values by less than this share
-# of their standard deviation
+# Passes have converged if the next changes fitted values by this share of their standard deviation
 SETTLED = 3e-7
 # With few samples the passes go on to this smaller share
 EXACT = 1e-11
@@ -39,11 +38,9 @@ EXACT = 1e-11
 LOOSE = 1e-5
 # Newton steps solve for the end if the last pass changed the fitted values by less than this share
 NEAR_END = 1e-3
-# If a step to the end leaves more than this share of the change, the Hessian that was estimated
-# from a part of the samples is too inaccurate, and all samples are used
+# All samples are used for Hessians if a step to the end leaves more than this share of the change
 SLOW = 0.5
-# With few samples, this number of passes are ordinary ones, so that the solution is MATLAB's if
-# there are several
+# With few samples, this many first passes are ordinary ones, so that the solution is MATLAB's
 ORDINARY_PASSES = 60
 
 

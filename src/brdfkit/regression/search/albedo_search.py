@@ -27,9 +27,10 @@ from brdfkit.regression.search.multistart import make_part_problems, search_from
 
 # Factors `share` of the term for the albedo in the minimised function, tried one after the other
 SHARES = 10.0, 40.0, 160.0
-# The second search is accepted if the distance of the albedos from the data's falls to this share,
-# and if the loss grows at most by this factor, times the first fit's albedo if that is above 1
-DISTANCE_SHARE, LARGEST_LOSS_RATIO = 0.6, 1.4
+# The second search is accepted if the albedos' distance from the data's falls to this share
+DISTANCE_SHARE = 0.6
+# The loss may grow by this factor in the second search, times the first albedo if that is above 1
+LARGEST_LOSS_RATIO = 1.4
 
 # The note on a fit with corrected albedo starts so, by which `Refit` recognises such a fit
 NOTE = "by the loss alone"

@@ -15,12 +15,12 @@ from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.parameter_space import join_point, make_limits
 
-# A search is given up if this many times the gain of its next step would not bring it below the
-# best search that has converged
+# A search is given up if this many next gains would not bring it below the best converged one
 PATIENCE = 10
-# Ends whose E² differs by less than the first share count as one; E² below the second share of the
-# largest E² at the start counts as 0
-SAME_END, ROUNDING = 1e-4, 1e-24
+# Ends of searches count as one if their squared losses differ by less than this share
+SAME_END = 1e-4
+# A squared loss below this share of the largest one at the start counts as 0
+ROUNDING = 1e-24
 SMALLEST_DAMPING, LARGEST_DAMPING = 1e-15, 1e9
 
 
@@ -28,8 +28,9 @@ SMALLEST_DAMPING, LARGEST_DAMPING = 1e-15, 1e9
 class Search:
     """The result of several searches that ran side by side.
 
-    `ends`: expansion of E² about the last point of each search; `converged`: whether each search
-    converged (points,); `evaluations`: number of evaluations of E², all searches together.
+    `ends`: expansion of the squared loss E² about the last point of each search; `converged`:
+    whether each search converged (points,); `evaluations`: number of evaluations of E², all
+    searches together.
     """
 
     ends: Expansion
@@ -37,7 +38,7 @@ class Search:
     evaluations: int
 
     def find_best(self, count: int) -> IntArray:
-        """Return the indices of the `count` best ends, those with the least E².
+        """Return the indices of the `count` best ends, those with the least squared loss E².
 
         Of ends with equal E² only one is returned: in a model with two equal lobes, they differ
         only in the order of the lobes.

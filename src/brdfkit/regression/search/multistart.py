@@ -18,22 +18,24 @@ from brdfkit.regression.problem.subset import draw_subset
 from brdfkit.regression.search.levenberg_marquardt import Search, levenberg_marquardt
 from brdfkit.regression.search.zero_weights import revive_zero_weights
 
-# Sizes of the parts of many samples, the largest first; a part has at most half as many samples as
-# the next larger one
+# Sizes of parts of many samples, the largest first; a part is at most half of the next larger one
 PARTS = 40_000, 3_000
-# Pairs (number of starts that continue, number of steps before they are chosen). Models with more
-# shape parameters than FEW_SHAPES, such as sums of models, need more steps and starts, because only
-# few starts lead to the best end
-FEW_SHAPES_ROUNDS, MANY_SHAPES_ROUNDS = ((24, 4), (8, 6)), ((32, 20), (8, 30))
+# Models with more shape parameters, such as sums of models, need more steps from more starts
 FEW_SHAPES = 3
-# Ends on a part whose E² is within this share of the least one go on to more samples, at most this
-# number of them
-CLOSE, FINALISTS = 0.02, 3
+# Pairs (number of starts that continue, number of steps before they are chosen)
+FEW_SHAPES_ROUNDS, MANY_SHAPES_ROUNDS = ((24, 4), (8, 6)), ((32, 20), (8, 30))
+# Ends on a part go on to more samples if their squared loss is within this share of the least one
+CLOSE = 0.02
+# At most this number of ends go on to more samples
+FINALISTS = 3
 # Largest number of steps of a search on all samples, with its own Hessian and with a part's
 LARGEST_STEPS, FEW_STEPS = 200, 10
-# A search converges if the next step would lower E² by less than a share of it: EXACT on few
-# samples, MANY_SAMPLES_FACTOR times as much on many, and LOOSE on a part of the samples
-EXACT, MANY_SAMPLES_FACTOR, LOOSE = 1e-11, 100, 1e-6
+# A search converges if the next step would lower the squared loss by less than this share
+EXACT = 1e-11
+# On many samples, a search converges at this many times the share
+MANY_SAMPLES_FACTOR = 100
+# On a part of the samples, a search converges at least at this share
+LOOSE = 1e-6
 
 
 def default_start_count(shapes: int) -> int:
@@ -81,7 +83,7 @@ def search_from_starts(
     iterations: int = LARGEST_STEPS,
     tolerance: float = EXACT,
 ) -> tuple[Expansion, BoolArray, int]:
-    """Search for the least E² from many starts, on the first problem and then on the next ones.
+    """Search for the least squared loss E² from many starts, on each of the problems in turn.
 
     Return the expansion of E² about the ends on the last problem, the best first, whether each of
     them converged, and the number of evaluations. `problems`: problems on growing parts of the
@@ -107,8 +109,7 @@ def search_from_starts(
             error = search.ends.error
             ends = search.ends.select(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
             u, weights = ends.u, ends.weights
-        # A clamped model moves slowly from kink to kink of E²; the search converges on a part
-        # first, where steps are cheaper
+        # A clamped model takes many steps along kinks of the loss, which are cheaper on a part
         tight = MANY_SAMPLES_FACTOR * tolerance
         loose = tight if problem.clamped else max(LOOSE, tight)
         limit = loose if problem is not last else tight if number else tolerance
@@ -142,7 +143,7 @@ def _search_problem(
     iterations: int,
     tolerance: float,
 ) -> tuple[Search, int]:
-    """Search for the least E² of a problem; return the `Search` and the number of evaluations.
+    """Search for the least squared loss; return the `Search` and the number of evaluations.
 
     `u`, `weights`: start points, as in `levenberg_marquardt`; `part`: None, or the problem on a
     part of the samples whose ends are the start points.
@@ -168,7 +169,7 @@ def _borrow_curvature(
 ) -> Callable[[FloatArray, FloatArray], Expansion]:
     """Return a function like `whole.expand` that takes the Hessian from a part of the samples.
 
-    It saves time, because a Hessian takes longer than E² and its gradient.
+    It saves time, because a Hessian takes longer than the squared loss and its gradient.
     """
 
     def expand_with_part_hessian(u: FloatArray, weights: FloatArray) -> Expansion:

@@ -21,9 +21,9 @@ LARGEST_COUNT, SMALLEST_GAIN = 4, 1e-7
 def revive_zero_weights(problem: Problem, end: Expansion, starts: FloatArray) -> list[FloatArray]:
     """Return start points [u, weights] where lobes have weight that lost it in a search.
 
-    These are the points where E² falls most; there are none if no lobe would lower it. `end`:
-    expansion of E² about the end of the search; `starts` (count, shapes): coordinates to try for
-    the shape parameters of a lobe, in addition to the corners of their bounds.
+    These are the points where the squared loss E² falls most; there are none if no lobe would lower
+    it. `end`: expansion of E² about the end of the search; `starts` (count, shapes): coordinates to
+    try for the shape parameters of a lobe, in addition to the corners of their bounds.
     """
     points = [(end.u[:0], end.weights[:0])]
     for lobe in np.flatnonzero((end.weights[0] == 0).all(axis=0) & (problem.least == 0)):

@@ -21,8 +21,7 @@ from brdfkit.regression.problem.not_finite import require_finite_lobes
 from brdfkit.regression.problem.parameter_space import find_channel_entries
 from brdfkit.regression.problem.problem import Problem
 
-# A quadrature has twice this number of rings, each with this number of points; its albedos are
-# exact to 1e-7
+# A quadrature has this many points on each of twice as many rings, and is exact to 1e-7
 POINTS = 128
 
 Angles: TypeAlias = tuple[float, ...]

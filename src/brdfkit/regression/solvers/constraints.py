@@ -22,9 +22,10 @@ from brdfkit.regression.problem.parameter_space import join_point, make_limits, 
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.solvers.objective import End
 
-# A constraint counts as met if its value is above minus the first number, and as active if its
-# value is below the second one
-MET_TOLERANCE, ACTIVE_TOLERANCE = 1e-8, 1e-6
+# A constraint counts as met if its value is above minus this number
+MET_TOLERANCE = 1e-8
+# A constraint counts as active, at its limit, if its value is below this number
+ACTIVE_TOLERANCE = 1e-6
 # Step of the finite differences of a user's constraint
 DIFFERENCE_STEP = 1e-5
 

@@ -34,7 +34,7 @@ class DifferentialEvolution:
     iterations : int, default 100
         Largest number of generations.
     tolerance : float, default 0.001
-        The search ends if E² varies by less than this share within the population.
+        The search ends if the squared loss varies by less than this share within the population.
 
     Examples
     --------
@@ -49,7 +49,7 @@ class DifferentialEvolution:
         check_number_fields(self)
 
     def minimise(self, objective: Objective) -> End:
-        """Return the `End` with the least E² that the search finds."""
+        """Return the `End` with the least squared loss that the search finds."""
         coordinates = self._explore(objective) if objective.shapes else objective.coordinates
         return LevenbergMarquardt().search_best_ends(objective, coordinates)[0]
 
@@ -75,7 +75,7 @@ class DifferentialEvolution:
 
 
 def _find_least_error(objective: Objective, u: FloatArray) -> FloatArray:
-    """Return the least E² (points,) over all weights of the lobes, nearly, at given coordinates.
+    """Return nearly the least squared loss (points,) over all lobe weights, at given coordinates.
 
     `u` (points, shapes): coordinates of the shape parameters.
     """

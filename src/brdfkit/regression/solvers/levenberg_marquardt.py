@@ -24,8 +24,8 @@ class LevenbergMarquardt:
     iterations : int, default 200
         Largest number of steps of one search.
     tolerance : float, default 1e-11
-        A search ends if its next step would lower E² by less than this share of it; for large
-        tables, by less than a hundred times this share.
+        A search ends if its next step would lower the squared loss by less than this share of it;
+        for large tables, by less than a hundred times this share.
 
     Examples
     --------
@@ -39,7 +39,7 @@ class LevenbergMarquardt:
         check_number_fields(self)
 
     def minimise(self, objective: Objective) -> End:
-        """Return the `End` with the least E² that the search finds."""
+        """Return the `End` with the least squared loss that the search finds."""
         return self.search_best_ends(objective, objective.coordinates)[0]
 
     def search_best_ends(self, objective: Objective, coordinates: FloatArray) -> list[End]:

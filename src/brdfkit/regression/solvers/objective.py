@@ -83,7 +83,7 @@ class Objective:
         self.low, self.high = make_limits(self.shapes, problem.channels, problem.least)
 
     @classmethod
-    def of(cls, problems: Sequence[Any], *given: Any) -> Objective:
+    def from_problems(cls, problems: Sequence[Any], *given: Any) -> Objective:
         """Return the objective of the last of the `problems`, with the ones before as its parts.
 
         The problems have growing numbers of samples; `given`: the arguments of the class after the
@@ -100,11 +100,11 @@ class Objective:
         return self.join(self.coordinates, self.problem.estimate_weights(self.coordinates))
 
     def error(self, points: ArrayLike) -> FloatArray:
-        """Return E² (count,) at `points` (count, n) within the bounds, evaluated at once."""
+        """Return the squared loss (count,) at `points` (count, n) within the bounds."""
         return self.expand(points, curvature=False).error
 
     def expand(self, points: ArrayLike, curvature: bool = True) -> Expansion:
-        """Return a quadratic approximation of E² about `points` (count, n).
+        """Return a quadratic approximation of the squared loss E² about `points` (count, n).
 
         The result has ``error``, E² (count,), ``gradient``, half the gradient of E² (count, n), and
         ``hessian``, half its Gauss-Newton Hessian (count, n, n). Without `curvature` it has no
@@ -135,11 +135,11 @@ class Objective:
         return join_point(u, weights)
 
     def count(self) -> int:
-        """Return how often E² was evaluated, on all samples and on parts of them."""
+        """Return how often the squared loss was evaluated, on all samples and on parts of them."""
         return self.evaluations + sum(part.evaluations for part in self.parts)
 
     def require_end(self, end: Any) -> End:
-        """Return the `End` that a user's solver returned, with its E² computed again.
+        """Return the `End` that a user's solver returned, with its squared loss computed again.
 
         Raises `BrdfkitError` if it is no `End`, outside the bounds, or violates the constraints.
         """
@@ -181,4 +181,4 @@ class Solver(Protocol):
     """The protocol of solvers, the algorithms that minimise the loss of a fit."""
 
     def minimise(self, objective: Objective) -> End:
-        """Return the `End` with the least E² that the solver finds."""
+        """Return the `End` with the least squared loss that the solver finds."""

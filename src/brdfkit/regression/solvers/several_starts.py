@@ -39,7 +39,7 @@ def search_stages(
 
 
 def _drop_equal_ends(ends: list[End]) -> list[End]:
-    """Return the `ends`, which are sorted by E², with only one of those with equal E²."""
+    """Return the `ends`, sorted by squared loss, without repetitions of the same loss."""
     errors = np.array([end.error for end in ends])
     new = np.diff(errors, prepend=-1) > SAME_END * errors
     return [end for end, is_new in zip(ends, new, strict=True) if is_new]
@@ -67,7 +67,7 @@ def _move_to_bounds(objective: Objective, end: End) -> End:
 
 
 def find_best_starts(objective: Objective, count: int) -> FloatArray:
-    """Return the `count` start points (count, n) with the least E² on the smallest part."""
+    """Return the `count` start points (count, n) with the least loss on the smallest part."""
     stage = objective.stages()[0]
     order = np.argsort(stage.error(stage.starts), kind="stable")
     return stage.starts[order[:count]]

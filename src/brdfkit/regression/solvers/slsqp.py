@@ -14,8 +14,7 @@ from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt
 from brdfkit.regression.solvers.objective import End, Objective
 from brdfkit.regression.solvers.several_starts import find_best_starts, search_stages
 
-# Largest number of repetitions of a search from its end. They use new units of the parameters,
-# because SciPy's search may end too early in the old ones
+# SciPy's search may end too early, and is repeated in new units of the parameters, at most so often
 REPETITIONS = 8
 # E² is divided by its value at the start, but at least by this share of a black model's E²
 SMALLEST_UNIT = 1e-6
@@ -32,9 +31,10 @@ class SLSQP:
     iterations : int, default 200
         Largest number of steps of one search.
     tolerance : float, default 1e-10
-        A search ends if another one from its end lowers E² by less than this share of it.
+        A search ends if another one from its end lowers the squared loss by less than this share of
+        it.
     starts : int, default 8
-        Number of starts to search from, those with the least E². With constraints, the search
+        Number of starts to search from, those with the least loss. With constraints, the search
         starts from the ends of `LevenbergMarquardt` without them.
 
     Examples
@@ -52,7 +52,7 @@ class SLSQP:
         check_number_fields(self)
 
     def minimise(self, objective: Objective) -> End:
-        """Return the `End` with the least E² that meets the constraints."""
+        """Return the `End` with the least squared loss that meets the constraints."""
         if objective.constraints is None:
             return search_stages(objective, self._search, find_best_starts(objective, self.starts))
         # If the optimum without constraints happens to meet them, it is the result
@@ -79,7 +79,7 @@ class SLSQP:
     def _search_once(
         self, objective: Objective, start: FloatArray, hessian: FloatArray, scale: float
     ) -> tuple[FloatArray, float]:
-        """Return the end (z, E²) of one search by SciPy from the point `start` (n,).
+        """Return the end (z, squared loss E²) of one search by SciPy from the point `start` (n,).
 
         `hessian` (n, n): Hessian of E² / `scale` at the start, which decides the units.
         """
@@ -89,7 +89,7 @@ class SLSQP:
         unit = 1 / np.sqrt(np.maximum(hessian.diagonal(), 1))
 
         def error(y: FloatArray) -> tuple[float, FloatArray]:
-            """Return E² / `scale` and its gradient at a point `y` (n,) in these units."""
+            """Return the squared loss over `scale` and its gradient at a point `y` (n,)."""
             there = objective.expand(objective.clip(y * unit), curvature=False)
             return there.error[0] / scale, 2 * there.gradient[0] * unit / scale
 

@@ -30,9 +30,9 @@ class TrustRegion:
     iterations : int, default 200
         Largest number of steps of one search.
     tolerance : float, default 1e-12
-        A search ends if a step lowers E² by less than this share of it.
+        A search ends if a step lowers the squared loss by less than this share of it.
     starts : int, default 8
-        Number of starts to search from, those with the least E².
+        Number of starts to search from, those with the least loss.
 
     Examples
     --------
@@ -47,7 +47,7 @@ class TrustRegion:
         check_number_fields(self)
 
     def minimise(self, objective: Objective) -> End:
-        """Return the `End` with the least E² that the search finds."""
+        """Return the `End` with the least squared loss that the search finds."""
         return search_stages(objective, self._search, find_best_starts(objective, self.starts))
 
     def _search(self, objective: Objective, z: FloatArray) -> End:
@@ -81,8 +81,8 @@ class TrustRegion:
 def _compress_expansion(expansion: Expansion) -> tuple[FloatArray, FloatArray]:
     """Return few residuals (n + 1,) and a small Jacobian (n + 1, n) that stand for all samples.
 
-    Their products are E², its gradient and its Hessian in the `expansion`, which is about one point
-    with n parameters.
+    Their products are the squared loss, its gradient and its Hessian in the `expansion`, which is
+    about one point with n parameters.
     """
     values, vectors = np.linalg.eigh(expansion.hessian[0])
     roots = np.sqrt(np.where(values > SINGULAR * values.max(), values, 0))
