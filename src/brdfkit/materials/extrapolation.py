@@ -71,7 +71,7 @@ def describe_file_extrapolation(before: Measured, after: Measured) -> list[str]:
 
 
 def _pick_direction_pairs(data: Measured) -> tuple[FloatArray, FloatArray]:
-    """Return wi and wo (n, 3) of at most `PAIRS` samples of a `Measured` with scattered samples."""
+    """Pick at most `PAIRS` of the valid samples evenly, and return their wi and wo (n, 3)."""
     (rows,) = np.nonzero(data.samples.valid)
     rows = rows[np.linspace(0, len(rows) - 1, min(len(rows), PAIRS)).astype(int)]
     return data.samples.wi[rows], data.samples.wo[rows]

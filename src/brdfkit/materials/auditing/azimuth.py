@@ -45,7 +45,7 @@ def compute_turned_error_ratio(samples: Samples) -> float:
 
 
 def _correlate_with_mirror(samples: Samples) -> float:
-    """Return the correlation of the values' logarithms with nearness to the mirror direction."""
+    """Return how strongly values rise towards the mirror direction: a correlation, -1 to 1."""
     values = samples.values.mean(axis=1)
     rows = values > 0
     towards = -(samples.wi[rows, :2] * samples.wo[rows, :2]).sum(axis=1)

@@ -40,6 +40,6 @@ def draw_valid_samples(data: Measured) -> Samples:
 
 
 def thin_out_theta_h(table: Table) -> FloatArray:
-    """Return the values of a `Table`, of a large one only at every second or further theta_h."""
+    """Return a table's values, thinned out along theta_h if they are many, to save time."""
     step = -(-table.values[..., 0].size // MOST_CELLS)
     return table.values[..., ::step, :, :, :]

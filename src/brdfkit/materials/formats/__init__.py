@@ -6,7 +6,7 @@ A new module is found without registration. It defines
 - ``sniff(head)``: returns whether the first 4 kB (bytes, decompressed) look like this format;
 - ``read(source)``: returns the content of a `Source` (`_source.py`), a `Measured` or a `Fit`;
 - ``write(obj, stream)``, if the format can be written: writes `obj` to a binary stream, or raises a
-  `BrdfkitError` that says what the format cannot hold, before which the path is put;
+  `BrdfkitError` that says what the format cannot hold, to which the path is added;
 - ``MANY = True``, if one file holds many materials: ``source.sample`` names one of them.
 
 `_writing.py` has functions that several writers share, and `_delimited.py` reads tables of text.

@@ -187,7 +187,7 @@ class Source:
     def require_radians(
         self, lines: Sequence[int], angles: FloatArray, limits: Sequence[float]
     ) -> None:
-        """Raise `BrdfkitError` where absolute `angles` (n, k) [rad] exceed their `limits` (k,).
+        """Raise `BrdfkitError` where `angles` (n, k) [rad], of either sign, exceed `limits` (k,).
 
         They are then probably in degrees. `lines` (n,) are the numbers of their lines.
         """

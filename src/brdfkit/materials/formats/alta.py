@@ -77,7 +77,7 @@ PARAM_IN: dict[str, tuple[tuple[float, ...], Callable[..., Directions]]] = {
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a file that begins with `head` is ALTA's: has a line such as ``#DIM 3 1``."""
+    """Return whether a file that begins with `head` is ALTA's, by a line such as ``#DIM 3 1``."""
     return re.search(rb"^#DIM\s+\d", head, re.MULTILINE) is not None
 
 
@@ -191,9 +191,10 @@ def _halve_intervals(columns: FloatArray, intervals: Sequence[int]) -> FloatArra
 def _find_value_factor(
     source: Source, header: dict[str, str], wo: FloatArray
 ) -> tuple[FloatArray | float, BoolArray | bool, dict[str, str]]:
-    """Return the factor (n, 1) by which to divide the values to get the BRDF, by the header.
+    """Return the factor (n, 1) by which to divide the values to get the BRDF.
 
-    The second result is a mask (n,) of the rows where that is possible; the third are notes.
+    It is 1 or cos theta_v, as the header states. The second result is a mask (n,) of the rows where
+    the division is possible; the third are notes.
     """
     stated = header.get("PARAM_OUT")
     if stated == COSINE:

@@ -41,7 +41,7 @@ Lines = list[tuple[int, str]]  # pairs of the number of a line and its text
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a file that begins with `head` is in this format: has a line VARS."""
+    """Return whether a file that begins with `head` is an ASTM file, by its line VARS."""
     return re.search(rb"^VARS\s", head, re.MULTILINE) is not None
 
 

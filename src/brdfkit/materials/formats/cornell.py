@@ -30,10 +30,7 @@ MOST_WAVELENGTHS = 4096
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a file that begins with `head` is Cornell's.
-
-    A whole number and a plausible wavelength follow its comments.
-    """
+    """Return whether a file that begins with `head` is Cornell's, by a count and a wavelength."""
     lines = [line for line in head.split(b"\n") if line.strip() and not line.startswith(b"#")]
     tokens = b" ".join(lines[:3]).split()
     try:

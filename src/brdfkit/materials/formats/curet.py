@@ -19,7 +19,7 @@ TABLE = "table.txt"
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a file that begins with `head` is CUReT's: has 206 numbers in a line."""
+    """Return whether a file that begins with `head` is CUReT's, by the 206 numbers in a line."""
     fields = head.lstrip().split(b"\n", 1)[0].split()
     try:
         return len(list(map(float, fields))) == 1 + GEOMETRIES and fields[0].isdigit()

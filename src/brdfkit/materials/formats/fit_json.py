@@ -24,7 +24,7 @@ DAMAGED = ValueError, KeyError, TypeError, AttributeError, OverflowError, Recurs
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a file that begins with `head` is a fit: JSON with brdfkit's version."""
+    """Return whether a file that begins with `head` is a saved fit: JSON with brdfkit's version."""
     return head.lstrip().startswith(b"{") and f'"{VERSION_KEY}"'.encode() in head[:200]
 
 

@@ -31,7 +31,7 @@ NOT_MEASURED = -1.0
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a file that begins with `head` is MERL's: has plausible numbers of cells."""
+    """Return whether a file that begins with `head` is MERL's, by plausible numbers of cells."""
     return len(head) >= HEADER and any(map(_is_plausible_shape, _read_dimensions(head)))
 
 

@@ -53,7 +53,7 @@ class MeasuredAlbedo:
 
     @property
     def means(self) -> tuple[float, ...]:
-        """The albedo at each of `ANGLES`, averaged over the channels; NaN where it is not known."""
+        """The albedo at 5°, 45° and 75°, averaged over the channels; NaN where it is not known."""
         means = np.where(self.known, self.values.mean(axis=1), np.nan)
         return tuple(means[: len(ANGLES)].tolist())
 
@@ -90,7 +90,7 @@ def make_outgoing_quadrature(wi: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def compute_measured_albedo(data: MeasuredData) -> MeasuredAlbedo:
-    """Compute the directional albedo of a `Measured` at the incidences `ANGLES` and `GRAZING`."""
+    """Compute the directional albedo of a `Measured` at incidences of 5°, 45°, 75° and 85°."""
     azimuths = ANISOTROPIC_AZIMUTHS if data.anisotropic else ISOTROPIC_AZIMUTHS
     angles, is_near, values, known = (*ANGLES, GRAZING), _make_measured_test(data), [], []
     for angle in angles:
@@ -102,7 +102,7 @@ def compute_measured_albedo(data: MeasuredData) -> MeasuredAlbedo:
 
 
 def _is_noisy(data: MeasuredData) -> bool:
-    """Return whether so many scattered samples are not positive that their albedo is too low."""
+    """Return whether noise makes many scattered samples 0 or negative, which lowers the albedo."""
     if data.is_table:
         return False
     means = data.samples.values[data.samples.valid].mean(axis=1)

@@ -29,7 +29,7 @@ class Coverage:
 
 
 def compute_coverage(data: Measured, max_angle: float = 90.0) -> Coverage:
-    """Return the `Coverage` of the pairs of directions that a measurement reaches.
+    """Return which shares of all pairs of directions a measurement covers, as a `Coverage`.
 
     Only pairs with both angles to the normal below `max_angle` [degrees] count.
     """

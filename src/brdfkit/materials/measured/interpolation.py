@@ -124,7 +124,7 @@ def _choose_coordinate_scales(
     """Return the scale factors of the isotropic coordinates in which distances are measured.
 
     They differ for retroreflective samples. `ratios` (n, channels) are the logarithms of the
-    samples over the guide.
+    samples over the guide, the model that was fitted to them.
     """
     theta_h, theta_d, _ = to_half_difference(wi, wo)
     back = (theta_d < RETRO_THETA_D) & (theta_h > RETRO_THETA_H)

@@ -137,7 +137,7 @@ def detect_symmetry(f: Lookup) -> int:
 
 
 def _compute_microfacets(f: Lookup, size: Resolution) -> list[FloatArray]:
-    """Compute the distribution of normals D and the projected area σ, both (y, x), from f(w, w)."""
+    """Compute the distribution of normals and their projected area, (y, x) each, from f(w, w)."""
     theta = np.linspace(0, 1, size.theta_m) ** 2 * np.pi / 2
     hemisphere = Hemisphere(theta, size.phi_m)
     w = Hemisphere(np.minimum(theta, GRAZING), size.phi_m).directions.reshape(-1, 3)

@@ -86,7 +86,7 @@ class Parameterisation:
     def find_grid_points(
         self, wi: FloatArray, wo: FloatArray
     ) -> tuple[FloatArray, Slices, FloatArray]:
-        """Return the points u (n, 2) of the grid at which to look up pairs of directions (n, 3).
+        """Return the points u (n, 2) of the unit square that stand for pairs of directions (n, 3).
 
         The directions must be above the surface. The other results are the slices of the table to
         interpolate, by `warp.find_slices` for the incidences, and the factors (n,) of
@@ -140,9 +140,10 @@ class Parameterisation:
 class AdaptiveTable:
     """A BRDF function that interpolates values tabulated in the adaptive parameterisation.
 
-    `parameterisation`: directions of the table; `values`: stored values over the grid of points u,
-    (a, b, y, x, channels); `density`: density over u, up to a factor, from which Mitsuba draws
-    directions, (a, b, y, x); `divided`: True if the values are M, False if they are f cosθ_o.
+    `parameterisation`: directions of the table, with a azimuths and b polar angles of incidence;
+    `values`: stored values over the grid of points u, (a, b, y, x, channels); `density`: density
+    over u, up to a factor, from which Mitsuba draws directions, (a, b, y, x); `divided`: whether
+    the values are f cosθ_o divided by `compute_facet_factor`, or else f cosθ_o.
     """
 
     parameterisation: Parameterisation
