@@ -279,12 +279,12 @@ NOTES = {  # the files that make notes, and in which of their functions or names
     "regression/albedo.py": ("warnings",),
     "regression/search/albedo_search.py": ("_describe_correction",),
     "materials/auditing/data_findings.py": (
-        "_describe_direction",
+        "_describe_backward_highlight",
         "_describe_cosine",
         "_describe_reciprocity",
         "_describe_horizon",
         "_describe_plane",
-        "_describe_incidence",
+        "_describe_single_incidence",
         "_describe_zeros",
     ),
     "regression/certainty_notes.py": (
