@@ -38,11 +38,12 @@ class Group(click.Group):
                 stream.reconfigure(errors="replace")
         guard = watch_writing(refuse_to_replace, record_writing)
         with stop_on_signals(), translate_errors(), guard, warnings.catch_warnings():
-            warnings.showwarning = _print_warning
+            warnings.showwarning = lambda message, *_, **__: print_message(message)
             try:
                 return super().invoke(ctx)
             finally:
-                _flush_output()
+                if sys.stdout:  # it is None where the shell closed it
+                    sys.stdout.flush()  # here, so that `translate_errors` sees its errors
 
 
 class FinalMessage(click.ClickException):
@@ -78,7 +79,8 @@ def translate_errors() -> Iterator[None]:
             ) from error
         if error.errno not in WRITE_ERRORS:
             raise
-        _discard_output()
+        # Discard the output that is left, which Python would try to print again at exit
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise FinalMessage(
             f"the output cannot be written ({error.strerror}); make room."
         ) from error
@@ -120,17 +122,6 @@ def _describe_misuse(error: click.UsageError) -> str:
     return message.rstrip(".")
 
 
-def _flush_output() -> None:
-    """Flush standard output, so that an error in it is raised within `translate_errors`."""
-    if sys.stdout:  # it is None where the shell closed it
-        sys.stdout.flush()
-
-
-def _discard_output() -> None:
-    """Discard output that could not be printed, which Python would try to print again at exit."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
 def print_message(message: object) -> None:
     """Print one sentence on standard error, without its middle where it is very long."""
     text = to_printable(" ".join(str(message).split()))
@@ -143,7 +134,3 @@ def exit_interrupted(message: str) -> NoReturn:
     """Print what was finished before Ctrl-C or SIGTERM, and end the command with its status."""
     print_message(f"interrupted; {message}.")
     click.get_current_context().exit(find_exit_status())
-
-
-def _print_warning(message: Warning | str, *_args: Any, **_kwargs: Any) -> None:
-    print_message(message)

@@ -32,7 +32,11 @@ def check(things: tuple[str, ...], values: tuple[str, ...], console: Console) ->
     for name, subject in [(name, _find_subject(name, values)) for name in things]:
         with console.progress(f"check {name}") as progress:
             reports.append(run_checks(subject, progress=progress))
-    _print_reports(reports, console)
+    if console.as_json:
+        console.print_json([_make_report_record(report) for report in reports])
+    else:
+        for report in reports:
+            console.output.print(str(report))
     click.get_current_context().exit(0 if all(reports) else 1)
 
 
@@ -52,15 +56,6 @@ def _find_subject(name: str, settings: Sequence[str]) -> Any:
         require_declared(name, values)
         return make_example(name, **values)
     return find_material(name, settings) if settings else name
-
-
-def _print_reports(reports: Sequence[Report], console: Console) -> None:
-    """Print the reports of the checks, one after another."""
-    if console.as_json:
-        console.print_json([_make_report_record(report) for report in reports])
-        return
-    for report in reports:
-        console.output.print(str(report))
 
 
 def _make_report_record(report: Report) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -62,7 +61,11 @@ def reproduce(
     from brdfkit.theses import reproduce as reproduce_thesis
 
     if name is None:
-        _print_theses(list_theses(), console)
+        titles = list_theses()
+        if console.as_json:
+            console.print_json(titles)
+        else:
+            console.print_table(["thesis", "title"], list(titles.items()))
         return
     with use_results_folder(output), console.progress(f"reproduce {name}") as progress:
         result = reproduce_thesis(
@@ -76,14 +79,6 @@ def reproduce(
     _print_claims(result, console)
     if result.unfinished:
         exit_interrupted(f"not finished: {', '.join(result.unfinished)}")
-
-
-def _print_theses(titles: Mapping[str, str], console: Console) -> None:
-    """Print the names and titles of the theses."""
-    if console.as_json:
-        console.print_json(titles)
-        return
-    console.print_table(["thesis", "title"], list(titles.items()))
 
 
 def _print_claims(result: Reproduction, console: Console) -> None:

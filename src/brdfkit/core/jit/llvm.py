@@ -35,7 +35,8 @@ def choose_llvm_library() -> None:
     If Dr.Jit was imported before, its choice stands; a warning says so if it is a bad one.
     """
     if "drjit" in sys.modules:
-        _warn_of_bad_choice()
+        if 0 < find_loaded_version() < OLDEST:
+            warnings.warn(_describe_bad_choice(), stacklevel=3)
     elif sys.platform == "linux":
         chosen = find_llvm_library()
         named = os.environ.get(VARIABLE)
@@ -126,12 +127,6 @@ def use_variant() -> str:
     variant = str(mi.variant())
     require_safe_variant(variant)
     return variant
-
-
-def _warn_of_bad_choice() -> None:
-    """Warn where Dr.Jit has loaded an LLVM that aborts the process."""
-    if 0 < find_loaded_version() < OLDEST:
-        warnings.warn(_describe_bad_choice(), stacklevel=4)
 
 
 def _describe_bad_choice() -> str:
