@@ -82,7 +82,7 @@ class TargetAlbedo:
 
     @classmethod
     def from_measured(cls, albedo: Any, anisotropic: bool) -> TargetAlbedo:
-        """Return the object for the `MeasuredAlbedo` of a material, which may be anisotropic."""
+        """Return the target for fits to a material, from its `MeasuredAlbedo`."""
         azimuths = ANISOTROPIC_AZIMUTHS if anisotropic else ISOTROPIC_AZIMUTHS
         pixels = make_albedo_pixels(albedo.theta_i, azimuths)
         target = np.minimum(

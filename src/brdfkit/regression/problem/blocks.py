@@ -15,7 +15,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray, JitFloat
 from brdfkit.core.jit import double_precision
-from brdfkit.core.jit.double_precision import Vector
+from brdfkit.core.jit.double_precision import Vector, differentiate
 from brdfkit.core.jit.padding import pad
 from brdfkit.model.samples import Samples
 from brdfkit.regression.losses.loss import Loss
@@ -93,6 +93,31 @@ class Block:
         return columns.evaluate(
             self.repeat_for_samples(table) if table.size else [], self.wi, self.wo
         )
+
+    def evaluate_difference(
+        self, value: Any, channel: int, clamped: bool = False, extended: bool = False
+    ) -> tuple[JitFloat, JitFloat]:
+        """Return the loss's difference in a channel, and its derivative by the model's `value`.
+
+        `clamped`: whether a negative value is replaced by 0; `extended`: whether the difference
+        then continues below 0 with the slope that it has at 0.
+        """
+
+        def difference(value: JitFloat) -> JitFloat:
+            """Return the difference of the loss between a model's value and the measured one."""
+            return self.loss.difference(value, self.measured[channel], self.wi.z, self.wo.z)
+
+        def clamp_difference(value: JitFloat) -> JitFloat:
+            """Return the difference of a value that is clamped at 0 where it is negative."""
+            return difference(dr.select(value < 0, 0, value))
+
+        value = double_precision.choose_float_type()(value) + 0 * self.wi.z
+        if not clamped:
+            return differentiate(difference, value)
+        if not extended:
+            return differentiate(clamp_difference, value)
+        _, slope = differentiate(difference, 0 * value)
+        return differentiate(lambda v: clamp_difference(v) + slope * dr.minimum(v, 0), value)
 
     def directions(self) -> tuple[Vector, Vector]:
         """Return the incident and outgoing directions of the samples, without repetition."""

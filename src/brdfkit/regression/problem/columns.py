@@ -98,7 +98,7 @@ class Columns:
         wo: Vector,
         factor: Callable[[Lobe], JitFloat] | None = None,
     ) -> list[JitFloat]:
-        """Return the values, without slopes, as Dr.Jit arrays (n,), like `evaluate`."""
+        """Return the values of the lobes as Dr.Jit arrays (n,), like `evaluate` without slopes."""
         lobes = [lobe for _, lobe in self.make_model(shapes).terms()]
         zeros = 0 * wi.z  # adding it turns the number of a constant lobe into an array (n,)
         plain = [(factor(lobe) if factor else lobe.eval(wi, wo)) + zeros for lobe in lobes]

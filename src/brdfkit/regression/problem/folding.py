@@ -107,14 +107,15 @@ class FoldedProblem:
     def _evaluate_constants(self, block: Block) -> FloatArray:
         """Return the parts of the sums that do not change in a fit, (lobes + channels, n).
 
-        The rows are √w κ A for each lobe and -√w κ R for each channel, at the n samples of a block.
+        The rows are √w κ A for each lobe and -√w κ R for each channel, at the n samples of a block,
+        with weights w, the slope κ of the loss, constant factors A of lobes and measured values R.
         """
-        columns, problem = self.columns, self.problem
+        columns = self.columns
         middle = self.space.to_parameters(np.full((1, len(self.space.names)), 0.5))[0]
         lobes = columns.make_model([double_precision.to_scalar(x) for x in middle]).lobes()
         root, constants, differences = dr.sqrt(block.importance), [], []
         for c in range(self.channels):
-            difference, kappa = problem._evaluate_difference(block, 0.0, c)
+            difference, kappa = block.evaluate_difference(0.0, c)
             differences.append(root * difference)
         for lobe in lobes:
             constant = lobe.factors[1] if lobe.factors else lobe.eval

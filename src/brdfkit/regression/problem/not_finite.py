@@ -89,7 +89,7 @@ def require_finite_lobes(model: Any, columns: FloatArray, wi: Vector, wo: Vector
 
 
 def _raise_for_lobe(model: Any, lobe: int, value: float, pair: str) -> NoReturn:
-    """Raise `BrdfkitError` for a lobe's `value` that is not finite at directions, `pair`."""
+    """Raise the error for a lobe with a `value` that is not finite; `pair`: directions as text."""
     raise BrdfkitError(
         f"{model.type_name()}: the lobe of {model.weights()[lobe]} is {value:g} at {pair}; "
         f"{REMEDY}."

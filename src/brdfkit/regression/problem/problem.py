@@ -17,7 +17,6 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitFloat
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit import double_precision
-from brdfkit.core.jit.double_precision import differentiate
 from brdfkit.model import Model
 from brdfkit.model.samples import Samples
 from brdfkit.regression.losses.loss import Loss
@@ -50,7 +49,7 @@ class Problem:
         bounds = [model.parameters[name].bounds for name in model.weights()]
         self.least = np.array([low for low, _ in bounds])
         self.clamped = not loss.linear and bool((self.least < 0).any())
-        self.extended = extended
+        self.clamping = self.clamped, extended
         self.linear = loss.linear and (self.columns.powers == 1).all()
         self.factors: list[FloatArray] | None = None
 
@@ -80,7 +79,9 @@ class Problem:
         for block in self.blocks(1):
             total = 0
             for group in self.groups:
-                total += sum(dr.square(self._evaluate_difference(block, 0.0, c)[0]) for c in group)
+                total += sum(
+                    dr.square(block.evaluate_difference(0.0, c, *self.clamping)[0]) for c in group
+                )
                 self._evaluate_group(total)
             squares.append(np.asarray(block.importance * total))
         contributions = np.concatenate(squares)
@@ -104,7 +105,7 @@ class Problem:
                 for c in group:
                     value = block.measured[c]
                     value = value if self.loss.linear else dr.maximum(value, 0)
-                    _, slope = self._evaluate_difference(block, value, c)
+                    _, slope = block.evaluate_difference(value, c, *self.clamping)
                     slope = 0 * slope + 1 if evenly else slope
                     weights.append(block.importance * slope * slope)
                     moments.append(-weights[-1] * value)
@@ -178,7 +179,7 @@ class Problem:
                 own = []
                 model = self._evaluate_model(block, columns, weights[:, group])
                 for c, value in zip(group, model, strict=True):
-                    difference, slope = self._evaluate_difference(block, value, c)
+                    difference, slope = block.evaluate_difference(value, c, *self.clamping)
                     importance = block.importance
                     if self.factors is not None:
                         factors = double_precision.to_array(self.factors[c][block.rows])
@@ -209,7 +210,9 @@ class Problem:
             for group in self.groups:
                 model = self._evaluate_model(block, columns, weights[:, group])
                 pairs = zip(group, model, strict=True)
-                parts[-1] += [root * self._evaluate_difference(block, m, c)[0] for c, m in pairs]
+                parts[-1] += [
+                    root * block.evaluate_difference(m, c, *self.clamping)[0] for c, m in pairs
+                ]
                 self._evaluate_group(columns, parts[-1])
             dr.eval(parts[-1])
         return [np.concatenate([np.asarray(p) for p in part]) for part in zip(*parts, strict=True)]
@@ -236,34 +239,6 @@ class Problem:
             mixed.append(sum(f * column for f, column in zip(own, columns, strict=False)))
         return mixed
 
-    def _evaluate_difference(
-        self, block: Block, value: JitFloat, c: int
-    ) -> tuple[JitFloat, JitFloat]:
-        """Return the loss's difference in channel `c`, and its derivative by the model's `value`.
-
-        Both are Dr.Jit arrays over the samples of the block.
-        """
-
-        def difference(value: JitFloat) -> JitFloat:
-            """Return the difference of the loss between a model's value and the measured one."""
-            return block.loss.difference(value, block.measured[c], block.wi.z, block.wo.z)
-
-        def clamped(value: JitFloat) -> JitFloat:
-            """Return the difference of a value that is clamped at 0 where it is negative."""
-            return difference(dr.select(value < 0, 0, value))
-
-        def extended(value: JitFloat) -> JitFloat:
-            """Return the difference that continues along its slope at 0 for negative values."""
-            return clamped(value) + slope * dr.minimum(value, 0)
-
-        value = double_precision.choose_float_type()(value) + 0 * block.wi.z
-        if not self.clamped:
-            return differentiate(difference, value)
-        if not self.extended:
-            return differentiate(clamped, value)
-        _, slope = differentiate(difference, 0 * value)
-        return differentiate(extended, value)
-
     def _raise_if_not_finite(self, u: FloatArray, weights: FloatArray | None = None) -> None:
         """Raise a `BrdfkitError` that names a sample at which the loss is not finite, if any.
 
@@ -275,7 +250,7 @@ class Problem:
             if weights is not None:
                 model = self._evaluate_model(block, self._evaluate_columns(block, u), weights)
             for c, value in enumerate(model):
-                both = self._evaluate_difference(block, value, c)
+                both = block.evaluate_difference(value, c, *self.clamping)
                 require_finite_loss(block.loss, block, value, block.measured[c], *both)
 
     def _evaluate_block(

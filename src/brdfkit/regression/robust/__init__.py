@@ -1,1 +1,1 @@
-"""Robust fits, which reduce the weight of outliers and search again, until both agree."""
+"""Fits models robustly: passes reduce the weight of outliers and search again."""
