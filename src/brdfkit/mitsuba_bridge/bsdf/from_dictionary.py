@@ -37,7 +37,7 @@ class BsdfMaterial:
         return cls(str(bsdf.pop("name", bsdf["type"])), bsdf)
 
     def scene_dict(self) -> dict[str, Any]:
-        """Return the dictionary for `mitsuba.load_dict`."""
+        """Return the BSDF's dictionary for `mitsuba.load_dict`."""
         return dict(self.entries)
 
     @in_turn

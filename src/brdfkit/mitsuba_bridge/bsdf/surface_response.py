@@ -44,7 +44,7 @@ class Point:
         return [None if e is None else share * e / total for e in energies]
 
     def draw_direction(self, sample1: JitFloat, sample2: JitVector) -> tuple[JitVector, JitInt]:
-        """Draw an outgoing direction by the cosine or a component; return it with its component."""
+        """Draw an outgoing direction from the cosine or a component; return also the component."""
         wo = base.COSINE.sample(self.wi, sample2)
         first = next((k for k, enabled in enumerate(self.enabled) if enabled), 0)
         component = self.mi.UInt32(first)
@@ -77,7 +77,7 @@ class Point:
         return self.evaluate_lobes([i for group, enabled in groups if enabled for i in group], wo)
 
     def evaluate_lobes(self, chosen: list[int], wo: JitVector) -> JitColour:
-        """Return the BRDF [sr⁻¹] of lobes by their indices, the sum of weight times lobe."""
+        """Return the BRDF [sr⁻¹] of the lobes with the indices `chosen`: Σ weight times lobe."""
         value = self.mi.UnpolarizedSpectrum(0)
         for i in chosen:
             weight, lobe = self.weights[i], self.lobes[i]

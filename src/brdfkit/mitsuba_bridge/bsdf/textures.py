@@ -53,7 +53,7 @@ def define_textured_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
                 callback.put(name, texture, kind)
 
         def texture_scale(self, name: str) -> float:
-            """Return what `normalise_colour` divided a colour texture by, 1 for others."""
+            """Return the number by which `normalise_colour` divided a colour texture, or 1."""
             return self.scales.get(name, 1)
 
         def bind_lobes(

@@ -193,7 +193,7 @@ def declare_volume(default: Any, meaning: str, coloured: bool = True, least: flo
 def read_settings(
     settings: Mapping[str, Setting], get: Callable[[str, Any], Any], owner: str
 ) -> dict[str, Any]:
-    """Read the values of settings by name from `get(name, default)`.
+    """Read the values of the declared `settings`, by name, from `get(name, default)`.
 
     Raises `BrdfkitError`, which names the `owner`, for a value that is not allowed.
     """
