@@ -15,7 +15,7 @@ from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.light_shadow import LightShadow
 from brdfkit.shadows.maps.line_of_sight import LineOfSight
 from brdfkit.shadows.maps.projection import LightDepth, Projection
-from brdfkit.shadows.maps.resolution import aliasing
+from brdfkit.shadows.maps.resolution import texel_area_in_pixels
 from brdfkit.shadows.maps.techniques import FILES, make_techniques
 
 PROJECTIONS = FILES["projection"]
@@ -35,7 +35,7 @@ def points_in(body, count=40, seed=0):
 
 def check(projection, placement):
     """The body is in the cube; there and back is the same; rays of light are points of the map."""
-    points = points_in(placement.body)
+    points = points_in(placement.relevant_body)
     assert projection.is_projectable(*points.T).all()
     there = np.transpose(projection.project(*points.T))
     assert np.abs(there).max() < 1 + 1e-9
@@ -54,7 +54,7 @@ def check(projection, placement):
 
 def check_slopes(projection, placement):
     """`along` is the difference quotient of `to_map`."""
-    points, step = points_in(placement.visible), 1e-6 * placement.reach
+    points, step = points_in(placement.visible_body), 1e-6 * placement.reach
     for axis in np.eye(3):
         slope = np.subtract(
             projection.project(*(points + step * axis).T),
@@ -93,7 +93,7 @@ def test_all_hold_whatever_the_camera_and_the_light(seed, kind):
     near = 10 ** rng.uniform(-2, 0)
     try:
         scene = placement(camera(eye, target, near=near), light)
-        assert len(scene.body.corners)
+        assert len(scene.relevant_body.corners)
     except BrdfkitError:
         assume(False)
     for name in PROJECTIONS:
@@ -107,7 +107,7 @@ def test_a_point_light_far_away_is_a_directional_one(name):
             placement(camera(*VIEWS[view]), Light(np.append(place, w)), nearest=2.5)
             for place, w in ((1e7 * SUN, 1), (SUN, 0))
         )
-        points = points_in(sun.visible).T
+        points = points_in(sun.visible_body).T
         found = [project(name, scene).project(*points) for scene in (far_away, sun)]
         np.testing.assert_allclose(*found, atol=1e-3)
 
@@ -183,15 +183,15 @@ def test_the_best_n_of_light_space_perspective():
 def test_warps_weaken_as_view_and_light_become_parallel(name, view):
     """The distance of the apex, of w along the map, is the formula's over sin γ."""
     scene = seen_from(view)
-    sun, eye, corners = scene.light.point[:3], scene.camera.position, scene.visible.corners
-    sight = scene.visible.centroid - eye
+    sun, eye, corners = scene.light.point[:3], scene.camera.position, scene.visible_body.corners
+    sight = scene.visible_body.centroid - eye
     sight /= np.linalg.norm(sight)
     across = sight - sun * (sun @ sight)
     sine = np.linalg.norm(across)
     z_f = scene.camera.compute_depths(corners).max()
     n = (2.5 + np.sqrt(2.5 * z_f) if name == "light_space_perspective" else 2.5) / sine
-    length = np.ptp(scene.body.corners @ across / sine)
-    w = np.column_stack([scene.body.corners, np.ones(len(scene.body.corners))])
+    length = np.ptp(scene.relevant_body.corners @ across / sine)
+    w = np.column_stack([scene.relevant_body.corners, np.ones(len(scene.relevant_body.corners))])
     w = w @ project(name, scene).matrix[3]
     assert w.max() / w.min() == pytest.approx(1 + length / n, rel=1e-9)
 
@@ -215,7 +215,7 @@ def test_a_focus_has_80_percent_of_the_map(focus):
 def test_perspective_is_even_in_the_picture_s_cube():
     """A light at right angles to the view is far away in that cube too, so its map is affine."""
     scene = overhead()
-    points = points_in(scene.body)
+    points = points_in(scene.relevant_body)
     cube = np.column_stack([project_points(scene.camera.matrix, points), np.ones(len(points))])
     found = np.transpose(project("perspective", scene).project(*points.T))
     affine, *_ = np.linalg.lstsq(cube, found, rcond=None)
@@ -245,7 +245,7 @@ def test_plane_optimal_is_the_projection_by_five_pairs_of_points(light):
     np.testing.assert_allclose(project_points(by_pairs, ground)[:, :2], square, atol=1e-9)
     at_infinity = by_pairs @ light / np.linalg.norm(by_pairs)
     np.testing.assert_allclose(at_infinity[[0, 1, 3]], 0, atol=1e-9)
-    points = points_in(scene.body)
+    points = points_in(scene.relevant_body)
     found = project("plane_optimal", scene).project(*points.T)
     for ours, theirs in zip(found, project_points(by_pairs, points).T, strict=True):
         stretch, shift = np.polyfit(theirs, ours, 1)
@@ -274,7 +274,7 @@ def test_the_footprint_of_a_texel():
         Projection.from_matrix(camera(place, [0, 0, 0], slope=1).matrix, Light(np.append(place, 1)))
         for place in (light, eye)
     )
-    found = aliasing((by_light, 64), (by_eye, (64, 64)), (0, 0, 0), (0, 0, 1))
+    found = texel_area_in_pixels((by_light, 64), (by_eye, (64, 64)), (0, 0, 0), (0, 0, 1))
     assert found == pytest.approx(1.3374318, abs=1e-7)
     lengths = [1 / p.directional_derivative((0, 0, 0), (0, 1, 0))[1] for p in (by_light, by_eye)]
     assert abs(lengths[0] / lengths[1]) == pytest.approx(1.5294118, abs=1e-7)
@@ -294,7 +294,7 @@ def test_warps_are_finer_near_the_eye():
     points, up = (x.ravel(), y.ravel(), np.zeros(81)), (0, 0, 1)
     picture = (Projection.from_matrix(scene.camera.matrix, scene.light), (512, 512))
     worst = {
-        name: aliasing((project(name, scene), 512), picture, points, up).max()
+        name: texel_area_in_pixels((project(name, scene), 512), picture, points, up).max()
         for name in PROJECTIONS
     }
     assert worst["focused"] < worst["uniform"]
@@ -309,14 +309,16 @@ def test_trapezoidal_and_plane_optimal_distort_depth_more(view):
     """[Ergun 2008, Figure 4.1]; there the perspective one is among the even, ours is not."""
     scene = seen_from(view)
     found = {
-        name: measure_unevenness(*sample_depth_curve(project(name, scene), scene.body.corners))
+        name: measure_unevenness(
+            *sample_depth_curve(project(name, scene), scene.relevant_body.corners)
+        )
         for name in PROJECTIONS
     }
     assert found["uniform"] < 1e-9
     assert found["focused"] < 1e-9
     assert found["light_space_perspective"] < found["trapezoidal"] < found["plane_optimal"]
     linear = replace(project("plane_optimal", scene), depth=LightDepth.from_placement(scene))
-    assert measure_unevenness(*sample_depth_curve(linear, scene.body.corners)) < 1e-9
+    assert measure_unevenness(*sample_depth_curve(linear, scene.relevant_body.corners)) < 1e-9
 
 
 @pytest.mark.quick

@@ -17,7 +17,7 @@ from brdfkit.shadows.maps.moments.bounds import bound_by_two_moments
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import light_space_perspective
-from brdfkit.shadows.maps.resolution import aliasing
+from brdfkit.shadows.maps.resolution import texel_area_in_pixels
 from brdfkit.shadows.maps.split_planes import compute_split_planes
 from brdfkit.shadows.volumes.volume import extrude_points
 from brdfkit.theses.claims import Claim, to_verdict
@@ -195,7 +195,7 @@ def claim_footprint():
         Projection.from_matrix(make_camera(p, (0, 0, 0)).matrix, Light(np.append(p, 1)))
         for p in eyes
     )
-    area = aliasing((light, 64), (eye, (64, 64)), (0, 0, 0), (0, 0, 1))
+    area = texel_area_in_pixels((light, 64), (eye, (64, 64)), (0, 0, 0), (0, 0, 1))
     lengths = [abs(1 / p.directional_derivative((0, 0, 0), (0, 1, 0))[1]) for p in (light, eye)]
     return claim_agreement(
         "A texel beside a pixel: d r_s cosβ / (d_i r_i cosα), and the ratio of areas.",

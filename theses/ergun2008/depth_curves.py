@@ -67,7 +67,7 @@ def sample_curves(placement):
     return {
         name: sample_depth_curve(
             make_techniques({"projection": name}, {})["projection"](placement),
-            placement.body.corners,
+            placement.relevant_body.corners,
         )
         for name in PROJECTIONS
     }

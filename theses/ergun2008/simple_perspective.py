@@ -10,14 +10,14 @@ from brdfkit.core.projective.homogeneous import make_unit_cube_matrix, project_p
 from brdfkit.shadows.comparison.quality import aliasing_error, share_of_texels_used
 from brdfkit.shadows.maps.light_camera import view_matrix
 from brdfkit.shadows.maps.projection import Projection
-from brdfkit.shadows.maps.resolution import aliasing
+from brdfkit.shadows.maps.resolution import texel_area_in_pixels
 
 NEAR = 0.1  # distance of the camera's near plane, over that of the nearest point in view
 
 
 def make_simple_perspective(placement):
     """Return the `Projection` of a simple perspective shadow map, for a `Placement`."""
-    corners, middle = placement.body.corners, placement.body.centroid
+    corners, middle = placement.relevant_body.corners, placement.relevant_body.centroid
     z_n, z_f = placement.depths
     camera = placement.camera.replace_planes(NEAR * z_n, z_f).move_behind(corners).matrix
     cube, (centre,) = project_points(camera, corners), project_points(camera, [middle])
@@ -36,6 +36,6 @@ def score_simple_perspective(view, resolution):
     ).make_opaque()
     x, y, _ = projection.project(*seen.si.p)
     picture = camera, seen.size[::-1]
-    e = np.array(aliasing((projection, resolution), picture, seen.si.p, seen.si.n))
+    e = np.array(texel_area_in_pixels((projection, resolution), picture, seen.si.p, seen.si.n))
     places = (np.array([x, y]).T[seen.facing] + 1) / 2
     return 1 - share_of_texels_used([places]), aliasing_error(e[seen.facing])

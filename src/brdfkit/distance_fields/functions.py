@@ -46,7 +46,7 @@ def _make_function(glsl: str, drjit: Callable[..., Any]) -> Callable[..., Any]:
 
     def call(*args: Any) -> Any:
         symbol = next((a for a in args if isinstance(a, Symbol)), None)
-        return drjit(*args) if symbol is None else symbol.program.call(glsl, *args)
+        return drjit(*args) if symbol is None else symbol.program.add_call(glsl, *args)
 
     return call
 
@@ -74,7 +74,7 @@ power = _make_function("pow", dr.power)
 def select(condition: JitMask, a: JitFloat, b: JitFloat) -> JitFloat:
     """Return `a` where the condition holds, and `b` elsewhere."""
     if isinstance(condition, Symbol):
-        return condition.program.select(condition, a, b)
+        return condition.program.add_selection(condition, a, b)
     return dr.select(condition, a, b)
 
 

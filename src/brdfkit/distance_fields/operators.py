@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.distance_fields.parameters import find_kind
+from brdfkit.distance_fields.parameters import find_node_class
 
 
 class Operators:
@@ -28,7 +28,7 @@ class Operators:
 
     def translate(self, offset: Any) -> Any:
         """Return the solid moved by the vector `offset`."""
-        return find_kind("translate")(self, offset)
+        return find_node_class("translate")(self, offset)
 
     def at(self, x: Any, y: Any = None, z: Any = None) -> Any:
         """Return the solid moved by (x, y, z), given as three numbers or as one triple."""
@@ -38,23 +38,23 @@ class Operators:
 
     def rotate(self, angle: Any, axis: Any = (0.0, 0.0, 1.0)) -> Any:
         """Return the solid turned by `angle` [rad] about `axis`, a line through the origin."""
-        return find_kind("rotate")(self, angle, axis)
+        return find_node_class("rotate")(self, angle, axis)
 
     def scale(self, factor: Any) -> Any:
         """Return the solid scaled about the origin by a number above 0, in all directions."""
-        return find_kind("scale")(self, factor)
+        return find_node_class("scale")(self, factor)
 
     def dilate(self, distance: Any) -> Any:
         """Return the solid grown by `distance` on all sides; a negative distance shrinks it."""
-        return find_kind("dilate")(self, distance)
+        return find_node_class("dilate")(self, distance)
 
     def shell(self, thickness: Any) -> Any:
         """Return a hollow shell of this thickness, with the solid's surface in its middle."""
-        return find_kind("shell")(self, thickness)
+        return find_node_class("shell")(self, thickness)
 
     def made_of(self, material: str) -> Any:
         """Return the solid with the name of its material, by which a renderer finds the BSDF."""
-        return find_kind("made_of")(self, material)
+        return find_node_class("made_of")(self, material)
 
     def repeat(self, spacing: Any, copies: int | None = None) -> Any:
         """Return copies of the solid in a lattice with distances `spacing` along x, y and z.
@@ -62,11 +62,11 @@ class Operators:
         Along an axis with spacing 0 there is one copy, else `copies` copies on each side of the
         first one, or infinitely many if it is None.
         """
-        return find_kind("repeat")(self, spacing, copies)
+        return find_node_class("repeat")(self, spacing, copies)
 
     def circular_array(self, copies: int, offset: Any = 0.0) -> Any:
         """Return `copies` copies of the solid around the z axis, moved along x by `offset`."""
-        return find_kind("circular_array")(self.at(offset, 0, 0) if offset else self, copies)
+        return find_node_class("circular_array")(self.at(offset, 0, 0) if offset else self, copies)
 
 
 class Smooth(NamedTuple):
@@ -76,13 +76,13 @@ class Smooth(NamedTuple):
     k: Any
 
     def __ror__(self, other: Any) -> Any:
-        return find_kind("union")((other, self.field), self.k)
+        return find_node_class("union")((other, self.field), self.k)
 
     def __rand__(self, other: Any) -> Any:
-        return find_kind("intersection")((other, self.field), self.k)
+        return find_node_class("intersection")((other, self.field), self.k)
 
     def __rsub__(self, other: Any) -> Any:
-        return find_kind("difference")((other, self.field), self.k)
+        return find_node_class("difference")((other, self.field), self.k)
 
 
 def _combine(name: str, a: Any, b: Any) -> Any:
@@ -93,4 +93,4 @@ def _combine(name: str, a: Any, b: Any) -> Any:
     if isinstance(b, Smooth):
         return NotImplemented
     first = a.children if a.kind == name and a.is_sharp else (a,)
-    return find_kind(name)((*first, b))
+    return find_node_class(name)((*first, b))

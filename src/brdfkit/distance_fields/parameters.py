@@ -13,12 +13,12 @@ from brdfkit.core.errors import no_such_error
 _KINDS: dict[str, type] = {}
 
 
-def register_kind(cls: type) -> None:
+def register_node_class(cls: type) -> None:
     """Register a class of nodes, so that files and operators find it by its name."""
     _KINDS[cls.__name__] = cls
 
 
-def find_kind(name: Any, where: str = "") -> type:
+def find_node_class(name: Any, where: str = "") -> type:
     """Return the class of nodes with this name; `where` begins the error for an unknown name."""
     if not isinstance(name, str) or name not in _KINDS:
         raise no_such_error("node", name, sorted(_KINDS), where)

@@ -83,10 +83,10 @@ def shadows(
     """
     from brdfkit.shadows.comparison import compare
     from brdfkit.shadows.comparison.comparing import PROJECTIONS
-    from brdfkit.shadows.comparison.page import require_page
+    from brdfkit.shadows.comparison.page import require_page_path
 
     if output is not None:
-        require_page(output)
+        require_page_path(output)
     with console.progress("compare shadows") as progress:
         comparison = compare(
             scene,

@@ -12,7 +12,7 @@ import numpy as np
 from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import read_bytes, write_safely
 from brdfkit.distance_fields.boxes import to_floats
-from brdfkit.distance_fields.parameters import find_kind
+from brdfkit.distance_fields.parameters import find_node_class
 
 
 def to_json(node: Any) -> str:
@@ -125,7 +125,7 @@ def _data_to_node(data: Any, where: str) -> Any:
     """Return the node that `_node_to_data` converted; `where` begins the errors."""
     if not isinstance(data, dict) or "kind" not in data:
         raise BrdfkitError(f'{where}: {str(data)[:40]!r} should be an object with a "kind".')
-    cls = find_kind(data["kind"], where)
+    cls = find_node_class(data["kind"], where)
     known = {f.name: f for f in _list_saved_fields(cls)}
     arguments = {name: value for name, value in data.items() if name != "kind"}
     for name in arguments:

@@ -8,7 +8,7 @@ from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.boxes import Box, format_point
-from brdfkit.distance_fields.parameters import find_kind
+from brdfkit.distance_fields.parameters import find_node_class
 
 MARGIN = 0.05  # width of the margin around the surface's own box [unit of length]
 
@@ -32,7 +32,9 @@ def to_grid(node: Any, resolution: int = 64, bounds: Any = None) -> Any:
             f"the box from {format_point(low)} to {format_point(high)} is all {side}: there is no "
             "surface; give other bounds, or a finer resolution."
         )
-    return find_kind("grid")(values.transpose(2, 1, 0), tuple(low), tuple(a[-1] for a in axes))
+    return find_node_class("grid")(
+        values.transpose(2, 1, 0), tuple(low), tuple(a[-1] for a in axes)
+    )
 
 
 def find_box_to_sample(node: Any, bounds: Any = None) -> Box:

@@ -68,38 +68,38 @@ def find_near_miss(
     """
     radius, tangent = compute_ray_cone(ray)
 
-    def rho(t: JitFloat) -> JitFloat:
-        return radius + 1.25 * precision + t * tangent  # as in `find_visible_point`
+    def cone_radius(t: JitFloat) -> JitFloat:
+        return radius + 1.25 * precision + t * tangent  # as wide as in `find_visible_point`
 
     def gap(t: JitFloat) -> JitFloat:
-        return field.distance(ray(t)) / field.lipschitz - rho(t)
+        return field.distance(ray(t)) / field.lipschitz - cone_radius(t)
 
     with dr.suspend_grad():
-        t = find_nearest_pass(gap, rho, tangent, dr.detach(far), active)
+        t = find_nearest_pass(gap, cone_radius, tangent, dr.detach(far), active)
         found = active & (t > 0)
         ball = dr.maximum(field.distance(ray(t)) / field.lipschitz, precision / 2)
         n = normal(field.distance, ray(t), dr.maximum(ball, NORMAL_STEP * precision))
         n = dr.normalize(n - ray.d * (dr.dot(n, ray.d) + GRAZING_COSINE))
         seen = VisiblePoint(make_interaction(ray, t, ray(t), n, found), ray(t), ball, found, field)
-    return NearMiss(seen, gap(t), BAND_WIDTH * rho(t))
+    return NearMiss(seen, gap(t), BAND_WIDTH * cone_radius(t))
 
 
 def find_nearest_pass(
-    gap: Any, rho: Any, tangent: JitFloat, far: JitFloat, active: JitMask
+    gap: Any, cone_radius: Any, tangent: JitFloat, far: JitFloat, active: JitMask
 ) -> JitFloat:
     """Return the distance t of the smallest minimum of `gap` along each ray, 0 if none is close.
 
-    gap, rho : functions of t: the gap between the ray's cone and the surface, and the cone's
-        radius.
+    gap : function from t to the gap between the ray's cone and the surface.
+    cone_radius : function from t to the radius of the cone.
     """
 
     def step(
         t: JitFloat, before: JitFloat, here: JitFloat, least: JitFloat, place: JitFloat, i: JitInt
     ) -> tuple[Any, ...]:
-        ahead = t + dr.maximum(here, rho(t)) / (1 + abs(tangent))
+        ahead = t + dr.maximum(here, cone_radius(t)) / (1 + abs(tangent))
         there = gap(ahead)
         lowest = (here < before) & (here <= there) & (ahead < far) & (here > 0)
-        lowest &= here < dr.minimum(least, BAND_WIDTH * rho(t))
+        lowest &= here < dr.minimum(least, BAND_WIDTH * cone_radius(t))
         least, place = dr.select(lowest, here, least), dr.select(lowest, t, place)
         return ahead, here, there, least, place, i + 1
 

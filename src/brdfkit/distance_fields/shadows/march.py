@@ -90,7 +90,7 @@ def march_along_cone(
     step, memory = pace(field, cone)
     max_steps = cone.bound_step_count(epsilon, lipschitz_bound(field))
 
-    def one_step(
+    def take_step(
         t: JitFloat, R_T: JitFloat, R_C: JitFloat, t_min: JitFloat, i: JitFloat, memory: Any
     ) -> tuple[Any, ...]:
         F, rho = f(cone.point(t)), cone.radius(t)
@@ -108,7 +108,7 @@ def march_along_cone(
             lambda t, R_T, R_C, t_min, i, memory: (
                 active & (t < cone.d) & (rule.last < R_T) & (i < max_steps)
             ),
-            one_step,
+            take_step,
         )
     # A field that is not a number makes t NaN, but not R_T
     return Walk(dr.select(dr.isnan(t), dr.nan, R_T), t_min, i)

@@ -34,7 +34,7 @@ def compute_monte_carlo_shadow(
     xs, ys = (Float(pad(q)) for q in halton_points_in_disc(rays))
     zero = 0 * cone.d
 
-    def one_ray(k: JitInt, lit: JitFloat, evaluations: JitFloat) -> tuple[Any, ...]:
+    def add_ray(k: JitInt, lit: JitFloat, evaluations: JitFloat) -> tuple[Any, ...]:
         x, y = dr.gather(Float, xs, k), dr.gather(Float, ys, k)
         clearance, n = trace_ray(field, cone, x, y, hit)
         through = dr.select(clearance > 0, 1, dr.select(clearance <= 0, 0, dr.nan))
@@ -43,7 +43,7 @@ def compute_monte_carlo_shadow(
     with dr.suspend_grad():
         first = dr.zeros(UInt, dr.width(zero))
         _, lit, evaluations = dr.while_loop(
-            (first, zero, zero), lambda k, lit, evaluations: k < rays, one_ray
+            (first, zero, zero), lambda k, lit, evaluations: k < rays, add_ray
         )
     return Shadow(lit / rays, zero + dr.nan, zero + dr.nan, evaluations)
 
@@ -51,9 +51,9 @@ def compute_monte_carlo_shadow(
 def trace_ray(
     field: Any, cone: LightCone, x: JitFloat, y: JitFloat, hit: float
 ) -> tuple[JitFloat, JitFloat]:
-    """Trace the ray at (x, y) of the disc; return its last clearance and its evaluations of f.
+    """Trace the ray through (x, y) of the cone's disc; return its last clearance and its steps.
 
-    The clearance is 0 or less where the ray met an object.
+    The clearance is the distance less the `hit` distance, 0 or less where the ray met an object.
     """
     f, tan = distance_function(field), cone.tan
     speed = lipschitz_bound(field) * dr.sqrt(1 + tan * tan * (x * x + y * y))

@@ -61,7 +61,7 @@ def find_smallest_ratio(
     """
     cone = cone.make_detached()
 
-    def narrow(i: JitFloat, left: JitFloat, right: JitFloat) -> tuple[JitFloat, ...]:
+    def narrow_interval(i: JitFloat, left: JitFloat, right: JitFloat) -> tuple[JitFloat, ...]:
         part = GOLDEN_RATIO * (right - left)
         low, high = right - part, left + part
         lower = clearance_ratio(field, cone, low) < clearance_ratio(field, cone, high)
@@ -70,7 +70,7 @@ def find_smallest_ratio(
     with dr.suspend_grad():
         left, right = dr.maximum(t - width, 0), dr.minimum(t + width, cone.d)
         start = (0 * t, left, right)
-        _, left, right = dr.while_loop(start, lambda i, left, right: i < steps, narrow)
+        _, left, right = dr.while_loop(start, lambda i, left, right: i < steps, narrow_interval)
     return (left + right) / 2
 
 
@@ -112,7 +112,8 @@ def attach_ratio_derivatives(
     """
 
     def moving_ratio(t: JitFloat) -> JitFloat:
-        return clearance_ratio(field, cone, t / dr.detach(cone.d) * cone.d)  # t moves with the axis
+        # The place t keeps its share of the axis as derivatives move the axis
+        return clearance_ratio(field, cone, t / dr.detach(cone.d) * cone.d)
 
     if not dr.grad_enabled(moving_ratio(t)):
         return r

@@ -54,13 +54,13 @@ def slope_across(field: Any, cone: LightCone, shadow: Shadow, active: JitMask) -
     """
     cone = cone.make_detached()
 
-    def length(r: JitFloat, t: JitFloat) -> JitFloat:
+    def clipped_slope(r: JitFloat, t: JitFloat) -> JitFloat:
         x, y = gradient_across(field, cone, t, r * cone.radius(t))
         return dr.clip(dr.sqrt(x * x + y * y), 1 / FURTHEST_EDGE, 1)
 
     with dr.suspend_grad():
         r, t = dr.detach(shadow.r), dr.detach(shadow.t)
-        return dr.if_stmt((r, t), active, length, lambda r, t: 0 * t + 1)
+        return dr.if_stmt((r, t), active, clipped_slope, lambda r, t: 0 * t + 1)
 
 
 def make_cell_cone(cone: LightCone, x: float, y: float, width: float) -> LightCone:

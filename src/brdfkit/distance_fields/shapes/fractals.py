@@ -53,7 +53,7 @@ class mandelbulb(Node):
 
     def distance(self, p: JitVector) -> JitFloat:
         w, size, slope = Point(p.x, p.y, p.z), length(p.x, p.y, p.z), 1.0
-        outer = size - self.radius()
+        outer = size - self.bounding_radius()
         for _ in range(self.steps):
             inside = size < ESCAPE_RADIUS
             size = maximum(size, 1e-9)
@@ -73,7 +73,7 @@ class mandelbulb(Node):
         estimate = 0.5 * log(maximum(size, 1e-9)) * size / slope
         return maximum(minimum(estimate, LARGEST_ESTIMATE), outer)
 
-    def radius(self) -> JitFloat:
+    def bounding_radius(self) -> JitFloat:
         """Return the radius of a ball that contains the fractal.
 
         From any point c with ‖c‖ ≥ 2^(1/(n-1)), every iteration leads further away.
@@ -81,4 +81,5 @@ class mandelbulb(Node):
         return 2.0 ** (1.0 / (self.n - 1.0))
 
     def bounds(self, level: float = 0.0) -> Box:
-        return bound_points((0.0, 0.0, 0.0), margin=float(to_floats(self.radius())) + level)
+        radius = float(to_floats(self.bounding_radius()))
+        return bound_points((0.0, 0.0, 0.0), margin=radius + level)

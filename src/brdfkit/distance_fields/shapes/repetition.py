@@ -48,7 +48,7 @@ class repeat(Node):
     def __post_init__(self) -> None:
         super().__post_init__()
         low, high = self.child.bounds()
-        for axis in self.repeated:
+        for axis in self.repeated_axes:
             size = to_floats(self.spacing)[axis]
             if max(-low[axis], high[axis]) >= size / 2:
                 raise BrdfkitError(
@@ -58,7 +58,7 @@ class repeat(Node):
                 )
 
     @property
-    def repeated(self) -> list[int]:
+    def repeated_axes(self) -> list[int]:
         """The axes (0 to 2) along which there are several copies."""
         return [i for i in range(3) if to_floats(self.spacing)[i] > 0 and self.copies != 0]
 
@@ -68,7 +68,7 @@ class repeat(Node):
         return max(self.child.lipschitz, 1.0)
 
     def distance(self, p: JitVector) -> JitFloat:
-        if not self.repeated:
+        if not self.repeated_axes:
             return self.child.distance(p)
         # Python's numbers, as NumPy's would make all values double precision
         low, high = (corner.tolist() for corner in self._box_with_half_gaps())
@@ -80,7 +80,7 @@ class repeat(Node):
             centre, half = 0.5 * (low[i] + high[i]), 0.5 * (high[i] - low[i])
             if np.isfinite(reach[i]):
                 lattice.append(absolute(x - centre) - (half + reach[i]))
-            if i in self.repeated:
+            if i in self.repeated_axes:
                 cell = floor(x / self.spacing[i] + 0.5)
                 if self.copies is not None:
                     cell = clip(cell, -float(self.copies), float(self.copies))
@@ -94,7 +94,7 @@ class repeat(Node):
 
     def bounds(self, level: float = 0.0) -> Box:
         low, high = self.child.bounds(level)
-        if level > 0 and self.repeated:  # between the copies f may be below `level`, too
+        if level > 0 and self.repeated_axes:  # between the copies f may be below `level`, too
             low, high = self._box_with_half_gaps()
             low, high = low - level, high + level
         return low - self._lattice_reach(), high + self._lattice_reach()
@@ -111,7 +111,8 @@ class repeat(Node):
         """
         low, high = self.child.bounds()
         gaps = to_floats(self.spacing) / 2 - np.maximum(-low, high)
-        return np.array([gaps[i if i in self.repeated else self.repeated].max() for i in range(3)])
+        axes = self.repeated_axes
+        return np.array([gaps[i if i in axes else axes].max() for i in range(3)])
 
     def _box_with_half_gaps(self) -> Box:
         """Return the box of the child, grown by half of the gap on each side."""

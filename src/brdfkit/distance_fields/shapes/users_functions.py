@@ -114,11 +114,11 @@ def from_function(
             "it with p.x, p.y and p.z and the functions of drjit."
         )
 
-    def sample(points: FloatArray) -> FloatArray:
+    def evaluate_points(points: FloatArray) -> FloatArray:
         """Return the function's values (n,) at `points` (n, 3), so that `to_grid` can use it."""
         return np.asarray(f(points), float)
 
-    sampled: Node = to_grid(sample, resolution, bounds)
+    sampled: Node = to_grid(evaluate_points, resolution, bounds)
     return sampled
 
 

@@ -82,20 +82,20 @@ def cone_trace(
     with dr.suspend_grad():
         t, count = start_march(o, t_min)
 
-        def close(t: JitFloat) -> JitFloat:
+        def touch_threshold(t: JitFloat) -> JitFloat:
             return (1.0 + slack) * (radius + t * tangent) + precision
 
-        def step(t: JitFloat, f: JitFloat, i: JitInt) -> tuple[JitFloat, JitFloat, JitInt]:
+        def advance(t: JitFloat, f: JitFloat, i: JitInt) -> tuple[JitFloat, JitFloat, JitInt]:
             t = t + (f - (radius + t * tangent)) / (1.0 + abs(tangent))
             return t, distance(o + d * t) / lipschitz, i + 1
 
         first = distance(o + d * t) / lipschitz
         t, f, count = dr.while_loop(
             (t, first, count + 1),
-            lambda t, f, i: active & (f > close(t)) & (t < t_max) & (i < steps),
-            step,
+            lambda t, f, i: active & (f > touch_threshold(t)) & (t < t_max) & (i < steps),
+            advance,
         )
-        return Hit(t, active & (f <= close(t)) & (t < t_max), f, count)
+        return Hit(t, active & (f <= touch_threshold(t)) & (t < t_max), f, count)
 
 
 def intersect(

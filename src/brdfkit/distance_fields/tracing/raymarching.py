@@ -62,12 +62,12 @@ def raymarch(
         )
         found = active & (before * after <= 0)
 
-        def halve(low: JitFloat, high: JitFloat, i: JitInt) -> tuple[JitFloat, JitFloat, JitInt]:
+        def bisect(low: JitFloat, high: JitFloat, i: JitInt) -> tuple[JitFloat, JitFloat, JitInt]:
             middle = 0.5 * (low + high)
             same = before * distance(o + d * middle) > 0
             return dr.select(same, middle, low), dr.select(same, high, middle), i + 1
 
         _, t, _ = dr.while_loop(
-            (t - step, t, count * 0), lambda low, high, i: found & (i < BISECTIONS), halve
+            (t - step, t, count * 0), lambda low, high, i: found & (i < BISECTIONS), bisect
         )
         return Hit(t, found, distance(o + d * t), count + BISECTIONS)

@@ -130,7 +130,7 @@ def compare(
                 report((len(results) - 1) * len(techniques) + len(scores), requested)
                 with raise_first_cause():  # so that Ctrl-C arrives as KeyboardInterrupt
                     scores_here, lit = score_technique(view, placement, tracked, technique)
-                pictures.add(label, lit)
+                pictures.add_technique(label, lit)
                 scores[label] = scores_here
     except KeyboardInterrupt:
         if not (results and results[0][1]):
@@ -153,7 +153,7 @@ def score_unlit_view(
     pictures, scores : pictures and scores of the view, to which those of each technique are added.
     """
     for label in techniques:
-        pictures.add(label, np.ones(pictures.exact.size))
+        pictures.add_technique(label, np.ones(pictures.exact.size))
         scores[label] = Scores()
 
 

@@ -101,7 +101,7 @@ class ShadowComparison(Shown):
 
     @property
     def unlit(self) -> str:
-        """A sentence that counts the views without any lit surface, or an empty text."""
+        """A sentence that counts the views in which no light reaches a surface; else empty."""
         count = sum(not each.is_lit for each in self.pictures)
         return f"In {count} of them nothing is in the light: they do not count. " if count else ""
 

@@ -27,10 +27,10 @@ QUALITY = 60  # the quality of WebP pictures, from 0 to 100
 ERROR_SCALE = "RdBu_r"  # matplotlib's colours for light that is lost (blue) or gained (red)
 ERROR_STEPS = 8  # steps of colour from no error to all of the light; few make small files
 TINTS = "Set2"  # matplotlib's palette whose colours distinguish the maps
-NO_SURFACE = (0.16, 0.2, 0.3)  # the colour where the light sees nothing
+NO_SURFACE = (0.16, 0.2, 0.3)  # the colour of texels whose light ray meets no surface
 
 
-def require_page(path: str | Path) -> None:
+def require_page_path(path: str | Path) -> None:
     """Raise `BrdfkitError` unless `path` ends in .html or .htm and can be written."""
     if Path(path).suffix.lower() not in (".html", ".htm"):
         raise BrdfkitError(f"{path}: a comparison is written as an HTML page; end it in .html.")
@@ -45,7 +45,7 @@ def write_page(
     After Ctrl-C the page has the table alone, as drawing the pictures takes as long as scoring
     them.
     """
-    require_page(path)
+    require_page_path(path)
     order = list(comparison.means)
     pictures = () if comparison.interrupted else comparison.pictures
     report = progress or (lambda done, total: None)

@@ -57,7 +57,7 @@ class Pictures:
         """Whether (height, width) the light would reach a visible surface without shadows."""
         return self.towards.array
 
-    def add(self, technique: str, lit: FloatArray) -> None:
+    def add_technique(self, technique: str, lit: FloatArray) -> None:
         """Add the picture of a technique, by the shares (pixels,) of light that arrive with it."""
         shares = np.round(255 * np.clip(lit, 0, 1)).astype(np.uint8)
         self.shares[technique] = CompressedArray.from_array(shares.reshape(self.arrives.shape))

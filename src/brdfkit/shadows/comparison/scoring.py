@@ -17,7 +17,7 @@ from brdfkit.shadows.comparison.tracked_points import TrackedPoints
 from brdfkit.shadows.maps.light_shadow import LightShadow
 from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
-from brdfkit.shadows.maps.resolution import aliasing
+from brdfkit.shadows.maps.resolution import texel_area_in_pixels
 
 MARGIN = 4  # width [pixels] around shadows in which missing light counts as a soft border, not acne
 
@@ -93,7 +93,7 @@ def score_texels(shadow: Any, view: LitView, placement: Placement) -> tuple[floa
     for index, its_map in enumerate(shadow.maps):
         x, y, _ = its_map.projection.project(*p)
         texels = its_map.projection, its_map.resolution
-        e = aliasing(texels, (camera, pixels.tolist()), p, n)
+        e = texel_area_in_pixels(texels, (camera, pixels.tolist()), p, n)
         chosen = np.array(facing & (part == index))
         places.append((np.array([x, y]).T[chosen] + 1) / 2)
         areas.append(np.array(e)[chosen])

@@ -100,7 +100,7 @@ def make_light_path(placement: Placement, steps: int = STEPS) -> list[Placement]
     The steps are equal, and at right angles to the light's rays.
     """
     light = placement.light
-    way = light.point[:3] - light.point[3] * placement.visible.centroid
+    way = light.point[:3] - light.point[3] * placement.visible_body.centroid
     step = LIGHT_TURN * unit_perpendicular(way) * (1 if light.is_directional else placement.reach)
     return [replace(placement, light=move_light(light, k * step)) for k in range(steps)]
 

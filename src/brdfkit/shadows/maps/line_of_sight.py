@@ -90,9 +90,9 @@ def find_line_of_sight(placement: Placement) -> LineOfSight | None:
     It is None if the eye looks along the light or is behind it, as then no side of the map belongs
     to what is near the eye.
     """
-    light, corners = placement.light, placement.body.corners
-    eye, middle = placement.camera.position, placement.visible.centroid
-    matrix = view_matrix(light.point, corners, placement.body.centroid)
+    light, corners = placement.light, placement.relevant_body.corners
+    eye, middle = placement.camera.position, placement.visible_body.centroid
+    matrix = view_matrix(light.point, corners, placement.relevant_body.centroid)
     x, y, _, w = transform(matrix, *eye)
     if w < 1e-6 * transform(matrix, *middle)[3]:
         return None

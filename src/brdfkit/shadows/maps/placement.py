@@ -43,7 +43,7 @@ class Placement:
         return cls(camera, Light.from_emitter(emitter), low, high, nearest)
 
     @cached_property
-    def scene(self) -> Body:
+    def lit_body(self) -> Body:
         """S, the part of the scene's box that the light reaches; a spot's pyramid cuts the box."""
         whole = make_box(self.low, self.high)
         light = self.light
@@ -63,23 +63,23 @@ class Placement:
         return float(np.linalg.norm(corners - self.light.point[:3], axis=1).max())
 
     @cached_property
-    def visible(self) -> Body:
+    def visible_body(self) -> Body:
         """V ∩ S, the part of the scene's box in the camera's frustum V."""
-        return Body.from_points(self.camera.find_frustum_corners()) & self.scene
+        return Body.from_points(self.camera.find_frustum_corners()) & self.lit_body
 
     @cached_property
     def depths(self) -> tuple[float, float]:
         """The least and the greatest distance along the view of what the camera may see."""
-        depths = self.camera.compute_depths(self.visible.corners)
+        depths = self.camera.compute_depths(self.visible_body.corners)
         return min(max(depths.min(), self.nearest), depths.max()), depths.max()
 
     @cached_property
-    def body(self) -> Body:
+    def relevant_body(self) -> Body:
         """B = ((V ∩ S) + light) ∩ S: all that the camera may see or that may cast shadows on it.
 
         V is the camera's frustum and S the lit part of the scene's box.
         """
-        return self.visible.extend_to_light(self.light.point, self.size) & self.scene
+        return self.visible_body.extend_to_light(self.light.point, self.size) & self.lit_body
 
 
 def find_nearest_depth(

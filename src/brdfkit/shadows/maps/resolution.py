@@ -12,7 +12,7 @@ from brdfkit.shadows.maps.projection import AnyProjection
 from brdfkit.shadows.maps.visible_surfaces import SIDE, VisibleSurfaces
 
 
-def aliasing(
+def texel_area_in_pixels(
     texels: tuple[AnyProjection, int], pixels: tuple[AnyProjection, Any], p: JitVector, n: JitVector
 ) -> JitFloat:
     """Return the area [pixels] of a shadow map's texel in the picture, at surface points.

@@ -80,10 +80,10 @@ def project_faces(faces: Faces, matrix: FloatArray) -> ProjectedFaces:
     edges = (edges * np.sign(volume)[:, None, None]).astype(np.float32)
     inverse_depth = (plane / volume[:, None]).astype(np.float32)
     times = (np.sign(volume) * faces.times[visible]).astype(int)
-    return ProjectedFaces(edges, break_ties(edges), inverse_depth, times)
+    return ProjectedFaces(edges, compute_tie_thresholds(edges), inverse_depth, times)
 
 
-def break_ties(edges: FloatArray) -> FloatArray:
+def compute_tie_thresholds(edges: FloatArray) -> FloatArray:
     """Return the least values (k, 4) of the faces' edge functions at which a point is within.
 
     The value is 0, or the least positive number: it is 0 where the first coefficient other than 0

@@ -18,7 +18,7 @@ from brdfkit.core.array_types import IntArray
 from brdfkit.shadows.volumes.mesh import Mesh, list_directed_edges
 
 
-def toggle_edges(mesh: Mesh, casts: IntArray) -> tuple[IntArray, IntArray]:
+def find_silhouette_by_toggling(mesh: Mesh, casts: IntArray) -> tuple[IntArray, IntArray]:
     """Return the silhouette of a mesh's casting triangles by adding up their directed edges.
 
     casts : the casting number (m,) of each triangle, see `casters.py`.
@@ -32,7 +32,7 @@ def toggle_edges(mesh: Mesh, casts: IntArray) -> tuple[IntArray, IntArray]:
     return orient_edges(edges, np.bincount(place, signs, len(key)).astype(int))
 
 
-def compare_neighbours(mesh: Mesh, casts: IntArray) -> tuple[IntArray, IntArray]:
+def find_silhouette_by_neighbours(mesh: Mesh, casts: IntArray) -> tuple[IntArray, IntArray]:
     """Return the silhouette of a mesh's casting triangles by comparing neighbouring triangles.
 
     casts : the casting number (m,) of each triangle, see `casters.py`.
@@ -43,7 +43,10 @@ def compare_neighbours(mesh: Mesh, casts: IntArray) -> tuple[IntArray, IntArray]
     return orient_edges(edges, casts[forwards] - casts[backwards])
 
 
-SILHOUETTES = {"edge_toggling": toggle_edges, "shared_edges": compare_neighbours}
+SILHOUETTES = {
+    "edge_toggling": find_silhouette_by_toggling,
+    "shared_edges": find_silhouette_by_neighbours,
+}
 
 
 def orient_edges(edges: IntArray, times: IntArray) -> tuple[IntArray, IntArray]:

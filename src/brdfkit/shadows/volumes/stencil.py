@@ -54,7 +54,7 @@ class Stencil:
         start = dr.gather(mi.UInt32, self.begins, tile, active)
         end = dr.gather(mi.UInt32, self.begins, tile + 1, active)
 
-        def add_face(index: JitInt, count: JitInt) -> tuple[JitInt, JitInt]:
+        def count_next_face(index: JitInt, count: JitInt) -> tuple[JitInt, JitInt]:
             face = RECORD * dr.gather(mi.UInt32, self.indices, index)
             *edges, depth = (dr.gather(mi.Vector4f, self.records, face + k) for k in range(RECORD))
             inverse_depth = depth.x * x + depth.y * y + depth.z
@@ -64,7 +64,7 @@ class Stencil:
             return index + 1, count + dr.select(meets, mi.Int32(depth.w), 0)
 
         state = start, mi.Int32(0)
-        return dr.while_loop(state, lambda index, count: index < end, add_face)[1]
+        return dr.while_loop(state, lambda index, count: index < end, count_next_face)[1]
 
     def find_tile(self, x: JitFloat, y: JitFloat) -> JitInt:
         """Return the index of the tile at (x, y); places off the picture get the nearest tile."""

@@ -51,11 +51,11 @@ def revolve(
     points = np.dstack([circles, np.repeat(height, AROUND).reshape(-1, AROUND)]).reshape(-1, 3)
     row, column = np.divmod(np.arange((len(radius) - 1) * AROUND), AROUND)
 
-    def index(row: IntArray, column: IntArray) -> IntArray:
+    def vertex_index(row: IntArray, column: IntArray) -> IntArray:
         return row * AROUND + np.where(np.isin(row, poles), 0, column % AROUND)
 
-    a, b = index(row, column), index(row, column + 1)
-    c, d = index(row + 1, column), index(row + 1, column + 1)
+    a, b = vertex_index(row, column), vertex_index(row, column + 1)
+    c, d = vertex_index(row + 1, column), vertex_index(row + 1, column + 1)
     triangles = np.concatenate([np.column_stack([a, c, d]), np.column_stack([a, d, b])])
     flat = np.any(triangles == np.roll(triangles, 1, axis=1), axis=1)
     return points, triangles[~flat]

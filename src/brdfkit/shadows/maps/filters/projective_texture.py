@@ -32,7 +32,7 @@ def render_map(scene: MitsubaObject, projection: AnyProjection, resolution: int)
     first = scene.ray_intersect_preliminary(ray)
     caster = dr.reinterpret_array(mi.UInt32, first.shape)
 
-    def step(i: JitInt, last: JitFloat, t: JitFloat, shape: JitInt) -> tuple[Any, ...]:
+    def find_next(i: JitInt, last: JitFloat, t: JitFloat, shape: JitInt) -> tuple[Any, ...]:
         place = ray(t)
         begin = t + clearance(place, t)
         hit = scene.ray_intersect_preliminary(mi.Ray3f(ray(begin), ray.d))
@@ -41,7 +41,7 @@ def render_map(scene: MitsubaObject, projection: AnyProjection, resolution: int)
     _, last, t, _ = dr.while_loop(
         (mi.UInt32(0), mi.Float(first.t), mi.Float(first.t), mi.UInt32(caster)),
         lambda i, last, t, shape: first.is_valid() & (shape == caster) & (i < MAX_SURFACES),
-        step,
+        find_next,
     )
     depth = (compute_depth(opaque, ray(last)) + compute_depth(opaque, ray(t))) / 2
     return reshape_to_map(dr.select(first.is_valid() & dr.isfinite(t), depth, dr.inf), resolution)

@@ -28,7 +28,7 @@ from brdfkit.shadows.maps.resolution import locate_on_map, texel_footprints
 from brdfkit.shadows.maps.visible_surfaces import VisibleSurfaces, find_visible_surfaces, is_lit
 
 SETTINGS = {"budget": declare_int(16, (1, 256), "maps at most, of the full resolution each")}
-MAX_LEVEL = 7  # how often a square may be divided
+MAX_LEVEL = 7  # the most divisions that lead from the whole map to a square
 Leaf: TypeAlias = tuple[int, int, int]  # level, row and column of a square
 
 

@@ -83,18 +83,18 @@ def snap_projection(placement: Placement, near: float, far: float, resolution: i
     """
     light, camera = placement.light, placement.camera
     view = make_rigid_matrix(make_axes(-light.point[:3]), np.zeros(3))
-    *sides, depths = transform(view, *placement.scene.corners.T)[:3]
+    *sides, depths = transform(view, *placement.lit_body.corners.T)[:3]
     along, radius = bounding_ball(camera, near, far)
     centre = transform(view, *(camera.position + along * camera.direction))
     ends = [
-        snap_window(place, radius, side, resolution)
+        snap_map_range(place, radius, side, resolution)
         for place, side in zip(centre[:2], sides, strict=True)
     ]
     low, high = np.transpose([*ends, (depths.min(), depths.max())])
     return Projection.from_matrix(make_unit_cube_matrix(low, high) @ view, light)
 
 
-def snap_window(
+def snap_map_range(
     place: float, radius: float, side: FloatArray, resolution: int
 ) -> tuple[float, float]:
     """Return both ends of a map along one axis across the light, snapped to whole texels.

@@ -11,4 +11,4 @@ from brdfkit.shadows.maps.projection import Projection
 
 def make_projection(placement: Placement) -> Projection:
     """Make the projection that encloses the placement's body."""
-    return make_enclosing_projection(placement.light, placement.body)
+    return make_enclosing_projection(placement.light, placement.relevant_body)

@@ -57,13 +57,13 @@ class Logarithmic(Projection):
 
     def project(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
         u, v, depth = super().project(x, y, z)
-        log = array_module(v).log
+        log = find_array_module(v).log
         return u, -2 * log(self.nearness(v)) / log(self.ratio) - 1, depth
 
     def directional_derivative(self, point: JitVector, way: JitVector) -> tuple[JitFloat, ...]:
         v = super().project(*point)[1]
         u_way, v_way, depth_way = super().directional_derivative(point, way)
-        slope = (1 - 1 / self.ratio) / (self.nearness(v) * array_module(v).log(self.ratio))
+        slope = (1 - 1 / self.ratio) / (self.nearness(v) * find_array_module(v).log(self.ratio))
         return u_way, v_way * slope, depth_way
 
     def light_ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
@@ -83,10 +83,10 @@ class Logarithmic(Projection):
 
     def undo_logarithm(self, v: JitFloat) -> JitFloat:
         """Return the second map coordinate before the logarithm, for the one after it, v."""
-        exp, log = array_module(v).exp, array_module(v).log
+        exp, log = find_array_module(v).exp, find_array_module(v).log
         return 2 * (1 - exp(-(v + 1) / 2 * log(self.ratio))) / (1 - 1 / self.ratio) - 1
 
 
-def array_module(value: JitFloat) -> Any:
+def find_array_module(value: JitFloat) -> Any:
     """Return the module whose `exp` and `log` fit a value: Dr.Jit or NumPy."""
     return dr if dr.is_jit_v(value) else np

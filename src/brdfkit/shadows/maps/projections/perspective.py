@@ -19,7 +19,7 @@ NEAREST = 1 / 200  # least ratio of the near to the far plane, as 1/z is too ste
 
 def make_projection(placement: Placement) -> Projection:
     """Make the projection through the camera's perspective and a camera at the light in it."""
-    corners, middle = placement.body.corners, placement.body.centroid
+    corners, middle = placement.relevant_body.corners, placement.relevant_body.centroid
     z_n, z_f = placement.depths
     near_camera = placement.camera.replace_planes(max(z_n, NEAREST * z_f), z_f)
     camera = near_camera.move_behind(corners).matrix

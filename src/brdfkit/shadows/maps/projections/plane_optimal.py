@@ -26,7 +26,7 @@ from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import focused
 
 
-def to_plane(value: Any) -> FloatArray | None:
+def parse_plane(value: Any) -> FloatArray | None:
     """Return four numbers, or a text of them, as the plane (4,); None for None or an empty text."""
     if value is None:
         return None
@@ -41,14 +41,16 @@ def to_plane(value: Any) -> FloatArray | None:
 
 
 PLANE = "of plane_optimal: the receiver's a b c d, where a x + b y + c z + d = 0"
-SETTINGS = {"plane": Setting("", None, PLANE, to_plane)}
+SETTINGS = {"plane": Setting("", None, PLANE, parse_plane)}
 
 
 def make_projection(placement: Placement, plane: FloatArray | None) -> Projection:
     """Make the projection for a `plane` (4,), or for a face of the scene's box if it is None."""
     if plane is None:
         faces = [face for face in rank_faces_by_light(placement) if takes_shadows(face, placement)]
-        return project_onto(placement, faces[0]) if faces else focused.make_projection(placement)
+        if not faces:
+            return focused.make_projection(placement)
+        return project_onto_plane(placement, faces[0])
     side = np.sign(plane @ placement.light.point)
     plane = plane * side / max(float(np.linalg.norm(plane[:3])), 1e-30)
     if not takes_shadows(plane, placement):
@@ -56,19 +58,19 @@ def make_projection(placement: Placement, plane: FloatArray | None) -> Projectio
             "plane_optimal: the plane must cut the camera's view, and the light must be farther "
             "from it than all that casts shadows; choose another plane, or leave it out."
         )
-    return project_onto(placement, plane)
+    return project_onto_plane(placement, plane)
 
 
-def project_onto(placement: Placement, plane: AnyArray) -> Projection:
+def project_onto_plane(placement: Placement, plane: AnyArray) -> Projection:
     """Return the projection that is best for shadows on a `plane` (4,) that takes them.
 
     The focused one replaces it if the eye is in the plane.
     """
-    light, corners = placement.light, placement.body.corners
+    light, corners = placement.light, placement.relevant_body.corners
     flat = (plane @ light.point) * np.eye(4) - np.outer(light.point, plane)
     camera = placement.camera.replace_planes(*placement.depths)
     camera = camera.move_behind(project_points(flat, corners))
-    if abs(height_over(plane, camera.position)) < 1e-3 * placement.size:
+    if abs(height_over_plane(plane, camera.position)) < 1e-3 * placement.size:
         return focused.make_projection(placement)
     matrix = camera.matrix @ flat
     matrix[2] = -plane
@@ -77,11 +79,11 @@ def project_onto(placement: Placement, plane: AnyArray) -> Projection:
 
 def takes_shadows(plane: AnyArray, placement: Placement) -> bool:
     """Return whether a plane cuts the camera's view and is behind all that casts shadows."""
-    heights = height_over(plane, placement.visible.corners)
+    heights = height_over_plane(plane, placement.visible_body.corners)
     tolerance = 1e-6 * placement.size
     below_light = plane @ placement.light.point
     if not placement.light.is_directional:
-        below_light -= height_over(plane, placement.body.corners).max()
+        below_light -= height_over_plane(plane, placement.relevant_body.corners).max()
     cuts: Any = heights.min() < tolerance and heights.max() > -tolerance
     return bool(below_light > tolerance and cuts)
 
@@ -102,6 +104,6 @@ def rank_faces_by_light(placement: Placement) -> list[FloatArray]:
     ]
 
 
-def height_over(plane: AnyArray, points: AnyArray) -> Any:
+def height_over_plane(plane: AnyArray, points: AnyArray) -> Any:
     """Return the heights (n,) of points (n, 3) over a plane (4,)."""
     return points @ plane[:3] + plane[3]

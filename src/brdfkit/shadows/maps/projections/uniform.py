@@ -10,4 +10,4 @@ from brdfkit.shadows.maps.projection import Projection
 
 def make_projection(placement: Placement) -> Projection:
     """Make the projection that encloses the whole scene."""
-    return make_enclosing_projection(placement.light, placement.scene)
+    return make_enclosing_projection(placement.light, placement.lit_body)

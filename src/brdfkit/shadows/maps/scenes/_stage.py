@@ -21,7 +21,7 @@ VIEWS = {
 LIGHTS = {1: 14, 2: 17}  # azimuths [degrees]; the second sun is a small step from the first
 ELEVATION = 48  # the suns' height above the horizon [degrees]
 
-Place: TypeAlias = Iterable[float]  # three coordinates, or sizes
+Place: TypeAlias = Iterable[float]  # three coordinates of a point, or three sizes of a box
 Colour: TypeAlias = Iterable[float]  # red, green, blue
 Shape: TypeAlias = dict[str, Any]  # for `mitsuba.load_dict`
 
