@@ -70,7 +70,7 @@ def to_texel_parameters(
 
 
 def to_smoothness(value: float | None) -> float | None:
-    """Return the smoothness, or None if it is to be chosen."""
+    """Return the smoothness as a checked number, or None if the search has to choose it."""
     return None if value is None else to_number("smoothness", value, least=SMALLEST_SMOOTHNESS)
 
 

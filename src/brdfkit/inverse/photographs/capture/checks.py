@@ -88,7 +88,7 @@ def _check_cameras(capture: Any, count: int) -> None:
 def _check_corners(capture: Any, name: str, camera: Pinhole) -> None:
     """Raise `BrdfkitError` unless a picture contains the sample's corners, 8 pixels apart or more.
 
-    `name` is the picture's.
+    `name` is the picture's name, for errors.
     """
     width, height = capture.picture_size
     places = camera.project(find_corners(capture.size), (width, height))

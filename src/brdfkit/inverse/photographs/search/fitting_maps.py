@@ -130,7 +130,7 @@ def _enlarge_unfinished(
 
 
 def compute_standard_errors(problem: Problem, fitted: FittedMaps) -> FloatArray:
-    """Return the standard errors (texels, numbers) of the texels' numbers, for given neighbours.
+    """Return the standard errors (texels, numbers) of texels, as if their neighbours were known.
 
     Where the residuals of a texel exceed the noise, its errors are scaled by the excess. Where the
     photographs leave numbers of a texel undetermined, they leave those of its neighbours
