@@ -1,7 +1,8 @@
 """Looks up and samples a BRDF in RGL's adaptive parameterisation within Mitsuba.
 
-`materials/formats/rgl/parameterisation.py` explains it and has the lookup in NumPy. Here Mitsuba's
-own distributions warp the unit square and interpolate between the stored incidences.
+In `materials/formats/rgl/`, `parameterisation.py` explains it, and `adaptive_table.py` looks it up in
+NumPy. Here Mitsuba's own distributions warp the unit square and interpolate between the stored
+incidences.
 
 [Dupuy & Jakob 2018]
 """

@@ -20,9 +20,10 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.version import __version__
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats.rgl import tensor_file
+from brdfkit.materials.formats.rgl.adaptive_table import AdaptiveTable
 from brdfkit.materials.formats.rgl.encoding import encode_brdf
 from brdfkit.materials.formats.rgl.layout import check_fields
-from brdfkit.materials.formats.rgl.parameterisation import AdaptiveTable, Parameterisation
+from brdfkit.materials.formats.rgl.parameterisation import Parameterisation
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 

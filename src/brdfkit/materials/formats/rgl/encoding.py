@@ -11,9 +11,9 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles, from_half_difference
+from brdfkit.materials.formats.rgl.adaptive_table import AdaptiveTable
 from brdfkit.materials.formats.rgl.normals import Hemisphere, find_normal_distribution
 from brdfkit.materials.formats.rgl.parameterisation import (
-    AdaptiveTable,
     Parameterisation,
     map_from_square,
     solid_angle_per_area,
