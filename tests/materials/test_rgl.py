@@ -551,7 +551,7 @@ def test_a_noisy_table_is_kept_between_its_cells_too(tmp_path, name):
 def test_mitsuba_samples_what_was_written(llvm_variant, tmp_path, monkeypatch, name):
     monkeypatch.setattr(checks.sampling, "SUBCELLS", (24, 96))
     save(SOURCES[name](), tmp_path / "written.bsdf")
-    passed, figure = checks.sampling.chi_squared(Rendered(tmp_path / "written.bsdf"))
+    passed, figure = checks.sampling.check_chi_squared(Rendered(tmp_path / "written.bsdf"))
     assert passed, figure
 
 

@@ -1,6 +1,6 @@
 """Looks up and samples a BRDF in RGL's adaptive parameterisation within Mitsuba.
 
-In `materials/formats/rgl/`, `parameterisation.py` explains it, and `adaptive_table.py` looks it up in
+In `materials/formats/rgl/` `parameterisation.py` explains it; `adaptive_table.py` evaluates it in
 NumPy. Here Mitsuba's own distributions warp the unit square and interpolate between the stored
 incidences.
 
