@@ -8,6 +8,7 @@ materials by 7 models are measured, too. Seconds are of this machine.
 import os
 import sys
 import time
+from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
@@ -69,12 +70,8 @@ def measure_best_time(function, times=2):
     return (
         (seconds, found)
         if seconds > 10
-        else min((_measure_time(function) for _ in range(times)), key=_first)
+        else min((_measure_time(function) for _ in range(times)), key=itemgetter(0))
     )
-
-
-def _first(pair):
-    return pair[0]
 
 
 def _measure_time(function):

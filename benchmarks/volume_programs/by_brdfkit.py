@@ -54,8 +54,8 @@ def maximum_intensity(case):
 
 
 def isosurface(case):
-    matte = {"type": "diffuse", "reflectance": {"type": "rgb", "value": case.told["albedo"]}}
-    return {"volume": make_volume(case).scene_dict(), "level": case.told["level"], "bsdf": matte}
+    matte = {"type": "diffuse", "reflectance": {"type": "rgb", "value": case.entry["albedo"]}}
+    return {"volume": make_volume(case).scene_dict(), "level": case.entry["level"], "bsdf": matte}
 
 
 INTEGRATORS = {f.__name__: f for f in (emission_absorption, maximum_intensity, isosurface)}
@@ -83,4 +83,4 @@ def make_volume(case):
     spacing = case.spacing
     to_world = np.diag([*spacing, 1.0])
     to_world[:3, 3] = spacing / 2 - 1
-    return brdfkit.volumes.Volume(case.voxels, to_world, labels=case.told["labels"])
+    return brdfkit.volumes.Volume(case.voxels, to_world, labels=case.entry["labels"])

@@ -54,7 +54,7 @@ def make_plot(case, setting, background):
         color_range=[low, high],
         color_map=np.column_stack([shares, rgb]).ravel().tolist(),
         opacity_function=np.column_stack([shares, a]).ravel().tolist(),
-        interpolation=not case.told["labels"],
+        interpolation=not case.entry["labels"],
         bounds=[-1, 1, -1, 1, -1, 1],
         **settings,
     )
@@ -71,7 +71,7 @@ def make_plot(case, setting, background):
     )
     page += volume
     towards, _, up = case.view_axes
-    distance = case.told["half"] / np.tan(np.radians(FIELD_OF_VIEW / 2))
+    distance = case.entry["half"] / np.tan(np.radians(FIELD_OF_VIEW / 2))
     page.camera = [*(-distance * towards), 0, 0, 0, *up]
     return page.get_snapshot()
 

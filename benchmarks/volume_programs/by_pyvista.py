@@ -45,7 +45,7 @@ def draw_case(case, setting):
         opacity_unit_distance=unit,
         show_scalar_bar=False,
     )
-    if setting == "careful" and not case.told["labels"]:
+    if setting == "careful" and not case.entry["labels"]:
         actor.prop.interpolation_type = "linear"
     aim_camera(plotter.camera, case)
     plotter.render_window.SetMultiSamples(0)

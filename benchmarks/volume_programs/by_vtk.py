@@ -60,13 +60,13 @@ def make_volume(image, case, setting):
         clip_to_cube(mapper)
     looks = vtk.vtkVolumeProperty()
     looks.SetInterpolationTypeToLinear()
-    if case.told["labels"]:
+    if case.entry["labels"]:
         looks.SetInterpolationTypeToNearest()
     if case.renderer == "maximum_intensity":
         mapper.SetBlendModeToMaximumIntensity()
     if case.renderer == "isosurface":
         mapper.SetBlendModeToIsoSurface()
-        looks.GetIsoSurfaceValues().SetValue(0, case.told["level"])
+        looks.GetIsoSurfaceValues().SetValue(0, case.entry["level"])
         looks.ShadeOn()
         looks.SetAmbient(0)
         looks.SetDiffuse(1)
@@ -107,7 +107,7 @@ def set_transfer(looks, case, setting):
 def compute_opacities(case, setting):
     """Return values (n,), RGB (n, 3), opacities (n,) and the unit distance of opacities."""
     if case.renderer == "isosurface":
-        return case.values, np.tile(case.told["albedo"], (len(case.values), 1)), np.ones(2), 1.0
+        return case.values, np.tile(case.entry["albedo"], (len(case.values), 1)), np.ones(2), 1.0
     if setting == "typed in" or case.renderer == "maximum_intensity":
         unit = case.transfer.get("opacity_unit_distance", 1.0)
         v = case.values.copy()
@@ -122,7 +122,7 @@ def make_isosurface(image, case):
     """Return the actor of an isosurface as a mesh, with normals along the gradients."""
     contour = vtk.vtkFlyingEdges3D()
     contour.SetInputData(image)
-    contour.SetValue(0, case.told["level"])
+    contour.SetValue(0, case.entry["level"])
     contour.ComputeNormalsOn()
     mapper = vtk.vtkPolyDataMapper()
     mapper.SetInputConnection(contour.GetOutputPort())
@@ -130,7 +130,7 @@ def make_isosurface(image, case):
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     looks = actor.GetProperty()
-    looks.SetColor(*case.told["albedo"])
+    looks.SetColor(*case.entry["albedo"])
     looks.SetAmbient(0)
     looks.SetDiffuse(1)
     looks.SetSpecular(0)
@@ -160,7 +160,7 @@ def render_actor(actor, case, background):
 def aim_camera(camera, case):
     towards, _, up = case.view_axes
     camera.ParallelProjectionOn()
-    camera.SetParallelScale(case.told["half"])
+    camera.SetParallelScale(case.entry["half"])
     camera.SetPosition(-DISTANCE * towards)
     camera.SetFocalPoint(0, 0, 0)
     camera.SetViewUp(up)

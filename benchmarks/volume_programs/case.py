@@ -18,21 +18,21 @@ DISTANCE = 5.0  # distance of the eye from the centre of the cube
 
 @dataclass(frozen=True)
 class Case:
-    """A case of the conformance set; `told`: its entry in `cases.json`."""
+    """A case of the conformance set; `entry`: its entry in `cases.json`."""
 
     name: str
 
     @property
-    def told(self):
+    def entry(self):
         return INDEX[self.name]
 
     @property
     def transfer(self):
-        return self.told["transfer"]
+        return self.entry["transfer"]
 
     @property
     def renderer(self):
-        return self.told["renderer"]
+        return self.entry["renderer"]
 
     @cached_property
     def voxels(self):
@@ -66,7 +66,7 @@ class Case:
     @property
     def view_axes(self):
         """The unit vectors of the view: forward, to the right, and up."""
-        towards = np.array(self.told["towards"]) / np.linalg.norm(self.told["towards"])
+        towards = np.array(self.entry["towards"]) / np.linalg.norm(self.entry["towards"])
         right = np.cross(towards, [0, 1, 0])
         right /= np.linalg.norm(right)
         return towards, right, np.cross(right, towards)
@@ -75,7 +75,7 @@ class Case:
     def rays(self):
         """The origins and directions (height · width, 3) of rays through the centres of pixels."""
         towards, right, up = self.view_axes
-        x = self.told["half"] * ((2 * np.arange(PIXELS) + 1) / PIXELS - 1)
+        x = self.entry["half"] * ((2 * np.arange(PIXELS) + 1) / PIXELS - 1)
         origins = x[:, None] * right - x[:, None, None] * up - DISTANCE * towards
         return origins.reshape(-1, 3), np.broadcast_to(towards, (PIXELS**2, 3))
 

@@ -109,7 +109,7 @@ def compare_with_random_starts(file, model):
     ends = []
     for u in np.random.default_rng(SEED).random((RESTARTS, 1, len(space.names))):
         start = problem.estimate_weights(u)
-        found = levenberg_marquardt(problem.expand, u, start, problem.least, 200, 1e-9).ends
+        found = levenberg_marquardt(problem.expand_loss, u, start, problem.least, 200, 1e-9).ends
         ends.append(float(np.sqrt(found.error[0])))
     # `regress` has no term for the albedo, unlike `bk.fit`, so that the losses are comparable
     return regress(model, samples, bk.losses.named["log"], seed=SEED).loss, min(ends)
@@ -151,7 +151,8 @@ def time_fits(file, models, kept):
     """Return the processor seconds of a fit to a file by model, the least of two runs."""
     data = bk.load(file)
 
-    def measure(model):
+    def time_fit(model):
+        """Return the least processor seconds of two fits of a model."""
         seconds = []
         for _ in range(2):
             began = time.process_time()
@@ -159,14 +160,15 @@ def time_fits(file, models, kept):
             seconds.append(time.process_time() - began)
         return min(seconds)
 
-    return {model: kept(f"seconds/{file.stem}/{model}", measure, model) for model in models}
+    return {model: kept(f"seconds/{file.stem}/{model}", time_fit, model) for model in models}
 
 
 def compute_scores(rows, collection, networks, kept):
     """Yield the `Score` of every successful fit in the rows of a sweep."""
     asked = {}
 
-    def error(row):
+    def compute_error(row):
+        """Return the error of the fit in a row of the sweep."""
         file = Path(row.file)
         if file not in asked:
             asked.clear()  # keep one in memory, because rows are sorted by file
@@ -176,7 +178,7 @@ def compute_scores(rows, collection, networks, kept):
     for row in rows:
         if row.fit:
             key = f"{row.loss}/{row.material}/{row.model}/{compute_sha256(row.saved)}"
-            score = row.material, row.model, row.loss, kept(key, error, row), row.error
+            score = row.material, row.model, row.loss, kept(key, compute_error, row), row.error
             yield Score(collection, *score, row.parameters)
     kept.write()
 

@@ -72,7 +72,7 @@ def test_a_ray_in_small_steps(name):
 def test_a_maximum_by_many_samples(make):
     case = Case("maximum")
     grid, (o, d) = (
-        make.grid_of(case.voxels, case.told),
+        make.grid_of(case.voxels, case.entry),
         (x[ROW * PIXELS :][:PIXELS] for x in case.rays),
     )
     lines = make.exact.Rays(o, d[0])
@@ -91,7 +91,7 @@ def test_a_saddle_by_its_roots(make):
     case = Case("saddle")
     origins, d = case.rays[0][::97], case.view_axes[0]
     found = make.exact.first_above(
-        make.grid_of(case.voxels, case.told), make.exact.Rays(origins, d), 0
+        make.grid_of(case.voxels, case.entry), make.exact.Rays(origins, d), 0
     )
     for o, t in zip(origins, found, strict=True):
         roots = np.roots(

@@ -294,7 +294,7 @@ NOTES = {  # the files that make notes, and in which of their functions or names
     ),
     "regression/measurement_noise.py": ("regress_with_noise",),
     "regression/robust/search.py": ("note",),
-    "regression/solvers/constraints.py": ("notes",),
+    "regression/solvers/constraints.py": ("write_notes",),
     "regression/result.py": ("old",),
 }
 

@@ -92,7 +92,9 @@ def held(name, loss, noise, replicates, n=600, robust=None, seed=0):
         noisy = NOISES[noise](rng, values, wi, wo, loss)
         samples = replace(Samples.from_arrays(wi, wo, noisy, None, "RGB", "noisy"), extents=extents)
         problem = Problem(model, samples, bk.losses.named[loss], space)
-        ends = levenberg_marquardt(problem.expand, u, weights, problem.least, 50, 1e-10, 1e-4).ends
+        ends = levenberg_marquardt(
+            problem.expand_loss, u, weights, problem.least, 50, 1e-10, 1e-4
+        ).ends
         point, passes = (ends.u, ends.weights), None
         if robust:
             *point, _, _, passes = search_robust(

@@ -86,7 +86,7 @@ def test_a_folded_objective_is_the_full_one(name):
     if folded is None:
         return
     u, weights = point(problem, 4)
-    full, quick = (p.expand(u, weights) for p in (problem, folded))
+    full, quick = (p.expand_loss(u, weights) for p in (problem, folded))
     np.testing.assert_allclose(quick.weights, full.weights, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(quick.error, full.error, rtol=1e-12)
     size = np.abs(full.hessian).max()

@@ -164,7 +164,7 @@ def fit(
         """Return the `Fit` of a `Solution`, with its albedo, notes and warnings."""
         known = wavelengths(data) if spectral else ()
         fitted = make_model(model_class, solution.shapes, solution.weights, known)
-        albedo = light.compare(fitted.eval)
+        albedo = light.compare_with_fit(fitted.eval)
         warnings = [] if light.has_another_unit else albedo.warnings()
         return Fit(
             model=fitted,

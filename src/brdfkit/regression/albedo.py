@@ -92,7 +92,7 @@ class TargetAlbedo:
         return cls(albedo.theta_i, albedo.values, albedo.known, pixels, azimuths)
 
     @property
-    def wanted(self) -> FloatArray:
+    def limited_values(self) -> FloatArray:
         """The albedos (n, channels) that a fit should have: the measured albedos, cut off at 1."""
         return self.pixels.values
 
@@ -101,7 +101,7 @@ class TargetAlbedo:
         """Whether the measured albedo is so large that the values cannot be a BRDF in sr⁻¹."""
         return bool((self.known[:, None] & (self.values > LARGEST_MEASURED_ALBEDO)).any())
 
-    def compare(self, brdf: Callable[[FloatArray, FloatArray], FloatArray]) -> Albedo:
+    def compare_with_fit(self, brdf: Callable[[FloatArray, FloatArray], FloatArray]) -> Albedo:
         """Return an `Albedo` with the albedos of a fit next to the measured ones.
 
         `brdf`: the BRDF of the fit, a function of directions wi and wo (n, 3) to values
@@ -138,7 +138,7 @@ class TargetAlbedo:
         """Return the albedos (n, channels) of a model; `brdf(wi, wo)`: its values (n, channels)."""
         return self.pixels.evaluate(brdf)
 
-    def accepts(self, albedos: FloatArray) -> bool:
+    def accepts_albedos(self, albedos: FloatArray) -> bool:
         """Return whether `albedos` (n, channels) are near the measured albedos and at most 1."""
         near = self.compute_distance(albedos) <= np.log(ACCEPTED_FACTOR)
         return bool(near and albedos.max() <= LARGEST_ALBEDO)
@@ -168,7 +168,7 @@ class TargetAlbedo:
 
         Both are averaged over the channels. A ratio is 1 where the measured albedo is unknown.
         """
-        measured, own = (np.maximum(a.mean(axis=1), 1e-9) for a in (self.wanted, albedos))
+        measured, own = (np.maximum(a.mean(axis=1), 1e-9) for a in (self.limited_values, albedos))
         return np.where(self.known, own / measured, 1.0)
 
     def _find_steep_angles(self) -> BoolArray:

@@ -138,7 +138,7 @@ def regress(
             raise
         end, stopped = best, True
     (u, weights), passes = objective.split(end.point[None]), None
-    error, message, notes = end.error, end.message, limits.notes(end.point) if limits else ()
+    error, message, notes = end.error, end.message, limits.write_notes(end.point) if limits else ()
     if message != "converged" and error <= ROUNDING * whole.black_squares.sum():
         message = "converged"  # the model meets the data exactly: E² is a rounding error
     # The robust search starts from the optimum of the plain loss, which weights no outlier less

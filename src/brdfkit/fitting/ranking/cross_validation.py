@@ -66,7 +66,7 @@ def cross_validate(
         model, held_out, whole.shapes, settings, lambda done: report(1 + done)
     )
     brdf, certainty = make_model(model, whole.shapes, whole.weights).eval, whole.certainty
-    albedo = light.compare(brdf)
+    albedo = light.compare_with_fit(brdf)
     return Validated(
         errors,
         albedo,

@@ -102,7 +102,7 @@ class Expansion:
             gram.reshape(-1, count, count), moment.reshape(-1, count), least, np.inf
         ).reshape(self.weights.shape)
 
-    def select(self, rows: Any) -> Expansion:
+    def select_points(self, rows: Any) -> Expansion:
         """Return the expansion about some of the points, selected by indices or a mask."""
         return replace(self, **{name: getattr(self, name)[rows] for name in ARRAYS})
 

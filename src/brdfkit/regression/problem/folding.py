@@ -127,7 +127,7 @@ class FoldedProblem:
         """Return the weights (points, channels, lobes) with the least loss at coordinates `u`."""
         return solve_weights(self.columns, self._sum_nodes(u), self.least)
 
-    def expand(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
+    def expand_loss(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
         """Return the `Expansion` about coordinates `u` and the weights that are best for them."""
         sums = self._sum_nodes(u)
         weights = solve_weights(self.columns, sums, self.least)

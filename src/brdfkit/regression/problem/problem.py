@@ -97,7 +97,7 @@ class Problem:
         linearised at the measured values, or if `evenly`, replaced by the plain difference of the
         values.
         """
-        sums = Sums.zeros(len(u), self.channels, len(self.columns))
+        sums = Sums.make_zeros(len(u), self.channels, len(self.columns))
         for block in self.blocks(len(u)):
             columns = self._evaluate_columns(block, u)
             moments, weights = [], []
@@ -116,7 +116,7 @@ class Problem:
             self._raise_if_not_finite(u)
         return solve_weights(self.columns, sums, self.least)
 
-    def expand(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
+    def expand_loss(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
         """Return the quadratic approximation of the squared loss E² about points.
 
         It has no Hessian without `curvature`, which saves time. If E² is quadratic in the weights,
@@ -133,7 +133,7 @@ class Problem:
 
     def compute_sums(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Sums:
         """Return the sums over all samples from which the squared loss and derivatives follow."""
-        sums = Sums.zeros(len(u), self.channels, len(self.columns), curvature)
+        sums = Sums.make_zeros(len(u), self.channels, len(self.columns), curvature)
         for _, evaluated in self._evaluate_blocks(u, weights):
             sums.add_samples(*evaluated)
         if not sums.is_finite():

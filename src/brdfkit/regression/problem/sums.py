@@ -35,7 +35,7 @@ class Sums:
     gram: Any
 
     @classmethod
-    def zeros(cls, points: int, channels: int, columns: int, curvature: bool = True) -> Sums:
+    def make_zeros(cls, points: int, channels: int, columns: int, curvature: bool = True) -> Sums:
         """Return sums over no samples, to add samples to; `curvature`: whether to sum `gram`."""
         gram = np.zeros((points, channels, columns, columns)) if curvature else None
         return cls(np.zeros(points), np.zeros((points, channels, columns)), gram)

@@ -162,10 +162,10 @@ class RobustProblem:
         `factors`: weights (n,) of the samples in each channel, which are constant.
         """
         own = self.part is self.problem
-        here = self._expand(self.problem, point, factors, own)
+        here = self._expand_weighted(self.problem, point, factors, own)
         if not own:
             factors = [f[self.rows] for f in factors]
-        hessian = here.hessian if own else self._expand(self.part, point, factors).hessian
+        hessian = here.hessian if own else self._expand_weighted(self.part, point, factors).hessian
         return here.gradient[0], hessian[0]
 
     def compute_newton_matrix(self, point: Point, ratios: list[FloatArray]) -> FloatArray:
@@ -175,7 +175,7 @@ class RobustProblem:
         `ratios`: scaled residuals (n,) in each channel.
         """
         slopes = [self._differentiate_weight(r[self.rows]) for r in ratios]
-        return self._expand(self.part, point, slopes).hessian[0]
+        return self._expand_weighted(self.part, point, slopes).hessian[0]
 
     def differentiate_scales(
         self, point: Point, ratios: list[FloatArray], scales: list[float]
@@ -189,9 +189,11 @@ class RobustProblem:
         for c, (r, scale) in enumerate(zip(ratios, scales, strict=True)):
             r = r[self.rows]
             of_gradient.append(
-                self._gradient(point, c, self.function(r) - self._differentiate_weight(r))
+                self._compute_gradient(point, c, self.function(r) - self._differentiate_weight(r))
             )
-            of_scale.append(self._gradient(point, c, self._weigh_samples_at_median(c, r, scale)))
+            of_scale.append(
+                self._compute_gradient(point, c, self._weigh_samples_at_median(c, r, scale))
+            )
         return np.array(of_gradient).T, np.array(of_scale)
 
     def find_best_step(self, hessian: FloatArray, gradient: FloatArray, point: Point) -> FloatArray:
@@ -199,14 +201,14 @@ class RobustProblem:
         z = point.to_vector()
         return minimise_in_box(hessian[None], gradient[None], self.low - z, self.high - z)[0]
 
-    def _gradient(self, point: Point, channel: int, factors: FloatArray) -> FloatArray:
+    def _compute_gradient(self, point: Point, channel: int, factors: FloatArray) -> FloatArray:
         """Return the gradient (k,) of the squared loss of one channel, from the part.
 
         `factors` (n,): weights of the part's samples.
         """
         every = [0 * factors for _ in self.levers]
         every[channel] = factors
-        return self._expand(self.part, point, every, curvature=False).gradient[0]
+        return self._expand_weighted(self.part, point, every, curvature=False).gradient[0]
 
     def _weigh_samples_at_median(self, channel: int, r: FloatArray, scale: float) -> FloatArray:
         """Return weights (n,) of the part's samples for the gradient of the scale of the noise.
@@ -225,7 +227,7 @@ class RobustProblem:
         weights[near] = 1 / (size * count * (len(levers) / len(r)))
         return weights
 
-    def _expand(
+    def _expand_weighted(
         self, problem: Problem, point: Point, factors: list[FloatArray], curvature: bool = True
     ) -> Expansion:
         """Return the `Expansion` of the squared loss with samples weighted by `factors`."""

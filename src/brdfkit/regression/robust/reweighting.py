@@ -36,7 +36,7 @@ def _welsch_weight(r: FloatArray) -> FloatArray:
     return np.exp(-(np.minimum(np.abs(r), ZERO_BELL) ** 2))
 
 
-def _piecewise(
+def _make_piecewise(
     limit: float, inside: Callable[[FloatArray], Any], outside: Callable[[FloatArray], Any]
 ) -> Callable[[FloatArray], FloatArray]:
     """Return a function of |r| that is `inside(r)` up to `limit`, and `outside(r)` beyond."""
@@ -51,11 +51,15 @@ def _piecewise(
 
 # By name: the weight function ω(r), its constant `tune`, and the integral ρ(r) of ω r
 WEIGHTS = {
-    "andrews": (_andrews_weight, 1.339, _piecewise(np.pi, lambda r: 1 - np.cos(r), lambda r: 2.0)),
+    "andrews": (
+        _andrews_weight,
+        1.339,
+        _make_piecewise(np.pi, lambda r: 1 - np.cos(r), lambda r: 2.0),
+    ),
     "bisquare": (
         lambda r: (1 - np.minimum(np.abs(r), 1) ** 2) ** 2,
         4.685,
-        _piecewise(1, lambda r: (1 - (1 - r**2) ** 3) / 6, lambda r: 1 / 6),
+        _make_piecewise(1, lambda r: (1 - (1 - r**2) ** 3) / 6, lambda r: 1 / 6),
     ),
     "cauchy": (
         lambda r: 1 / (1 + np.minimum(np.abs(r), 1e100) ** 2),
@@ -66,13 +70,13 @@ WEIGHTS = {
     "huber": (
         lambda r: 1 / np.maximum(1, np.abs(r)),
         1.345,
-        _piecewise(1, lambda r: r**2 / 2, lambda r: r - 0.5),
+        _make_piecewise(1, lambda r: r**2 / 2, lambda r: r - 0.5),
     ),
     "logistic": (_logistic_weight, 1.205, lambda r: np.logaddexp(r, -r) - np.log(2)),
     "talwar": (
         lambda r: (np.abs(r) < 1).astype(float),
         2.795,
-        _piecewise(1, lambda r: r**2 / 2, lambda r: 0.5),
+        _make_piecewise(1, lambda r: r**2 / 2, lambda r: 0.5),
     ),
     "welsch": (_welsch_weight, 2.985, lambda r: (1 - _welsch_weight(r)) / 2),
 }

@@ -97,7 +97,7 @@ class RobustSearch:
         self.problem = problem
         self.best: Any = None
 
-    def search(
+    def run_search(
         self,
         u: FloatArray,
         weights: FloatArray,
@@ -126,7 +126,7 @@ class RobustSearch:
         tolerance: float,
         ordinary_passes: int,
     ) -> RobustEnd:
-        """Run the passes of `search` from a start `point`, with the same other arguments."""
+        """Run the passes of `run_search` from a start `point`, with the same other arguments."""
         problem, near, solved = self.problem, NEAR_END, False
         for number in range(1, PASSES + 1):
             report(number, PASSES)
@@ -239,12 +239,12 @@ def search_robust(
         samples, rows = draw_subset(samples, np.ones(len(samples.wi)), MANY_SAMPLES // 2, rng)
         part = problem.with_samples(samples)
         first = RobustSearch(RobustProblem(part, u, weights, name))
-        start = first.search(u, weights, report, LOOSE, ordinary_passes=0).point
+        start = first.run_search(u, weights, report, LOOSE, ordinary_passes=0).point
         robust = RobustProblem(problem, u, weights, name, part, rows)
-        end = RobustSearch(robust).search(start.u, start.weights, report, ordinary_passes=0)
+        end = RobustSearch(robust).run_search(start.u, start.weights, report, ordinary_passes=0)
     else:
         robust = RobustProblem(problem, u, weights, name)
-        end = RobustSearch(robust).search(u, weights, report, EXACT)
+        end = RobustSearch(robust).run_search(u, weights, report, EXACT)
     note = f"{name}: {end.outliers:.1%} of the samples count less than half; the loss is of all"
     message = f"settled in {end.passes} passes"
     if not end.converged:

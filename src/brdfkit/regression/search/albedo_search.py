@@ -65,7 +65,7 @@ def correct_albedo(
         return target.compute_albedos(lambda wi, wo: mix_lobes(model, weights[0].T, wi, wo))
 
     free = compute_albedos(u, weights)
-    if target.accepts(free):
+    if target.accepts_albedos(free):
         return None
     wrong = target.find_wrong_angles(free)
     first = whole.compute_sums(u, weights, curvature=False).error[0]
@@ -81,7 +81,7 @@ def correct_albedo(
             break
         if target.compute_distance(corrected) <= DISTANCE_SHARE * target.compute_distance(free):
             accepted = *end, _describe_correction(target, wrong, free, corrected)
-        if target.accepts(corrected):
+        if target.accepts_albedos(corrected):
             break
         points = end[0]
     return accepted
@@ -120,7 +120,7 @@ class AlbedoProblem(PixelProblem):
         self, problem: Problem, target: TargetAlbedo, wrong: BoolArray, error: float, share: float
     ) -> None:
         self.albedo_settings = target, wrong, error, share
-        mean = np.maximum(target.wanted[wrong].mean(axis=1), 1e-6)
+        mean = np.maximum(target.limited_values[wrong].mean(axis=1), 1e-6)
         weights = share / (len(mean) * problem.channels) / mean**2
         super().__init__(
             *(problem.model, problem.samples, problem.loss, problem.space, 1 / error),

@@ -84,7 +84,7 @@ def levenberg_marquardt(
             (rows,) = np.nonzero(searching)
             if not len(rows):
                 break
-            here = now.select(rows)
+            here = now.select_points(rows)
             H, g = _add_correction(here.hessian, correction[rows]), here.gradient
             diagonal = H.diagonal(axis1=1, axis2=2)
             floor = 1e-12 * diagonal.max(axis=1, keepdims=True) + 1e-300
@@ -100,7 +100,12 @@ def levenberg_marquardt(
             leader = now.error[converged].min(initial=np.inf)
             over |= here.error - PATIENCE * gain > leader * (1 - 1e-7)
             searching[rows[over]] = False
-            rows, here, step, gain = rows[~over], here.select(~over), step[~over], gain[~over]
+            rows, here, step, gain = (
+                rows[~over],
+                here.select_points(~over),
+                step[~over],
+                gain[~over],
+            )
             if not len(rows):
                 break
             u = np.clip(here.u + step[:, :shapes], 0, 1)
@@ -118,7 +123,7 @@ def levenberg_marquardt(
             searching[rows[dampings[rows] > LARGEST_DAMPING]] = False
             better = trial.error < here.error
             good, bad = rows[better], rows[~better]
-            here, trial = here.select(better), trial.select(better)
+            here, trial = here.select_points(better), trial.select_points(better)
             correction[bad] = 0
             correction[good] = _update_correction(
                 correction[good],

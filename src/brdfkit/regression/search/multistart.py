@@ -96,18 +96,18 @@ def search_from_starts(
         u, weights = _add_unclamped_starts(first, u, weights)
     # All starts take a few steps, the best of them a few more, and so on
     for count, steps in MANY_SHAPES_ROUNDS if u.shape[1] > FEW_SHAPES else FEW_SHAPES_ROUNDS:
-        search = levenberg_marquardt(first.expand, u, weights, first.least, steps)
+        search = levenberg_marquardt(first.expand_loss, u, weights, first.least, steps)
         evaluations += search.evaluations
-        ends = search.ends.select(search.find_best(count))
+        ends = search.ends.select_points(search.find_best(count))
         u, weights = ends.u, ends.weights
-    revived = revive_zero_weights(first, ends.select([0]), starts)
+    revived = revive_zero_weights(first, ends.select_points([0]), starts)
     u, weights = (np.concatenate(parts) for parts in zip((u, weights), revived, strict=True))
     for number, problem in enumerate(problems):
         report(number, len(problems))
         if number:
             rows = search.find_best(FINALISTS)
             error = search.ends.error
-            ends = search.ends.select(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
+            ends = search.ends.select_points(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
             u, weights = ends.u, ends.weights
         # A clamped model takes many steps along kinks of the loss, which are cheaper on a part
         tight = MANY_SAMPLES_FACTOR * tolerance
@@ -118,7 +118,7 @@ def search_from_starts(
         evaluations += count
     report(len(problems), len(problems))
     best = search.find_best(FINALISTS)
-    return search.ends.select(best), search.converged[best], evaluations
+    return search.ends.select_points(best), search.converged[best], evaluations
 
 
 def _add_unclamped_starts(problem: Problem, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
@@ -128,7 +128,7 @@ def _add_unclamped_starts(problem: Problem, u: FloatArray, weights: FloatArray) 
     a search with a loss that continues below 0, and from other weights.
     """
     extended = Problem(problem.model, problem.samples, problem.loss, problem.space, extended=True)
-    ends = levenberg_marquardt(extended.expand, u, weights, problem.least, LARGEST_STEPS).ends
+    ends = levenberg_marquardt(extended.expand_loss, u, weights, problem.least, LARGEST_STEPS).ends
     evenly = problem.estimate_weights(u, evenly=True)
     starts = [(u, weights), (ends.u, ends.weights), (u, evenly), (u, (evenly + weights) / 2)]
     starts.append(((u + ends.u) / 2, (weights + ends.weights) / 2))
@@ -159,7 +159,7 @@ def _search_problem(
             return search, search.evaluations
         u, weights, evaluations = search.ends.u, search.ends.weights, search.evaluations
     search = levenberg_marquardt(
-        problem.expand, u, weights, problem.least, iterations, tolerance, damping
+        problem.expand_loss, u, weights, problem.least, iterations, tolerance, damping
     )
     return search, evaluations + search.evaluations
 
@@ -167,14 +167,14 @@ def _search_problem(
 def _borrow_curvature(
     whole: Problem, part: Problem
 ) -> Callable[[FloatArray, FloatArray], Expansion]:
-    """Return a function like `whole.expand` that takes the Hessian from a part of the samples.
+    """Return a function like `whole.expand_loss` that takes the Hessian from a part of the samples.
 
     It saves time, because a Hessian takes longer than the squared loss and its gradient.
     """
 
     def expand_with_part_hessian(u: FloatArray, weights: FloatArray) -> Expansion:
         """Return the `Expansion` of the whole problem with the Hessian of its part."""
-        expansion = whole.expand(u, weights, curvature=False)
+        expansion = whole.expand_loss(u, weights, curvature=False)
         near = part.expand_at_weights(u, weights)
         return replace(expansion, hessian=near.hessian, gram=near.gram)
 

@@ -137,11 +137,11 @@ class Constraints:
 
     def values(self, z: Any) -> Any:
         """Return the values (m,) of all constraints at a point z, at least 0 where they are met."""
-        return np.concatenate([c.values(self.problem, *self._split(z)) for c in self.each])
+        return np.concatenate([c.values(self.problem, *self._split_point(z)) for c in self.each])
 
     def slopes(self, z: Any) -> Any:
         """Return the derivatives (m, n) of the constraints' values at a point z by its entries."""
-        return np.concatenate([c.slopes(self.problem, *self._split(z)) for c in self.each])
+        return np.concatenate([c.slopes(self.problem, *self._split_point(z)) for c in self.each])
 
     def are_met(self, z: FloatArray) -> bool:
         """Return whether a point z meets all constraints, up to rounding errors."""
@@ -159,7 +159,7 @@ class Constraints:
             )
         return met
 
-    def notes(self, z: FloatArray) -> tuple[str, ...]:
+    def write_notes(self, z: FloatArray) -> tuple[str, ...]:
         """Return a sentence on each constraint that is at its limit at a point z, for a fit."""
         return tuple(
             f"{quantity} is at its limit, which standard errors and intervals do not know of"
@@ -170,11 +170,11 @@ class Constraints:
         """Return in words what the constraints limit whose values at z are below `limit`."""
         quantities = []
         for constraint in self.each:
-            (rows,) = np.nonzero(constraint.values(self.problem, *self._split(z)) < limit)
+            (rows,) = np.nonzero(constraint.values(self.problem, *self._split_point(z)) < limit)
             if len(rows):
                 quantities.append(constraint.describe(rows, self.problem.channels))
         return quantities
 
-    def _split(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _split_point(self, z: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the coordinates (1, shapes) and weights (1, channels, lobes) of a point z."""
         return split_point(z[None], len(self.problem.space.names), self.problem.channels)

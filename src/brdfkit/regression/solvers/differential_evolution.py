@@ -50,10 +50,12 @@ class DifferentialEvolution:
 
     def minimise(self, objective: Objective) -> End:
         """Return the `End` with the least squared loss that the search finds."""
-        coordinates = self._explore(objective) if objective.shapes else objective.coordinates
+        coordinates = (
+            self._evolve_population(objective) if objective.shapes else objective.coordinates
+        )
         return LevenbergMarquardt().search_best_ends(objective, coordinates)[0]
 
-    def _explore(self, objective: Objective) -> FloatArray:
+    def _evolve_population(self, objective: Objective) -> FloatArray:
         """Return the last population of the evolution, coordinates (points, shapes), best first."""
         from scipy.optimize import differential_evolution
 

@@ -164,7 +164,7 @@ class Objective:
         evaluated count, those on the largest part of the samples.
         """
         if ends is not None:
-            best = ends.select([int(np.argmin(ends.error))])
+            best = ends.select_points([int(np.argmin(ends.error))])
             point = self.join(best.u, best.weights)[0]
         elif seen := [stage.best for stage in self.stages() if stage.best]:
             point = seen[-1][1]

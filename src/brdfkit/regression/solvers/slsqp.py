@@ -54,16 +54,18 @@ class SLSQP:
     def minimise(self, objective: Objective) -> End:
         """Return the `End` with the least squared loss that meets the constraints."""
         if objective.constraints is None:
-            return search_stages(objective, self._search, find_best_starts(objective, self.starts))
+            return search_stages(
+                objective, self._search_from_point, find_best_starts(objective, self.starts)
+            )
         # If the optimum without constraints happens to meet them, it is the result
         free = LevenbergMarquardt().search_best_ends(objective, objective.coordinates)
         if objective.constraints.are_met(free[0].point):
             return free[0]
-        end = search_stages(objective, self._search, [end.point for end in free])
+        end = search_stages(objective, self._search_from_point, [end.point for end in free])
         without = f"without the constraints E would be {math.sqrt(free[0].error):.6g}"
         return replace(end, message=f"{end.message}; {without}")
 
-    def _search(self, objective: Objective, z: FloatArray) -> End:
+    def _search_from_point(self, objective: Objective, z: FloatArray) -> End:
         """Return the `End` of a search from one point `z` (n,)."""
         u, weights = objective.split(z[None])
         least = SMALLEST_UNIT * objective.error(objective.join(u, 0 * weights))[0]
@@ -88,7 +90,7 @@ class SLSQP:
         # In these units E² has equal curvature along all axes, which the search is made for
         unit = 1 / np.sqrt(np.maximum(hessian.diagonal(), 1))
 
-        def error(y: FloatArray) -> tuple[float, FloatArray]:
+        def compute_error(y: FloatArray) -> tuple[float, FloatArray]:
             """Return the squared loss over `scale` and its gradient at a point `y` (n,)."""
             there = objective.expand(objective.clip(y * unit), curvature=False)
             return there.error[0] / scale, 2 * there.gradient[0] * unit / scale
@@ -100,7 +102,7 @@ class SLSQP:
             "jac": lambda y: constraints.slopes(y * unit) * unit,
         }
         result = minimize(
-            error,
+            compute_error,
             start / unit,
             jac=True,
             method="SLSQP",

@@ -48,9 +48,11 @@ class TrustRegion:
 
     def minimise(self, objective: Objective) -> End:
         """Return the `End` with the least squared loss that the search finds."""
-        return search_stages(objective, self._search, find_best_starts(objective, self.starts))
+        return search_stages(
+            objective, self._search_from_point, find_best_starts(objective, self.starts)
+        )
 
-    def _search(self, objective: Objective, z: FloatArray) -> End:
+    def _search_from_point(self, objective: Objective, z: FloatArray) -> End:
         """Return the `End` of a search from one point `z` (n,)."""
         from scipy.optimize import least_squares
 
