@@ -104,7 +104,7 @@ def convolve_with_lobes(picture: FloatArray, side: float) -> list[FloatArray]:
 
 @lru_cache(CACHED_PICTURES)
 def _convolve_with_lobes(pixels: bytes, shape: tuple[int, ...], side: float) -> list[FloatArray]:
-    """Do the work of `convolve_with_lobes`; the cache needs the picture as bytes of doubles."""
+    """Convolve a picture, given as bytes of doubles so that calls can be cached, with lobes."""
     picture: FloatArray = np.frombuffer(pixels).reshape(shape)
     kappa, levels = sharpest_kappa(side), []
     while kappa > SMALLEST_KAPPA:

@@ -1,4 +1,4 @@
-"""The method `gmm` fits a mixture of lobes to every view, so that lobe k changes smoothly by view.
+"""The method `gmm` fits a mixture of lobes to every view, with smooth changes from view to view.
 
 The thesis fits views independently, and its pictures show seams between the lobes of two views.
 Here only the view along the normal is fitted from several guesses. The fit of every other view

@@ -16,24 +16,14 @@ from brdfkit.volumes.formats._volume_file import VolumeFile
 class Slice:
     """The header of a DICOM image, which is one slice of a volume.
 
-    Attributes
-    ----------
-    path : Path
-        The image's file.
-    series : (str, str)
-        Number and UID of the series of images to which the slice belongs.
-    shape, dtype : (int, int), dtype
-        Numbers of rows and columns, and the type of the stored pixels.
-    place : ndarray
-        Position (3,) of the first pixel in the patient's coordinates [mm].
-    frame : ndarray
-        Unit vectors (2, 3) along a row and along a column.
-    spacing : (float, float)
-        Distance between rows and distance between columns [mm].
-    slope, intercept : float
-        The value of a voxel, such as HU, is slope × pixel + intercept.
-    thickness : float
-        Thickness of the slice [mm].
+    - `path`: file of the image
+    - `series`: number and UID of the series of images to which the slice belongs
+    - `shape`, `dtype`: numbers of rows and columns, and type of the stored pixels
+    - `place`: position (3,) of the first pixel in the patient's coordinates [mm]
+    - `frame`: unit vectors (2, 3) along a row and along a column
+    - `spacing`: distance between rows and distance between columns [mm]
+    - `slope`, `intercept`: the value of a voxel, such as HU, is slope × pixel + intercept
+    - `thickness`: thickness of the slice [mm]
     """
 
     path: Path

@@ -37,19 +37,12 @@ COLLISION_LIMIT = 1e6
 class Medium:
     """A participating medium whose extinction, albedo and emission are Mitsuba volumes.
 
-    Attributes
-    ----------
-    extinction : mi.Volume
-        The extinction σ, whose box bounds the medium. The plugin `transfer_function` gives RGB as
-        well, as an albedo or an emission.
-    scale : mi.Float
-        A factor of σ.
-    albedo : mi.Volume
-        The share of collisions that scatter light; RGB of a `transfer_function` multiplies it.
-    emission : mi.Volume
-        The radiance that the medium adds per unit of length.
-    majorants : Majorants or None
-        Upper bounds of σ; None before `recompute_majorants` is called.
+    - `extinction`: the extinction σ, whose box bounds the medium; the plugin `transfer_function`
+      gives RGB as well, as an albedo or an emission
+    - `scale`: a `mi.Float` that multiplies σ
+    - `albedo`: the share of collisions that scatter light; an albedo RGB multiplies it
+    - `emission`: the radiance that the medium adds per unit of length
+    - `majorants`: upper bounds of σ; None before `recompute_majorants` is called
     """
 
     extinction: Any

@@ -35,10 +35,8 @@ class Vertex:
         import mitsuba as mi
 
         it = dr.zeros(mi.Interaction3f)
-        it.p, it.n = (
-            self.select_medium_or_surface(self.mei.p, self.si.p),
-            self.select_medium_or_surface(0, self.si.n),
-        )
+        it.p = self.select_medium_or_surface(self.mei.p, self.si.p)
+        it.n = self.select_medium_or_surface(0, self.si.n)
         it.time, it.wavelengths = self.mei.time, self.mei.wavelengths
         return it
 

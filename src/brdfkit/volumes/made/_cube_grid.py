@@ -7,15 +7,14 @@ from brdfkit.core.array_types import FloatArray
 Size = tuple[int, int, int]
 
 
-def make_cube_transform(size: Size, half_width: float) -> FloatArray:
-    """Return the transform (4, 4) from voxels' indices to the world, for a grid that fills a cube.
+def make_cube_transform(size: Size) -> FloatArray:
+    """Return the transform (4, 4) from voxels' indices to the world, for a grid on [-1, 1]³.
 
-    `size` (nx, ny, nz) are the numbers of voxels; the cube reaches from -`half_width` to
-    `half_width` along each axis.
+    `size` (nx, ny, nz) are the numbers of voxels.
     """
-    spacing = 2 * half_width / np.array(size, float)
+    spacing = 2 / np.array(size, float)
     to_world = np.diag([*spacing, 1])
-    to_world[:3, 3] = spacing / 2 - half_width
+    to_world[:3, 3] = spacing / 2 - 1
     return to_world
 
 

@@ -20,7 +20,7 @@ FREQUENCY, ALPHA = 6.0, 0.25
 
 def make(size: Size) -> Volume:
     """Make the volume of the Marschner-Lobb signal, with `size` (nx, ny, nz) voxels."""
-    to_world = make_cube_transform(size, 1.0)
+    to_world = make_cube_transform(size)
     values = evaluate_signal(*voxel_centres(size, to_world)).astype(np.float32)
     return Volume(values, to_world, "marschner_lobb")
 

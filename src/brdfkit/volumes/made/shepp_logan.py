@@ -29,7 +29,7 @@ ELLIPSOIDS = (  # value, a, b, c, x, y, z, φ [degrees]
 
 def make(size: Size) -> Volume:
     """Make the volume of the Shepp-Logan phantom, with `size` (nx, ny, nz) voxels."""
-    to_world = make_cube_transform(size, 1.0)
+    to_world = make_cube_transform(size)
     x, y, z = voxel_centres(size, to_world)
     values = np.zeros(size[::-1], np.float32)
     for value, a, b, c, x0, y0, z0, degrees in ELLIPSOIDS:

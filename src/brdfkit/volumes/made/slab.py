@@ -17,7 +17,7 @@ FIRST, SLOPE = 0.25, 1.5
 
 def make(size: Size) -> Volume:
     """Make the slab with `size` (nx, ny, nz) voxels."""
-    to_world = make_cube_transform(size, 1.0)
+    to_world = make_cube_transform(size)
     _, _, z = voxel_centres(size, to_world)
     values = np.broadcast_to(FIRST + SLOPE * (z + 1), size[::-1]).astype(np.float32)
     return Volume(values, to_world, "slab")

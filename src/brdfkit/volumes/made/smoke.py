@@ -17,7 +17,7 @@ EXPONENT = -11 / 6  # exponent of the amplitude over k, half of the power spectr
 def make(size: Size, seed: int = 0) -> Volume:
     """Make the smoke with `size` (nx, ny, nz) voxels, from random numbers with this `seed`."""
     rng = np.random.default_rng(seed)
-    to_world = make_cube_transform(size, 1.0)
+    to_world = make_cube_transform(size)
     x, y, z = voxel_centres(size, to_world)
     shape = size[::-1]
     kz, ky = (np.fft.fftfreq(n, 1 / n) for n in shape[:2])

@@ -18,10 +18,10 @@ POINTS = 4  # sample points along each axis of a voxel
 def make(size: Size) -> Volume:
     """Make the sphere with `size` (nx, ny, nz) voxels, its surface antialiased."""
     fine = POINTS * size[0], POINTS * size[1], POINTS * size[2]
-    x, y, z = voxel_centres(fine, make_cube_transform(fine, 1.0))
+    x, y, z = voxel_centres(fine, make_cube_transform(fine))
     values = np.empty(size[::-1], np.float32)
     for k in range(size[2]):
         inside = x**2 + y**2 + z[POINTS * k : POINTS * (k + 1)] ** 2 < RADIUS**2
         blocks = inside.reshape(POINTS, size[1], POINTS, size[0], POINTS)
         values[k] = blocks.mean(axis=(0, 2, 4))
-    return Volume(values, make_cube_transform(size, 1.0), "sphere")
+    return Volume(values, make_cube_transform(size), "sphere")

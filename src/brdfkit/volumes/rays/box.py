@@ -30,11 +30,8 @@ def intersect_box(ray: MitsubaObject, volume: MitsubaObject) -> tuple[JitFloat, 
     """
     import mitsuba as mi
 
-    o, d = (
-        get_world_to_cube(volume) @ mi.Point3f(ray.o),
-        get_world_to_cube(volume) @ mi.Vector3f(ray.d),
-    )
-    inverse = dr.rcp(d)
+    to_cube = get_world_to_cube(volume)
+    o, inverse = to_cube @ mi.Point3f(ray.o), dr.rcp(to_cube @ mi.Vector3f(ray.d))
     a, b = -o * inverse, (1 - o) * inverse
     return dr.maximum(dr.max(dr.minimum(a, b)), 0), dr.min(dr.maximum(a, b))
 

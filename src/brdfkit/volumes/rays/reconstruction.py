@@ -41,11 +41,8 @@ def compute_gradients(volume: Volume, points: ArrayLike, of_interpolant: bool) -
     differences.
     """
     indices = _convert_to_indices(volume, points)
-    by_index = (
-        _interpolant_slopes(volume, indices)
-        if of_interpolant
-        else _central_differences(volume, indices)
-    )
+    differentiate = _interpolant_slopes if of_interpolant else _central_differences
+    by_index = differentiate(volume, indices)
     # The chain rule converts derivatives along the grid's axes to those along the world's
     return by_index @ np.linalg.inv(volume.to_world[:3, :3])
 

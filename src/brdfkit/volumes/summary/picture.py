@@ -63,7 +63,7 @@ def _draw_slice(axes: Axes, summary: VolumeSummary, across: int, up: int, throug
 def _find_axis_span(volume: Any, axis: int) -> tuple[float, float]:
     """Return the world coordinates between which the grid's `axis` runs.
 
-    They fall if the axis points against the world's nearest axis.
+    The first one is larger if the axis points against the world's nearest axis.
     """
     start, along = volume.cube_to_world[:3, 3], volume.cube_to_world[:3, axis]
     length = np.linalg.norm(along)

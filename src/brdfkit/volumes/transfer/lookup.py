@@ -20,22 +20,14 @@ MAX_STEPS = 2**15  # a table has at most twice this number of steps
 class TransferLookup:
     """A transfer function as a texture of Mitsuba's current variant, for look-ups in kernels.
 
-    Attributes
-    ----------
-    function : TransferFunction
-        The function that is looked up.
-    table : mi.TensorXf
-        RGBA (n, 4) at even steps of the values, or (m, n, 4) at even steps of gradient magnitudes
-        as well. Optimisers may change the table; its numbers should stay ≥ 0, and A ≤ 1.
-    extinction : mi.Float
-        σ_t where A is 1 [1/unit of length].
-    axes : list
-        (low, scale, first) for values, and for gradient magnitudes if the function depends on
-        them: (x - low) · scale + first is the coordinate of x in the texture.
-    texture : mi.Texture1f or mi.Texture2f
-        The table as a texture.
-    integrals : Preintegration or None
-        Integrals of the table over values; None for a function of gradient magnitudes.
+    - `function`: the `TransferFunction` that is looked up
+    - `table`: a `mi.TensorXf` of RGBA (n, 4) at even steps of values, or (m, n, 4) at even steps of
+      gradient magnitudes as well; optimisers may change it, to numbers ≥ 0, with A ≤ 1
+    - `extinction`: a `mi.Float`, σ_t where A is 1 [1/unit of length]
+    - `axes`: (low, scale, first) for values, and for gradient magnitudes if the function depends on
+      them; the coordinate of x in the texture is (x - low) · scale + first
+    - `texture`: the table as a `mi.Texture1f` or `mi.Texture2f`
+    - `integrals`: the `Preintegration` of the table; None for a function of gradient magnitudes
     """
 
     function: TransferFunction
@@ -99,7 +91,7 @@ class TransferLookup:
         return mi.Color3f(r, g, b), a
 
     def reduce_table_to_values(self) -> AnyArray:
-        """Return RGBA (n, 4) over values, the largest over all gradient magnitudes if there are."""
+        """Return RGBA (n, 4) over values, the largest over all gradient magnitudes if any."""
         table = np.array(self.table)
         return table if table.ndim == 2 else table.max(axis=0)
 
