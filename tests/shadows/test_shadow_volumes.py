@@ -385,7 +385,7 @@ def test_what_a_ball_takes():
     volumes = volumes_of(scene, [mesh], casters="light_facing")
     edges, (volume,) = len(mesh.shared_edges[0]), volumes.volumes
     assert edges == 3 * len(mesh.triangles) / 2
-    assert np.sqrt(edges) / 2 < len(volume.walls) < 3 * np.sqrt(edges)
+    assert np.sqrt(edges) / 2 < len(volume.walls.times) < 3 * np.sqrt(edges)
     ends = volume.walls.corners[:, :2, :3]
     assert {tuple(p) for p in ends[:, 0]} == {tuple(p) for p in ends[:, 1]}
 

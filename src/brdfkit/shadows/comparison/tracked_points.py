@@ -70,7 +70,7 @@ class TrackedPoints:
         return flicker([lit[self.pixels], *later], self.true)
 
 
-def make_camera_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
+def make_camera_path(placement: Placement) -> list[Placement]:
     """Return placements in which the camera moves and turns to the right, to measure flicker.
 
     A step shifts a picture of 512 pixels by two or three of them.
@@ -78,7 +78,7 @@ def make_camera_path(placement: Placement, steps: int = STEPS) -> list[Placement
     camera = placement.camera
     nearest, _ = placement.depths
     path = []
-    for step in range(steps):
+    for step in range(STEPS):
         c, s = np.cos(CAMERA_TURN * step), np.sin(CAMERA_TURN * step)
         turn = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
         moved = make_rigid_matrix(turn, [CAMERA_STEP * step * nearest, 0, 0]) @ camera.view

@@ -49,9 +49,6 @@ class ProjectedFaces:
     inverse_depth: AnyArray
     times: AnyArray
 
-    def __len__(self) -> int:
-        return len(self.times)
-
 
 def picture_matrix(camera: Camera) -> FloatArray:
     """Return the matrix (4, 4) from the world to the space in which faces are projected.

@@ -30,9 +30,6 @@ class Faces:
     corners: AnyArray
     times: AnyArray
 
-    def __len__(self) -> int:
-        return len(self.times)
-
     @classmethod
     def join(cls, parts: Iterable["Faces"]) -> "Faces":
         """Return the faces of several collections as one."""

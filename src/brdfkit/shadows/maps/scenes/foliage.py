@@ -13,7 +13,8 @@ from brdfkit.shadows.maps.scenes._stage import (
     name_shapes_by_number,
 )
 
-LEAVES = 3000  # on a tree
+LEAVES = 3000  # the number of leaves of a tree
+BLADES = 6000  # the number of blades of grass
 TREES = [(0, 0), (3.6, 1.2), (-3.2, 2.4), (1.2, -3.8), (-2.8, -2.6), (4.4, -3.2), (-0.6, 4.6)]
 
 
@@ -56,13 +57,12 @@ def make_crown(random: np.random.Generator, centre: list[float], radii: list[flo
     return np.concatenate([np.stack(half, axis=1) for half in halves])
 
 
-def make_grass(random: np.random.Generator, blades: int = 6000) -> FloatArray:
+def make_grass(random: np.random.Generator) -> FloatArray:
     """Return the random blades of a meadow as triangles (n, 3, 3)."""
-    feet = np.column_stack([random.uniform(-8, 8, (blades, 2)), np.zeros(blades)])
-    aside = np.column_stack([0.03 * random.normal(size=(blades, 2)), np.zeros(blades)])
-    tips = feet + np.column_stack(
-        [0.07 * random.normal(size=(blades, 2)), random.uniform(0.1, 0.3, blades)]
-    )
+    feet = np.column_stack([random.uniform(-8, 8, (BLADES, 2)), np.zeros(BLADES)])
+    aside = np.column_stack([0.03 * random.normal(size=(BLADES, 2)), np.zeros(BLADES)])
+    bend, height = 0.07 * random.normal(size=(BLADES, 2)), random.uniform(0.1, 0.3, BLADES)
+    tips = feet + np.column_stack([bend, height])
     return np.stack([feet - aside, feet + aside, tips], axis=1)
 
 
