@@ -9,7 +9,7 @@ import numpy as np
 from brdfkit.checks.material_subject import Subject, list_incidences, random_pairs
 from brdfkit.checks.registry import check_of, larger_or_nan
 from brdfkit.checks.sampling import draw_uniform, sample_weights
-from brdfkit.core.array_types import FloatArray, JitColour, JitFloat, MitsubaModule, MitsubaObject
+from brdfkit.core.array_types import FloatArray, JitFloat, MitsubaModule, MitsubaObject
 from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.core.jit import double_precision
 from brdfkit.model import Model
@@ -70,7 +70,8 @@ def check_plugin_gradient(subject: Subject) -> tuple[bool, str]:
         image = subject.bsdf.eval(
             mi.BSDFContext(), subject.make_interaction(wi), mi.Vector3f(wo.astype(np.float32).T)
         )
-        dr.backward(_sum_spectrum(mi, image), dr.ADFlag.Default | dr.ADFlag.AllowNoGrad)
+        total = dr.sum(dr.sum(mi.unpolarized_spectrum(image)))  # over directions and channels
+        dr.backward(total, dr.ADFlag.Default | dr.ADFlag.AllowNoGrad)
         gradients = [dr.grad(value) for value in values]
         dr.eval(gradients)  # in one kernel, which compiles faster than one per parameter
         derivatives = [float(np.sum(np.array(gradient))) for gradient in gradients]
@@ -131,11 +132,6 @@ def _track_gradients(bsdf: MitsubaObject, names: Sequence[str]) -> Iterator[list
         yield list(values.values())
     finally:
         parameters.update({key: dr.detach(value) for key, value in values.items()})
-
-
-def _sum_spectrum(mi: MitsubaModule, image: JitColour) -> JitFloat:
-    """Return the sum of spectra over directions and channels, without polarisation."""
-    return dr.sum(dr.sum(mi.unpolarized_spectrum(image)))
 
 
 def _is_spectrum(mi: MitsubaModule, model: Model, name: str) -> bool:

@@ -107,7 +107,7 @@ def check_coverage(subject: Subject) -> tuple[bool, str]:
     """
     worst, where = 0.0, ""
     for degrees, wi in list_incidences():
-        weights = _average_channels(sample_weights(subject, wi), SAMPLES)
+        weights = to_channels(sample_weights(subject, wi), SAMPLES).mean(axis=0)
         mean = float(weights.mean())
         expected = float(directional_albedo(subject.eval_expected, wi).mean())
         error = np.hypot(weights.std() / np.sqrt(len(weights)), TOLERANCE * expected)
@@ -151,7 +151,7 @@ def compute_weight_spread(subject: Subject, degrees: float, samples: int = SAMPL
     `INCIDENCES`.
     """
     spectrum = sample_weights(subject, dict(list_incidences())[degrees], samples)
-    weights = _average_channels(spectrum, samples)
+    weights = to_channels(spectrum, samples).mean(axis=0)
     return float(weights.std() / weights.mean())
 
 
@@ -163,11 +163,6 @@ def sample_weights(
 
     si = subject.make_interaction(wi)
     return subject.bsdf.sample(mi.BSDFContext(), si, *draw_uniform(samples, seed))[1]
-
-
-def _average_channels(spectrum: JitColour, n: int) -> FloatArray:
-    """Return the mean (n,) over the channels of `n` spectra of Mitsuba."""
-    return to_channels(spectrum, n).mean(axis=0)
 
 
 def draw_uniform(n: int, seed: int) -> tuple[JitFloat, JitVector]:

@@ -2,7 +2,6 @@
 
 import re
 from functools import cache
-from pathlib import Path
 from typing import Any, ClassVar, Self
 
 from brdfkit.core.discovery import plugin_files
@@ -70,7 +69,8 @@ class Declaration:
     def make_known(cls) -> None:
         """Register a class of a notebook or a user's module, so that its name finds it."""
         model, name = cls.without_options(), cls.type_name()
-        if not cls.is_in_plugin_file() and _find_source(name) is not model:
+        known = plugin_files.find_plugins(plugin_files.MODELS).get(name)
+        if not cls.is_in_plugin_file() and known is not model:
             plugin_files.add_plugins(plugin_files.MODELS, {name: model})
 
     @classmethod
@@ -138,11 +138,6 @@ class Declaration:
     def has_signed_weights(cls) -> bool:
         """Return whether a weight may be negative, so that the BRDF is clamped at 0."""
         return any(p.linear and p.bounds[0] < 0 for p in cls.parameters.values())
-
-
-def _find_source(name: str) -> Path | type | None:
-    """Return the plugin file or the class of the model `name`, None if it is unknown."""
-    return plugin_files.find_plugins(plugin_files.MODELS).get(name)
 
 
 @cache

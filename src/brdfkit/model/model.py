@@ -199,9 +199,11 @@ class Model(Shown, Declaration):
 
     def scene_dict(self) -> dict[str, Any]:
         """Return the model as a BSDF for `mitsuba.load_dict`, in the current variant."""
+        import mitsuba as mi
+
         self.make_known()
         entries = {"type": self.type_name(), **self.changed_options()}
-        shown = self if self.wavelengths and _is_spectral() else self.rgb
+        shown = self if self.wavelengths and mi.is_spectral else self.rgb
         return entries | to_mitsuba_entries(shown)
 
     def __eq__(self, other: object) -> bool:
@@ -237,10 +239,3 @@ class Model(Shown, Declaration):
             f"{name}={format_value(value)}" for name, value in self.arguments.items()
         )
         return f"{self.label()}({values})"
-
-
-def _is_spectral() -> bool:
-    """Return whether Mitsuba's current variant is spectral."""
-    import mitsuba as mi
-
-    return bool(mi.is_spectral)

@@ -119,12 +119,8 @@ def compare_pictures(
             absent.append(metric)
     by_name = {n: {key: row[k] for key, row in errors.items()} for k, n in enumerate(names)}
     floor = {key: row[-1] for key, row in errors.items()}
-    notes = [
-        *_describe_empty_mask(mask),
-        *_describe_not_finite(pictures, mask),
-        *_describe_missing(absent),
-    ]
-    return ImageErrors(reference, by_name, floor, find_peak(first, mask), tuple(notes))
+    notes = tuple(_describe_unknown_errors(pictures, mask, absent))
+    return ImageErrors(reference, by_name, floor, find_peak(first, mask), notes)
 
 
 def _compute_error(
@@ -136,24 +132,21 @@ def _compute_error(
     return metric.function(reference, picture, mask)
 
 
-def _describe_empty_mask(mask: BoolArray) -> Iterator[str]:
-    """Yield a sentence if the mask is empty, so that no error is known."""
+def _describe_unknown_errors(
+    pictures: Mapping[str, AnyArray], mask: BoolArray, absent: Sequence[Metric]
+) -> Iterator[str]:
+    """Yield a sentence on each reason why errors are unknown.
+
+    The mask may be empty, pixels may be not finite, and packages of the `absent` metrics missing.
+    """
     if not mask.any():
         yield "No pixel shows the material, which leaves all errors unknown: render it larger."
-
-
-def _describe_not_finite(pictures: Mapping[str, AnyArray], mask: BoolArray) -> Iterator[str]:
-    """Yield a sentence on each picture whose errors are unknown, since pixels are not finite."""
     for name, picture in pictures.items():
         broken = (~np.isfinite(picture[mask]).all(axis=-1)).sum()
         if broken:
             pixels = "1 pixel" if broken == 1 else f"{broken} pixels"
             yield f"{name} is not finite in {pixels}, which leaves its errors unknown."
-
-
-def _describe_missing(metrics: Sequence[Metric]) -> Iterator[str]:
-    """Yield a sentence on the metrics whose packages are not installed, and how to install them."""
-    if metrics:
-        titles = " and ".join(metric.title for metric in metrics)
-        packages = " and ".join(metric.package for metric in metrics)
+    if absent:
+        titles = " and ".join(metric.title for metric in absent)
+        packages = " and ".join(metric.package for metric in absent)
         yield f"For {titles} install {packages}: pip install 'brdfkit[metrics]'."

@@ -68,7 +68,13 @@ class Samples:
             w_i, w_o = (w / np.linalg.norm(w, axis=1, keepdims=True) for w in (w_i, w_o))
         usable = _find_usable(w_i, w_o, f)
         if valid is not None:
-            usable &= _check_mask(valid, len(w_i), name)
+            mask = np.asarray(valid, bool)
+            if mask.shape != usable.shape:
+                raise BrdfkitError(
+                    f"{name}: the shape of valid, {mask.shape}, should be {usable.shape}: one "
+                    "entry per sample."
+                )
+            usable &= mask
         require_valid(usable, name, f, channels)
         return cls(w_i, w_o, f, usable, np.ones(len(usable)))
 
@@ -140,16 +146,6 @@ def require_valid(valid: AnyArray, name: str, values: AnyArray, channels: Sequen
         raise BrdfkitError(
             f"{name}: no valid measurement is left (all masked, not finite or below the surface)."
         )
-
-
-def _check_mask(valid: ArrayLike, n: int, name: str) -> BoolArray:
-    """Convert a user's mask to an array (n,) of bool; raise `BrdfkitError` for another shape."""
-    valid = np.asarray(valid, bool)
-    if valid.shape != (n,):
-        raise BrdfkitError(
-            f"{name}: the shape of valid, {valid.shape}, should be ({n},): one entry per sample."
-        )
-    return valid
 
 
 def _find_usable(wi: AnyArray, wo: AnyArray, values: AnyArray) -> BoolArray:
