@@ -27,9 +27,7 @@ STEP = 2**0.5  # ratio of κ between levels, so small that a lobe between two is
 ROWS = 1.7  # largest number of rows of a picture per texel along a side of the discs made from it
 SMALLEST_KAPPA = 0.5  # a nearly uniform lobe, which is used for wider ones as well
 CUT_OFF = 12.0  # a lobe is cut off at e^-12 of its peak, beyond which lies e^-12 of its integral
-# Interpolation between texels widens a lobe's variance by about this share; so the lobe with which
-# the map is convolved is sharper by as much
-BLUR = 0.03
+BLUR = 0.03  # share by which interpolation between texels widens the variance of a lobe
 COVERAGE = 0.5  # share of a lobe that one texel of its mip level covers, called a in eq. 8.9
 CACHED_PICTURES = 4  # pictures whose levels, a few MB each, are kept for the next call
 

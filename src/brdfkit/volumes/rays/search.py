@@ -11,7 +11,7 @@ import drjit as dr
 from brdfkit.core.array_types import JitFloat, JitInt, JitMask
 from brdfkit.core.jit.loops import record_loops
 
-HALVINGS = 8  # the step with a crossing or maximum is halved so often, to 1/256
+HALVINGS = 8  # times that the step with a crossing or maximum is halved, to 1/256
 
 
 @record_loops

@@ -46,7 +46,7 @@ def convert_boundaries(
         ends = (1 + FADE - g / steepest) / FADE
         triangles.append(a * np.clip(near, 0, 1) * np.clip(ends, 0, 1) * (g > 0))
     shares = np.array(triangles)  # (boundaries, gradients, values)
-    shares[..., [0, -1]] = 0  # A at both ends, which the function continues beyond its range
+    shares[..., [0, -1]] = 0  # A at both ends, since the function is constant beyond
     # Colours change gradually even where A is 0, because textures interpolate them into A > 0
     weights = shares + 1e-6 / (1e-3 + np.abs(v - rows[:, 0, None, None]) / (high - low))
     rgb = np.einsum("kmn,kc->mnc", weights / weights.sum(axis=0), rows[:, 2:5])

@@ -30,7 +30,7 @@ from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import read_bytes
 from brdfkit.volumes.transfer.colour_maps import find_bracketing_points, require_rising
 
-PARTS = 8  # segments into which one between two colours is divided
+PARTS = 8  # a segment between two control points is divided into so many
 UNIT_DISTANCE = 1.0  # thickness d of the layer whose opacity is stated [mm]
 
 
