@@ -33,7 +33,7 @@ from brdfkit.mitsuba_bridge.surface_points import make_interaction
 
 BAND_WIDTH = 4.0  # the width ε of the band around silhouettes, over the cone's radius ρ
 MAX_STEPS = 512  # the most steps along a ray, as in `cone_trace`
-GRAZING_COSINE = 0.01  # between ray and normal at a silhouette, as a BSDF reflects nothing at 0
+GRAZING_COSINE = 0.01  # of ray and normal at a silhouette: a BSDF would reflect nothing at 0
 
 
 @dataclass(frozen=True)

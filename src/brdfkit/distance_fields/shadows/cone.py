@@ -94,7 +94,7 @@ class LightCone:
         """
         wide = dr.maximum(self.R_0, self.R_1)
         narrow = dr.maximum(dr.minimum(self.R_0, self.R_1), TIP_RADIUS * wide)
-        tan = dr.maximum(dr.abs(self.tan), 1e-4 * wide / self.d)  # a cylinder is the limit
+        tan = dr.maximum(dr.abs(self.tan), 1e-4 * wide / self.d)  # a cylinder's would be 0
         growth = epsilon * pi / 2 * tan / (lipschitz + tan)
         decades = dr.maximum(dr.log(wide / narrow), tan * self.d / wide)
         return 2 + decades / dr.log(1 + growth)

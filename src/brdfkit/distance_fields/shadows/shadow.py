@@ -112,7 +112,7 @@ def attach_ratio_derivatives(
     """
 
     def moving_ratio(t: JitFloat) -> JitFloat:
-        # The place t keeps its share of the axis as derivatives move the axis
+        # If the axis grows longer, the place t moves with it, at the same share of its length
         return clearance_ratio(field, cone, t / dr.detach(cone.d) * cone.d)
 
     if not dr.grad_enabled(moving_ratio(t)):

@@ -13,10 +13,10 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import no_such_error
 
 VIEWS = {
-    "V1": 90,  # at right angles to the light
-    "V2": 180,  # into the light, known as duelling frusta
-    "V3": 155,  # between the two
-    "V4": 0,  # along the light, like a miner's lamp
+    "V1": 90,  # looks at right angles to the light
+    "V2": 180,  # looks into the light, known as duelling frusta
+    "V3": 155,  # between V1 and V2
+    "V4": 0,  # looks along the light, as if it came from a miner's lamp
 }
 LIGHTS = {1: 14, 2: 17}  # azimuths [degrees]; the second sun is a small step from the first
 ELEVATION = 48  # the suns' height above the horizon [degrees]
