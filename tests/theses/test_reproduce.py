@@ -91,7 +91,7 @@ def test_ctrl_c_keeps_what_is_finished(empty_files, tmp_path, monkeypatch):
     def stop(sources, report):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(figure_9_4, "run", stop)
+    monkeypatch.setattr(figure_9_4, "check_claims", stop)
     parts = ["appendix_3", "figure_9_4"]
     found = bk.reproduce("kurt2007", path=tmp_path, data=empty_files, parts=parts)
     assert found.unfinished == ("figure_9_4",)

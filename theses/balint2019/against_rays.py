@@ -25,7 +25,7 @@ surface."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on one march and many rays; return their section of the page."""
     found = {}
     for done, (scene, radius) in enumerate((s, r) for s in SCENES for r in RADII):

@@ -44,7 +44,7 @@ these were computed apart, by a program that shares no line with brdfkit. 146/25
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on shares of the light and steps of marches, and return their section."""
     rows, equal = [], 0
     for done, ((name, n), expected) in enumerate(SHARES_AND_STEPS.items()):

@@ -34,7 +34,7 @@ FIXED = (
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the largest error of a march; return their section of the page."""
     rng = np.random.default_rng(0)
     field, cone = make_random_scenes(rng, CONES)

@@ -21,7 +21,7 @@ the sum of |∇ share|."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the width of a hard shadow's edge; return their section of the page."""
     scene = scenes.simple()
     cone = make_ground_cones(SIZE, HALF, scene.light, 0.0, HALF / SIZE)

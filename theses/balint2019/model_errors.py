@@ -78,7 +78,7 @@ SOLIDS = {
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on shadows of objects without straight edges; return their section."""
     found = {}
     for done, (name, (solid, _)) in enumerate(SOLIDS.items()):

@@ -25,7 +25,7 @@ by less than {SMOOTH:g}. The right ε is the largest of 1/2, 1/4 ... 1/256 at wh
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the error bounds for lights of several sizes; return their section."""
     view, found = View(scenes.near_light(), SIZE), {}
     for done, radius in enumerate(PRINTED):

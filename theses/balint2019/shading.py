@@ -35,7 +35,7 @@ which names no BSDF. Truth: {TRUE_SAMPLES:,} samples by rays."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on shading by marches and by rays; return their section of the page."""
     use_variant()
     truths = {

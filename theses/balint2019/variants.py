@@ -42,7 +42,7 @@ every convex object, also within objects. A Mandelbulb is not convex: there it m
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the times of four marches; return their section of the page."""
     ours, errors, tables = {}, {}, []
     printed = {name: read_printed_times(name) for name in SCENES}

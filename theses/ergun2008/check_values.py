@@ -32,7 +32,7 @@ ABOVE = Light(np.array([0, 0, 1.0, 0]))
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on formulas of shadows at known values; return their section of the page."""
     use_variant()
     checks = (

@@ -38,7 +38,7 @@ map of as many texels, 1024 × 1024."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the recommended combination of methods; return their section."""
     use_variant()
     found = measure_all(measure_techniques, SCENES, report)

@@ -25,7 +25,7 @@ light, one a texel, which find their triangle in a tree: its time hardly depends
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the costs of shadow volumes and shadow maps, and return their section."""
     use_variant()
     found = {"volumes": [], "maps": []}

@@ -20,7 +20,7 @@ line. The curves of the thesis are in a picture that is not at hand."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on depths on shadow maps of six projections; return their section."""
     use_variant()
     curves = {view: sample_curves(View.load(SCENE, view, 1).placement) for view in VIEWS}

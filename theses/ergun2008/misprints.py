@@ -17,7 +17,7 @@ TEXT = """Each formula is computed as printed and as it must be meant; claims ar
 where the printed one fails. brdfkit computes what is meant."""
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on misprinted formulas; return their section of the page."""
     checks = (
         claim_bound,

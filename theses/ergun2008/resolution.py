@@ -17,7 +17,7 @@ light that is wrong where surfaces face it."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on errors of shadow maps by their resolution, and return their section."""
     use_variant()
     views, found = [View.load(SCENE, view, 1) for view in ("V1", "V3")], {}

@@ -32,7 +32,7 @@ of a shadow goes through it, by {RAYS} × {RAYS} more rays. `foliage` is left ou
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on stencil shadow volumes; return their section of the page."""
     use_variant()
     differ, counted, done = dict.fromkeys(METHODS, 0), 0, 0

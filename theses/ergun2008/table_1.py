@@ -29,7 +29,7 @@ tell."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on texture use and aliasing of six projections, and return their section."""
     use_variant()
     found = measure_all(score_projections, SCENES, report)

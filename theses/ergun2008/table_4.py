@@ -27,7 +27,7 @@ brdfkit's bias; the thesis tells neither its bias, nor its PCF, nor the blur of 
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on three filters of shadow maps; return their section of the page."""
     use_variant()
     found = measure_all(compute_errors, SCENES, report)

@@ -22,7 +22,7 @@ TEXT = f"""Each map is cut into {BLOCKS:,} blocks, and each block holds the mean
 power. The error is Σ (power − mean)² / Σ power²."""
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the choice of the next block to cut; return their section."""
     maps = read_probes(sources)
     errors = {}

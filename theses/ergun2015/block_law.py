@@ -24,7 +24,7 @@ fitted here by maximum likelihood: the thesis does not say how. The law of steps
 probabilities in each of eight ranges of ranks. {BLOCKS:,} blocks."""
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the law of sorted block powers; return their section of the page."""
     maps = read_probes(sources)
     drawn = make_figure(8, 2.6 * ((len(maps) + 1) // 2))

@@ -44,7 +44,7 @@ the 99.9th percentile. The thesis names three materials and no formula: ours are
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on light samples by blocks of a map; return their section."""
     use_variant()
     maps = read_probes(sources)

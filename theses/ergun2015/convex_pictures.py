@@ -38,7 +38,7 @@ too."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on shadows of convex parts; return their section of the page."""
     use_variant()
     if not can_decompose():

@@ -54,7 +54,7 @@ class ExactPlaneMap:
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on rays that meet convex parts; return their section of the page."""
     use_variant()
     rows, lookups, wrong, coarse = [], [], [], []

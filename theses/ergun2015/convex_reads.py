@@ -16,7 +16,7 @@ Height fields stand in a tree, RBVH [Novák & Dachsbacher 2012]."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the reads of maps per pixel; return their section of the page."""
     use_variant()
     if not can_decompose():

@@ -30,7 +30,7 @@ better."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the settings of convex shadows; return their section of the page."""
     use_variant()
     if not can_decompose():

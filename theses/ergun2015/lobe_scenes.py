@@ -44,7 +44,7 @@ the map as graphics hardware makes them, as in the thesis; *lobes*: levels convo
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on 80 scenes by methods with Gaussian lobes; return their section."""
     use_variant()
     shapes = {"ball": find_scene("ball"), "torus": make_torus_scene}

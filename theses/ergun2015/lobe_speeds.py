@@ -25,7 +25,7 @@ that it does not name, so only ratios are compared."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the speeds of methods with Gaussian lobes, and return their section."""
     import mitsuba as mi
 

@@ -29,7 +29,7 @@ kernels have a closed form at every view; ours are stored and interpolated, too.
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the edges between stored views of lobes, and return their section."""
     import mitsuba as mi
 

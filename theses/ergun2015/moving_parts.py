@@ -34,7 +34,7 @@ TEXT = f"""A rigid motion changes one transform and a small tree. {SETTING}"""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the time to move convex parts; return their section of the page."""
     use_variant()
     if not can_decompose():

@@ -109,7 +109,7 @@ def find_scales(rows):
     return found
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the 364 printed fits of Appendix 3; return their section of the page."""
     rows = read_rows(sources)
     title = "Appendix 3: 364 printed fits"

@@ -37,7 +37,7 @@ TEXT = """The albedo of the specular terms alone, with k_s = 1, by quadrature: a
 leaves than came."""
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the albedos of specular models; return their section of the page."""
     wi = from_angles(np.radians(ANGLES), np.zeros(len(ANGLES)))
     lines, claims = [], []

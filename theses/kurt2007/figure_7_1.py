@@ -24,7 +24,7 @@ the measured directions. The thesis shows Mystique lacquer, whose file is not at
 polynomial, f = β₀ + g(Z₁) + h(Z₂)."""
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the polynomial and its terms of interaction, and return their section."""
     picture = _draw_figure(load(sources.path("cornell/cayman.brdf")))
     report(1, 3)

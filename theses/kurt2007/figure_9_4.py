@@ -22,7 +22,7 @@ the errors of the seven from Appendix 3, with our polynomial multiplied by one f
 the median of printed / ours over the seven."""
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the errors of eight models; return their section of the page."""
     ours = {name: compute_errors(sources, label) for name, label in SEVEN.items()}
     report(1, 5)

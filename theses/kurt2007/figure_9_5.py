@@ -21,7 +21,7 @@ has them, sorted by the polynomial of degree 8; no scale is needed, all four are
 same data. *Least E*: by least squares weighted as eq. 5.13 weighs."""
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on Koenderink's basis and the polynomial; return their section."""
     as_thesis, least = {}, {}
     for done, (name, (label, how)) in enumerate(LINEAR.items()):

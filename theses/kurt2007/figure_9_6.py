@@ -20,7 +20,7 @@ TEXT = f"""On {PAIRS:,} random pairs of directions. The polynomial of degree 5 i
 neural reconstruction of {MATERIAL}."""
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the reciprocity of BRDF models; return their section of the page."""
     with np.load(sources.path("nbrdf_derived/merl_nbrdf.npz")) as networks:
         table = decode_network(networks[MATERIAL], CELLS)

@@ -29,7 +29,7 @@ is read as linear sRGB, so that its unit is not the thesis's; *without the peak*
 one pair at θ_i 80°, θ_r 79°, φ 180°, which is 34 times the next largest value."""
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the error of the polynomial by its degree, and return their section."""
     cayman = load(sources.path("cornell/cayman.brdf")).rgb
     calm = _remove_peak(cayman)

@@ -20,7 +20,7 @@ nonlinear models of printed / ours. So the seven agree on the whole by construct
 not."""
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the errors of nine models on five materials, and return their section."""
     table = read_printed_table("table_9_2")
     theirs = {name: np.array(errors) for name, errors in table["errors"].items()}

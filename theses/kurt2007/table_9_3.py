@@ -30,7 +30,7 @@ clear sky and a softbox, linear values, peak the 99.9th percentile. So only who 
 order, compare. Cells: L2 error / PSNR [dB], printed → ours."""
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on errors and pictures of eight models; return their section of the page."""
     names = read_printed_table("table_9_3")["materials"]
     error = {model: [] for model in MODELS}

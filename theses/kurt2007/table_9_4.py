@@ -16,7 +16,7 @@ years apart, so only ratios are compared; and brdfkit searches all starts at onc
 Levenberg-Marquardt in compiled code, where the thesis ran SQP in MATLAB from a start or a few."""
 
 
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the times of fits; return their section of the page."""
     found = load_samples(sources).values()
 

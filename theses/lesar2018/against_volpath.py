@@ -20,7 +20,7 @@ compares itself with no other renderer."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on single scattering and Mitsuba's `volpath`, and return their section."""
     use_variant()
     z, speed = {}, {}

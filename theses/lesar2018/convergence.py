@@ -40,7 +40,7 @@ class Run:
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the convergence of pictures over iterations, and return their section."""
     use_variant()
     runs, total = {}, sum(ITERATIONS.values()) * 2

@@ -22,7 +22,7 @@ camera and one lamp for all four renderers; emission and absorption needs no lam
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on pictures by four renderers; return their section of the page."""
     use_variant()
     found = find_scans(sources, FEWER)

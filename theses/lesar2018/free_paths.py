@@ -28,7 +28,7 @@ thesis prints no values."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on Woodcock tracking with several majorants, and return their section."""
     use_variant()
     found = {}

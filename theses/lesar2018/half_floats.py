@@ -21,7 +21,7 @@ precision, and A is rounded to 16 or to 32 bits after each iteration. brdfkit ac
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on running means in 16-bit floats; return their section of the page."""
     found = {}
     for done, (name, (mean, draw)) in enumerate(NOISES.items()):

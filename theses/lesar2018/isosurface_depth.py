@@ -19,7 +19,7 @@ sphere: the first of N even steps, and what `isosurface` leaves of that, which t
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the depth of isosurfaces by points on rays, and return their section."""
     use_variant()
     rng = np.random.default_rng(0)

@@ -25,7 +25,7 @@ cell, as the printed ones; 16 ms is the least that a browser shows."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the time of an iteration; return their section of the page."""
     use_variant()
     cells = list(PRINTED["phone"])

@@ -21,7 +21,7 @@ nearer, once. The truth is by {DENSE:,} points."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the largest value along rays; return their section of the page."""
     use_variant()
     volume = make_volume("smoke", (VOXELS,) * 3)

@@ -31,7 +31,7 @@ light."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on integrals and values of phase functions, and return their section."""
     use_variant()
     phases = {name: make_phase_function(entries) for name, entries in PLUGINS.items()}

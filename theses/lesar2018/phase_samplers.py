@@ -28,7 +28,7 @@ proposes such, and prints none."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on directions drawn by phase functions; return their section of the page."""
     use_variant()
     rejected = [name for name, entries in PLUGINS.items() if compute_p_value(entries) is None]

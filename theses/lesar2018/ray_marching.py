@@ -27,7 +27,7 @@ march with a random place in each step: the mean of the light that comes through
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the errors of marching through a volume, and return their section."""
     use_variant()
     errors = {n: (render_march(n) - EXACT, march_without_dimming(n) - EXACT) for n in KNOWN}

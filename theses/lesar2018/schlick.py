@@ -19,7 +19,7 @@ CAPTION = "Left: Henyey-Greenstein's, thick, and Schlick's. Right: k(g), which s
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on Schlick's phase function; return their section of the page."""
     rows = [
         (f"{g:g}", *(f"{v:.5f}" for v in compare_schlick(g)[:3]), *format_extremes(g)) for g in GS

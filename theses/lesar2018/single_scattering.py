@@ -25,7 +25,7 @@ states the steps, and leaves albedo, lights and the ray to the light open."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on light scattered once in slabs; return their section of the page."""
     use_variant()
     rows, z = [], []

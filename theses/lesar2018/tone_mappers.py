@@ -21,7 +21,7 @@ its settings nor whether sRGB's curve follows; here it does."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on tone mappers; return their section of the page."""
     use_variant()
     import mitsuba as mi

@@ -24,7 +24,7 @@ as well, in seconds of CPU on the machine that made this page."""
 
 
 @in_turn
-def run(sources, report):
+def check_claims(sources, report):
     """Check the claims on the time to a new picture; return their section."""
     use_variant()
     import mitsuba as mi

@@ -2,8 +2,9 @@
 
 A folder here is a thesis and is found by itself. Its `__init__.py` has TITLE, INTRODUCTION, NEEDS
 (the measured files) and PARTS, the names of its files in the order of the page. A part is one table
-or figure. It has SECONDS, about how long it takes, and a function `run(sources, report)`, which
-returns a `Section` of `page.py` with its `Claim`s and calls `report(done, total)` as it goes on.
+or figure. It has SECONDS, about how long it takes, and a function `check_claims(sources, report)`,
+which returns a `Section` of `page.py` with its `Claim`s and calls `report(done, total)` as it goes
+on.
 """
 
 from pathlib import Path

@@ -123,7 +123,7 @@ def reproduce(
             before = sum(m.SECONDS for m in modules[:number])
             report(before, total)
             sections.append(
-                module.run(sources, _scale_progress(report, before, module.SECONDS, total))
+                module.check_claims(sources, _scale_progress(report, before, module.SECONDS, total))
             )
     except KeyboardInterrupt:
         if not sections:
