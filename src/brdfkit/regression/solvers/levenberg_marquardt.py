@@ -43,7 +43,7 @@ class LevenbergMarquardt:
         return self.search_best_ends(objective, objective.coordinates)[0]
 
     def search_best_ends(self, objective: Objective, coordinates: FloatArray) -> list[End]:
-        """Return the best few `End`s of searches from several start points, the best first.
+        """Return the best results (`End`) of searches from several start points, the best first.
 
         `coordinates` (count, shapes): the start points; weights are computed for them.
         """
