@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from test_fit import Undefined, mirrored, synthetic
+from measured_models import synthetic
+from test_fit import Undefined, mirrored
 
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError

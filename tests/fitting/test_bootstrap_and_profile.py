@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from test_certainty import noisy
-from test_fit import synthetic
+from measured_models import noisy, synthetic
 
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError

@@ -7,6 +7,7 @@ from dataclasses import replace
 import drjit as dr
 import numpy as np
 import pytest
+from measured_models import synthetic
 from random_models import random_model
 from sample_sums import sample_sum
 
@@ -20,20 +21,6 @@ from brdfkit.model.lobes import Cosine, Lobe, lambertian
 from brdfkit.model.samples import Table
 from brdfkit.regression import regress
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
-
-
-def synthetic(model, n=3000, seed=0):
-    """A model measured at random directions in and near the plane of incidence."""
-    rng = np.random.default_rng(seed)
-    wi = from_angles(rng.uniform(0, 1.5, n), rng.uniform(0, 2 * np.pi, n))
-    near = wi * [-1, -1, 1] + rng.normal(0, 0.15, (n, 3))
-    far = from_angles(rng.uniform(0, 1.5, n), rng.uniform(0, 2 * np.pi, n))
-    wo = np.where((np.arange(n) % 2 == 0)[:, None], near, far)
-    wo /= np.linalg.norm(wo, axis=1, keepdims=True)
-    wo[:, 2] = np.abs(wo[:, 2])
-    values = model.eval(wi, wo)
-    channels = ("R", "G", "B") if values.shape[1] == 3 else ("Y",)
-    return bk.Measured.from_samples(wi, wo, values, channels=channels, name="synthetic")
 
 
 def isotropic(model):

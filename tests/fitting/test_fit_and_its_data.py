@@ -6,8 +6,8 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from measured_models import synthetic
 from sample_sums import sample_sum
-from test_fit import synthetic
 
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError

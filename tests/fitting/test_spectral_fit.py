@@ -4,7 +4,8 @@ import pickle
 
 import numpy as np
 import pytest
-from test_fit import assert_same_parameters, synthetic
+from measured_models import synthetic
+from test_fit import assert_same_parameters
 
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError

@@ -6,9 +6,9 @@ import pickle
 import numpy as np
 import pytest
 from coverage_of_intervals import held
+from measured_models import noisy
 from sample_sums import sample_sum
 from scipy.stats import binom
-from test_fit import synthetic
 
 import brdfkit as bk
 from brdfkit.checks.material_subject import random_pairs
@@ -21,14 +21,6 @@ from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
 
 UP = [[0.0, 0.0, 1.0]]
-
-
-def noisy(model, n=400, seed=0, size=0.03):
-    """A model measured with noise in proportion to its values."""
-    clean = synthetic(model, n, seed)
-    noise = np.exp(size * np.random.default_rng(seed).normal(size=clean.values.shape))
-    wi, wo = clean.samples.wi, clean.samples.wo
-    return bk.Measured.from_samples(wi, wo, clean.values * noise, channels=clean.channels)
 
 
 def significantly_few(inside, level=1e-4):
