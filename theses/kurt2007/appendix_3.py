@@ -75,7 +75,7 @@ class Row:
 
 def read_rows(sources):
     """Return the transcribed rows of the appendix, or None where the table is missing."""
-    path = sources.table(FILE)
+    path = sources.find_table(FILE)
     if path is None:
         return None
     with path.open(encoding="utf-8", newline="") as file:

@@ -47,7 +47,7 @@ class Sample:
     """A sample of CUReT, with its 189 values at angles below 80° and the weights of eq. 5.13."""
 
     def __init__(self, sources, number):
-        self.data = load(f"{sources.path('curet/abrdf.dat')}#{number}")
+        self.data = load(f"{sources.find_file('curet/abrdf.dat')}#{number}")
         self.samples = select_samples(self.data, 80)
         self.wi, self.wo = self.samples.wi, self.samples.wo
         self.values, self.cosines = self.samples.values[:, 0], self.wi[:, 2]

@@ -26,7 +26,7 @@ polynomial, f = β₀ + g(Z₁) + h(Z₂)."""
 
 def check_claims(sources, report):
     """Check the claims on the polynomial and its terms of interaction, and return their section."""
-    picture = _draw_figure(load(sources.path("cornell/cayman.brdf")))
+    picture = _draw_figure(load(sources.find_file("cornell/cayman.brdf")))
     report(1, 3)
     shares = _compare_interactions(load_samples(sources).values())
     claims = [

@@ -22,7 +22,7 @@ neural reconstruction of {MATERIAL}."""
 
 def check_claims(sources, report):
     """Check the claims on the reciprocity of BRDF models; return their section of the page."""
-    with np.load(sources.path("nbrdf_derived/merl_nbrdf.npz")) as networks:
+    with np.load(sources.find_file("nbrdf_derived/merl_nbrdf.npz")) as networks:
         table = decode_network(networks[MATERIAL], CELLS)
     data = Measured.from_table(table.values, name=MATERIAL)
     found = fit(data, "pca_polynomial:degree=5", loss=PLAIN, robust="bisquare")

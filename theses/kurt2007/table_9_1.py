@@ -31,7 +31,7 @@ one pair at θ_i 80°, θ_r 79°, φ 180°, which is 34 times the next largest v
 
 def check_claims(sources, report):
     """Check the claims on the error of the polynomial by its degree, and return their section."""
-    cayman = load(sources.path("cornell/cayman.brdf")).rgb
+    cayman = load(sources.find_file("cornell/cayman.brdf")).rgb
     calm = _remove_peak(cayman)
     quarry = load_sample(sources, read_printed_table("table_9_2")["materials"][QUARRY])
     factor = find_scale(quarry, _read_printed_errors(QUARRY))

@@ -35,7 +35,7 @@ def check_claims(sources, report):
     names = read_printed_table("table_9_3")["materials"]
     error = {model: [] for model in MODELS}
     psnr = {model: [] for model in MODELS}
-    with np.load(sources.path("nbrdf_derived/merl_nbrdf.npz")) as networks:
+    with np.load(sources.find_file("nbrdf_derived/merl_nbrdf.npz")) as networks:
         materials = {
             name: Measured.from_table(decode_network(networks[name], CELLS).values, name=name)
             for name in names

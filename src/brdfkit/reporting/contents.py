@@ -159,10 +159,10 @@ def collect_contents(
 
 
 def _describe_ranking(ranking: Ranking) -> dict[str, Any]:
-    """Return the table of a ranking for the template: columns, rows and the reason of the choice.
+    """Return a ranking's table for the template: columns, rows, and why its model was chosen.
 
-    Times are left out, because they would make each report a different file. The verdict is the
-    second column, so that narrow screens show it.
+    Times of the fits are left out, because with them no two reports would be equal. The verdict is
+    the second column, so that narrow screens show it.
     """
     *_, time, verdict = range(len(COLUMNS))
     shown = [0, verdict, *range(1, time)]

@@ -54,7 +54,7 @@ def make_fit(
     """Return the fit for one entry of a report's models.
 
     `thing`: a finished fit, the path of a fit saved as .json, or a model, which is fitted. Raises
-    `BrdfkitError` as `fit` does, and for a fit of other data.
+    `BrdfkitError` as `fit` does, and for a finished fit of other data than the `material`.
     """
     is_saved = isinstance(thing, str | Path) and str(thing).lower().endswith(".json")
     finished = load(thing) if is_saved else thing

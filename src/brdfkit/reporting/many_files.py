@@ -108,7 +108,7 @@ def write_reports(
                 problems.append(str(error) if str(file) in str(error) else f"{file}: {error}")
                 continue
             entries[name] = Entry(name, contents)
-            if contents.spp < contents.requested:  # Ctrl-C during the pictures keeps the report
+            if contents.spp < contents.requested:  # Ctrl-C ended this report's pictures
                 interrupted = True
                 break
     except KeyboardInterrupt:

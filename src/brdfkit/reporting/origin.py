@@ -25,10 +25,10 @@ def describe_provenance(
     scene: str | Path,
     environment: str | Path | None,
 ) -> dict[str, str]:
-    """Return the provenance of a report as texts by heading.
+    """Return the provenance of a report, as a dictionary from headings to texts.
 
-    They name the measured file with checksums, the settings of the pictures, and the versions of
-    the software. `file`: the material's file as the user named it, or None; `spp`: samples per
+    The texts name the measured file with checksums, the settings of the pictures, and the versions
+    of the software. `file`: the material's file as the user named it, or None; `spp`: samples per
     pixel; `size`: side of the pictures [pixels].
     """
     provenance = {"file": str(file) if file else f"{material.name}, from memory"}
@@ -62,8 +62,8 @@ def make_command(
 ) -> tuple[str, list[str]]:
     """Return the shell command that makes a report again, for its page.
 
-    Return also the names of settings of the fits that have no option of the command. The arguments
-    are those of the report; `file` is None for a material from memory.
+    Return also the names of those settings of the fits for which the command has no option. The
+    arguments are those of the report; `file` is None for a material from memory.
     """
     words = ["brdfkit", "report", str(file or "FILE")]
     for fit in fits:

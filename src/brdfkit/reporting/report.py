@@ -21,7 +21,7 @@ from brdfkit.reporting.charts.svg import choose_css_class
 from brdfkit.reporting.contents import Contents, collect_contents
 from brdfkit.reporting.fits import make_fit, to_model_list
 from brdfkit.reporting.pictures.defaults import MODELS, SCENE, SIZE
-from brdfkit.reporting.pictures.pictures import render_pictures, require_possible_pictures
+from brdfkit.reporting.pictures.pictures import check_picture_arguments, render_pictures
 
 Fitted: TypeAlias = ModelLike | Fit
 Fits: TypeAlias = Fitted | Iterable[Fitted]
@@ -90,7 +90,7 @@ def report(
     """
     require_material_first("report(material, models)", material)
     chosen = FitSettings.from_dictionary(to_dictionary("settings", settings))
-    require_possible_pictures(size, scene, environment)
+    check_picture_arguments(size, scene, environment)
     data, file = to_measured(material), material if isinstance(material, str | Path) else None
     path = require_html_path(choose_file_name(data) if path is None else path)
     fits = [make_fit(thing, data, chosen, progress) for thing in to_model_list(models)]

@@ -1,4 +1,4 @@
-"""Defines `Claim`: a claim of a thesis, its printed figures, the figures here and a verdict."""
+"""Defines `Claim`: a claim of a thesis, the printed and the reproduced figures, and a verdict."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -7,14 +7,14 @@ from typing import Any
 
 
 def measure_cpu_seconds(function: Callable[..., Any], *arguments: Any) -> float:
-    """Measure the CPU seconds that a call of a function takes."""
+    """Return the CPU seconds that a call of a function takes."""
     start = time.process_time()
     function(*arguments)
     return time.process_time() - start
 
 
 def measure_least_seconds(function: Callable[..., Any], *arguments: Any, times: int = 3) -> float:
-    """Measure the least CPU seconds of a few calls, which other processes disturb least."""
+    """Return the CPU seconds of the fastest of a few calls, disturbed least by other processes."""
     return min(measure_cpu_seconds(function, *arguments) for _ in range(times))
 
 

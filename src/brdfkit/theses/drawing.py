@@ -26,7 +26,7 @@ def style_axes(axes: Any, title: str, ylabel: str) -> None:
 
 
 def draw_curves(axes: Any, curves: Mapping[str, AnyArray], title: str, ylabel: str) -> None:
-    """Draw curves over the number of the sample on a logarithmic scale, the last one thick."""
+    """Draw each curve's values over 1, 2, 3, ... on a logarithmic axis, the last curve thick."""
     last = list(curves)[-1]
     colours = {**dict(zip(curves, COLOURS, strict=False)), last: COLOURS[-1]}
     for name, values in curves.items():

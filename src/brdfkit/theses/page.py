@@ -61,7 +61,7 @@ def write_page(
 ) -> list[Path]:
     """Write a page as Markdown, and its figures into the same folder; return all paths.
 
-    `missing` holds the titles of parts that were not finished.
+    `missing` holds the titles of parts that were not finished; the page lists them.
     """
     file = Path(file)
     pictures = [picture for section in sections for picture in section.pictures]

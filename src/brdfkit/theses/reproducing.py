@@ -138,7 +138,7 @@ def reproduce(
 def _require_packages(thesis: ModuleType, sources: Sources) -> None:
     """Raise `BrdfkitError` if a package that one of the measured files needs is not installed.
 
-    A claim in the middle of a long run would fail for it otherwise.
+    Without this check, a claim in the middle of a long run would fail.
     """
     for file, package in getattr(thesis, "PACKAGES", {}).items():
         if sources.find_beside(file) and find_spec(package) is None:
@@ -155,6 +155,7 @@ def _import_thesis(name: str) -> ModuleType:
 def _scale_progress(report: Progress, before: int, seconds: int, total: int) -> Progress:
     """Return a progress function for one part of a thesis, which reports the progress of all parts.
 
-    The parts count by the `seconds` that they take; `before` are the seconds of earlier parts.
+    Progress is counted in seconds: the part takes `seconds`, the earlier parts took `before`, and
+    all parts take `total`.
     """
-    return lambda done, of: report(before + seconds * done / of, total)  # type: ignore[arg-type]  # progress in shares of a second
+    return lambda done, of: report(before + seconds * done / of, total)  # type: ignore[arg-type]  # counts fractions of seconds

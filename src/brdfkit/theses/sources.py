@@ -21,7 +21,7 @@ class Sources:
     folder: Path | None
     tables: Path | None
 
-    def path(self, name: str) -> Path:
+    def find_file(self, name: str) -> Path:
         """Return the path of a measured file, such as ``curet/abrdf.dat``."""
         assert self.folder is not None, "a thesis that needs files has a folder"
         return self.folder / name
@@ -34,7 +34,7 @@ class Sources:
         path = self.folder and self.folder.resolve().parent / name
         return path if path and path.is_file() else None
 
-    def table(self, name: str) -> Path | None:
+    def find_table(self, name: str) -> Path | None:
         """Return the path of a table transcribed from a thesis, or None where it is missing."""
         path = self.tables and self.tables / name
         return path if path and path.is_file() else None

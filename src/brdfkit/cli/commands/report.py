@@ -57,7 +57,7 @@ def report(
 
     Of several FILEs, each gets a report in a folder; the page index.html lists them.
     """
-    from brdfkit.reporting.pictures.pictures import require_possible_pictures
+    from brdfkit.reporting.pictures.pictures import check_picture_arguments
 
     for file in files:
         if file.lower().endswith(".json"):
@@ -67,7 +67,7 @@ def report(
     models = list(dict.fromkeys(names or MODELS))
     how |= {"seed": pictures["seed"]}
     pictures["size"] = SIZE if pictures["size"] is None else pictures["size"]
-    require_possible_pictures(pictures["size"], pictures["scene"], pictures["environment"])
+    check_picture_arguments(pictures["size"], pictures["scene"], pictures["environment"])
     if len(files) > 1:
         _report_many_files(files, models, how, output or Path("reports"), pictures, console)
     else:

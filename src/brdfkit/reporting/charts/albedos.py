@@ -17,13 +17,14 @@ from brdfkit.reporting.charts.svg import Chart, make_linear_axis
 
 
 def draw_albedo(measured: Albedo, fits: Sequence[Fit], anisotropic: bool) -> str:
-    """Return the chart of albedos as SVG text, with the luminance of each albedo.
+    """Return a chart with the luminance of all albedos, as SVG text.
 
     `measured`: directional albedo of the measurement; `fits`: models to compare with it;
-    `anisotropic`: whether the measurement is, so that albedos are averaged over the azimuth.
+    `anisotropic`: whether the material is anisotropic, so that albedos depend on the azimuth and
+    their mean over the azimuth is drawn.
     """
     dots = luminance(measured.values)
-    lines = [_compute_luminance(fit.rgb, anisotropic) for fit in fits]
+    lines = [_compute_albedo_luminance(fit.rgb, anisotropic) for fit in fits]
     top = 1.1 * max(np.nanmax(values) for values in (dots, *lines))
     x = make_linear_axis("θi", 0, 90, range(0, 91, 15), "°")
     ticks = np.arange(0, top, _choose_tick_step(top)).round(6)
@@ -38,12 +39,12 @@ def draw_albedo(measured: Albedo, fits: Sequence[Fit], anisotropic: bool) -> str
 
 
 def is_extrapolated(measured: Albedo) -> BoolArray:
-    """Return for each angle (n,) of an albedo whether it is beyond the measured angles."""
+    """Return the mask (n,) of the albedo's angles that lie beyond the measured angles."""
     beyond: BoolArray = measured.theta_i > measured.measured_to + 1
     return beyond
 
 
-def _compute_luminance(model: Any, anisotropic: bool) -> FloatArray:
+def _compute_albedo_luminance(model: Any, anisotropic: bool) -> FloatArray:
     """Return the luminance (n,) of a model's albedo at the angles of the measured albedo."""
     grey: Any = SimpleNamespace(
         channels=("Y",),

@@ -17,9 +17,9 @@ from brdfkit.reporting.charts.svg import BOTTOM, HEIGHT, TOP, Axis, Chart, make_
 LINE_STEP, DOT_STEP = 0.5, 3.0
 # Degrees between the values that `compute_lobe` returns
 SAMPLING = 0.1
-# Radius of a dot [pixels], as in the page's style sheet; a dot hides shorter bars
+# Radius of a dot [pixels], as in the page's style sheet; bars that a dot would hide are not drawn
 DOT_RADIUS = 2.0
-# Degrees on each side of a peak within which points are six times as dense
+# Points are six times as dense within this many degrees on each side of a lobe's peak
 PEAK_WIDTH = 4.0
 
 

@@ -19,15 +19,15 @@ from brdfkit.regression import Fit
 from brdfkit.reporting.charts.svg import Axis, Chart, make_linear_axis
 
 VALUE_SCALE, RATIO_SCALE = "viridis", "RdBu_r"
-# The scale of ratios, fit over data, ends at this number and at its inverse
+# Largest ratio of fit to data on the colour scale of ratios, which begins at its inverse
 LARGEST_RATIO = 4.0
-FAINT = 0.3  # opacity of cells of the table that were not measured but extrapolated
+FAINT = 0.3  # opacity of cells whose values were not measured but extrapolated
 TICKS = 0, 5, 20, 45, 90  # ticks of the axis of θh [degrees]
 WIDTH, HEIGHT = 250, 240
 
 
 def draw_slices(material: Measured, fits: Sequence[Fit]) -> dict[str, Any]:
-    """Return the data of slices for the page's template: charts as SVG and texts of the scales."""
+    """Return the data of slices for the page's template: SVG charts and labels of colour scales."""
     data = material.rgb
     table = data.table
     across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
@@ -38,12 +38,13 @@ def draw_slices(material: Measured, fits: Sequence[Fit]) -> dict[str, Any]:
     scale = make_colour_scale(measured[known] if known.any() else measured)
 
     def draw_slice(title: str, shares: FloatArray, colour_map: str) -> str:
-        """Return a slice as SVG text; `shares` (θh, θd): positions from 0 to 1 on a colour map."""
+        """Return a slice as SVG text; `shares` has positions on a colour map, by θh and θd."""
         colours = images.apply_colour_map(colour_map, shares)
         colours[..., 3] = np.where(known, 1, FAINT)
         theta_d = make_linear_axis("θd", 0, 90, range(0, 91, 30), "°")
         chart = Chart(title, _make_theta_h_axis(), theta_d, WIDTH, HEIGHT)
-        chart.add_image(images.encode_png(np.swapaxes(colours, 0, 1)[::-1]))  # θd upwards
+        # A PNG begins with its top row, but θd increases upwards
+        chart.add_image(images.encode_png(np.swapaxes(colours, 0, 1)[::-1]))
         return chart.svg
 
     def to_scale_positions(values: FloatArray) -> FloatArray:
@@ -77,6 +78,6 @@ def _format_value(value: float) -> str:
 
 
 def _make_theta_h_axis() -> Axis:
-    """Return the axis of θh, which is proportional to √θh like the cells of a table."""
+    """Return the axis of θh, proportional to √θh so that all cells have the same width."""
     ticks = [(tick, f"{tick}°") for tick in TICKS]
     return Axis("θh", ticks, lambda value: np.sqrt(np.asarray(value, float) / 90))

@@ -43,10 +43,10 @@ def render_pictures(
 ) -> Rendering:
     """Return the `Rendering` of a report, with the picture of the measurement and then the fits'.
 
-    `spp`: samples per pixel, rounded up to whole passes; by default `SPP`, or the default of
-    `render` with a `noise_floor` [dB]. The other arguments are those of `report`.
+    `spp`: samples per pixel, rounded up to whole passes. By default it is `SPP`; with a
+    `noise_floor` [dB] it is the default of `render`. The other arguments are those of `report`.
     """
-    require_possible_pictures(size, scene, environment)
+    check_picture_arguments(size, scene, environment)
     if spp is not None or noise_floor is None:
         spp = SPP if spp is None else spp
         spp = ceil(to_whole_number("spp", spp, least=1) / PASS) * PASS
@@ -64,7 +64,7 @@ def render_pictures(
     return replace(rendering, mask=_find_material_pixels(build, size))
 
 
-def require_possible_pictures(size: object, scene: Any, environment: Any) -> None:
+def check_picture_arguments(size: object, scene: Any, environment: Any) -> None:
     """Raise `BrdfkitError` for a size, scene or environment that a report cannot have."""
     if to_whole_number("size", size, least=SMALLEST_SIZE) > LARGEST_SIZE:
         raise BrdfkitError(f"size = {size}: pictures of a page have at most {LARGEST_SIZE} pixels.")
@@ -85,7 +85,7 @@ def _build_with_box_filter(scene: str | Path) -> BuildScene:
 
     def build_box_filtered(bsdf: Any, size: Any) -> dict[str, Any]:
         """Return the dictionary of the scene with a BSDF, for a picture of the given size."""
-        if is_mesh and isinstance(bsdf, dict):  # the back side of a mesh may be visible
+        if is_mesh and isinstance(bsdf, dict):  # an open mesh shows its back side, too
             bsdf = load_material(bsdf, "material", both_sides=True)
         dictionary: dict[str, Any] = build(bsdf, size)
         dictionary["sensor"]["film"]["rfilter"] = {"type": "box"}

@@ -9,7 +9,7 @@ from brdfkit.reporting.pictures.picture_errors import PictureError
 VISIBLE, PLAIN = 1.0, 3.0
 # An error below this share of the rendering's noise cannot be distinguished from noise
 UNKNOWN_SHARE = 0.5
-# Visible noise hides errors that are less than this many times as large
+# Visible noise hides an error that is less than this many times the error by noise
 HIDDEN_RATIO = 2.0
 
 
@@ -73,6 +73,9 @@ def _has_nearer_picture(psnr: PictureError, one: int, other: int) -> bool:
 
 
 def _subtract_noise(error: PictureError) -> float:
-    """Return the first fit's error less the error of noise, as squared errors add up."""
+    """Return the error of the first fit's picture without the part that rendering noise causes.
+
+    The squared errors of fit and noise add up, so their difference is taken.
+    """
     noise = 0.0 if isnan(error.floor) else error.floor
     return float(max(error.values[0] ** 2 - noise**2, 0.0) ** 0.5)

@@ -95,7 +95,7 @@ def _describe_others(
     names: Sequence[str], errors: Sequence[FitErrors], leaders: Mapping[str, int], loss: str
 ) -> list[str]:
     """Return sentences on fits that are tied with the first, or better by other losses."""
-    mentioned = leaders[loss]  # the sentence at the head mentions it
+    mentioned = leaders[loss]  # index of the fit that the sentence at the head mentions
     others = [k for k in range(1, len(names)) if k != mentioned]
     tied = [names[k] for k in others if errors[k].is_tied]
     verb = "is" if len(tied) == 1 else "are"
