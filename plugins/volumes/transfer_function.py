@@ -91,7 +91,7 @@ def define(mi: MitsubaModule) -> type:
             callback.put("extinction", self.lookup.extinction, mi.ParamFlags.Differentiable)
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
-            self.lookup.update()
+            self.lookup.recompute_texture()
             self.__dict__.pop("majorants", None)
 
         def eval_extinction_and_colour(

@@ -8,8 +8,8 @@ from brdfkit.core.array_types import AnyArray, FloatArray, IntArray
 def downsample_slab(slab: AnyArray, factor: int, labels: bool) -> AnyArray:
     """Downsample a `slab` (nz, ny, nx) of voxels, at most `factor` layers, to one layer (my, mx).
 
-    Each block of `factor` voxels along each axis becomes its mean, in float32. If the values are
-    `labels`, which cannot be averaged, it becomes the voxel in its middle.
+    Each block of `factor` voxels along each axis becomes one voxel, with the block's mean in
+    float32. If the values are `labels`, which have no mean, it is the voxel in the block's middle.
     """
     if factor == 1:
         return slab[0]
@@ -32,12 +32,15 @@ def downsample_transform(to_world: FloatArray, factor: int) -> FloatArray:
     of a downsampled one.
     """
     to_fine = np.diag([factor, factor, factor, 1.0])
-    to_fine[:3, 3] = (factor - 1) / 2  # the first block's centre, in indices of original voxels
+    to_fine[:3, 3] = (factor - 1) / 2  # the first block's centre, in original indices
     return to_world @ to_fine
 
 
 def downsample_shape(shape: tuple[int, int, int], factor: int) -> tuple[int, int, int]:
-    """Return the shape (nz, ny, nx) that a grid of this `shape` has after downsampling."""
+    """Return the shape (nz, ny, nx) that a grid of this `shape` has after downsampling.
+
+    `factor` is the number of voxels along each axis that become one.
+    """
     nz, ny, nx = (-(-n // factor) for n in shape)
     return nz, ny, nx
 

@@ -24,7 +24,7 @@ from brdfkit.volumes.volume import Volume, require_transform
 
 ROUNDING_WARNING = 1e-6  # rounding errors above this share of the range of values give a warning
 LARGEST_DOWNSAMPLE = 64  # the largest `downsample` that an error about memory proposes
-MEMORY_FACTOR = 1.2  # memory that loading needs, over that of the arrays of voxels
+MEMORY_FACTOR = 1.2  # ratio of the memory that loading needs to that of the arrays of voxels
 
 
 def load(
@@ -109,7 +109,7 @@ def load(
     if labels is not None:
         stored = replace(stored, labels=labels)
     if steps is not None:
-        stored = replace(stored, to_world=_set_spacing(stored.to_world, steps))
+        stored = replace(stored, to_world=_replace_spacing(stored.to_world, steps))
     return _read_voxels(file, stored, downsample, warn=labels is None and downsample > 1)
 
 
@@ -123,7 +123,7 @@ def looks_like_volume(name: str) -> bool:
     path, _ = split_file_and_part(name)
     if name in made.list_volume_names() or formats.is_image_series(path):
         return True
-    return formats.has_format(str(path)) and not _is_radiance_map(path)
+    return formats.has_volume_suffix(str(path)) and not _is_radiance_map(path)
 
 
 def _is_radiance_map(path: Path) -> bool:
@@ -145,7 +145,7 @@ def _read_voxels(file: VolumeFile, stored: StoredVolume, downsample: int, warn: 
     shape = downsampling.downsample_shape(stored.shape, downsample)
     values = np.empty(shape, _choose_loaded_dtype(stored, downsample))
     layers = stored.layers()
-    different: set[float] = set()  # different values, among one voxel of each block
+    different: set[float] = set()  # different values found so far, in one voxel of each block
     rounding = 0.0
     ends: list[float] = []  # smallest and largest values of each layer
     # A float64 beyond float32's range becomes infinite, which `Volume` refuses
@@ -250,7 +250,7 @@ def _parse_three_numbers(what: str, given: Any, kind: type[int | float]) -> Any:
     return tuple(kind(n) for n in numbers)
 
 
-def _set_spacing(to_world: FloatArray, spacing: tuple[float, float, float]) -> FloatArray:
+def _replace_spacing(to_world: FloatArray, spacing: tuple[float, float, float]) -> FloatArray:
     """Return the transform `to_world` (4, 4) with another voxel `spacing` along the same axes."""
     changed = to_world.copy()
     changed[:3, :3] *= np.array(spacing) / np.linalg.norm(changed[:3, :3], axis=0)

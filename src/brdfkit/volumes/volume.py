@@ -17,7 +17,7 @@ from brdfkit.volumes.rays import reconstruction
 from brdfkit.volumes.transfer import windows
 from brdfkit.volumes.transfer.transfer_function import TransferLike
 
-LARGEST_COORDINATE = 1e15  # limit of a transform's numbers, so that products fit into float32
+LARGEST_COORDINATE = 1e15  # limit of a transform's numbers, so that their products fit into float32
 LARGEST_VALUE = 1e30  # limit of values, and of 1 / (their range), for renderers in float32
 
 
@@ -218,7 +218,7 @@ def _check_values(values: ArrayLike, name: str, labels: bool) -> AnyArray:
     if values.dtype.kind == "f" and not labels:
         with np.errstate(over="ignore"):  # values beyond float32 become infinite
             values = values.astype(np.float32, copy=False)
-    low, high = values.min(), values.max()  # not finite if any value is not
+    low, high = values.min(), values.max()  # infinite or NaN if any value is
     if not (np.isfinite(low) and np.isfinite(high)):
         count = values.size - np.count_nonzero(np.isfinite(values))
         raise BrdfkitError(

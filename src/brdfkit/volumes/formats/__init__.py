@@ -33,7 +33,7 @@ def list_formats() -> tuple[ModuleType, ...]:
     return import_modules(__name__, __path__)
 
 
-def has_format(name: str | Path) -> bool:
+def has_volume_suffix(name: str | Path) -> bool:
     """Return whether a file's name ends with the suffix of a volume format."""
     return any(str(name).lower().endswith(module.SUFFIXES) for module in list_formats())
 
@@ -49,7 +49,7 @@ def is_image_series(folder: Path) -> bool:
 
 
 def read_header(file: VolumeFile) -> StoredVolume:
-    """Read a file's header by the module of its format, which `_choose_format` finds."""
+    """Recognise a file's format, and read its header by the module of this format."""
     stored: StoredVolume = _choose_format(file).read_header(file)
     return stored
 

@@ -23,7 +23,7 @@ DType: TypeAlias = np.dtype[Any]
 Opener: TypeAlias = Callable[[], AbstractContextManager[Any]]  # opens a stream of voxels' bytes
 
 CHUNK = 2**20  # packed bytes that are read from a file at a time
-# Bytes that one packed byte can hold at most; bzip2 packs 45 million equal bytes into 40
+# Largest number of bytes per packed byte; bzip2 packs 45 million equal bytes into 40
 LARGEST_PACKING = {"gzip": 1032, "zlib": 1032, "bz2": 2**21}
 CUT_SHORT = "the data are cut short or damaged; fetch the file again"
 
@@ -93,7 +93,10 @@ def make_opener(path: Path, offset: int, packing: str = "", skip: int = 0) -> Op
 
 
 def make_text_opener(path: Path, start: int, dtype: DType) -> Opener:
-    """Return a function that converts a file's numbers, text from `start` on, to a byte stream."""
+    """Return a function that reads numbers written as text, and opens them as a binary stream.
+
+    The text begins at the byte `start` of the file; `dtype` is the type of the binary numbers.
+    """
     return lambda: nullcontext(parse_numbers(path.read_bytes()[start:], dtype))
 
 
@@ -112,7 +115,7 @@ def parse_numbers(text: bytes, dtype: DType) -> io.BytesIO:
 class ZlibStream:
     """A stream that unpacks the bytes of another stream, which zlib has packed.
 
-    It is used like `gzip.open(stream)`, for which zlib has no equivalent.
+    It is used like `gzip.open(stream)`; Python's module zlib has no such function.
     """
 
     def __init__(self, packed: BinaryIO) -> None:

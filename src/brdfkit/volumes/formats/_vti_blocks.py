@@ -67,7 +67,7 @@ def make_opener(
     Raises `BrdfkitError` at once if there are too few bytes for voxels of this `shape` and `dtype`.
     """
     is_text = encoding.form == "ascii"
-    smallest = np.dtype(np.uint8) if is_text else dtype  # a number has at least one digit
+    smallest = np.dtype(np.uint8) if is_text else dtype  # a number as text has one byte or more
     require_enough_bytes(file, file.path, start, shape, smallest, "zlib" if encoding.packed else "")
 
     @contextmanager
@@ -90,7 +90,7 @@ def make_opener(
 
 
 class Base64Stream:
-    """A stream of the bytes that another stream has as base64 letters.
+    """A stream of bytes, decoded from the base64 letters of another stream.
 
     It never reads more letters than the bytes need, because other data may follow. VTK encodes the
     byte counts separately from the data, so that padding letters lie between the two.
@@ -143,9 +143,9 @@ class PackedStream:
 
 
 def skip_byte_count(stream: Any, encoding: Encoding, expected: int, room: int) -> Any:
-    """Read the byte count before plain data, and return the stream, now at the first voxel.
+    """Read the byte count before data that are not packed; return the stream at the first voxel.
 
-    Raises EOFError unless the count is the `expected` one.
+    Raises EOFError unless the count is `expected`, and fits into the `room` [bytes] of the array.
     """
     (size,) = _read_byte_counts(stream, encoding, 1, room)
     _require_byte_count(size, expected)

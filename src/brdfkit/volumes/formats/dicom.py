@@ -1,8 +1,9 @@
 """DICOM: a series of slices in a folder, or one file of it (`.dcm`).
 
 Slices are sorted by their position along the normal of the image, not by name or number. Values are
-rescaled by slope and intercept, which gives HU for CT. DICOM's world, LPS, is converted to RAS. If
-a folder has several series, ``scans#2`` is the one with the SeriesNumber 2.
+rescaled by slope and intercept, which gives HU for CT. DICOM's world, x to the patient's left and y
+to the back, is converted to right and front. If a folder has several series, ``scans#2`` is the one
+with the SeriesNumber 2.
 """
 
 from collections.abc import Iterator
@@ -22,8 +23,8 @@ from brdfkit.volumes.formats._volume_file import (
 NAME = "DICOM"
 SUFFIXES = (".dcm", ".dicom", ".ima")
 
-UNEVEN = 0.01  # a slice is missing if a distance deviates from the median by a larger share
-TURNED = 1e-3  # slices are not parallel if a component of their unit vectors differs by more
+UNEVEN = 0.01  # a slice is missing if distances deviate from their median by more than this share
+TURNED = 1e-3  # largest difference between components of the unit vectors of parallel slices
 
 
 def sniff(head: bytes) -> bool:
@@ -96,14 +97,15 @@ def _require_equal_grids(file: VolumeFile, images: list[Slice]) -> None:
 def _find_slice_step(file: VolumeFile, images: list[Slice], normal: FloatArray) -> FloatArray:
     """Return the mean vector (3,) [mm] from one of the sorted slices to the next.
 
-    A single slice has its thickness along the `normal`. Raises `BrdfkitError` if slices coincide or
-    one is missing.
+    For a single slice it is the slice's thickness along the `normal`. Raises `BrdfkitError` if
+    slices coincide or one is missing.
     """
     if len(images) == 1:
         return normal * images[0].thickness
     places = np.array([image.place for image in images])
     steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    median = float(np.sort(steps)[(len(steps) - 1) // 2])  # the lower median
+    # The lower median: of only two steps, the longer one is where a slice is missing
+    median = float(np.sort(steps)[(len(steps) - 1) // 2])
     if not steps.min() > 1e-3 * max(median, 1e-6):
         raise file.error(
             "has several slices at one place, such as at several times; keep those of one volume"

@@ -32,14 +32,14 @@ TYPES = {
     "MET_USHORT": "u2",
     "MET_INT": "i4",
     "MET_UINT": "u4",
-    "MET_LONG": "i4",  # MetaIO writes 4 bytes on every machine
+    "MET_LONG": "i4",  # MetaIO's long has 4 bytes on every machine
     "MET_ULONG": "u4",
     "MET_LONG_LONG": "i8",
     "MET_ULONG_LONG": "u8",
     "MET_FLOAT": "f4",
     "MET_DOUBLE": "f8",
 }
-HEADER_LIMIT = 2**16  # bytes; in a longer header ElementDataFile is taken to be missing
+HEADER_LIMIT = 2**16  # bytes within which the header's last field, ElementDataFile, must come
 
 
 def sniff(head: bytes) -> bool:
@@ -72,7 +72,7 @@ def read_header(file: VolumeFile) -> StoredVolume:
         stream = make_text_opener(path, start, dtype)
     else:
         packed = _is_field_true(fields, "CompressedData")
-        if skip == -1 and not packed and path.exists():  # -1 puts the voxels at the file's end
+        if skip == -1 and not packed and path.exists():  # -1: the voxels are the file's last bytes
             start, skip = path.stat().st_size - int(np.prod(shape)) * dtype.itemsize, 0
         start = max(start + max(skip, 0), 0)
         require_enough_bytes(file, path, start, shape, dtype, "zlib" if packed else "")

@@ -10,7 +10,7 @@ from brdfkit.volumes.formats._volume_file import StoredVolume, VolumeFile, make_
 NAME = "Mitsuba's grid"
 SUFFIXES = (".vol",)
 
-HEADER = struct.Struct("<3sB5i6f")  # VOL, version, encoding, nx, ny, nz, channels, box
+HEADER = struct.Struct("<3sB5i6f")  # "VOL", version, type, nx, ny, nz, channels, box
 
 
 def sniff(head: bytes) -> bool:

@@ -127,14 +127,13 @@ def _make_voxel_opener(
     if int(header.get("line skip", header.get("lineskip", 0))):
         raise file.error("its header has a line skip, which is not read; remove these lines")
     if encoding in TEXT:
-        require_enough_bytes(
-            file, path, start, shape, np.uint8
-        )  # the text has a digit or more per voxel
+        # As text a voxel has at least one digit, and thus as many bytes as np.uint8
+        require_enough_bytes(file, path, start, shape, np.uint8)
         return make_text_opener(path, start, dtype)
     if encoding not in PACKINGS:
         raise file.error(f"its encoding {encoding!r} is not read; save it as raw or gzip")
     packing = PACKINGS[encoding]
-    if skip == -1 and not packing and path.exists():  # -1 puts the voxels at the file's end
+    if skip == -1 and not packing and path.exists():  # -1: the voxels are the file's last bytes
         start, skip = path.stat().st_size - int(np.prod(shape)) * dtype.itemsize, 0
     if skip < 0 or start < 0:
         raise file.error("its byte skip is not possible: the file is cut short; fetch it again")

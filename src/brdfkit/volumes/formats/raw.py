@@ -56,7 +56,7 @@ def read_header(file: VolumeFile) -> StoredVolume:
 
 
 def _parse_dtype(file: VolumeFile, given: Any) -> DType:
-    """Return the user's `dtype` as NumPy's; raise `BrdfkitError` unless it has real numbers."""
+    """Convert the type `given` by the user to NumPy's; raise `BrdfkitError` unless it is real."""
     try:
         dtype: DType = np.dtype(given)
     except TypeError:

@@ -51,7 +51,7 @@ def _read_file(file: VolumeFile, tifffile: Any) -> StoredVolume:
     dtype = dtype.newbyteorder(order)
     if start is None:
         stack = _read_pages(file, tifffile, [file.path], shape[1:])
-    else:  # ImageJ may list only the first page of pixels that lie in one piece
+    else:  # ImageJ writes large stacks as one piece, of which it lists only the first page
         require_enough_bytes(file, file.path, start, shape, dtype)
         stack = read_layers(file, make_opener(file.path, start), shape, dtype)
     return StoredVolume(
@@ -88,7 +88,7 @@ def _read_pages(
     for path in paths:
         with _open_tiff(file, tifffile, path) as tiff:
             for page in tiff.pages:
-                if page.shape != shape:  # checked before memory is taken for its pixels
+                if page.shape != shape:  # before memory is taken for pixels of a damaged size
                     raise ValueError("its pages differ in size")
                 yield page.asarray()
 
@@ -128,19 +128,18 @@ class _LogRecorder(logging.Handler):
 
 
 def _read_spacing(tiff: Any) -> tuple[list[float], str]:
-    """Return the distances between voxels along x, y, z, and their unit, from ImageJ's or OME's."""
+    """Read the voxel spacing along x, y, z and its unit from metadata of OME or ImageJ, if any."""
     if tiff.ome_metadata:
         pixels: Any = re.search(r"<Pixels\b[^>]*>", tiff.ome_metadata)
         sizes = dict(re.findall(r'(PhysicalSize\w+)="([^"]*)"', pixels[0]))
         spacing = [float(sizes.get(f"PhysicalSize{axis}", 1)) for axis in "XYZ"]
-        return spacing, sizes.get("PhysicalSizeXUnit", "µm") if sizes else ""  # OME's default
+        return spacing, sizes.get("PhysicalSizeXUnit", "µm") if sizes else ""  # OME's default is µm
     metadata = tiff.imagej_metadata or {}
     if "spacing" not in metadata and "unit" not in metadata:
         return [1, 1, 1], ""
     tags = tiff.pages[0].tags
-    resolutions = [
-        tags[name].value for name in ("XResolution", "YResolution")
-    ]  # (numerator, denominator) of pixels per unit
+    # A resolution is the numerator and the denominator of the number of pixels per unit of length
+    resolutions = [tags[name].value for name in ("XResolution", "YResolution")]
     x, y = (below / max(above, 1e-12) for above, below in resolutions)
     unit = str(metadata.get("unit", ""))
     return [x, y, float(metadata.get("spacing", 1))], "µm" if unit in MICRONS else unit

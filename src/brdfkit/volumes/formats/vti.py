@@ -89,7 +89,7 @@ def _read_grid(
     )
     direction = np.array(image.get("Direction", "1 0 0 0 1 0 0 0 1").split(), float)
     to_world = make_grid_transform(direction.reshape(3, 3), spacing, origin)
-    first = extent[:, 0] + (0.5 if of_cells else 0)  # the middle of a cell lies between points
+    first = extent[:, 0] + (0.5 if of_cells else 0)  # a cell's centre lies between two points
     to_world[:3, 3] = (to_world @ [*first, 1])[:3]
     points = extent[:, 1] - extent[:, 0] + 1
     nx, ny, nz = (points - 1 if of_cells else points).tolist()
@@ -106,11 +106,11 @@ def _read_dtype(array: ElementTree.Element) -> DType:
 def _read_xml_without_data(
     file: VolumeFile, data: mmap.mmap
 ) -> tuple[ElementTree.Element, list[tuple[int, int]], tuple[int, str] | None]:
-    """Parse the XML without the data arrays, which may be gigabytes, and raw bytes are not XML.
+    """Parse the XML without its data, which may be gigabytes, or raw bytes that are not XML.
 
-    Returns the root element; the first and last byte (start, end) of each array's data in the file,
-    whose index is the array's attribute "place"; and, of data appended to the XML, the first byte
-    and the form, "raw" or "base64", or None if there are none.
+    Returns the root element; a list of the bytes (start, end) of each array's data in the file; and
+    the first byte and the form, "raw" or "base64", of data appended to the XML, or None if there
+    are none. An array's new attribute "place" is its index in the list.
     """
     appended = APPENDED.search(data)
     head_end = appended.start() if appended else len(data)
@@ -141,7 +141,7 @@ def _find_data_array(
 ) -> tuple[ElementTree.Element, bool]:
     """Return the XML element of the array to read, and whether its values belong to cells.
 
-    The name behind '#' in the user's path chooses the array, otherwise VTK's active scalars do.
+    It is the array named behind '#' in the user's path, otherwise the file's active scalars.
     """
     arrays: dict[str, tuple[ElementTree.Element, bool, bool]] = {}
     for kind in ("PointData", "CellData"):

@@ -19,11 +19,10 @@ def evaluate_emitter_hit(
     density: JitFloat,
     active: JitMask = True,
 ) -> JitColour:
-    """Return the weighted radiance that rays receive from the emitters that they hit at `si`.
+    """Return the radiance of the emitters that rays hit at `si`, weighted by the power heuristic.
 
-    The power heuristic is the weight. `density` [sr⁻¹] is the density with which the rays'
-    directions were drawn, or 0 where `sample_emitters` cannot find the light, whose weight is
-    then 1.
+    `density` [sr⁻¹] is the density with which the rays' directions were drawn. It is 0 where
+    `sample_emitters` cannot find the same light, which then has the weight 1.
     """
     import mitsuba as mi
 
@@ -44,8 +43,8 @@ def sample_emitters(
     """Sample a point of an emitter for each point `it`; `sample` are two uniform random numbers.
 
     Returns the `mi.DirectionSample3f`; the radiance divided by the density of the sample, without
-    any occlusion; and a mask of the rays that have a sample. The radiance has the derivatives of
-    the emission.
+    any occlusion; and a mask of the points that have a sample. Derivatives by the emission pass
+    through the radiance.
     """
     import mitsuba as mi
 
@@ -73,7 +72,7 @@ def spawn_ray_to_emitter(it: MitsubaObject, ds: MitsubaObject) -> MitsubaObject:
 
 
 def is_emitter_hit(scene: MitsubaObject, si: MitsubaObject) -> JitMask:
-    """Return a mask of the rays whose end, the intersection `si`, is at an emitter."""
+    """Return a mask of the rays that end at an emitter, given their intersections `si`."""
     return si.emitter(scene).flags() != 0  # a missing emitter has no flags
 
 

@@ -26,7 +26,7 @@ from brdfkit.core.jit.padding import pad
 from brdfkit.volumes.rays.box import get_world_to_cube
 from brdfkit.volumes.transfer.block_bounds import reduce_blocks
 
-CELL_VOXELS = 16  # voxels along each edge of a cell
+CELL_VOXELS = 16  # number of voxels along each edge of a cell
 ROUNDING = 1e-5  # relative rounding error by which an interpolated extinction may exceed its bound
 
 
@@ -34,9 +34,9 @@ ROUNDING = 1e-5  # relative rounding error by which an interpolated extinction m
 class Majorants:
     """Upper bounds of an extinction in the cells of a box, for tracking in Mitsuba.
 
-    `values` (nz, ny, nx) are the bounds [1/unit of length], at least 0, x fastest. `cube_to_world`
-    (4, 4) is the transform to the world from the unit cube, which the cells divide; by default the
-    identity. `array` are the values as a `mitsuba.Float`, which scalar variants cannot gather from.
+    `values` (nz, ny, nx) are the bounds [1/unit of length], at least 0, x fastest. The cells divide
+    the unit cube evenly; `cube_to_world` (4, 4) transforms it to the world, by default unchanged.
+    `array` are the values as a `mitsuba.Float`, for kernels; scalar variants cannot read it.
     Raises `BrdfkitError` if a value is negative or not finite.
 
     >>> Majorants([[[3.25]]])                       # one bound for the whole unit cube
@@ -83,8 +83,8 @@ class Majorants:
     ) -> None:
         """Raise `BrdfkitError` if an extinction exceeds its majorant, or is negative, at a point.
 
-        `extinction(p, active)` is evaluated at as many random points `p` of the box as `samples`,
-        so that violations between these points go unnoticed.
+        `extinction(p, active)` is evaluated at random points `p` of the box, whose number is
+        `samples`; violations between these points go unnoticed.
 
         >>> Majorants([[[1.5]]]).require_extinction_below(lambda p, active: 0.25 + 3 * p.x)
         brdfkit.core.errors.BrdfkitError: The extinction is 3.25 at (1, 0.42, 0.8), its ...

@@ -1,14 +1,15 @@
 """`Medium`: the participating medium in the box of a volume, and its effect on light along rays.
 
 `tracking.py` draws collisions without derivatives; their light gets derivatives here. A collision
-at the distance t has the density σ(t) T(t), with the extinction σ and the transmittance
-T = exp(-τ). The light f from there has the derivative, divided by this density,
+at the distance t has the density σ(t) T(t), with the extinction σ, the optical depth τ up to t, and
+the transmittance T = exp(-τ). The mean of the light f from there is thus the integral of f σ T over
+t. Each sample gets the derivative of this integrand, divided by the density:
 
-    ∂(f σ T) / (σ T) = ∂f + f (∂σ(t)/σ(t) - ∂τ),   ∂τ = ∫ ∂σ ds from 0 to t = mean of t ∂σ(ut)
+    ∂(f σ T) / (σ T) = ∂f + f (∂σ(t)/σ(t) - ∂τ)
 
-for u uniform in [0, 1), and T has the derivative -T ∂τ. One additional look-up of σ, at a random u,
-thus gives an unbiased derivative. Where σ = 0 nothing collides, so that the derivative of the light
-by σ is only that of T.
+The derivative of T is -T ∂τ. Both need ∂τ = ∫ ∂σ ds from 0 to t, which is the mean of t ∂σ(ut) for
+u uniform in [0, 1): one more look-up of σ, at a random u, gives an unbiased estimate. Where σ = 0
+nothing collides, so that the derivative of the light by σ is only that of T.
 """
 
 from dataclasses import dataclass
@@ -28,8 +29,9 @@ from brdfkit.volumes.light.tracking import (
 )
 from brdfkit.volumes.rays.box import intersect_box
 
-TESTED_POINTS = 1 << 14  # random points at which an extinction is compared to its majorants
-# Collisions across a box; more would take very long, with steps below single precision
+TESTED_POINTS = 1 << 14  # number of random points at which extinction and majorants are compared
+# Largest number of collisions along the box's diagonal; more take very long, with steps that single
+# precision cannot represent
 COLLISION_LIMIT = 1e6
 
 
@@ -37,10 +39,10 @@ COLLISION_LIMIT = 1e6
 class Medium:
     """A participating medium whose extinction, albedo and emission are Mitsuba volumes.
 
-    - `extinction`: the extinction σ, whose box bounds the medium; the plugin `transfer_function`
-      gives RGB as well, as an albedo or an emission
+    - `extinction`: the extinction σ, whose box bounds the medium; if it is the plugin
+      `transfer_function`, it also has RGB, an additional albedo or emission
     - `scale`: a `mi.Float` that multiplies σ
-    - `albedo`: the share of collisions that scatter light; an albedo RGB multiplies it
+    - `albedo`: the share of collisions that scatter light; an albedo from RGB multiplies it
     - `emission`: the radiance that the medium adds per unit of length
     - `majorants`: upper bounds of σ; None before `recompute_majorants` is called
     """
@@ -92,7 +94,8 @@ class Medium:
     ) -> tuple[JitFloat, JitColour, JitColour]:
         """Return the extinction σ, the albedo and the emitted light at the points `it`.
 
-        The light is the radiance per unit of length, divided by σ, that a transfer function emits.
+        The light is that of a transfer function, as radiance per unit of length, divided by σ; 0
+        if there is none.
         """
         import mitsuba as mi
 
@@ -109,7 +112,7 @@ class Medium:
     def estimate_passed_and_collided_light(
         self, ray: MitsubaObject, end: JitFloat, sampler: MitsubaObject, active: JitMask
     ) -> tuple[JitFloat, JitFloat, JitFloat]:
-        """Return the passing share of light, the colliding share, and the distance of a collision.
+        """Return the passing share of light, the colliding share, and a collision's distance.
 
         Both shares are random estimates up to the distance `end`. The first has the derivatives of
         the transmittance, and is NaN where σ exceeds its majorant.
@@ -162,7 +165,10 @@ class Medium:
     def estimate_optical_depth(
         self, ray: MitsubaObject, end: JitFloat, sampler: MitsubaObject, active: JitMask
     ) -> JitFloat:
-        """Return an unbiased estimate of the optical depth up to `end`, by σ at a random point."""
+        """Return an unbiased estimate of the optical depth up to the distance `end`.
+
+        It is σ at one random point, times the length within the box.
+        """
         near, far = self.clip_ray_to_box(ray, end)
         length = dr.maximum(far - near, 0)
         return length * self.evaluate_extinction(

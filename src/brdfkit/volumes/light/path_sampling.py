@@ -8,7 +8,7 @@ from brdfkit.volumes.light.medium import Medium
 from brdfkit.volumes.light.vertex import Vertex
 
 ROULETTE_DEPTH = 5  # number of scatterings after which dark paths end at random
-# The least probability that a path survives, and that a sample is chosen from two
+# The least probability with which a path survives, and with which either of two samples is chosen
 SMALLEST_CHANCE = 0.05
 
 

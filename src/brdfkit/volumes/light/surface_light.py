@@ -77,7 +77,7 @@ def _sample_bsdf(
     f = mi.unpolarized_spectrum(f) / dr.detach(dr.select(active, bs.pdf, 1))
     f = dr.select(mirrored, mi.unpolarized_spectrum(value), f)
 
-    # Radiance from the direction, and the density with which the emitters would draw it
+    # Radiance from the direction wo, and the density with which the emitters would draw wo
     ray = si.spawn_ray(wo)
     far = scene.ray_intersect(ray, active)
     emitter = far.emitter(scene)

@@ -1,11 +1,11 @@
 """Tracking in volumes: unbiased random estimates of collisions and of the transmittance.
 
 A volume with the extinction σ is filled up to its majorant with fictitious particles that let light
-pass. Collisions with all particles are drawn one after the other along a ray. In Woodcock tracking
-each collision is real with the probability σ / majorant [Woodcock et al. 1965]; in ratio tracking
-light loses that share at each particle, with less variance for the same look-ups of σ [Novák et al.
-2014]. The lost share has collided at the particle, so that one ray yields both the share of light
-that passes and a collision of the rest.
+pass. Collisions with real and fictitious particles are drawn one after the other along a ray. In
+Woodcock tracking each collision is real with the probability σ / majorant [Woodcock et al. 1965].
+In ratio tracking light loses that share at each particle, with less variance for the same look-ups
+of σ [Novák et al. 2014]. The lost share has collided at the particle, so that one ray yields both
+the share of light that passes and a collision of the rest.
 
 All functions take
 
@@ -32,7 +32,7 @@ from brdfkit.volumes.light.majorants import ROUNDING, Majorants
 Extinction: TypeAlias = Callable[[JitVector, JitMask], JitFloat]
 
 SMALLEST_COMPONENT = 1e-20  # replaces a direction's component of 0, by which the walk would divide
-FAINT = 0.15  # share of light below which Russian roulette ends rays
+FAINT = 0.15  # Russian roulette may end a ray that has kept less than this share of its light
 
 
 def sample_collision(
@@ -46,7 +46,7 @@ def sample_collision(
 ) -> tuple[JitFloat, JitInt]:
     """Draw the distance t of the first collision; it is infinite if light passes the volume.
 
-    Its density is σ(t) T(t), where T(t) is the transmittance up to t.
+    The density of t is σ(t) T(t), where T(t) is the transmittance up to t.
 
     >>> t, lookups = sample_collision(smoke, Majorants.from_grid(values), ray, 0, si.t, sampler)
     """
@@ -202,7 +202,7 @@ def _follow_rays(
         lookups: JitInt,
         sampler: MitsubaObject,
     ) -> tuple[Any, ...]:
-        # Advance by the optical `depth` to a particle, or at most to the end of the cell
+        # Go to the next particle, by the optical `depth` drawn for it, or at most to the cell's end
         i = dr.clip(cell, 0, last)
         index = mi.UInt32(i.x + (last.x + 1) * (i.y + (last.y + 1) * i.z))
         majorant = dr.gather(mi.Float, majorants.array, index)

@@ -13,7 +13,7 @@ from brdfkit.volumes.volume import Volume
 
 SIZE = 64
 BYTES = 14  # memory per voxel that `make` needs
-ELLIPSOIDS = (  # value, a, b, c, x, y, z, φ [degrees]
+ELLIPSOIDS = (  # value; half axes a, b, c; centre x, y, z; turn φ about z [degrees]
     (1.0, 0.69, 0.92, 0.81, 0.0, 0.0, 0.0, 0),
     (-0.8, 0.6624, 0.874, 0.78, 0.0, -0.0184, 0.0, 0),
     (-0.2, 0.11, 0.31, 0.22, 0.22, 0.0, 0.0, -18),

@@ -11,7 +11,7 @@ from brdfkit.volumes.volume import Volume
 
 SIZE = 64
 BYTES = 62  # memory per voxel that `make` needs
-EXPONENT = -11 / 6  # exponent of the amplitude over k, half of the power spectrum's
+EXPONENT = -11 / 6  # of the wave number k in the amplitude: half of the power's exponent, -11/3
 
 
 def make(size: Size, seed: int = 0) -> Volume:

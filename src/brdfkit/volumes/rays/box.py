@@ -6,7 +6,7 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
 
-SMALLEST_COSINE = 1e-3  # cosine of the angle between a bent normal and the viewer
+SMALLEST_COSINE = 1e-3  # cosine of the angle between a bent normal and the direction to the viewer
 
 
 def get_world_to_cube(volume: MitsubaObject) -> MitsubaObject:
@@ -47,7 +47,7 @@ def evaluate_light_behind(
 
     si = scene.ray_intersect(mi.Ray3f(ray), active)
     emitter = si.emitter(scene)
-    if emitter is None:  # in scalar variants; in others a missing emitter evaluates to 0
+    if emitter is None:  # only scalar variants return None; in others its radiance is 0
         return si.t, mi.UnpolarizedSpectrum(0)
     return si.t, mi.unpolarized_spectrum(emitter.eval(si, active))
 
@@ -55,7 +55,7 @@ def evaluate_light_behind(
 def compute_gradient(
     f: Callable[[JitVector], JitFloat], p: JitVector, volume: MitsubaObject
 ) -> JitVector:
-    """Return the gradient ∇f at points `p`, by central differences over a voxel to either side."""
+    """Return the gradient of a function `f` at points `p`, by differences between p ± one voxel."""
     import mitsuba as mi
 
     to_world, size = get_world_to_cube(volume).inverse(), volume.resolution()
@@ -65,7 +65,7 @@ def compute_gradient(
         step[axis] = 1 / size[axis]
         step = to_world @ step
         slopes[axis] = (f(p + step) - f(p - step)) * (size[axis] / 2)
-    return mi.Vector3f(to_world @ slopes)  # gradients are transformed as normals are
+    return mi.Vector3f(to_world @ slopes)  # `Normal3f`, since gradients transform like normals
 
 
 def face_normal(p: JitVector, volume: MitsubaObject) -> JitVector:

@@ -16,7 +16,7 @@ from brdfkit.core.geometry.multilinear import find_bracket, list_corners
 
 Volume = Any  # the class in `volume.py`, which imports this file
 
-LAYERS = 16  # layers whose gradients are computed at a time, to save memory
+LAYERS = 16  # number of layers whose gradients are computed at a time, to save memory
 
 
 def interpolate_values(volume: Volume, points: ArrayLike) -> AnyArray:
@@ -54,8 +54,9 @@ def gradient_magnitude(values: AnyArray, to_world: FloatArray) -> NDArray[np.flo
     """
     result = np.empty(values.shape, np.float32)
     to_indices = np.linalg.inv(to_world[:3, :3])
-    metric = to_indices @ to_indices.T  # diagonal, unless the axes are oblique to each other
-    # A unit keeps squares of large values within float32; division by a power of two is exact
+    metric = to_indices @ to_indices.T  # diagonal if the grid's axes are at right angles
+    # Large values are divided by a unit, so that their squares fit into float32. It is a power of
+    # two, so that no digits are lost
     largest = max(1.0, float(values.max()), -float(values.min()))
     unit = np.float32(2.0 ** math.floor(math.log2(largest)))
     for k in range(0, len(values), LAYERS):
@@ -120,7 +121,8 @@ def _interpolant_slopes(volume: Volume, indices: FloatArray) -> FloatArray:
         low, _, _ = find_bracket(indices[:, axis], n)
         ends = [indices.copy(), indices.copy()]
         ends[0][:, axis], ends[1][:, axis] = low, low + 1
-        moves = (indices[:, axis] > 0) & (indices[:, axis] < n - 1)  # constant beyond them
+        # Beyond the centres of the outermost voxels the interpolant is constant
+        moves = (indices[:, axis] > 0) & (indices[:, axis] < n - 1)
         slope = _interpolate_trilinearly(volume, ends[1]) - _interpolate_trilinearly(
             volume, ends[0]
         )

@@ -11,7 +11,7 @@ import drjit as dr
 from brdfkit.core.array_types import JitFloat, JitInt, JitMask
 from brdfkit.core.jit.loops import record_loops
 
-HALVINGS = 8  # times that the step with a crossing or maximum is halved, to 1/256
+HALVINGS = 8  # how often the step around a crossing or maximum is halved, to 1/256 of it
 
 
 @record_loops
@@ -43,9 +43,7 @@ def find_first_positive_step(
 def find_first_crossing(
     f: Callable[[JitFloat], JitFloat], near: JitFloat, far: JitFloat, steps: int, active: JitMask
 ) -> tuple[JitFloat, JitMask]:
-    """Find the distance at which f first rises above 0, and return it with a mask of rays.
-
-    The mask says on which rays f rises above 0 at all.
+    """Find the distance at which f first rises above 0, and a mask of the rays on which it does.
 
     The step before the first value above 0 is halved `HALVINGS` times, then the crossing is
     interpolated linearly. If f is above 0 at `near` already, the distance is `near`.

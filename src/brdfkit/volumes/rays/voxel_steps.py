@@ -31,7 +31,9 @@ def is_trilinear(volume: MitsubaObject, data: AnyArray, to_local: MitsubaObject)
     largest = float(steps.max())
     if not largest:
         return True
-    first = _comparison_stride(data) * np.array(np.unravel_index(steps.argmax(), steps.shape))
+    first = _choose_comparison_stride(data) * np.array(
+        np.unravel_index(steps.argmax(), steps.shape)
+    )
     second = first + np.eye(3, dtype=int)[axis]
     kji = (1 - SHARE) * first + SHARE * second
     place = (kji[::-1] + 0.5) / data.shape[::-1]
@@ -46,7 +48,7 @@ def _pair_neighbours(data: AnyArray) -> Iterator[tuple[int, AnyArray, AnyArray]]
 
     The values are an evenly spread part of the voxels `data` (nz, ny, nx).
     """
-    k = _comparison_stride(data)
+    k = _choose_comparison_stride(data)
     for axis, n in enumerate(data.shape):
         if n > 1:
             along = np.moveaxis(data, axis, 0)
@@ -54,6 +56,6 @@ def _pair_neighbours(data: AnyArray) -> Iterator[tuple[int, AnyArray, AnyArray]]
             yield axis, here[::k, ::k, ::k], ahead[::k, ::k, ::k]
 
 
-def _comparison_stride(data: AnyArray) -> int:
-    """Return the step between compared voxels, the same along all axes."""
+def _choose_comparison_stride(data: AnyArray) -> int:
+    """Return the step along each axis, in voxels, that leaves about COMPARED_VOXELS of `data`."""
     return int(np.ceil((data.size / COMPARED_VOXELS) ** (1 / 3)))

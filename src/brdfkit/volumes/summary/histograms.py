@@ -7,15 +7,15 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, IntArray
 from brdfkit.volumes.volume import Volume
 
-PARTS = 48  # bins of the range of values
-STEPS = 24  # bins of the range of gradient magnitudes
-SAMPLED_VOXELS = 2_000_000  # voxels in the joint histogram at most, evenly spread
+PARTS = 48  # number of equal bins over the range of values
+STEPS = 24  # number of equal bins over the range of gradient magnitudes
+SAMPLED_VOXELS = 2_000_000  # largest number of voxels in the joint histogram, evenly spread
 FEW_VALUES = 64  # a volume with at most so many different whole numbers may contain labels
 
 
 def count_voxels_by_value(volume: Volume) -> IntArray:
     """Return the histogram of a volume's values: the numbers of voxels (PARTS,) in equal bins."""
-    return np.histogram(volume.values, PARTS, _histogram_range(volume))[0]
+    return np.histogram(volume.values, PARTS, _find_histogram_range(volume))[0]
 
 
 def count_voxels_by_gradient(volume: Volume, steepest: float) -> IntArray:
@@ -25,7 +25,7 @@ def count_voxels_by_gradient(volume: Volume, steepest: float) -> IntArray:
     """
     step = -(-volume.values.size // SAMPLED_VOXELS)
     gradients, values = volume.gradient_magnitude.ravel()[::step], volume.values.ravel()[::step]
-    ends = (0, steepest or 1), _histogram_range(volume)
+    ends = (0, steepest or 1), _find_histogram_range(volume)
     return np.histogram2d(gradients, values, (STEPS, PARTS), ends)[0].astype(int)
 
 
@@ -64,7 +64,7 @@ def _choose_letters(numbers: AnyArray, letters: str) -> Iterator[str]:
     return (letters[int(i)] for i in np.ceil(height * (len(letters) - 1)))
 
 
-def _histogram_range(volume: Volume) -> tuple[float, float]:
+def _find_histogram_range(volume: Volume) -> tuple[float, float]:
     """Return the range (low, high) of a histogram of values; width 1 if all values are equal."""
     low, high = volume.range
     return (low, high) if low < high else (low - 0.5, high + 0.5)

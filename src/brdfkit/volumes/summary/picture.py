@@ -16,8 +16,8 @@ VolumeSummary = Any  # the class in `summary.py`, which imports this file
 Reach = tuple[float, float, float, float]  # first and last value, first and last gradient
 
 SIZE = 10.4, 7.2  # inches
-COLOUR = "#0072b2"  # blue, of the histogram of values
-POINTS = 400  # samples along each axis of a drawn transfer function
+COLOUR = "#0072b2"  # blue, the colour of the histogram of values
+POINTS = 400  # number of samples of a drawn transfer function along each axis
 LEVELS = 0.01, 0.25, 0.5, 0.75  # values of A whose contour lines are drawn
 VEIL = 0.85  # opacity of the transfer function's colours over the histogram where A is 1
 PLANES = (("x", "y", "z"), ("x", "z", "y"), ("y", "z", "x"))  # axes to the right, up, and normal
@@ -43,7 +43,7 @@ def draw_summary(summary: VolumeSummary, transfer: TransferFunction | None = Non
 def _draw_slice(axes: Axes, summary: VolumeSummary, across: int, up: int, through: int) -> None:
     """Draw the middle slice, normal to the axis `through`, and label the other two axes."""
     middle = summary.size[through] // 2
-    voxels = np.take(summary.data.values, middle, axis=2 - through)  # (up, across): z is slowest
+    voxels = np.take(summary.data.values, middle, axis=2 - through)  # axes (up, across)
     colours = "tab20" if summary.labels else "gray"
     axes.imshow(
         voxels,
@@ -114,7 +114,7 @@ def _scale_transfer_to_volume(transfer: TransferFunction, volume: Any) -> Transf
 
 
 def _draw_alpha_curve(axes: Axes, transfer: TransferFunction, reach: tuple[float, float]) -> None:
-    """Draw A of a transfer function over values, on a second axis, and its colours below."""
+    """Draw a transfer function over the values `reach` (low, high): A as a curve, colours below."""
     values = np.linspace(*reach, POINTS)
     rgba = transfer(values)
     own = axes.twinx()

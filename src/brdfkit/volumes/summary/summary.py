@@ -22,10 +22,9 @@ if TYPE_CHECKING:
 PATIENT = (("left", "right"), ("back", "front"), ("feet", "head"))
 WORLD = (("-x", "+x"), ("-y", "+y"), ("-z", "+z"))
 LINES = 4  # lines of text for the histogram of values and gradient magnitudes
-# Larger values of these are reported as defects, or in the text
-UNEVEN_SPACING = 3.0  # the largest spacing over the smallest
-TURNED_DEGREES = 1.0  # angle between the grid's axes and the world's
-CLIPPED_SHARE = 0.01  # share of the voxels that have the largest value
+UNEVEN_SPACING = 3.0  # a larger ratio of the largest spacing to the smallest is a defect
+TURNED_DEGREES = 1.0  # a larger angle between the axes of grid and world is reported [degrees]
+CLIPPED_SHARE = 0.01  # values may be clipped if more than this share of voxels has the largest
 DPI, WIDTH = 75, 760  # resolution and width [pixels] of the picture in a notebook
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray
 
 BLOCK_VOXELS = 8  # approximate number of voxels along the edge of a block
-NEARBY = 0.01  # voxels by which blocks overlap, since rounding may put a point in the next block
+NEARBY = 0.01  # blocks overlap by so many voxels, since rounding may put a point in the next block
 SLACK = 1e-3  # steps of a table by which a renderer's single precision may miss a value
 
 
@@ -36,7 +36,7 @@ def reduce_blocks(
     which values are interpolated.
     """
     n = values.shape[axis]
-    edges = np.arange(count + 1) * n / count - 0.5  # a voxel's centre has a whole number
+    edges = np.arange(count + 1) * n / count - 0.5  # voxels have their centres at whole numbers
     first = np.clip(np.floor(edges[:-1] - NEARBY), 0, n - 1).astype(int)
     last = np.clip(np.ceil(edges[1:] + NEARBY), 0, n - 1).astype(int)
     blocks = (values.take(range(a, b + 1), axis) for a, b in zip(first, last, strict=True))
@@ -58,7 +58,7 @@ def bound_piecewise_linear(rows: FloatArray, low: FloatArray, high: FloatArray) 
     low, high = np.clip(low - SLACK, 0, n - 1), np.clip(high + SLACK, 0, n - 1)
     at_ends = np.maximum(*(np.interp(x, np.arange(n), rows) for x in (low, high)))
 
-    # powers[k] are the largest of 2^k consecutive rows; two such maxima cover any interval
+    # powers[k][i] is the largest of the 2^k rows from i on; two such maxima cover any interval
     powers = [rows]
     while 2 ** len(powers) <= n:
         half = 2 ** (len(powers) - 1)

@@ -17,8 +17,8 @@ from brdfkit.core.arguments import to_number_pair, to_positive_number
 from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
-VALUES, GRADIENTS = 129, 33  # size of the grid over values and gradients that has the triangles
-FADE = 0.25  # a boundary fades to 0 above its steepest gradient, within this share of it
+VALUES, GRADIENTS = 129, 33  # numbers of values and of gradients in the function's grid
+FADE = 0.25  # A falls to 0 between a boundary's steepest gradient and 1 + FADE times it
 
 
 def convert_boundaries(
@@ -45,9 +45,9 @@ def convert_boundaries(
         near = 1 - np.abs(v - level) / np.maximum(thickness * g, 1e-12 * (high - low))
         ends = (1 + FADE - g / steepest) / FADE
         triangles.append(a * np.clip(near, 0, 1) * np.clip(ends, 0, 1) * (g > 0))
-    shares = np.array(triangles)  # (boundaries, gradients, values)
-    shares[..., [0, -1]] = 0  # A at both ends, since the function is constant beyond
-    # Colours change gradually even where A is 0, because textures interpolate them into A > 0
+    shares = np.array(triangles)  # A of each triangle, over (boundaries, gradients, values)
+    shares[..., [0, -1]] = 0  # A is 0 at both ends of the values, and thus beyond them, too
+    # Colours change gradually even where A is 0, because textures mix them with neighbours of A > 0
     weights = shares + 1e-6 / (1e-3 + np.abs(v - rows[:, 0, None, None]) / (high - low))
     rgb = np.einsum("kmn,kc->mnc", weights / weights.sum(axis=0), rows[:, 2:5])
     rgba = np.dstack([rgb, 1 - np.prod(1 - shares, axis=0)])

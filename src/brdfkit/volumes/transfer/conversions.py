@@ -36,7 +36,7 @@ class Conversions:
         opacity : array (k, 2), default ((0.0, 0.0), (1.0, 1.0))
             Points (share, A): the share of the way from the first to the last value, and A there.
         extinction : float, default 1.0
-            σ_t where A is 1 [1/unit of length].
+            The extinction where A is 1 [1/unit of length].
         colour : str, default "emission"
             The meaning of RGB, "albedo" or "emission".
 
@@ -66,9 +66,10 @@ class Conversions:
         unit_distance: float = 1.0,
         colour: str = "emission",
     ) -> Self:
-        """Make a transfer function from opacities `a` of a layer, as in VTK, Slicer and ParaView.
+        """Make a transfer function from opacities of a layer, as in VTK, Slicer and ParaView.
 
-        σ_t = -ln(1 - a) / d. Between the points the opacity is linear, and σ_t is not.
+        A layer of thickness d with the opacity a has the extinction σ_t = -ln(1 - a) / d. Between
+        the points the opacity is linear, and σ_t is not.
 
         Parameters
         ----------
@@ -126,7 +127,7 @@ class Conversions:
         values : (float, float)
             The values between which the function changes.
         extinction : float, default 1.0
-            σ_t where A is 1 [1/unit of length]; 3 / thickness hides what is behind.
+            The extinction where A is 1 [1/unit of length]; 3 / thickness hides what is behind.
         colour : str, default "albedo"
             The meaning of RGB, "albedo" or "emission".
 

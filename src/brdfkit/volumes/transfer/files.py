@@ -23,7 +23,7 @@ from brdfkit.core.names import to_printable
 from brdfkit.volumes.transfer import slicer_presets
 
 KIND = "brdfkit transfer function"  # the field "kind" of each file
-WORDS = "colour", "value_unit", "length_unit", "name"  # the fields with text
+WORDS = "colour", "value_unit", "length_unit", "name"  # the fields that contain text
 ALLOWED = {"kind", "extinction", "points", "gradient_ramp", "values", "gradients", "rgba", *WORDS}
 ALLOWED |= {"boundaries", "thickness", "range"}
 
@@ -89,12 +89,12 @@ def parse_json(cls: Any, text: str | bytes, where: str | Path) -> Any:
     if unknown:
         raise no_such_error("field", unknown[0], sorted(ALLOWED), str(where))
     try:
-        return _parse_record(cls, record)
+        return _make_transfer_function(cls, record)
     except BrdfkitError as error:
         raise BrdfkitError(f"{where}: {error}") from error
 
 
-def _parse_record(cls: Any, record: dict[str, Any]) -> Any:
+def _make_transfer_function(cls: Any, record: dict[str, Any]) -> Any:
     """Make a transfer function, of the class `cls`, from the fields of a parsed JSON object."""
     settings: dict[str, Any] = {w: to_printable(record[w]) for w in WORDS if w in record}
     settings["extinction"] = record.get("extinction", 1.0)

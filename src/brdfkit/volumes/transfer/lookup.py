@@ -23,7 +23,7 @@ class TransferLookup:
     - `function`: the `TransferFunction` that is looked up
     - `table`: a `mi.TensorXf` of RGBA (n, 4) at even steps of values, or (m, n, 4) at even steps of
       gradient magnitudes as well; optimisers may change it, to numbers ≥ 0, with A ≤ 1
-    - `extinction`: a `mi.Float`, σ_t where A is 1 [1/unit of length]
+    - `extinction`: a `mi.Float`, the extinction where A is 1 [1/unit of length]
     - `axes`: (low, scale, first) for values, and for gradient magnitudes if the function depends on
       them; the coordinate of x in the texture is (x - low) · scale + first
     - `texture`: the table as a `mi.Texture1f` or `mi.Texture2f`
@@ -51,9 +51,9 @@ class TransferLookup:
             for (low, high), size in zip(ranges[: len(sizes)], sizes, strict=True)
         ]
         dr.make_opaque(self.table, self.extinction, self.axes)
-        self.update()
+        self.recompute_texture()
 
-    def update(self) -> None:
+    def recompute_texture(self) -> None:
         """Compute the texture and the integrals again, after `table` was changed."""
         import mitsuba as mi
 
@@ -91,7 +91,7 @@ class TransferLookup:
         return mi.Color3f(r, g, b), a
 
     def reduce_table_to_values(self) -> AnyArray:
-        """Return RGBA (n, 4) over values, the largest over all gradient magnitudes if any."""
+        """Return RGBA (n, 4) over values; of a function of gradients, the largest over these."""
         table = np.array(self.table)
         return table if table.ndim == 2 else table.max(axis=0)
 
@@ -104,9 +104,9 @@ class TransferLookup:
 def choose_table_steps(values: FloatArray) -> int:
     """Choose the number of even steps of a table, so that control points lie on or near its rows.
 
-    `values` (k,), rising, are the control points of a transfer function, such as labels. There are
-    at least MIN_STEPS; closer values need more, up to a limit beyond which a warning says that
-    values share a row.
+    `values` (k,), rising, are the control points of a transfer function, such as labels. The number
+    is MIN_STEPS or more. Close values need more steps; where they would need too many, some share a
+    row, and a warning says so.
 
     >>> choose_table_steps(np.array([0.0, 7.0, 29.0]))
     4118
@@ -121,7 +121,7 @@ def choose_table_steps(values: FloatArray) -> int:
             stacklevel=2,
         )
     least = int(np.clip(np.ceil(1 / gap), MIN_STEPS, MAX_STEPS))
-    if np.ptp(gaps) == 0:  # even values lie on rows if the steps are a multiple of their gaps
+    if np.ptp(gaps) == 0:  # if values are evenly spaced, all gaps get the same number of steps
         return (len(values) - 1) * -(-least // (len(values) - 1))
     counts = np.arange(least, 2 * least)
     worst = np.zeros(len(counts))

@@ -50,9 +50,9 @@ def convert_opacities(
 def _refine_points(function: Any, distance: float) -> tuple[FloatArray, FloatArray]:
     """Return control points (k,), and R, G, B and σ_t there (k, 4), of a function with opacities.
 
-    Its σ_t is not linear between its own points, so that segments are divided until linear
-    interpolation has an error below the TOLERANCE. Even steps h of σ_t have an error of at most
-    h² d / 8, for the `distance` d.
+    σ_t is not linear between the points of the `function`. The segments are thus divided, until
+    linear interpolation of σ_t has an error below the TOLERANCE. If σ_t has even steps h, the error
+    is at most h² d / 8, for the `distance` d.
     """
     values, rgba, opacities = function.values, function.rgba, function.rgba[:, 3]
     sigma = opacity_to_extinction(opacities, distance)

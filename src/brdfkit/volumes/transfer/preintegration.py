@@ -1,6 +1,7 @@
 """Pre-integrated transfer functions: their means between the values at two points of a ray.
 
-Between the points, the value v is assumed to change linearly from v₀ to v₁. The mean of A is then
+Between the points, the value v is assumed to change linearly from v₀ to v₁. The mean of the
+function's A, the extinction from 0 to 1, is then
 
     (S(v₁) - S(v₀)) / (v₁ - v₀),   S(v) = ∫ A dv
 
@@ -17,7 +18,7 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, JitFloat, JitVector
 
-THIN = 0.1  # a table has narrow peaks if it deviates from its moving mean by more of its maximum
+THIN = 0.1  # largest deviation from the moving mean without peaks, as a share of the largest value
 
 
 @dataclass(init=False, eq=False)  # `dr.freeze` finds the arrays of a dataclass
@@ -38,9 +39,7 @@ class Preintegration:
         import mitsuba as mi
 
         flat, place = table.array, dr.arange(mi.UInt32, len(table.array))
-        alpha = dr.gather(
-            mi.Float, flat, place | 3
-        )  # the A of the row to which each number belongs
+        alpha = dr.gather(mi.Float, flat, place | 3)  # A in the row of each number
         self.steps = table.shape[0] - 1
         self.rows = dr.select((place & 3) == 3, alpha, flat * alpha)
         first = dr.gather(mi.Float, self.rows, place & 3)

@@ -7,7 +7,7 @@ An element ``<VolumeProperty>`` has three lists of numbers, each preceded by its
     gradientOpacity   gradient magnitude, factor of the opacity
     colorTransfer     value, R, G, B as a screen shows them (sRGB)
 
-Opacities a are converted to σ_t = -ln(1 - a) / d, and R, G, B to linear. The factor from
+Opacities a become extinctions σ_t = -ln(1 - a) / d, and R, G, B become linear. The factor from
 gradientOpacity multiplies σ_t, while VTK multiplies the opacity of each sample, which is the same
 for close samples. VTK scales gradient magnitudes by the mean spacing; here they are per mm, which
 is the same for voxels of 1 mm. Settings of VTK's lamps, such as ``shade`` and ``ambient``, are not
@@ -30,7 +30,7 @@ from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import read_bytes
 from brdfkit.volumes.transfer.colour_maps import find_bracketing_points, require_rising
 
-PARTS = 8  # a segment between two control points is divided into so many
+PARTS = 8  # number of parts into which a segment between two control points is divided
 UNIT_DISTANCE = 1.0  # thickness d of the layer whose opacity is stated [mm]
 
 
@@ -82,8 +82,8 @@ def _convert_preset(cls: Any, preset: ElementTree.Element) -> Any:
 def _read_number_rows(preset: ElementTree.Element, attribute: str, columns: int) -> FloatArray:
     """Read the numbers of an attribute, a list that its count precedes, as rows (n, columns).
 
-    Raises `BrdfkitError` unless the first column rises; equal neighbours in it, which mean a jump
-    in Slicer, are moved apart by rounding.
+    Raises `BrdfkitError` unless the first column rises. Equal neighbours in it, which mean a jump
+    in Slicer, become different by the smallest step of a float.
     """
     try:
         count, *numbers = map(float, preset.get(attribute, "").split())

@@ -30,9 +30,9 @@ from brdfkit.volumes.transfer.colour_maps import find_bracketing_points, require
 from brdfkit.volumes.transfer.conversions import Conversions
 
 COLOURS = "albedo", "emission"  # the meanings of RGB
-# Values of `value_unit` for functions that are scaled to a volume: to its window, or full range
+# `value_unit` of a function whose values are shares of a volume's window, or of its full range
 WINDOW_SHARES, RANGE_SHARES = "share of the window", "share of the range"
-METRES = {  # lengths of the units of length [m], by the names that files use
+METRES = {  # the length of each unit [m], by the names that files use
     "m": 1.0,
     "cm": 1e-2,
     "mm": 1e-3,
@@ -57,7 +57,7 @@ class TransferFunction(Conversions):
         RGBA at each value (n, 4), or at each gradient magnitude and value (m, n, 4). RGB, in linear
         sRGB, is 0 to 1 as an albedo, and 0 or more as an emission; A is 0 to 1.
     extinction : float
-        σ_t where A is 1 [1/unit of length], in the unit of the volume.
+        The extinction where A is 1 [1/unit of length], in the unit of the volume.
     colour : str
         The meaning of RGB, "albedo" or "emission".
     gradients : ndarray

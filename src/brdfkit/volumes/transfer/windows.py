@@ -5,13 +5,13 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.volumes.transfer.transfer_function import RANGE_SHARES, WINDOW_SHARES, TransferFunction
 
-SAMPLED_VOXELS = 2_000_000  # voxels in a histogram at most, evenly spread
-PARTS = 256  # bins of the histogram in which the background is found
+SAMPLED_VOXELS = 2_000_000  # largest number of voxels in a histogram, evenly spread
+PARTS = 256  # number of bins of the histogram in which the background is found
 MIN_VOXELS = 1000  # fewer voxels do not have a reliable histogram
 OUTLIERS = 0.1  # percentile at either end beyond which voxels are ignored
-# The background's peak lies below the first share of the range of values, its end below the second
+# Shares of the range of values below which the background's peak lies, and its end
 PEAK, FOOT = 0.15, 0.4
-FALL = 0.25  # the histogram at the background's end is lower than this share of the peak
+FALL = 0.25  # at the background's end the histogram is lower than this share of its peak
 FIRST, LAST = 2.0, 99.0  # percentiles of the matter's values at the ends of the window
 
 
@@ -34,10 +34,10 @@ def find_window(values: AnyArray) -> tuple[float, float]:
 
 
 def scale_transfer_to_values(transfer: TransferFunction, values: AnyArray) -> TransferFunction:
-    """Scale a transfer function over shares of a range to a volume's `values` (nz, ny, nx).
+    """Scale a transfer function from shares, 0 to 1, to the range of a volume's `values`.
 
-    Such functions, for data without a unit, have WINDOW_SHARES or RANGE_SHARES as their
-    `value_unit`; any other function is returned unchanged.
+    Functions for data without a unit have WINDOW_SHARES or RANGE_SHARES as their `value_unit`;
+    any other function is returned unchanged.
     """
     low, high = float(values.min()), float(values.max())
     if low == high or transfer.value_unit not in (WINDOW_SHARES, RANGE_SHARES):
