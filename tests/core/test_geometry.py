@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from brdfkit.core.geometry.dual_paraboloid import from_disc, solid_angle, to_disc
+from brdfkit.core.geometry.dual_paraboloid import from_disc, solid_angle_per_area, to_disc
 from brdfkit.core.geometry.latitude_rows import projected_solid_angles, solid_angles
 
 pytestmark = pytest.mark.quick
@@ -24,7 +24,7 @@ def test_a_disc_of_the_dual_paraboloid_holds_half_of_the_sphere():
     s, t = np.meshgrid(side, side)
     _, _, z = from_disc(s, t, 1)
     inside = s * s + t * t < 1
-    assert solid_angle(z)[inside].sum() / 500**2 == pytest.approx(2 * np.pi, rel=1e-4)
+    assert solid_angle_per_area(z)[inside].sum() / 500**2 == pytest.approx(2 * np.pi, rel=1e-4)
 
 
 @pytest.mark.parametrize("height", [1, 2, 5, 8, 129])

@@ -34,4 +34,6 @@ def camera(eye, target, near=0.1, far=1e3, slope=0.4):
 def placement(camera, light, low=LOW, high=HIGH, nearest=0.0):
     """A `Placement`, as `Placement.of_scene` makes it."""
     low, high = np.array(low, float), np.array(high, float)
-    return Placement(camera.fit_planes(make_box(low, high).corners), light, low, high, nearest)
+    return Placement(
+        camera.fit_near_and_far(make_box(low, high).corners), light, low, high, nearest
+    )

@@ -22,7 +22,7 @@ from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS, MODELS
 from brdfkit.core.documents import Cell, Document, Shown, Table
 from brdfkit.core.documents.parts import BAD, GOOD
-from brdfkit.core.errors import BrdfkitError, find_nearest, no_such_error
+from brdfkit.core.errors import BrdfkitError, find_nearest_name, no_such_error
 from brdfkit.core.jit import llvm
 from brdfkit.core.jit.loops import is_interrupt
 from brdfkit.core.jit.threads import in_turn
@@ -144,7 +144,7 @@ def _to_material(material: MaterialLike) -> Any:
         return to_material(material)
     except BrdfkitError:
         others = [n for kind in KINDS if kind != MODELS for n in plugin_files.find_plugins(kind)]
-        if isinstance(material, str) and find_nearest(material, others):
+        if isinstance(material, str) and find_nearest_name(material, others):
             raise no_such_error("plugin", material, others) from None
         raise
 

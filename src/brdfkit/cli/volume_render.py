@@ -13,7 +13,7 @@ import brdfkit
 from brdfkit.cli.console import Console
 from brdfkit.cli.errors import print_message
 from brdfkit.cli.settings import Command, parse_settings
-from brdfkit.core.errors import BrdfkitError, find_nearest, no_such_error
+from brdfkit.core.errors import BrdfkitError, find_nearest_name, no_such_error
 
 if TYPE_CHECKING:
     from brdfkit.rendering import Rendering
@@ -97,7 +97,7 @@ def _refuse_misspelt_volume(word: str) -> None:
     known = [*labels.models(), *catalogue.list_materials(), *made.list_volume_names()]
     if word in known or labels.is_label(word) or Path(word).suffix or Path(word).exists():
         return
-    if find_nearest(word, known) in made.list_volume_names():
+    if find_nearest_name(word, known) in made.list_volume_names():
         raise no_such_error("file, model, material or volume", word, known)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
-LONGEST = 80  # characters of a value that an error message shows
+LONGEST = 80  # the most characters of a value that an error message shows
 
 
 def wrong_value_error(what: str, value: object, expected: str) -> BrdfkitError:
@@ -90,7 +90,7 @@ def to_whole_number(
 
 
 def to_number_pair(what: str, value: Any) -> tuple[float, float]:
-    """Check that the argument `what` is two numbers; return them as floats (low, high)."""
+    """Check that the argument `what` is a pair (low, high) of numbers; return two floats."""
     try:
         low, high = map(float, value)
     except (TypeError, ValueError):
@@ -106,7 +106,7 @@ def to_dictionary(what: str, value: Any) -> dict[str, Any]:
 
 
 def to_array(what: str, value: Any, shape: tuple[int, ...] | None = None) -> FloatArray:
-    """Check that the argument `what` holds numbers, also nested lists; return a float array.
+    """Check that the argument `what` is an array or nested lists of numbers; return an array.
 
     An array of floats is not copied. Where a `shape` is given, the array must have it, and all of
     its numbers must be finite.
@@ -127,7 +127,7 @@ def to_array(what: str, value: Any, shape: tuple[int, ...] | None = None) -> Flo
 def check_number_fields(solver: Any) -> None:
     """Check that the fields of a solver, a frozen dataclass, are numbers above 0.
 
-    A field whose default is whole must be whole. The fields then hold plain ints and floats.
+    A field whose default is an integer must be one. Afterwards all are plain ints and floats.
     """
     for field in fields(solver):
         what, value = f"{type(solver).__name__}: {field.name}", getattr(solver, field.name)

@@ -15,12 +15,12 @@ IntArray: TypeAlias = NDArray[np.integer[Any]]
 BoolArray: TypeAlias = NDArray[np.bool_]
 AnyArray: TypeAlias = NDArray[Any]
 
-# Numbers of Dr.Jit in a variant or in double precision (core/jit), or plain Python numbers
+# Arrays of Dr.Jit, of the type in Mitsuba's variant or of `core/jit`, or plain Python numbers
 JitFloat: TypeAlias = Any
 JitInt: TypeAlias = Any
 JitMask: TypeAlias = Any
-JitVector: TypeAlias = Any  # two or three components, each a JitFloat
-JitColour: TypeAlias = Any  # one component for each channel of the variant
+JitVector: TypeAlias = Any  # a vector of two or three components, each a JitFloat
+JitColour: TypeAlias = Any  # a colour in the channels of Mitsuba's variant
 
-MitsubaModule: TypeAlias = Any  # the module `mitsuba`, with a variant set
-MitsubaObject: TypeAlias = Any  # a scene, a BSDF, an emitter ...
+MitsubaModule: TypeAlias = Any  # the module `mitsuba`, for which a variant is chosen
+MitsubaObject: TypeAlias = Any  # an object of Mitsuba: a scene, a BSDF, an emitter ...

@@ -16,13 +16,16 @@ MEASURED, ENVIRONMENTS = "measured", "environments"
 
 
 def read_index(kind: str = MEASURED) -> dict[str, Any]:
-    """Return the content of `data/KIND/index.toml`; "collections" holds the public collections."""
+    """Return the content of `data/KIND/index.toml`: the description of each file by its name.
+
+    Under the key "collections" are public collections, which do not come with brdfkit.
+    """
     with (find_data_folder(kind) / "index.toml").open("rb") as stream:
         return tomllib.load(stream)
 
 
 def find_data_folder(kind: str = MEASURED) -> Path:
-    """Return the folder `data/KIND`, in the installed package or at the top of a checkout."""
+    """Return the folder `data/KIND` of the installed package, or at the top of a checkout."""
     package = Path(__file__).resolve().parents[1]
     installed, checkout = (place / "data" / kind for place in (package, package.parents[1]))
     return installed if installed.is_dir() else checkout

@@ -7,8 +7,8 @@ import numpy as np
 from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
-RGB = ("R", "G", "B")  # names of the channels
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # weights of linear R, G and B
+RGB = ("R", "G", "B")  # names of the three colour channels
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722])  # weights of linear R, G and B in luminance
 ILLUMINANT = "D65"
 OBSERVER = "CIE 1931 2 Degree Standard Observer"
 # The wavelengths of a spectrum must span this range; otherwise its colour would be a guess
@@ -76,12 +76,12 @@ def compute_rgb_weights(wavelengths: ArrayLike, name: str) -> FloatArray:
         colour.SDS_ILLUMINANTS[ILLUMINANT].wavelengths,
         colour.SDS_ILLUMINANTS[ILLUMINANT].values,
     )
-    # A hat function for each wavelength, since reflectance is linear between them
+    # One hat function per wavelength, 1 there and 0 at the others, as reflectance is linear between
     order = np.argsort(wavelengths)
     hats = np.stack(
         [np.interp(observer.wavelengths, wavelengths[order], row) for row in np.eye(len(order))]
     )
-    # Integrate each hat times the illuminant and the observer to XYZ, and convert XYZ to sRGB
+    # The XYZ of each hat under the illuminant, by the observer's curves; then XYZ to linear sRGB
     xyz = hats @ (light[:, None] * observer.values)
     rgb = xyz @ colour.RGB_COLOURSPACES["sRGB"].matrix_XYZ_to_RGB.T
     weights = np.empty_like(rgb)

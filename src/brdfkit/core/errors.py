@@ -21,14 +21,14 @@ def no_such_error(what: str, name: object, known: Iterable[Any], where: str = ""
     """
     names = list(map(str, known))
     place = f"{where}: there" if where else "There"
-    near = find_nearest(name, names)
+    near = find_nearest_name(name, names)
     guess = f"did you mean {near}? There are" if near else "there are"
     return BrdfkitError(f"{place} is no {what} {name!r}; {guess} {', '.join(names) or 'none'}.")
 
 
-def find_nearest(name: object, known: Iterable[Any]) -> Any:
+def find_nearest_name(name: object, known: Iterable[Any]) -> Any:
     """Return the known name that is most similar to `name`, None where none is similar."""
-    import difflib  # only here: `--help` should be instant
+    import difflib  # imported here to keep `--help` fast
 
     known = list(known)
     lower = [str(n).lower() for n in known]

@@ -6,15 +6,15 @@ from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from pathlib import Path
 
-from brdfkit.core.errors import BrdfkitError, find_nearest
+from brdfkit.core.errors import BrdfkitError, find_nearest_name
 
-SIZE_LIMIT = 2**30  # bytes, decompressed; the largest MERL table has 70 MB
+SIZE_LIMIT = 2**30  # most bytes that are read, decompressed; the largest MERL table has 70 MB
 CHUNK_SIZE = 2**20  # bytes
 GZIP, XZ = ".gz", ".xz"
 # A function that is called with the path of a file before or after it is written
 Watcher = Callable[[Path], object]
 _watchers: ContextVar[tuple[tuple[Watcher, Watcher], ...]] = ContextVar("watchers", default=())
-COMPRESSED = {GZIP: b"\x1f\x8b", XZ: b"\xfd7zXZ\x00"}  # suffix: first bytes of the file
+COMPRESSED = {GZIP: b"\x1f\x8b", XZ: b"\xfd7zXZ\x00"}  # suffix → first bytes of such files
 
 
 @contextmanager
@@ -54,7 +54,7 @@ def _link_as_utf8(folder: Path) -> Iterator[Path]:
     if is_utf8_path(folder):
         yield folder
         return
-    from tempfile import TemporaryDirectory  # only here: `--help` should be instant
+    from tempfile import TemporaryDirectory  # imported here to keep `--help` fast
 
     with TemporaryDirectory(prefix="brdfkit-") as place:
         link = Path(place) / "folder"
@@ -158,7 +158,7 @@ def compute_sha256(path: str | os.PathLike[str]) -> str:
 
     Raises `BrdfkitError` for a file that is missing, not regular or unreadable.
     """
-    import hashlib  # only here: `--help` should be instant
+    import hashlib  # imported here to keep `--help` fast
 
     path = require_file(path)
     with _translate_read_errors(path), path.open("rb") as stream:
@@ -190,7 +190,7 @@ def require_file(path: str | os.PathLike[str]) -> Path:
         if path.exists():
             raise BrdfkitError(f"{path}: is no regular file; name one.")
         beside = {file.name for file in path.parent.glob("*")} if path.parent.is_dir() else set()
-    near = find_nearest(path.name, sorted(beside - {path.name}))
+    near = find_nearest_name(path.name, sorted(beside - {path.name}))
     remedy = f"did you mean {path.with_name(near)}? Else check" if near else "check"
     raise BrdfkitError(f"{path}: there is no such file; {remedy} the path.")
 
@@ -209,7 +209,7 @@ def _read_unpacked(path: Path) -> bytes:
 
 def _decompress(path: Path, suffix: str) -> bytes:
     """Decompress a file up to `SIZE_LIMIT` bytes, since a small file may unpack to terabytes."""
-    import gzip  # only here: `--help` should be instant
+    import gzip  # imported here to keep `--help` fast
     import lzma
     import zlib
 

@@ -1,8 +1,8 @@
 """Handles Ctrl-C and SIGTERM, the signal that `kill` and batch systems send to end a program.
 
 A search that Ctrl-C ends raises `Interrupted` with its best result so far. A command turns both
-signals into KeyboardInterrupt by `stop_on_signals`; `delay_signals` delays them while native code
-runs that could not bear them.
+signals into KeyboardInterrupt by `stop_on_signals`. `delay_signals` delays both while native code
+runs that they could crash.
 """
 
 import signal
@@ -13,14 +13,14 @@ from types import FrameType
 from typing import Any
 
 SIGNALS = signal.SIGINT, signal.SIGTERM
-_received: int | None = None  # the signal that ended the command
+_received: int | None = None  # the number of the signal that ended the command
 
 
 class Interrupted(KeyboardInterrupt):
     """The error that Ctrl-C raises in a fit or a search, with the best result so far.
 
-    Loops and programs end by it, as by any KeyboardInterrupt; ``sys.last_value.best`` is the
-    result.
+    It ends loops and programs like any KeyboardInterrupt. In an interactive session the result is
+    then in ``sys.last_value.best``.
 
     Attributes
     ----------
@@ -42,9 +42,8 @@ def stop_on_signals() -> Iterator[None]:
     """
     global _received
     _received = None
-    if (
-        threading.current_thread() is not threading.main_thread()
-    ):  # only the main thread gets signals
+    # Only the main thread gets signals
+    if threading.current_thread() is not threading.main_thread():
         yield
         return
     before = {number: signal.getsignal(number) for number in SIGNALS}
@@ -65,8 +64,8 @@ def is_stopped_by_signal() -> bool:
 
 def find_exit_status() -> int:
     """Return the exit status of a command that a signal ended: 130 by Ctrl-C, 143 by SIGTERM."""
-    # Ctrl-C within exec, by which dataclasses are made, would let Python end by the signal itself
-    # and without an exit status; another exec clears that
+    # After a Ctrl-C within exec, which dataclasses use, Python would kill itself by the signal and
+    # give no exit status; another exec makes it forget that
     exec("")
     return 128 + (_received or signal.SIGINT)
 
@@ -85,11 +84,12 @@ def delay_signals() -> Iterator[None]:
     A KeyboardInterrupt within the import of Dr.Jit or Mitsuba is lost in native code, or ends the
     process. Blocking the signals of this thread would not help: another thread would get them.
     """
-    if threading.current_thread() is not threading.main_thread():  # only the main one sets handlers
+    # Only the main thread may set handlers
+    if threading.current_thread() is not threading.main_thread():
         yield
         return
     received: list[int] = []
-    # Handlers that native code has set are None here; they stay
+    # `getsignal` returns None for a handler that native code has set; such a handler stays
     handlers = ((number, signal.getsignal(number)) for number in SIGNALS)
     before = {number: handler for number, handler in handlers if handler is not None}
     for number in before:

@@ -4,8 +4,9 @@ import psutil
 
 from brdfkit.core.errors import BrdfkitError
 
-# Peak of the resident memory [bytes per pixel], measured from 2 to 9 million pixels. n > 1
-# pictures take BYTES_OF_SEVERAL + n BYTES_OF_EACH, most of it for colour differences
+# The most memory that a rendering takes [bytes per pixel], measured at 2 to 9 million pixels: of
+# one picture BYTES_OF_ONE; of n pictures, most of it for their colour differences,
+# BYTES_OF_SEVERAL + n BYTES_OF_EACH
 BYTES_OF_ONE = 220
 BYTES_OF_SEVERAL, BYTES_OF_EACH = 330, 75
 

@@ -3,9 +3,9 @@
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}  # by ASCII and ISO 6429
-RESERVED = '/\\:*?"<>|'  # not allowed in file names on some system
-LONGEST_STEM = 100  # bytes; file systems allow 255 with the suffix
+CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}  # of ASCII and of ISO 6429
+RESERVED = '/\\:*?"<>|'  # characters that some systems refuse in file names
+LONGEST_STEM = 100  # bytes of a stem; file systems allow 255 with the suffix
 
 
 def make_unique(name: str, taken: Collection[str]) -> str:
@@ -22,7 +22,7 @@ def make_unique(name: str, taken: Collection[str]) -> str:
 
 
 def format_percent(percent: float) -> str:
-    """Format a percentage, with two digits if it is small.
+    """Format a percentage, with two significant digits below 10 and as a whole number above.
 
     >>> format_percent(0.0312), format_percent(41.3), format_percent(100)
     ('0.031 %', '41 %', '100 %')

@@ -19,7 +19,7 @@ SPEED_PERIOD = 3600.0  # seconds over which the speed is averaged: one fit may t
 INTERVAL = 0.1  # seconds between two updates of the bar in a notebook
 
 
-def count_steps(function: Progress | None, total: int) -> Callable[[], None]:
+def make_step_counter(function: Progress | None, total: int) -> Callable[[], None]:
     """Return a function that reports one more step, of about `total`, to a progress function."""
     done = 0
 

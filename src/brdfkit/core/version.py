@@ -10,6 +10,6 @@ LIBRARIES = "mitsuba", "drjit", "numpy", "scipy"
 @cache
 def find_versions() -> dict[str, str]:
     """Return the versions of brdfkit and of the libraries that its numbers depend on, by name."""
-    from importlib import metadata  # only here: `--help` should be instant
+    from importlib import metadata  # imported here to keep `--help` fast
 
     return {"brdfkit": __version__, **{name: metadata.version(name) for name in LIBRARIES}}

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from brdfkit.core.array_types import MitsubaObject
-from brdfkit.core.errors import BrdfkitError, find_nearest
+from brdfkit.core.errors import BrdfkitError, find_nearest_name
 from brdfkit.core.files import require_file
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.mitsuba_bridge.properties.radiance_rows import require_intact_rows
@@ -79,7 +79,7 @@ def _require_intact_maps(path: Path) -> None:
 
 def _missing_id_error(path: Path, place: str, known: Sequence[str]) -> BrdfkitError:
     """Return the error where no shape has the BSDF that the material should replace."""
-    near = find_nearest(place, known)
+    near = find_nearest_name(place, known)
     guess = f"did you mean {path}#{near}? " if near else ""
     return BrdfkitError(
         f"{path}: no shape has a BSDF of the id {place!r}, for the material to replace; {guess}"

@@ -36,7 +36,7 @@ def import_modules(package: str, path: Iterable[str]) -> tuple[ModuleType, ...]:
     return tuple(importlib.import_module(f"{package}.{name}") for name in find_module_names(path))
 
 
-# Kind, which is the name of a folder → (class of Mitsuba, function of `mitsuba` that registers it)
+# Kind of plugin, which is its folder's name → (base class in Mitsuba, function that registers it)
 KINDS = {
     "bsdfs": ("BSDF", "register_bsdf"),
     "emitters": ("Emitter", "register_emitter"),
@@ -48,7 +48,7 @@ KINDS = {
     "volumes": ("Volume", "register_texture"),  # Mitsuba 3.9 has no register_volume
 }
 MODELS = "bsdfs"  # the kind of every BRDF model
-OWN, USERS = "brdfkit.plugins", "brdfkit.user_plugins"  # packages of the plugins' modules
+OWN, USERS = "brdfkit.plugins", "brdfkit.user_plugins"  # the packages of plugins
 PACKAGES_OF_MODELS = f"{OWN}.{MODELS}", USERS
 
 _users: dict[str, tuple[str, Path | type]] = {}

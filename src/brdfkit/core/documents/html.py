@@ -155,7 +155,7 @@ def _escape(text: object) -> str:
     return escape(to_printable(text))
 
 
-KINDS = {b"\x89PNG": "png", b"RIFF": "webp", b"\xff\xd8": "jpeg"}  # formats by first bytes
+KINDS = {b"\x89PNG": "png", b"RIFF": "webp", b"\xff\xd8": "jpeg"}  # image formats by first bytes
 MAKERS: dict[type, Callable[[Any], str]] = {
     Table: _format_table,
     Paragraph: _format_paragraph,

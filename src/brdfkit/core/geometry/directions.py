@@ -1,7 +1,7 @@
 """Converts directions on the hemisphere to angles and to half/difference coordinates, and back.
 
 Directions are unit vectors (..., 3) of NumPy, float64, in the local frame with z along the normal.
-`wi` and `wo` both point away from the surface: the mirror direction of `wi` is at Δφ = 180°.
+`wi` and `wo` both point away from the surface, so that mirror directions are 180° apart in azimuth.
 Half/difference coordinates are those of [Rusinkiewicz 1998].
 """
 
@@ -43,7 +43,7 @@ def to_half_difference(wi: ArrayLike, wo: ArrayLike) -> tuple[FloatArray, FloatA
     wi, wo = np.asarray(wi, float), np.asarray(wo, float)
     h = normalize(wi + wo)
     theta_h, phi_h = to_angles(h)
-    # The difference vector: wi rotated by -phi_h about z, then by -theta_h about y
+    # Turn wi with the half vector until that is the normal: by -phi_h about z, -theta_h about y
     d = _rotate_y(rotate_z(wi, -phi_h), -theta_h)
     theta_d, phi_d = to_angles(d)
     return theta_h, theta_d, np.mod(phi_d, 2 * np.pi)

@@ -11,7 +11,7 @@ from brdfkit.core.array_types import JitFloat
 
 
 def to_disc(x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, JitFloat]:
-    """Return the point (s, t) of a unit direction in the unit disc of its hemisphere, by its z.
+    """Return the point (s, t) of a unit direction on the disc of its hemisphere, z ≥ 0 or z < 0.
 
     >>> to_disc(0.6, 0.0, -0.8)
     (0.3333333333333333, 0.0)
@@ -30,10 +30,10 @@ def from_disc(s: JitFloat, t: JitFloat, sign: JitFloat) -> tuple[JitFloat, JitFl
     return 2 * s / (1 + q), 2 * t / (1 + q), sign * (1 - q) / (1 + q)
 
 
-def solid_angle(z: JitFloat) -> JitFloat:
-    """Return the solid angle [sr] per area of the disc, (1 + |z|)², at a direction with this z.
+def solid_angle_per_area(z: JitFloat) -> JitFloat:
+    """Return the solid angle [sr] per area of a disc, (1 + |z|)², at a direction (x, y, z).
 
-    >>> solid_angle(1.0)
+    >>> solid_angle_per_area(1.0)
     4.0
     """
     return (1 + abs(z)) ** 2

@@ -15,8 +15,8 @@ from brdfkit.core.array_types import FloatArray
 def solid_angles(height: int, width: int, at_poles: bool) -> FloatArray:
     """Return the solid angle (height,) [sr] of a pixel in each row of a latitude-longitude map.
 
-    With `at_poles` the first and last rows lie at the poles and the map is linear between rows:
-    then the interpolation weight of a pixel is integrated. Otherwise each pixel is constant.
+    With `at_poles` the first and last rows lie at the poles and the map is linear between rows: a
+    pixel then counts by the integral of its interpolation weight. Otherwise pixels are constant.
 
     >>> (solid_angles(3, 1, at_poles=False).sum() / np.pi).round(9)
     np.float64(4.0)
@@ -50,12 +50,13 @@ def _integrate_rows(
     second_integral: Callable[..., FloatArray],
     first_integral: Callable[..., FloatArray],
 ) -> FloatArray:
-    """Return ∫ g(θ) w(θ) dω (height,) for a pixel of each row, with its interpolation weight w.
+    """Return ∫ g w dω [sr] for a pixel of each row, as an array (height,).
 
-    `first_integral` is the integral of g(θ) sinθ over θ, and `second_integral` the integral of
-    `first_integral`. With `at_poles`, w falls linearly to the neighbouring rows. By parts, the
-    result is then the difference of the mean slopes of `second_integral` on both sides of the row;
-    at the poles, `first_integral` stands for the slope outside.
+    g is a function of the polar angle θ, and w the weight of the pixel in interpolation. g is given
+    by two integrals over θ: `first_integral`, of g(θ) sinθ, and `second_integral`, of
+    `first_integral`. Without `at_poles`, w is 1 within the pixel. With `at_poles`, w falls linearly
+    to 0 at the next rows. Then, by parts, the result is the difference of the mean slopes of
+    `second_integral` below and above the row; beyond a pole, `first_integral` stands for the slope.
     """
     if at_poles:
         theta = np.linspace(0, np.pi, height)

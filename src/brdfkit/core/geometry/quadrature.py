@@ -9,8 +9,8 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.geometry.directions import from_angles, normalize
 
-# Points per ring, increased until the sum changes by less than TOLERANCE of itself; there are twice
-# as many rings about the mirror direction
+# The numbers of points on a ring, tried in turn until the integral changes by less than TOLERANCE
+# of itself; there are twice as many rings
 POINTS = (64, 128, 256, 512, 1024)
 TOLERANCE = 2e-4
 
@@ -70,7 +70,7 @@ def make_ring_rule(wi: FloatArray, points: int) -> tuple[FloatArray, FloatArray]
     up = normalize(np.cross(mirror, [-mirror[1], mirror[0], 0]) if sin_theta else [1.0, 0, 0])
     ring = np.cos(psi)[..., None] * up + np.sin(psi)[..., None] * np.cross(mirror, up)
     wo = np.cos(gamma)[:, None, None] * mirror + np.sin(gamma)[:, None, None] * ring
-    # Keep the points above the horizon
+    # The solid angle of each point; only points above the horizon are kept
     solid_angle = np.outer(np.sin(gamma) * width * 2 * half, weight)
     above = (wo[..., 2] > 0) & (solid_angle > 0)
     wo, solid_angle = wo[above], solid_angle[above]
@@ -79,7 +79,7 @@ def make_ring_rule(wi: FloatArray, points: int) -> tuple[FloatArray, FloatArray]
 
 @cache
 def _make_gauss_legendre_rule(points: int, pieces: int = 1) -> tuple[FloatArray, FloatArray]:
-    """Return Gauss-Legendre nodes and weights (points,) of the unit interval in equal `pieces`."""
+    """Return Gauss-Legendre nodes and weights (points,) on the unit interval, cut into `pieces`."""
     nodes, weights = np.polynomial.legendre.leggauss(points // pieces)
     nodes = np.arange(pieces)[:, None] + (nodes + 1) / 2
     return nodes.ravel() / pieces, np.tile(weights / 2 / pieces, pieces)
@@ -91,5 +91,5 @@ def make_cosine_directions(n: int) -> FloatArray:
     The mean of π f over them is the albedo of a BRDF f.
     """
     square = (np.arange(n) + 0.5) / n
-    golden = (np.sqrt(5) - 1) / 2  # turns between points: fill the circle evenly
+    golden = (np.sqrt(5) - 1) / 2  # turns from point to point, which fill the circle evenly
     return from_angles(np.arcsin(np.sqrt(square)), 2 * np.pi * golden * np.arange(n))

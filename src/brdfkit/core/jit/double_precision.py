@@ -68,7 +68,7 @@ def to_vector(w: FloatArray) -> Vector:
 
 
 def to_scalar(value: float) -> JitFloat:
-    """Convert a number to an opaque array of size 1, which kernels do not contain as a constant."""
+    """Convert a number to an array of size 1; kernels do not depend on its value (it is opaque)."""
     number = choose_float_type()(float(value))
     dr.make_opaque(number)
     return number

@@ -25,7 +25,7 @@ VARIABLE = "DRJIT_LIBLLVM_PATH"
 OLDEST = 17
 SYSTEM_FOLDERS = ("/usr/lib/*-linux-gnu*", "/usr/lib64", "/usr/lib", "/usr/local/lib")
 VARIANTS = ("cuda_ad_rgb", "llvm_ad_rgb", "scalar_rgb")
-# A path that cannot be loaded turns Dr.Jit's LLVM backend off
+# No library has this path, by which Dr.Jit's LLVM backend is turned off
 NO_LIBRARY = "no-LLVM-17-or-newer-found"
 
 
@@ -36,7 +36,7 @@ def choose_llvm_library() -> None:
     """
     if "drjit" in sys.modules:
         if 0 < find_loaded_version() < OLDEST:
-            warnings.warn(_describe_bad_choice(), stacklevel=3)
+            warnings.warn(_describe_unusable_llvm(), stacklevel=3)
     elif sys.platform == "linux":
         chosen = find_llvm_library()
         named = os.environ.get(VARIABLE)
@@ -69,7 +69,7 @@ def read_llvm_version(path: str | Path) -> int:
     by_name = re.search(r"libLLVM(?:-|\.so\.)(\d+)", os.path.realpath(path))
     if by_name and Path(path).exists():
         return int(by_name[1])
-    import ctypes  # only here: `--help` should be instant
+    import ctypes  # imported here to keep `--help` fast
 
     try:
         library = ctypes.CDLL(str(path))
@@ -103,7 +103,7 @@ def find_loaded_version() -> int:
 def require_safe_variant(variant: str | None) -> None:
     """Raise `BrdfkitError` where kernels of a variant of Mitsuba would abort the process."""
     if variant and variant.startswith("llvm") and 0 < find_loaded_version() < OLDEST:
-        raise BrdfkitError(_describe_bad_choice())
+        raise BrdfkitError(_describe_unusable_llvm())
 
 
 @in_turn
@@ -122,14 +122,14 @@ def use_variant() -> str:
             warnings.warn(
                 f"Mitsuba has no CUDA device and no LLVM {OLDEST} or newer: its slow variant "
                 f"scalar_rgb is used; to mend it, {describe_llvm_remedy()}.",
-                stacklevel=3,  # shows the caller of `use_variant`, above the wrapper of `in_turn`
+                stacklevel=3,  # names the caller: level 1 is here, level 2 the wrapper of `in_turn`
             )
     variant = str(mi.variant())
     require_safe_variant(variant)
     return variant
 
 
-def _describe_bad_choice() -> str:
+def _describe_unusable_llvm() -> str:
     """Return a sentence on the LLVM that Dr.Jit has loaded, and on what to do."""
     return (
         f"Dr.Jit was imported before brdfkit and took LLVM {find_loaded_version()}, which aborts "

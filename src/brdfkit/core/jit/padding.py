@@ -13,8 +13,8 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray
 
-PACKET = 16  # numbers, the largest packet (AVX-512)
-ALIGNMENT = 128  # bytes, of the largest packet of doubles
+PACKET = 16  # numbers in the largest packet that a kernel reads at once (AVX-512)
+ALIGNMENT = 128  # bytes in the largest packet of doubles
 
 
 def pad(values: AnyArray) -> AnyArray:
@@ -26,7 +26,7 @@ def pad(values: AnyArray) -> AnyArray:
     array([0., 1., 2.])
     """
     values = np.ascontiguousarray(values)
-    left = -(values.ctypes.data + values.nbytes) % mmap.PAGESIZE  # bytes up to the page's end
+    left = -(values.ctypes.data + values.nbytes) % mmap.PAGESIZE  # bytes left in the last page
     if values.ctypes.data % ALIGNMENT == 0 and left >= PACKET * values.itemsize:
         return values
     copy = make_padded_rows(1, len(values), values.dtype)[0]

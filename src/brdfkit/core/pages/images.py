@@ -29,7 +29,7 @@ def halve_picture(linear: AnyArray) -> AnyArray:
     return linear[: 2 * height, : 2 * width].reshape(height, 2, width, 2, -1).mean(axis=(1, 3))
 
 
-def shrink(picture: AnyArray, longest: int) -> AnyArray:
+def shrink_picture(picture: AnyArray, longest: int) -> AnyArray:
     """Halve a picture (height, width, n) until no side is longer than `longest` pixels."""
     while max(picture.shape[:2]) > longest:
         picture = halve_picture(picture)

@@ -10,7 +10,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 
-LEAST_RADIUS = 1e-9  # of the largest ball in a body of size 1; if it is smaller, the body is flat
+LEAST_RADIUS = 1e-9  # if a body of size 1 holds no ball of this radius, it is flat
 
 
 class Empty(BrdfkitError):
@@ -19,7 +19,10 @@ class Empty(BrdfkitError):
 
 @dataclass(frozen=True)
 class Body:
-    """A convex body: corners (n, 3), and planes (m, 4), rows (a, d) with a·x + d ≤ 0 inside."""
+    """A convex body, given twice: by its corners (n, 3), and by the planes (m, 4) of its faces.
+
+    A plane is a vector a (3,) and a number d; points x inside the body have a·x + d ≤ 0.
+    """
 
     corners: np.ndarray
     planes: np.ndarray
@@ -41,7 +44,7 @@ class Body:
 
     @cached_property
     def centroid(self) -> FloatArray:
-        """The centroid (3,) of the volume; when the body moves, it moves without jumps."""
+        """The centroid (3,) of the volume, which moves without jumps when the body does."""
         from scipy.spatial import ConvexHull
 
         inside = self.corners.mean(axis=0)
@@ -53,7 +56,7 @@ class Body:
         """Return the intersection of two bodies; raise `Empty` where it has no volume."""
         from scipy.spatial import HalfspaceIntersection
 
-        # Centred and scaled to size 1, since both solvers have tolerances of their own
+        # The planes are moved and scaled to a body of size 1, which suits the solvers' tolerances
         middle, size = self.corners.mean(axis=0), np.ptp(self.corners, axis=0).max()
         planes = np.vstack([self.planes, other.planes])
         planes[:, 3] = (planes[:, :3] @ middle + planes[:, 3]) / size
@@ -64,13 +67,13 @@ class Body:
         return Body.from_points(middle + size * corners)
 
     def extend_to_light(self, light: FloatArray, length: float) -> Body:
-        """Return the body extended towards a light, by `length` or more, to what may shadow it.
+        """Return the body extended by `length` or more towards a light, to hold what may shadow it.
 
         light : (4,), homogeneous: a position with w = 1, or the direction to the light with w = 0.
         """
         to_light = light[:3] - light[3] * self.corners
         share = 2 * length / max(np.linalg.norm(to_light, axis=1).min(), 1e-30)
-        # Not as far as a distant light, since convex hulls of long needles are inexact
+        # It ends at the light, or before a distant one: convex hulls of long needles are inexact
         share = share if light[3] == 0 else min(share, 1)
         return Body.from_points(np.vstack([self.corners, self.corners + share * to_light]))
 
@@ -91,7 +94,8 @@ def _find_inscribed_centre(planes: AnyArray) -> FloatArray | None:
     """
     from scipy.optimize import linprog
 
-    # Maximise the radius r under a·x + |a| r ≤ -d: the ball lies within every plane
+    # Find the centre x and the largest radius r for which the ball lies within each plane (a, d),
+    # that is a·x + |a| r ≤ -d
     norms = np.linalg.norm(planes[:, :3], axis=1)
     system = np.column_stack([planes[:, :3], norms])
     bounds = [(None, None)] * 3 + [(0, None)]

@@ -14,7 +14,8 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.body import Empty
 from brdfkit.core.projective.homogeneous import project_points, transform
 
-FROM_MITSUBA = np.diag([-1.0, 1, -1, 1])  # Mitsuba's cameras look along z, x points left
+# From the frame of Mitsuba's cameras, which look along z and have x to the left
+FROM_MITSUBA = np.diag([-1.0, 1, -1, 1])
 CUBE = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], float)
 
 
@@ -24,7 +25,7 @@ class Camera:
 
     view : (4, 4), from the world to the camera's frame, in which it looks along -z.
     slope_x, slope_y : tangents of half the field of view, across and upwards.
-    near, far : distances along the view of the planes that bound what it sees.
+    near, far : distances, along the view, of the two planes between which it sees.
     """
 
     view: np.ndarray
@@ -49,9 +50,9 @@ class Camera:
                 "perspective one."
             )
         offsets = [f"principal_point_offset_{axis}" for axis in "xy"]  # a thin lens has no offsets
-        if any(_read_number(parameters, name) for name in offsets if name in parameters):
+        if any(_read_camera_parameter(parameters, name) for name in offsets if name in parameters):
             raise BrdfkitError("the camera's principal point is off the middle; move it there.")
-        slope = math.tan(math.radians(_read_number(parameters, "x_fov")) / 2)
+        slope = math.tan(math.radians(_read_camera_parameter(parameters, "x_fov")) / 2)
         width, height = sensor.film().size()
         to_world = np.array(sensor.world_transform().matrix, float).reshape(4, 4)
         to_world[:3, :3] /= np.linalg.norm(to_world[:3, :3], axis=0)
@@ -113,7 +114,7 @@ class Camera:
         """Return the distances (n,) of points (n, 3) from the eye, along the viewing direction."""
         return -transform(self.view, *np.asarray(points, float).T)[2]
 
-    def replace_planes(self, near: float, far: float) -> Camera:
+    def replace_near_and_far(self, near: float, far: float) -> Camera:
         """Return the camera with other distances of the near and far planes."""
         return replace(self, near=near, far=far)
 
@@ -122,10 +123,10 @@ class Camera:
         view = self.view.copy()
         view[2, 3] -= max(0, self.near - self.compute_depths(points).min())
         x, y, z, _ = transform(view, *np.asarray(points, float).T)
-        far = max(-z.min(), -1.001 * z.max())  # beyond the near plane if all points lie in it
+        far = max(-z.min(), -1.001 * z.max())  # not in the near plane, even if all points are
         return Camera(view, np.abs(x / z).max(), np.abs(y / z).max(), -z.max(), far)
 
-    def fit_planes(self, points: ArrayLike) -> Camera:
+    def fit_near_and_far(self, points: ArrayLike) -> Camera:
         """Return the camera with near and far planes moved inwards to points (n, 3) of a scene.
 
         Raises `Empty` where all of them are behind its near plane or beyond its far plane.
@@ -134,9 +135,9 @@ class Camera:
         near, far = max(self.near, depths.min()), min(self.far, depths.max())
         if far <= near:
             raise Empty("the camera does not see the scene: turn it, or move its planes.")
-        return self.replace_planes(near, far)
+        return self.replace_near_and_far(near, far)
 
 
-def _read_number(parameters: Mapping[str, Any], name: str) -> float:
+def _read_camera_parameter(parameters: Mapping[str, Any], name: str) -> float:
     """Return a parameter of a camera as a float."""
     return float(np.ravel(parameters[name])[0])

@@ -45,7 +45,7 @@ def project_points(matrix: AnyArray, points: ArrayLike) -> AnyArray:
 
 
 def make_rigid_matrix(rotation: ArrayLike, origin: ArrayLike) -> FloatArray:
-    """Return the matrix (4, 4) to the frame at `origin` with the axes `rotation` (3, 3) in rows."""
+    """Return the matrix (4, 4) to the frame at `origin` whose axes are the rows of `rotation`."""
     matrix = np.eye(4)
     matrix[:3, :3] = rotation
     matrix[:3, 3] = -np.asarray(rotation) @ origin

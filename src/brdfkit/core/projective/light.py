@@ -105,7 +105,7 @@ class Light:
 
 
 def _read_direction(emitter: MitsubaObject, way: AnyArray) -> FloatArray:
-    """Return the unit vector (3,) along a direction `way` of an emitter, if it is finite."""
+    """Return the unit vector along `way` (3,), a direction of `emitter`, which must be finite."""
     return _require_finite(emitter, way) / np.linalg.norm(way)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.core.progress_bar import Progress, count_steps
+from brdfkit.core.progress_bar import Progress, make_step_counter
 from brdfkit.inverse.photographs.arguments import (
     check_variant,
     to_capture,
@@ -113,7 +113,7 @@ def svbrdf(
     photographs = downsample(photographs, shape)
     observed = Observations.collect(photographs, shape)
     lights = len(photographs.names)
-    report = count_steps(progress, estimate_steps(lights, smoothness))
+    report = make_step_counter(progress, estimate_steps(lights, smoothness))
     problem = Problem(parameters, observed, report)
 
     def make_result(fitted: UnfinishedMaps, notes: tuple[str, ...], **known: Any) -> Svbrdf:

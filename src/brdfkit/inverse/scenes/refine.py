@@ -17,7 +17,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.core.progress_bar import Progress, count_steps
+from brdfkit.core.progress_bar import Progress, make_step_counter
 from brdfkit.inverse.scenes.problem.parameters import PARAMETER_LIMIT, choose_unknowns
 from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
 from brdfkit.inverse.scenes.problem.targets import Pictures, Target, read_targets
@@ -150,7 +150,7 @@ def refine(
     seed_of_search = seed + 100
     try:
         if by_descent:
-            report = count_steps(progress, count_descent_steps(smoothness, steps))
+            report = make_step_counter(progress, count_descent_steps(smoothness, steps))
             state, weight = minimise_by_descent(
                 views, smoothness, steps, spp, seed_of_search, report
             )
@@ -158,7 +158,7 @@ def refine(
             notes: tuple[str, ...] = f"smoothness {weight:g}, {how}", NO_ERRORS
             return make_refinement(views, state, time.perf_counter() - began, notes=notes)
         count = count_default_starts(views) if starts is None else starts
-        report = count_steps(progress, (count + FINALISTS if count > 1 else 0) + steps)
+        report = make_step_counter(progress, (count + FINALISTS if count > 1 else 0) + steps)
         with silence_samplers():
             x = find_best_start(views, count, seed, report)
             state, search_check = _search_and_check(views, x, steps, spp, seed_of_search, report)

@@ -7,7 +7,7 @@ import numpy as np
 
 from brdfkit.core import catalogue
 from brdfkit.core.array_types import AnyArray
-from brdfkit.core.errors import BrdfkitError, find_nearest
+from brdfkit.core.errors import BrdfkitError, find_nearest_name
 from brdfkit.core.files import write_safely
 from brdfkit.core.jit.threads import in_turn, use_two_threads
 from brdfkit.core.locate import find_file_or_name
@@ -46,7 +46,7 @@ def looks_like_map(name: str) -> bool:
         return Path(name).suffix.lower() in HDR + EIGHT_BIT
     materials = [*labels.models(), *catalogue.list_materials()]
     maps = catalogue.list_environments()
-    return bool(find_nearest(name, maps)) and not find_nearest(name, materials)
+    return bool(find_nearest_name(name, maps)) and not find_nearest_name(name, materials)
 
 
 def load_map(source: str | Path | AnyArray) -> tuple[str, AnyArray]:

@@ -16,7 +16,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray, JitFloat
-from brdfkit.core.geometry.dual_paraboloid import from_disc, solid_angle
+from brdfkit.core.geometry.dual_paraboloid import from_disc, solid_angle_per_area
 from brdfkit.lighting.filtering.sphere_filter import convolve_on_sphere, halve_resolution
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import log_density
 
@@ -81,7 +81,7 @@ def texel_solid_angle(z: JitFloat, side: int) -> JitFloat:
 
     The picture has `side` texels along a side. [Ergun 2015, eqs. 8.8, 8.10]
     """
-    return 4 * BORDER**2 * solid_angle(z) / side**2
+    return 4 * BORDER**2 * solid_angle_per_area(z) / side**2
 
 
 def sharpest_kappa(side: float) -> float:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from brdfkit.core.colours import RGB
-from brdfkit.core.errors import find_nearest
+from brdfkit.core.errors import find_nearest_name
 from brdfkit.materials.measured.angles import DEGREES, RADIANS
 from brdfkit.materials.measured.coordinates import COORDINATES
 from brdfkit.materials.measured.long_form import NANOMETRES
@@ -118,7 +118,7 @@ def _describe_unknown_column(name: str, unit: str | None, coordinates: Iterable[
             "for angles, 1/sr for values and nm for wavelengths; convert the column"
         )
     others = {name for line in COORDINATES for name in line} - set(coordinates)
-    near = find_nearest(_split_unit(name)[0][:40], [*sorted(others), *EXAMPLES])
+    near = find_nearest_name(_split_unit(name)[0][:40], [*sorted(others), *EXAMPLES])
     guess = f"; did you mean {near}? Else rename it" if near else "; rename it"
     return f"the column {_quote_name(name)} is unknown{guess} or leave it out"
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from brdfkit.core.discovery import plugin_files
 from brdfkit.core.discovery.plugin_files import KINDS, MODELS
-from brdfkit.core.errors import BrdfkitError, find_nearest
+from brdfkit.core.errors import BrdfkitError, find_nearest_name
 from brdfkit.model import labels
 
 
@@ -61,7 +61,7 @@ def _find_plugin_files(path: Path) -> list[Path]:
 def _refuse_misspelt_folder(path: Path) -> None:
     """Raise `BrdfkitError` for a folder in `path` whose name is a misspelt kind of plugin."""
     for folder in sorted(path.iterdir()) if path.is_dir() else ():
-        kind = find_nearest(folder.name.lower(), KINDS)
+        kind = find_nearest_name(folder.name.lower(), KINDS)
         if folder.is_dir() and folder.name not in KINDS and kind and any(folder.glob("*.py")):
             raise BrdfkitError(f"{folder} is no kind of plugin; rename it {kind}/.")
 

@@ -14,7 +14,7 @@ from brdfkit.core.colours import to_srgb
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_writable
 from brdfkit.core.pages import page
-from brdfkit.core.pages.images import apply_colour_map, draw_colour_bar, encode_webp, shrink
+from brdfkit.core.pages.images import apply_colour_map, draw_colour_bar, encode_webp, shrink_picture
 from brdfkit.core.version import __version__
 from brdfkit.images.errors.flip import flip
 from brdfkit.shadows.comparison.map_pictures import CHECKS, OUTSIDE, MapPictures
@@ -150,7 +150,7 @@ def add_flip_column(rows: Sequence[tuple[str, ...]], flips: FloatArray) -> list[
 
 def shrink_for_page(picture: AnyArray) -> FloatArray:
     """Return a picture (height, width, n), halved until it is at most `MAX_WIDTH` wide."""
-    return shrink(np.asarray(picture, float), MAX_WIDTH)
+    return shrink_picture(np.asarray(picture, float), MAX_WIDTH)
 
 
 def draw_radiance(picture: FloatArray, white: float) -> Any:

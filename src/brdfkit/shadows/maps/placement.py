@@ -38,7 +38,7 @@ class Placement:
         low, high = (np.array(end, float).ravel() for end in (bounds.min, bounds.max))
         if not np.isfinite([low, high]).all():
             raise BrdfkitError("the scene has no shapes: add some that cast and take shadows.")
-        camera = Camera.from_sensor(sensor).fit_planes(make_box(low, high).corners)
+        camera = Camera.from_sensor(sensor).fit_near_and_far(make_box(low, high).corners)
         nearest = find_nearest_depth(scene, sensor, camera)
         return cls(camera, Light.from_emitter(emitter), low, high, nearest)
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.pages import page
-from brdfkit.core.pages.images import apply_colour_map, encode_jpeg, encode_png, shrink
+from brdfkit.core.pages.images import apply_colour_map, encode_jpeg, encode_png, shrink_picture
 from brdfkit.core.version import __version__
 from brdfkit.inverse.photographs.capture.observations import sample_at_texels
 from brdfkit.inverse.photographs.maps.residuals import UNEXPLAINED
@@ -44,12 +44,13 @@ def _describe_map(svbrdf: Any, name: str) -> dict[str, str | None]:
     values, errors = svbrdf.maps[name], svbrdf.uncertainty.get(name)
     if name == "normal":
         picture, scale = (
-            encode_png(shrink((values + 1) / 2, WIDEST)),
+            encode_png(shrink_picture((values + 1) / 2, WIDEST)),
             "x, y and z as red, green and blue",
         )
     elif values.ndim == 3:
         white = max(1e-6, float(np.quantile(values, 0.99)))
-        picture, scale = encode_jpeg(shrink(values / white, WIDEST)), f"white is {white:.3g}"
+        picture = encode_jpeg(shrink_picture(values / white, WIDEST))
+        scale = f"white is {white:.3g}"
     else:
         low, high = np.quantile(values, (0.01, 0.99))
         picture, scale = (
@@ -83,8 +84,8 @@ def _describe_photographs(svbrdf: Any) -> list[dict[str, str]]:
             {
                 "name": capture.names[k],
                 "psnr": f"PSNR {svbrdf.predicted[capture.names[k]]:.1f} dB",
-                "photograph": encode_jpeg(shrink(photograph / white, WIDEST)),
-                "prediction": encode_jpeg(shrink(prediction / white, WIDEST)),
+                "photograph": encode_jpeg(shrink_picture(photograph / white, WIDEST)),
+                "prediction": encode_jpeg(shrink_picture(prediction / white, WIDEST)),
                 "difference": _to_colour_png(difference, *scale),
             }
         )
@@ -96,5 +97,5 @@ def _to_colour_png(values: FloatArray, low: float, high: float, scale: str = VAL
 
     `scale` is the name of a colour map of matplotlib.
     """
-    shares = (shrink(values[..., None], WIDEST)[..., 0] - low) / max(high - low, 1e-12)
+    shares = (shrink_picture(values[..., None], WIDEST)[..., 0] - low) / max(high - low, 1e-12)
     return encode_png(apply_colour_map(scale, shares)[..., :3])

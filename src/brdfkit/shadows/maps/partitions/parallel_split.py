@@ -35,9 +35,9 @@ def make_partition(setup: Setup, parts: int, spacing: str, ends: str) -> Partiti
     if ends == "surfaces":
         depths = camera.compute_depths(find_visible_surfaces(setup.scene, camera).points)
         near, far = (1 - MARGIN) * depths.min(), (1 + MARGIN) * depths.max()
-        camera = camera.replace_planes(max(near, camera.near), min(far, camera.far))
+        camera = camera.replace_near_and_far(max(near, camera.near), min(far, camera.far))
     planes = split_planes.compute_split_planes(camera.near, camera.far, parts, spacing)
-    cameras = [camera.replace_planes(*pair) for pair in pairwise(planes)]
+    cameras = [camera.replace_near_and_far(*pair) for pair in pairwise(planes)]
     slices = [replace(setup.placement, camera=each) for each in cameras]
     return make_partition_from_placements(
         setup, slices, split_planes.make_slice_finder(camera, planes)

@@ -21,7 +21,7 @@ def make_projection(placement: Placement) -> Projection:
     """Make the projection through the camera's perspective and a camera at the light in it."""
     corners, middle = placement.relevant_body.corners, placement.relevant_body.centroid
     z_n, z_f = placement.depths
-    near_camera = placement.camera.replace_planes(max(z_n, NEAREST * z_f), z_f)
+    near_camera = placement.camera.replace_near_and_far(max(z_n, NEAREST * z_f), z_f)
     camera = near_camera.move_behind(corners).matrix
     cube, (middle,) = project_points(camera, corners), project_points(camera, [middle])
     light_view = view_matrix(camera @ placement.light.point, cube, middle)

@@ -68,7 +68,7 @@ def project_onto_plane(placement: Placement, plane: AnyArray) -> Projection:
     """
     light, corners = placement.light, placement.relevant_body.corners
     flat = (plane @ light.point) * np.eye(4) - np.outer(light.point, plane)
-    camera = placement.camera.replace_planes(*placement.depths)
+    camera = placement.camera.replace_near_and_far(*placement.depths)
     camera = camera.move_behind(project_points(flat, corners))
     if abs(height_over_plane(plane, camera.position)) < 1e-3 * placement.size:
         return focused.make_projection(placement)
