@@ -1,6 +1,7 @@
-"""The figure of an `EnvironmentAudit`: the map with its sampling blocks, and its light's spread.
+"""The figure of an `EnvironmentAudit`: the map, and two plots that show how its light is spread.
 
-The blocks are the rectangles into which the emitter `kdtree_envmap` cuts a map to sample it.
+Outlines on the map show the blocks, the rectangles into which the emitter `kdtree_envmap` cuts a
+map to sample it. One plot shows the blocks' probabilities, the other one the shares of the light.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -25,12 +26,12 @@ if TYPE_CHECKING:
 
 EnvironmentAudit = Any  # the class in `auditing.py`, which imports this file
 
-SIZE = 10.4, 9.4  # inches
+SIZE = 10.4, 9.4  # width and height of the figure in inches
 MIDDLE_GREY = 0.18  # linear grey in which the geometric mean of the map's luminance is drawn
 BLOCKS = 4096  # blocks in the plot of probabilities, the default of `kdtree_envmap`
 DRAWN_BLOCKS = 256  # blocks whose outlines are drawn on the map
 DRAWN_ROWS = 1024  # approximate number of rows to which a larger map is thinned before drawing
-CURVE_POINTS = 1000  # points along the curve of the shares of light
+CURVE_POINTS = 1000  # largest number of points along the curve of the light's shares
 COLOUR = "#0072b2"  # colour of the curves of exact values
 LAW_COLOURS = {"hyperbolic": "#d55e00", "steps": "#009e73"}
 SIDES = ("−z", "+x", "+z", "−x", "−z")  # directions along the horizon, at the ticks of the map
@@ -62,7 +63,7 @@ def draw_map(axes: "Axes", audit: EnvironmentAudit, rgb: FloatArray, blocks: Int
     brightness = luminance(rgb)
     lit = brightness[brightness > 0]
     exposure = MIDDLE_GREY / np.exp(np.log(lit).mean()) if lit.size else 1
-    half = 0.5 / (audit.height - 1)  # half the height of a row in the plot
+    half = 0.5 / (audit.height - 1)  # half the height of a row of pixels, where the map's is 1
     extent = 0, 1, -half, 1 + half
     step = 1 + audit.height // DRAWN_ROWS
     axes.imshow(
@@ -86,14 +87,15 @@ def draw_map(axes: "Axes", audit: EnvironmentAudit, rgb: FloatArray, blocks: Int
     axes.set(xlim=(0, 1), ylim=extent[2:])
     axes.set_xticks(np.linspace(0, 1, 5), SIDES)
     axes.set_yticks((0, 0.5, 1), ("−y, below", "horizon", "+y, above"))
-    name = audit.name.replace("$", r"\$")  # $ would begin a formula
+    name = audit.name.replace("$", r"\$")  # matplotlib would read $ as the beginning of a formula
     axes.set_title(f"{name}: {len(blocks)} blocks; the circle is the brightest pixel", fontsize=11)
 
 
 def _draw_block_probabilities(axes: "Axes", power: FloatArray) -> None:
     """Plot the sorted sampling probabilities of a map's blocks, and the laws that approximate them.
 
-    `power` (rows - 1, columns) is the power per angle of the map's cells.
+    The laws are the closed formulas of `block_laws.py`. `power` (rows - 1, columns) is the power
+    per angle of the map's cells, the result of `cell_power`.
     """
     blocks = tree.build_tree(power, BLOCKS).blocks
     light = np.sort(tree.block_sums(power, blocks).clip(0))[::-1]
@@ -115,7 +117,7 @@ def _draw_block_probabilities(axes: "Axes", power: FloatArray) -> None:
 def _draw_light_shares(
     axes: "Axes", brightness: FloatArray, solid_angle: FloatArray, audit: EnvironmentAudit
 ) -> None:
-    """Plot the share of the light that comes from the brightest share of the solid angle."""
+    """Plot the share of the light that comes from the brightest part, by share of solid angle."""
     axes.set(xscale="log", xlim=(1e-5, 1), ylim=(0, 1.03))
     axes.set(xlabel="share of the solid angle, brightest first", ylabel="share of the light")
     axes.set_title("where the light comes from", fontsize=10)

@@ -31,10 +31,10 @@ from brdfkit.lighting.environments.map_files import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-BRIGHTEST = 0.01  # share of the solid angle whose light is `brightest_share`
-# Larger values of these are reported as likely defects
+BRIGHTEST = 0.01  # share of the solid angle for which `brightest_share` gives the light's share
+# The audit reports larger values than these as likely defects
 ASPECT_TOLERANCE = 0.05  # relative deviation of width / height from 2
-EQUAL_TOLERANCE = 4  # number of pixels that are as bright as the brightest one
+EQUAL_TOLERANCE = 4  # number of pixels as bright as the brightest one; more mean clipping
 BELOW_TOLERANCE = 2.0  # ratio of the light from below the horizon to that from above
 DPI, WIDTH = 75, 760  # resolution and width [pixels] of the picture in a notebook
 
@@ -148,7 +148,7 @@ class EnvironmentAudit(Shown):
         >>> environments.audit("studio").picture().savefig("studio.png")    # doctest: +SKIP
         """
         from brdfkit.lighting.environments.audit_picture import (
-            draw_audit,  # imports matplotlib: slow
+            draw_audit,  # imported only here, because matplotlib loads slowly
         )
 
         return draw_audit(self)

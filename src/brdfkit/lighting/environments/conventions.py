@@ -28,13 +28,13 @@ LAYOUTS: dict[str, Layout] = {
 }
 # The conventions of programs and of map collections, according to their code or documentation
 NAMED = {
-    "mitsuba": "latlong_poles:-x+y+z",  # src/emitters/envmap.cpp: atan2(v.x, -v.z), acos(v.y)
-    "blender": "latlong:-y+z+x",  # Cycles, kernel/camera/projection.h: direction_to_equirectangular
-    "pbrt-v3": "latlong:-y+z-x",  # src/lights/infinite.cpp: SphericalPhi(w), SphericalTheta(w)
-    "three.js": "latlong:+z+y+x",  # ShaderChunk/common.glsl.js: equirectUv
-    "opengl": "strip:+x+y+z",  # OpenGL 4.6, table 8.19
-    "debevec": "angular:+x+y-z",  # http://www.debevec.org/Probes
-    "usc": "latlong:+x+y-z",  # https://vgl.ict.usc.edu/Data/HighResProbes
+    "mitsuba": "latlong_poles:-x+y+z",  # see src/emitters/envmap.cpp: atan2(v.x, -v.z), acos(v.y)
+    "blender": "latlong:-y+z+x",  # see Cycles, camera/projection.h: direction_to_equirectangular
+    "pbrt-v3": "latlong:-y+z-x",  # see src/lights/infinite.cpp: SphericalPhi(w), SphericalTheta(w)
+    "three.js": "latlong:+z+y+x",  # see ShaderChunk/common.glsl.js: equirectUv
+    "opengl": "strip:+x+y+z",  # see OpenGL 4.6, table 8.19
+    "debevec": "angular:+x+y-z",  # see http://www.debevec.org/Probes
+    "usc": "latlong:+x+y-z",  # see https://vgl.ict.usc.edu/Data/HighResProbes
 }
 AXES = re.compile("([+-][xyz])([+-][yz])([+-][xyz])")
 

@@ -47,7 +47,7 @@ def convert(
         Rows of the written picture. By default, pixels along the horizon keep their size.
     turn : float, default 0
         Angle by which the light turns about the up axis, anticlockwise seen from above [degrees].
-        Half a column of a map of 1024 columns is 180/1024.
+        For instance, 180/1024 is half a column of a map of 1024 columns.
     mirror : bool, default False
         Whether to exchange left and right of the source.
 

@@ -4,7 +4,7 @@ Directions (..., 3) have the components right, up and ahead, for an observer wit
 Every layout here, and the cube maps in `cubes.py`, has
 
 - `aspect`: the picture's width over its height;
-- `rows`: the picture's height in quarters of a circle, 2 from pole to pole;
+- `rows`: the angle along the picture's height in quarters of a circle, 2 from pole to pole;
 - `directions(x, y, height, width)`: the directions at x and y [pixels], where whole numbers are the
   middles of pixels; NaN where the picture is blank;
 - `pixel_coordinates(directions, height, width)`: the inverse, which returns x, y, and the number of
@@ -20,9 +20,9 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray, IntArray
 from brdfkit.core.geometry import dual_paraboloid
 
-AT_POLE = 1e-12  # polar angle [rad] in place of 0, at which all azimuths would be one direction
+AT_POLE = 1e-12  # polar angle [rad] in place of 0, where a direction would have no azimuth
 
-PixelCoordinates = tuple[FloatArray, FloatArray, IntArray]  # x, y, and number of the part
+PixelCoordinates = tuple[FloatArray, FloatArray, IntArray]  # x, y, and number of the picture's part
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Angular:
     def directions(self, x: AnyArray, y: AnyArray, height: int, width: int) -> FloatArray:
         s, t = _pixel_to_square(x, height), -_pixel_to_square(y, height)
         r = np.hypot(s, t)
-        across = np.pi * np.sinc(r)  # sin(π r) / r
+        across = np.pi * np.sinc(r)  # sin(π r) / r, also at r = 0
         towards = np.stack([s * across, t * across, np.cos(np.pi * r)], axis=-1)
         return np.where((r <= 1)[..., None], towards, np.nan)
 
@@ -119,8 +119,9 @@ def _square_to_pixel(coordinate: FloatArray, size: int) -> FloatArray:
 
 
 def _largest_disc_radius(size: int) -> float:
-    """Return the largest radius in a disc at which the nearest pixel is certainly in the disc.
+    """Return the largest radius at which every point's nearest pixel has its centre in the disc.
 
-    The disc has the radius 1, in a picture of `size` pixels, whose corners are blank.
+    The disc fills a square picture of `size` pixels and has the radius 1. Pixels outside it are
+    blank, so that points closer to its rim are looked up at this radius.
     """
     return float(1 - np.sqrt(2) / size)

@@ -1,12 +1,13 @@
 """Directions drawn by a BSDF for filtered importance sampling, each with a weight and a lobe.
 
 The light from a direction is averaged over a lobe about it, which is as wide as the distance to the
-next direction. A constant c is subtracted from the BSDF f, since the irradiance gives its reflected
-light exactly. With E, the irradiance divided by π, the reflected radiance is
+next direction. The BSDF f is split into a constant c and a remainder f - c, because the irradiance
+alone gives the light that the constant reflects. The reflected radiance is
 
     L = π c E + Σ (f - c) cosθ / (N p) · mean radiance over the lobe
 
-over N directions with the densities p. It is exact for matte surfaces, and unbiased for any c.
+where E is the irradiance divided by π. The sum is over N directions, which are drawn with the
+densities p. It is exact for matte surfaces, and c does not bias it.
 [Colbert & Křivánek 2007]
 """
 
@@ -25,9 +26,9 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.lighting.filtering.scene_bsdfs import split_component_types
 from brdfkit.mitsuba_bridge.arrays import Rows
 
-# A lobe's κ is this factor times 2π / (solid angle that a direction represents). Sharper lobes
-# would leave gaps, in which lamps are lost, and wider ones would blur. This value minimises the
-# error of 64 directions of Ward's BRDF under a light probe with lamps (grace)
+# A lobe's concentration κ is this factor times 2π / (solid angle that a direction represents).
+# Sharper lobes would leave gaps, in which lamps are lost, and wider ones would blur. This value
+# minimises the error of 64 directions of Ward's BRDF under a light probe with lamps (grace)
 OVERLAP = 0.15
 PLASTIC = 1.32471795724474602596  # the plastic number, x³ = x + 1, for a sequence in 2 dimensions
 SPREAD_DIRECTIONS = from_angles(
@@ -65,10 +66,10 @@ class Directions:
         constant: JitColour,
         active: JitMask = True,
     ) -> tuple[JitVector, JitFloat, JitColour]:
-        """Draw the direction `index` by a BSDF; return it with the κ of its lobe and its weight.
+        """Draw the direction `index` by a BSDF; return it, its lobe's concentration κ, its weight.
 
-        The weight is that of the BSDF's components `types` minus the `constant`, in the sum of the
-        module's docstring. The direction is in the local frame of `si`.
+        The direction is in the local frame of `si`. Its weight is (f - c) cosθ / p, where p is its
+        density, c is the `constant`, and f are the components `types` of the BSDF.
         """
         import drjit as dr
         import mitsuba as mi
@@ -76,7 +77,7 @@ class Directions:
         context, u = mi.BSDFContext(), self.points.at(index, mi.Point3f)
         context.type_mask = types
         drawn, weight = bsdf.sample(context, si, u.x, mi.Point2f(u.y, u.z), active)
-        # Where no direction can be drawn, the view's direction gets the weight 0
+        # Where the BSDF draws no direction, the view's direction takes its place, with weight 0
         valid = active & (drawn.pdf > 0)
         wo, pdf = dr.select(valid, drawn.wo, si.wi), dr.select(valid, drawn.pdf, 1)
         # A lobe is as wide as the distance to the next direction; that of a mirror has no width
@@ -92,9 +93,10 @@ def split_off_constant(
 ) -> tuple[JitColour, int, JitColour]:
     """Split BSDFs at `si` into a constant part and a remainder, which directions have to sample.
 
-    Returns (c, types, constant): the constant part c, and the remainder as the BSDF's component
-    `types` minus a `constant`. If `separate`, the BSDF has diffuse components that can be evaluated
-    alone, which are c; otherwise c is the smallest of a few values of the whole BSDF.
+    Returns (c, types, constant). The constant part is c; the remainder is the sum of the BSDF's
+    components `types`, Mitsuba's flags, minus `constant`. If `separate`, the diffuse components can
+    be evaluated alone: c is their value, the remainder consists of the others, and `constant` is 0.
+    Otherwise c is the smallest of a few values of the whole BSDF, and `constant` equals c.
     """
     import drjit as dr
     import mitsuba as mi

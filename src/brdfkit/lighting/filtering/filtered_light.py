@@ -29,15 +29,15 @@ from brdfkit.mitsuba_bridge.arrays import Rows
 
 IRRADIANCE_SIDE = 64  # texels along a side of the irradiance's map, few because it is smooth
 WAVELENGTHS = 96  # evenly spaced wavelengths at which an emitter is evaluated in spectral variants
-LIGHT_DIRECTIONS = 256  # directions that represent the light for shadows in the irradiance
+LIGHT_DIRECTIONS = 256  # directions to the light by which the irradiance gets its shadows
 FILTERS: dict[str, type[LobeMaps | Mips]] = {"lobes": LobeMaps, "mips": Mips}
 
 
 class Light(Protocol):
-    """Filtered environment light that lights surfaces, in linear sRGB."""
+    """The look-ups by which a filtered environment lights surfaces; colours are linear sRGB."""
 
     def mean_radiance_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
-        """Return the mean radiance over the von Mises-Fisher lobe with this `axis` and κ."""
+        """Return the mean radiance over a von Mises-Fisher lobe of concentration `kappa`."""
 
     def irradiance(self, normal: JitVector) -> JitColour:
         """Return the irradiance divided by π: the radiance of a white matte surface."""
@@ -46,7 +46,8 @@ class Light(Protocol):
 class FilteredLight:
     """The light of an environment emitter, filtered for look-ups: means over lobes, and irradiance.
 
-    `kind` is a class of `FILTERS`, and `side` the size of the filtered map's finest level [texels].
+    `kind` is one of the classes in `FILTERS`, which store means over lobes, and `side` the size of
+    the filtered map's finest level [texels].
     """
 
     def __init__(self, kind: type[LobeMaps | Mips], side: int) -> None:
@@ -73,7 +74,7 @@ class FilteredLight:
         return self.directions
 
     def mean_radiance_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
-        """Return the mean radiance, in linear sRGB, over a lobe with this `axis` and κ."""
+        """Return the mean radiance, in linear sRGB, over a lobe of concentration `kappa`."""
         return self.lobes.mean_over_lobe(axis, kappa)
 
     def irradiance(self, normal: JitVector) -> JitColour:

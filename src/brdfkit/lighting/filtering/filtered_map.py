@@ -1,8 +1,8 @@
 """Filtered environment maps in Mitsuba: the mean radiance over a lobe by one trilinear look-up.
 
-`LobeMaps` and `Mips` are made from `radiance`, a function (n, 3) → (n, 3) of directions, and its
-`picture` by latitude and longitude. `mean_over_lobe(axis, kappa)` returns the mean radiance over a
-von Mises-Fisher lobe.
+`LobeMaps` and `Mips` are made from the function `radiance`, which returns values (n, 3) for
+directions (n, 3), and from a `picture` of it by latitude and longitude. `mean_over_lobe` returns
+the mean radiance over the von Mises-Fisher lobe with an `axis` and the concentration `kappa`.
 """
 
 import math
@@ -23,14 +23,14 @@ Radiance = Callable[[FloatArray], FloatArray]
 class FilteredMap:
     """Environment maps of decreasing resolution, the levels, to look up by direction and level.
 
-    Each is a pair of discs (2, side, side, 3) as in `paraboloid_levels.py`.
+    A level (2, side, side, 3) has a picture of each hemisphere, as in `paraboloid_levels.py`.
     """
 
     def __init__(self, levels: list[FloatArray]) -> None:
         sides = np.array([level.shape[1] for level in levels])
         starts = np.cumsum(2 * sides**2) - 2 * sides**2
         texels = np.concatenate([level.reshape(-1, 3) for level in levels])
-        # With a fourth channel, a texel is read in one piece
+        # A fourth channel is added, since a texel of four numbers is read by one memory access
         self.texels = Rows(np.pad(texels, ((0, 0), (0, 1))))
         self.places = Rows(np.stack([starts, sides], axis=1))
         self.count = len(levels)
@@ -65,9 +65,9 @@ class FilteredMap:
 
 
 class Mips(FilteredMap):
-    """A filtered map with the mip levels of graphics hardware.
+    """A filtered map with mip levels, in which a texel is the mean of four of the level before.
 
-    [Ergun 2015, eq. 8.9] gives the level for a lobe.
+    A lobe is looked up at the level that [Ergun 2015, eq. 8.9] gives.
     """
 
     def __init__(self, radiance: Radiance, picture: FloatArray) -> None:
@@ -75,7 +75,7 @@ class Mips(FilteredMap):
         super().__init__(levels.make_mips(make_finest_level(radiance, self.side)))
 
     def mean_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
-        """Return the approximate mean radiance over a von Mises-Fisher lobe."""
+        """Return the approximate mean radiance over a lobe of concentration `kappa`."""
         return self.interpolate_trilinearly(axis, levels.mip_level(kappa, axis.z, self.side))
 
 
@@ -90,18 +90,18 @@ class LobeMaps(FilteredMap):
         )
 
     def mean_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
-        """Return the mean radiance over a von Mises-Fisher lobe."""
+        """Return the mean radiance over a von Mises-Fisher lobe of concentration `kappa`."""
         import drjit as dr
 
-        # The variance 1/κ of the levels' lobes is 0 at level 0, then grows by equal ratios from
-        # level to level; between levels 0 and 1 it is interpolated linearly
+        # A lobe of concentration κ has the variance 1/κ. The variance of the levels' lobes is 0 at
+        # level 0, and grows by equal ratios from level 1 on; between 0 and 1 it grows linearly
         variance = self.sharpest / kappa
         level = dr.select(variance < 1, variance, 1 + dr.log2(variance) / math.log2(levels.STEP))
         return self.interpolate_trilinearly(axis, level)
 
 
 def make_finest_level(radiance: Radiance, side: int) -> FloatArray:
-    """Return the finest level (2, side, side, 3): the radiance in the directions of its texels."""
+    """Return the finest level (hemispheres, side, side, 3): the radiance at its texels."""
     directions = levels.texel_directions(side)
     return radiance(directions.reshape(-1, 3)).reshape(directions.shape)
 

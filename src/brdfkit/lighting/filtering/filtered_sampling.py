@@ -1,4 +1,4 @@
-"""Filtered importance sampling: a few directions drawn by a BSDF, with the mean light about each.
+"""Filtered importance sampling: a few directions drawn by a BSDF, with mean light about each.
 
 All pixels use the same random numbers, so that pictures have no noise [Colbert & Křivánek 2007]. If
 a BSDF is uniform over its surface, its directions are stored for a grid of views.
@@ -48,7 +48,7 @@ class FilteredSampling:
             self.views = CacheByValues(lambda bsdf: ViewDirections(bsdf, directions))
         total, bsdfs = mi.UnpolarizedSpectrum(0), list_distinct_bsdfs(scene)
         uniform = [bsdf for bsdf in bsdfs if is_uniform_over_surface(bsdf)]
-        for bsdf, views in self.views.get_results(uniform):
+        for bsdf, views in self.views.get_or_make_results(uniform):
             here = active & (si.bsdf() == mi.BSDFPtr(bsdf))
             total = dr.select(here, views.radiance(si, light, here), total)
         others = [bsdf for bsdf in bsdfs if bsdf not in uniform]

@@ -48,7 +48,7 @@ class LobeLight:
         import mitsuba as mi
 
         bsdf, total = si.bsdf(), mi.Color3f(0)
-        for each, lobes in self.lobes.get_results(list_distinct_bsdfs(scene)):
+        for each, lobes in self.lobes.get_or_make_results(list_distinct_bsdfs(scene)):
             here = active & (bsdf == mi.BSDFPtr(each))
             if not mi.has_flag(each.flags(), mi.BSDFFlags.BackSide):
                 here &= si.wi.z > 0
@@ -60,7 +60,7 @@ class LobeLight:
         import mitsuba as mi
 
         if mi.has_flag(bsdf.flags(), mi.BSDFFlags.Delta):
-            mi.Log(  # type: ignore[operator]  # an object in Mitsuba's stub
+            mi.Log(  # type: ignore[operator]  # Mitsuba's stub declares no function
                 mi.LogLevel.Warn,
                 f"{bsdf.id()}: the lobes of {self.method} leave mirrors and clear glass black; "
                 "take filtered_sampling.",

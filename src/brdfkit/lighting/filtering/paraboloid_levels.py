@@ -1,10 +1,11 @@
 """The levels of a filtered environment map, each a pair of dual-paraboloid pictures.
 
-They are made in one of two ways: as the mip levels of graphics hardware, in which a texel is the
-mean of four texels of the level before, or by convolution with von Mises-Fisher lobes of known
-concentrations κ, two levels for each halving of the size, so that a look-up has exactly the width
-of a lobe. The picture of a hemisphere is a square around a disc. It is larger than the disc by the
-factor `BORDER`, and continues into the other hemisphere, to interpolate at the disc's rim.
+There are two ways to make the levels. `make_mips` makes mip levels, in which a texel is the mean of
+four texels of the level before. `convolve_with_lobes` convolves the map with von Mises-Fisher lobes
+of known concentrations κ, so that a look-up has exactly the width of a lobe; there are two levels
+for each halving of the size. The picture of a hemisphere is a square around a disc. It is larger
+than the disc by the factor `BORDER`, and its border shows the rim of the other hemisphere, so that
+a look-up can interpolate at the disc's rim.
 
 [Ergun 2015, eqs. 8.8-8.10, whose b is `BORDER`]
 """
@@ -20,14 +21,18 @@ from brdfkit.core.geometry.dual_paraboloid import from_disc, solid_angle_per_are
 from brdfkit.lighting.filtering.sphere_filter import convolve_on_sphere, halve_resolution
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import log_density
 
-BORDER = 1.2
-SMALLEST_SIDE = 16  # texels; the border of smaller pictures would be too narrow to interpolate
-TEXELS = 2.0  # texels per standard deviation κ^-1/2 of a lobe in a disc's middle, where fewest are
+BORDER = 1.2  # width of a hemisphere's picture relative to the diameter of its disc
+# Smallest number of texels along a side of a level; a narrower border could not be interpolated
+SMALLEST_SIDE = 16
+# Texels per standard deviation 1/√κ of the sharpest lobe, in a disc's middle, where it has fewest
+TEXELS = 2.0
 STEP = 2**0.5  # ratio of κ between levels, so small that a lobe between two is nearly their mean
-ROWS = 1.7  # largest number of rows of a picture per texel along a side of the discs made from it
+# Largest ratio of the rows of a map that is convolved to the texels along a side of the level; a
+# larger map is halved first, to save time
+ROWS = 1.7
 SMALLEST_KAPPA = 0.5  # a nearly uniform lobe, which is used for wider ones as well
 CUT_OFF = 12.0  # a lobe is cut off at e^-12 of its peak, beyond which lies e^-12 of its integral
-BLUR = 0.03  # share by which interpolation between texels widens the variance of a lobe
+BLUR = 0.03  # share by which interpolation between texels increases the variance of a lobe
 COVERAGE = 0.5  # share of a lobe that one texel of its mip level covers, called a in eq. 8.9
 CACHED_PICTURES = 4  # pictures whose levels, a few MB each, are kept for the next call
 
@@ -45,6 +50,8 @@ def texel_directions(side: int) -> FloatArray:
 def make_mips(base: FloatArray) -> list[FloatArray]:
     """Return the mip levels of the map `base` (2, side, side, channels), by means over 2×2 texels.
 
+    The first axis is that of the two hemispheres.
+
     >>> [level.shape[1] for level in make_mips(np.ones((2, 64, 64, 3)))]
     [64, 32, 16]
     """
@@ -56,10 +63,10 @@ def make_mips(base: FloatArray) -> list[FloatArray]:
 
 
 def mip_level(kappa: JitFloat, z: JitFloat, side: int, coverage: float = COVERAGE) -> JitFloat:
-    """Return the fractional mip level whose texels are as large as a lobe, by eq. 8.9.
+    """Return the fractional mip level whose texels are as large as a lobe [Ergun 2015, eq. 8.9].
 
     The lobe's size is that of the spherical cap with the share `coverage` of its energy. `kappa` is
-    its concentration, `z` the component of its axis, and `side` the size of the finest level
+    its concentration, `z` the z component of its axis, and `side` the size of the finest level
     [texels].
 
     >>> round(mip_level(100.0, 0.5, 512, coverage=0.9), 5)
@@ -77,7 +84,7 @@ def cap_solid_angle(kappa: JitFloat, coverage: float) -> JitFloat:
 
 
 def texel_solid_angle(z: JitFloat, side: int) -> JitFloat:
-    """Return the solid angle [sr] of a texel at directions with the component `z`.
+    """Return the solid angle [sr] of a texel at directions with the z component `z`.
 
     The picture has `side` texels along a side. [Ergun 2015, eqs. 8.8, 8.10]
     """
@@ -85,16 +92,17 @@ def texel_solid_angle(z: JitFloat, side: int) -> JitFloat:
 
 
 def sharpest_kappa(side: float) -> float:
-    """Return the κ of the sharpest lobe that a level of `side` texels resolves."""
+    """Return the concentration κ of the sharpest lobe that a level of `side` texels resolves."""
     return (side / (4 * BORDER * TEXELS)) ** 2
 
 
 def convolve_with_lobes(picture: FloatArray, side: float) -> list[FloatArray]:
     """Convolve an environment map with ever wider lobes, and return a level for each of them.
 
-    `picture` (height, 2 height, channels) is by latitude and longitude. The κ of the lobes begin
-    with `sharpest_kappa(side)`, and fall by the factor `STEP`. A level has the shape (2, texels,
-    texels, channels). The last few results are kept, since most previews have the same light.
+    `picture` (height, 2 height, channels) is by latitude and longitude. The concentration of the
+    lobes begins with `sharpest_kappa(side)`, and falls by the factor `STEP` per level. A level has
+    the shape (hemispheres, texels, texels, channels). The last few results are kept, since most
+    previews have the same light.
     """
     pixels = np.asarray(picture, float).tobytes()
     return list(_convolve_with_lobes(pixels, picture.shape, side))
@@ -124,13 +132,13 @@ def _convolve_with_lobes(pixels: bytes, shape: tuple[int, ...], side: float) -> 
 def resample_to_discs(picture: FloatArray, side: int) -> FloatArray:
     """Resample a `picture` by latitude and longitude to dual-paraboloid pictures.
 
-    The result has the shape (2, side, side, channels).
+    The result has the shape (2, side, side, channels), with z ≥ 0 first, then z < 0.
     """
     from scipy.ndimage import map_coordinates
 
     height, width = picture.shape[:2]
     x, y, z = np.moveaxis(texel_directions(side), -1, 0)
-    around = 8  # pixels added beyond each edge; beyond a pole lies the opposite azimuth
+    around = 8  # pixels added beyond each edge; beyond a pole they show the opposite azimuth
     half = np.roll(picture, width // 2, axis=1)
     tall = np.concatenate([half[:around][::-1], picture, half[-around:][::-1]])
     wide = np.pad(tall, ((0, 0), (around, around), (0, 0)), mode="wrap")

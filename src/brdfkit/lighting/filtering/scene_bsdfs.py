@@ -10,11 +10,11 @@ from brdfkit.core.geometry.directions import rotate_z
 from brdfkit.mitsuba_bridge.bsdf.from_dictionary import eval_bsdf
 
 TOLERANCE = 1e-3  # differences below this share of the largest value count as rounding
-CACHED_BSDFS = 16  # number of results that `CacheByValues` keeps
+CACHED_BSDFS = 16  # largest number of BSDFs whose results `CacheByValues` keeps
 
 
 def _make_direction_pairs(count: int = 64) -> FloatArray:
-    """Return pairs of directions (2, count, 3) above the surface, to compare BSDFs by their values.
+    """Return pairs (wi and wo, count, 3) of directions above the surface, to compare BSDFs there.
 
     One half are random pairs. The others lie near the mirror direction, at angles from a thousandth
     of a radian to a third, where narrow lobes differ.
@@ -30,7 +30,7 @@ def _make_direction_pairs(count: int = 64) -> FloatArray:
     return pairs
 
 
-PAIRS = _make_direction_pairs()  # directions at which BSDFs are compared
+PAIRS = _make_direction_pairs()  # direction pairs at which BSDFs are compared
 
 
 def list_distinct_bsdfs(scene: MitsubaObject) -> list[MitsubaObject]:
@@ -118,13 +118,13 @@ class CacheByValues:
     def __init__(self, make: Callable[[MitsubaObject], Any]) -> None:
         self.make, self.results = make, dict[bytes, Any]()
 
-    def get_results(self, bsdfs: list[MitsubaObject]) -> list[tuple[MitsubaObject, Any]]:
-        """Return pairs (BSDF, result); a result is made again if the BSDF's parameters changed."""
+    def get_or_make_results(self, bsdfs: list[MitsubaObject]) -> list[tuple[MitsubaObject, Any]]:
+        """Return pairs (BSDF, result); a result that is not in the cache is made."""
         pairs = []
         for bsdf in bsdfs:
             values = eval_bsdf(bsdf, *PAIRS).tobytes()
             result = self.results.pop(values, None) or self.make(bsdf)
-            self.results[values] = result  # last in the order, as the latest result in use
+            self.results[values] = result  # moves to the end, as the first ones are deleted below
             pairs.append((bsdf, result))
         for oldest in list(self.results)[: -max(CACHED_BSDFS, len(pairs))]:
             del self.results[oldest]

@@ -1,9 +1,9 @@
 """Directions that a BSDF draws once for a grid of views, and that are stored for all pictures.
 
-For a view the BSDF's constant part c is stored, and for each direction the half vector h, the κ of
-its lobe and its weight. A surface point uses those of the nearest view, and reflects its own view
-about the half vectors. Pictures do not evaluate the BSDF, and thus are as fast with a measured
-table as with a formula.
+For each view, the BSDF's constant part is stored. For each of its directions, the half vector, the
+concentration κ of the lobe and the weight are stored. A surface point uses those of the nearest
+view, and reflects its own view about the half vectors. Pictures do not evaluate the BSDF, and thus
+are as fast with a measured table as with a formula.
 """
 
 import numpy as np
@@ -25,12 +25,12 @@ from brdfkit.lighting.filtering.scene_bsdfs import has_separate_diffuse_part, is
 from brdfkit.mitsuba_bridge.arrays import Rows, find_cell
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
-ISOTROPIC, ANISOTROPIC = (256, 1), (96, 64)  # numbers of polar angles and azimuths of the views
+ISOTROPIC, ANISOTROPIC = (256, 1), (96, 64)  # numbers of polar angles and azimuths of views
 ADJACENT = 5  # number of adjacent polar angles over which outliers of weights are removed
 
 
 class ViewDirections:
-    """The directions that a BSDF draws for a grid of views, stored to light pictures without it.
+    """Directions that a BSDF draws for a grid of views, by which pictures are lit without the BSDF.
 
     The views see the front of the surface, and the back if the BSDF has one.
     """
@@ -54,6 +54,7 @@ class ViewDirections:
     def _remove_weight_outliers(self, weights: FloatArray) -> FloatArray:
         """Replace `weights` (views · directions, 4) by each direction's median in adjacent views.
 
+        The first three columns are the colour of a weight, the fourth one is not used.
         Weights change little from view to view, except where a measured table's cell is drawn too
         rarely: then a single view would be too bright, and show as a ring in pictures.
         """

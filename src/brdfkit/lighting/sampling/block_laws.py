@@ -1,11 +1,11 @@
 """Closed formulas for the probabilities of a map's blocks, to draw a block without table or search.
 
-A law approximates the shares of the map's power of n blocks, which are sorted from the largest to
-the smallest; a rank is a block's number in this order. `probability(i)` is the law's probability
-P̂(i) of rank i, `cumulative_probability(x)` its cumulative distribution F, and
-`inverse_cumulative(xi)` the inverse of F. They use the functions of `maths`: NumPy, or Dr.Jit in
-the renderer. Estimates are unbiased by any law, because they are divided by P̂, not by the block's
-share. [Ergun 2015, section 6.3]
+Each of the map's n blocks has a share of its power. The blocks are sorted from the largest share to
+the smallest; a rank is a block's number in this order. A law is a formula that approximates the
+shares by the probability P̂(i) of rank i, its method `probability`. `cumulative_probability` is the
+cumulative distribution F of the ranks, and `inverse_cumulative` its inverse, by which ranks are
+drawn. They use the functions of `maths`: NumPy, or Dr.Jit in the renderer. No law biases an
+estimate, because samples are divided by P̂, not by the block's share. [Ergun 2015, section 6.3]
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from brdfkit.lighting.sampling.block_slopes import line_density, sample_line_den
 from brdfkit.lighting.sampling.tree import Tree
 from brdfkit.mitsuba_bridge.arrays import Rows
 
-STEPS = 8  # ranges of equal probability in the law `Steps`
-EDGES = 64  # ranks at which a step may begin, in equal ratios
+STEPS = 8  # number of ranges of ranks with equal probability in the law `Steps`
+EDGES = 64  # number of ranks at which a step may begin, spaced by equal ratios
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Hyperbolic:
     def fit_to_shares(cls, shares: FloatArray) -> Hyperbolic:
         """Fit the law to sorted `shares` P (n,) of the power of blocks.
 
-        The law's probabilities P̂ have the maximum likelihood Σ P log P̂.
+        The law's probabilities P̂ maximise the log likelihood Σ P log P̂.
 
         >>> shares = Hyperbolic(256, 5.0).probability(np.arange(256))
         >>> round(Hyperbolic.fit_to_shares(shares).u, 3)
@@ -57,7 +57,7 @@ class Hyperbolic:
         def loss(log_u: float) -> float:
             return float(-shares @ np.log(cls(n, np.exp(log_u)).probability(i)))
 
-        # The bounds of u mean nearly all light in one block, and equal shares
+        # The lower bound of u gives nearly all light to one block, the upper one gives equal shares
         minimum = minimize_scalar(loss, bounds=(-10, np.log(n) + 10), method="bounded")
         return cls(n, float(np.exp(minimum.x)))
 
@@ -72,7 +72,7 @@ class Hyperbolic:
         return log(1 + 1 / (self.u + i)) / log(1 + self.n / self.u)
 
     def inverse_cumulative(self, xi: JitFloat) -> JitFloat:
-        """Return the rank F⁻¹(ξ) below which blocks have the probability `xi`, by eq. 6.5."""
+        """Return the rank below which the blocks together have the probability `xi`, by eq. 6.5."""
         return self.u * ((1 + self.n / self.u) ** xi - 1)
 
 
@@ -94,14 +94,14 @@ class Steps:
     def fit_to_shares(cls, shares: FloatArray) -> Steps:
         """Fit the law to sorted `shares` P (n,) of the power of blocks.
 
-        The law's probabilities P̂ have the maximum likelihood Σ P log P̂. Dynamic programming finds
+        The law's probabilities P̂ maximise the log likelihood Σ P log P̂. Dynamic programming finds
         the edges of the steps.
         """
         n = len(shares)
         edges = np.unique(np.append(0, np.geomspace(1, n, EDGES).round())).astype(int)
         below = np.append(0, np.cumsum(shares))[edges]
         share, width = below[None, :] - below[:, None], edges[None, :] - edges[:, None]
-        likelihood = np.full(share.shape, -np.inf)  # [i, j]: of a step from edge i to edge j
+        likelihood = np.full(share.shape, -np.inf)  # entry [i, j]: for a step from edge i to j
         upwards = np.triu(np.ones(share.shape, bool), 1)
         black = upwards & (share <= 0)
         lit = upwards & ~black
@@ -134,14 +134,14 @@ class Steps:
 
     def probability(self, i: JitFloat) -> JitFloat:
         """Return the probability P̂(i) of the block with the rank `i`."""
-        clip = self.maths.clip  # for whole numbers, the product is 1 in the step and 0 elsewhere
+        clip = self.maths.clip  # both factors below are 1 in the step, and one is 0 outside it
         return sum(
             share / n * clip(i + 1 - first, 0, 1) * clip(first + n - i, 0, 1)
             for first, n, _, share in self._list_steps()
         )
 
     def inverse_cumulative(self, xi: JitFloat) -> JitFloat:
-        """Return the rank F⁻¹(ξ) below which blocks have the probability `xi`."""
+        """Return the rank below which the blocks together have the probability `xi`."""
         clip, maximum = self.maths.clip, self.maths.maximum
         return sum(
             n * clip((xi - below) / maximum(share, 1e-30), 0, 1)
@@ -166,7 +166,7 @@ class SortedBlocks:
         x0, x1, y0, y1 = tree.blocks[order].T
         self.cells, areas = tree.boxes[0, 1] * tree.boxes[0, 3], (x1 - x0) * (y1 - y0)
         self.law = law.fit_to_shares(shares[order])
-        self.densities = np.empty(len(order))  # in the order of `Tree.blocks`
+        self.densities = np.empty(len(order))  # in the order of `Tree.blocks`, not by rank
         self.densities[order] = self.law.probability(np.arange(len(order))) * self.cells / areas
         self.in_renderer = _convert_to_drjit(self.law)
         self.boxes = Rows(np.stack([x0, x1, y0, y1], axis=1))
@@ -202,7 +202,7 @@ def _convert_to_drjit(law: Law) -> Law:
 
 
 def _make_opaque(value: Any) -> Any:
-    """Convert a number, or a tuple of numbers, to Dr.Jit's, so that all values share one kernel."""
+    """Convert one or several numbers to Dr.Jit's, so that a new value needs no new kernel."""
     import drjit as dr
     import mitsuba as mi
 

@@ -88,7 +88,7 @@ class GridLookup:
         import drjit as dr
         import mitsuba as mi
 
-        # Blocks are tested with the point's cell, so that rounding at an edge cannot miss all
+        # Blocks are tested with the point's cell, so that rounding cannot put it between two blocks
         column, row = (mi.Float(find_cell(a, n)) for a, n in ((x, self.width), (y, self.height)))
         square = find_cell((row + 0.5) * (self.rows / self.height), self.rows) * self.columns
         square = square + find_cell((column + 0.5) * (self.columns / self.width), self.columns)
@@ -122,10 +122,11 @@ class TreeWalk:
     is stretched to 0 to 1 again. Evenly spread numbers thus give evenly spread points, so that the
     stratification of samplers is kept.
 
-    A node has four numbers, which are read at once: the coordinate of its cut, the cut's axis, the
-    index of its first part, and the probability of that part. A block has its mean density, the
-    slope across, 0 in place of an index, and the slope down. [Ergun 2015, section 6.2] packs a node
-    into eight bytes, for maps up to 2048 pixels a side and 2¹⁸ blocks; sixteen have no limits.
+    A node is stored as four numbers, which are read at once: the coordinate of its cut, the cut's
+    axis, the index of its first part, and the probability of that part. A block, which has no cut,
+    is stored as its mean density, the slope across, 0 in place of an index, and the slope down.
+    [Ergun 2015, section 6.2] packs a node into eight bytes, for maps up to 2048 pixels a side and
+    2¹⁸ blocks; sixteen bytes have no limits.
     """
 
     def __init__(self, tree: Tree, densities: FloatArray, slopes: FloatArray) -> None:
@@ -133,7 +134,7 @@ class TreeWalk:
         x0, x1, y0, y1 = tree.boxes.T
         probability = np.zeros(len(leaf))
         probability[leaf] = densities * ((x1 - x0) * (y1 - y0))[leaf]
-        for node in np.flatnonzero(~leaf)[::-1]:  # parts have larger indices than the whole
+        for node in np.flatnonzero(~leaf)[::-1]:  # parts, of larger index, before the whole
             probability[node] = probability[left[node]] + probability[left[node] + 1]
         down = x1[left] == x1
         cut = np.where(down, y1[left], x1[left])

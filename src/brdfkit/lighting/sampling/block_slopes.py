@@ -39,7 +39,8 @@ def _fit_slope(
     whole = sums.sum_values(boxes)
     start, end = boxes[:, axis], boxes[:, axis + 1]
     half = np.zeros(len(boxes))
-    for middle in ((start + end) // 2, (start + end + 1) // 2):  # halves share a middle cell
+    # The first half; of an odd number of cells, the middle one counts half
+    for middle in ((start + end) // 2, (start + end + 1) // 2):
         part = boxes.copy()
         part[:, axis + 1] = middle
         half = half + sums.sum_values(part) / 2

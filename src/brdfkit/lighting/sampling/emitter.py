@@ -42,7 +42,7 @@ MAP_PARAMETERS = {
         False, "sample only what is brighter than the mean; surfaces do the rest"
     ),
 }
-ENVIRONMENT_DISTANCE = 1e7  # distance of samples, since a plugin cannot find the scene's size
+ENVIRONMENT_DISTANCE = 1e7  # distance of sampled points; a plugin cannot find the scene's size
 SMALLEST_SINE = 1e-4  # lower limit of the polar angle's sine, by which densities are divided
 
 
@@ -115,7 +115,7 @@ def derive_environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]
             ds.p, ds.n = it.p + ds.d * ENVIRONMENT_DISTANCE, -ds.d
             ds.dist = mi.Float(ENVIRONMENT_DISTANCE)
             ds.uv, ds.time, ds.delta = sample, it.time, mi.Bool(False)
-            ds.pdf = dr.select(active, per_solid_angle(density, sin_theta), 0)
+            ds.pdf = dr.select(active, to_density_per_solid_angle(density, sin_theta), 0)
             ds.emitter = self if mi.variant().startswith("scalar") else mi.EmitterPtr(self)
             weight = self.radiance(x, y, it, active) / dr.select(ds.pdf > 0, ds.pdf, 1)
             return ds, mi.depolarizer(dr.select(active & (ds.pdf > 0), weight, 0))
@@ -125,7 +125,7 @@ def derive_environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]
         ) -> JitFloat:
             x, y = self.find_map_point(ds.d)
             density = self.map_sampler.density(x, y, active)
-            return per_solid_angle(density, dr.sin(dr.pi * y / (self.height - 1)))
+            return to_density_per_solid_angle(density, dr.sin(dr.pi * y / (self.height - 1)))
 
         def eval_direction(
             self, it: MitsubaObject, ds: MitsubaObject, active: JitMask = True
@@ -139,7 +139,7 @@ def derive_environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]
     return EnvironmentEmitter
 
 
-def per_solid_angle(density: JitFloat, sin_theta: JitFloat) -> JitFloat:
+def to_density_per_solid_angle(density: JitFloat, sin_theta: JitFloat) -> JitFloat:
     """Convert a density over the map, relative to a uniform one, to one per solid angle [sr⁻¹]."""
     return density / (2 * dr.pi**2 * dr.maximum(sin_theta, SMALLEST_SINE))
 

@@ -55,8 +55,9 @@ def build_tree_from_sums(sums: Sums, count: int, criterion: str = "relative") ->
     boxes, left = np.array([[0, width, 0, height]]), np.array([-1])
     keys = error(sums, boxes)
     while True:
-        # In the end the nodes with the `count` - 1 largest keys are cut. A node whose key is not
-        # among these now never will be. Half of the others are cut now, so that few are superfluous
+        # A node's key is its error. The tree returned cuts the nodes with the `count` - 1 largest
+        # keys; a node that is not among them now never will be. Half of those that are among them
+        # are cut at once, so that few cuts are superfluous
         threshold = np.partition(keys, -count + 1)[-count + 1] if 1 < count <= len(keys) else 0
         uncut = np.flatnonzero((left < 0) & (keys > 0) & (keys >= threshold))
         if len(uncut) == 0 or count == 1:
@@ -64,7 +65,7 @@ def build_tree_from_sums(sums: Sums, count: int, criterion: str = "relative") ->
         uncut = uncut[np.argsort(-keys[uncut], kind="stable")[: len(uncut) // 2 + 1]]
         left[uncut] = len(boxes) + 2 * np.arange(len(uncut))
         parts = _cut_boxes(sums, boxes[uncut])
-        # A part cannot be cut before the whole, even if its criterion is larger
+        # A part's key is at most that of the whole, before which it cannot be cut
         keys = np.append(keys, np.minimum(error(sums, parts), np.repeat(keys[uncut], 2)))
         boxes, left = np.append(boxes, parts, axis=0), np.append(left, np.full(len(parts), -1))
 
@@ -75,7 +76,7 @@ class Sums:
     def __init__(self, values: FloatArray) -> None:
         self.values = values
         self.table, self.squares = _summed_area_table(values), _summed_area_table(values**2)
-        self.rounding = 1e-14 * self.squares[-1, -1]  # rounding error of sums of squares
+        self.rounding = 1e-14 * self.squares[-1, -1]  # largest rounding error of sums of squares
 
     def sum_moments(self, boxes: IntArray) -> tuple[IntArray, FloatArray, FloatArray]:
         """Return the numbers of pixels in `boxes` (n, 4), the sums of values, and of squares."""
@@ -134,7 +135,7 @@ def _summed_area_table(values: FloatArray) -> FloatArray:
     """Return a table (height + 1, width + 1): entry (y, x) sums all rows < y and columns < x."""
     table = np.zeros((values.shape[0] + 1, values.shape[1] + 1))
     np.cumsum(values, axis=1, out=table[1:, 1:])
-    for above, row in pairwise(table):  # twice as fast as np.cumsum along columns
+    for above, row in pairwise(table):  # this loop is twice as fast as np.cumsum along columns
         row += above
     return table
 
@@ -176,7 +177,8 @@ def _find_best_column(table: FloatArray, boxes: IntArray) -> tuple[IntArray, Flo
     wide = cuts > 0
     if wide.any():
         best[wide] = np.maximum.reduceat(score, start[wide])
-    hits = np.flatnonzero(score == np.repeat(best, cuts))[::-1]  # of equal scores the first counts
+    # In reversed order, so that the first one of equal scores counts
+    hits = np.flatnonzero(score == np.repeat(best, cuts))[::-1]
     box = np.searchsorted(start[wide], hits, side="right") - 1
     at[np.flatnonzero(wide)[box]] += n[hits]
     return at, best / (y1 - y0)

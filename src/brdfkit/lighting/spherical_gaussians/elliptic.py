@@ -23,7 +23,7 @@ from brdfkit.lighting.spherical_gaussians.von_mises_fisher import tangents
 def fit_elliptic_lobes(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
     """Fit an anisotropic lobe to each view of a `grid`, by `lobes` round ones of equal weight.
 
-    The grid has a list of views over θ for each azimuth φ.
+    For each azimuth, the grid has a list of views by increasing polar angle.
     """
     return [[_spread_over_ellipse(one, lobes) for one in views] for views in grid]
 
@@ -48,8 +48,8 @@ def _spread_over_ellipse(one: OneView, n: int) -> ViewLobes:
     x, weights = one.samples()
     frame, bandwidths = fit_anisotropic_gaussian(x, weights * share)
     light = one.energy.sum(axis=0)
-    variances = 1 / (2 * bandwidths)  # along the lobe's x and y
-    # The variance of a round lobe is half of the ellipse's, but less than that across the ellipse
+    variances = 1 / (2 * bandwidths)  # variances along the x and y axes of the lobe's ellipse
+    # A round lobe has half the ellipse's mean variance, but less than that across the ellipse
     kernel = min(np.sqrt(variances.prod()) / 2, 0.9 * variances.min())
     # The symmetric root of the remaining variance changes smoothly from view to view, even where
     # the longer axis of the ellipse becomes the shorter one

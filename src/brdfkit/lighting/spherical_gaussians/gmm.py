@@ -17,7 +17,7 @@ from brdfkit.lighting.spherical_gaussians import mixture
 from brdfkit.lighting.spherical_gaussians.mixture import Mixture
 from brdfkit.lighting.spherical_gaussians.one_view import OneView, ViewLobes
 
-SMALLEST_COSINE = 0.01  # lower limit of the cosine between view and half vector, which divides κ
+SMALLEST_COSINE = 0.01  # lower limit of the cosine of view and half vector, by which κ is divided
 STEPS = 20  # steps of a fit that starts from a neighbouring view; more hardly improve it
 
 
@@ -83,7 +83,7 @@ def fit_best_mixture(x: FloatArray, weights: FloatArray, n: int, restarts: int =
 def fit_gmm_lobes(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
     """Fit a mixture of `lobes` lobes to each view of a `grid`.
 
-    The grid has a list of views over θ for each azimuth φ.
+    For each azimuth, the grid has a list of views by increasing polar angle.
     """
     first = fit_best_mixture(*grid[0][0].samples(), lobes)
     turns = np.arange(len(grid)) * 2 * np.pi / len(grid)

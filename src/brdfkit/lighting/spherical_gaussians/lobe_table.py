@@ -34,7 +34,7 @@ METHODS = {
     "kde": fit_kde_lobes,
     "warped": fit_warped_lobes,
 }
-LARGEST_THETA_O = np.radians(88)  # a thousandth of the pixels of a ball have more grazing views
+LARGEST_THETA_O = np.radians(88)  # largest angle of a view; few pixels of a ball exceed it
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ class Mixture:
 
     def log_lobe_densities(self, x: FloatArray) -> FloatArray:
         """Return the log densities of the weighted lobes, log(α_k g_k(x)) (n, samples), at `x`."""
-        # κ μ·x, plus a constant that does not depend on the sample
+        # A lobe's log density is κ μ·x, plus a constant that does not depend on the sample x
         constant = np.log(self.weights) + vmf.log_density(0, self.kappa)
         return (self.kappa[:, None] * self.axes) @ x.T + constant[:, None]
 

@@ -24,9 +24,9 @@ Brdf = Callable[[FloatArray, FloatArray], FloatArray]
 # integrals (lobes, channels), axes (lobes, 3) and concentrations κ (lobes,)
 ViewLobes = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
-RINGS = 48  # half the number of rings of directions, which resolve lobes of 0.01 rad up to 80°
-FLOOR_EXCESS = 1e-3  # share of the reflected light by which the floor may exceed lower values
-OMITTED_LIGHT = 1e-3  # share of the glossy light, in the darkest directions, that fits omit
+RINGS = 48  # half the number of rings of directions; resolves lobes of 0.01 rad up to 80°
+FLOOR_EXCESS = 1e-3  # share of the reflected light that the diffuse part may add to low values
+OMITTED_LIGHT = 1e-3  # share of the glossy light that fits omit, in the darkest directions
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def sample_view(brdf: Brdf, theta: float, phi: float) -> OneView:
     `brdf(wi, wo)` returns values (n, channels) [sr⁻¹] for pairs of directions (n, 3).
     """
     view = from_angles(theta, 0)
-    directions, cosine = make_ring_rule(view, RINGS)  # solid angles times cosθ
+    directions, cosine = make_ring_rule(view, RINGS)  # `cosine` is the solid angle times cosθ
     wi, wo = rotate_z(directions, phi), rotate_z(view, phi)
     values = np.asarray(brdf(wi, np.broadcast_to(wo, wi.shape)), float)
     if values.ndim != 2 or not np.isfinite(values).all():
@@ -94,13 +94,14 @@ def sample_view(brdf: Brdf, theta: float, phi: float) -> OneView:
 def _find_diffuse_floor(values: FloatArray, cosine: FloatArray) -> FloatArray:
     """Return the diffuse part c (channels,) of BRDF values, nearly their minimum.
 
-    It is the largest c with Σ max(c - f, 0) cosθ ΔΩ ≤ FLOOR_EXCESS · Σ f cosθ ΔΩ, for the
-    `values` f (n, channels), and the `cosine` cosθ ΔΩ (n,), times solid angles.
+    The `values` f (n, channels) belong to directions with the solid angles ΔΩ, and `cosine` (n,) is
+    cosθ ΔΩ. The diffuse part is the largest c that exceeds low values by a small share of the
+    reflected light: Σ max(c - f, 0) cosθ ΔΩ ≤ FLOOR_EXCESS · Σ f cosθ ΔΩ.
     """
     order = values.argsort(axis=0)
     f, weight = np.take_along_axis(values, order, axis=0), cosine[order]
     below, light = weight.cumsum(axis=0), (weight * f).cumsum(axis=0)
-    # If c lay between the values j and j + 1, the sum would be c · below[j] - light[j]
+    # For c between the sorted values j and j + 1, Σ max(c - f, 0) cosθ ΔΩ = c below[j] - light[j]
     c = (FLOOR_EXCESS * light[-1] + light) / below
     between = np.vstack([f[1:], np.full(f.shape[1], np.inf)]) >= c
     return np.take_along_axis(c, between.argmax(axis=0)[None], axis=0)[0]

@@ -4,10 +4,11 @@ The thesis derives the lobe from the roughness of a model. Here it is fitted to 
 any material has one. It is fitted together with a cosine, as a mixture of the two, so that light
 far from the lobe is added to the diffuse part and does not widen the lobe.
 
-`kde` replaces the lobe by a kernel density estimate on the sphere: n points drawn from it, each
-with a kernel by García-Portugués's rule of thumb. Kernels blur, so that the sum has only the
-concentration κ / (1 + n^(-1/3)), about. The thesis draws the points from the lobe itself; here they
-are drawn from a sharper lobe, such that the estimate is as wide as the lobe.
+`kde` replaces the lobe by a kernel density estimate on the sphere: a sum of n kernels, which are
+lobes about points drawn from it. García-Portugués's rule of thumb gives the kernels' width. They
+blur: from a lobe of concentration κ, the sum has only about κ / (1 + n^(-1/3)). The thesis draws
+the points from the lobe itself; here a sharper lobe is drawn from, so that the sum is as wide as
+the lobe.
 
 [Ergun 2015, section 8.6]; [García-Portugués 2013]
 """
@@ -20,13 +21,13 @@ from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
 from brdfkit.lighting.spherical_gaussians import von_mises_fisher as vmf
 from brdfkit.lighting.spherical_gaussians.one_view import OneView, ViewLobes
 
-STEPS = 50  # steps of expectation maximisation
+STEPS = 50  # steps of expectation maximisation in the fit of a lobe
 
 
 def fit_warped_lobes(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
     """Fit one lobe to each view of a `grid`; the number of `lobes` is ignored.
 
-    The grid has a list of views over θ for each azimuth φ.
+    For each azimuth, the grid has a list of views by increasing polar angle.
     """
     return [[_fit_split_lobes(one, 1) for one in views] for views in grid]
 
@@ -34,7 +35,7 @@ def fit_warped_lobes(grid: list[list[OneView]], lobes: int) -> list[list[ViewLob
 def fit_kde_lobes(grid: list[list[OneView]], lobes: int) -> list[list[ViewLobes]]:
     """Fit one lobe to each view of a `grid`, and split it into as many sharper ones as `lobes`.
 
-    The grid has a list of views over θ for each azimuth φ.
+    For each azimuth, the grid has a list of views by increasing polar angle.
     """
     return [[_fit_split_lobes(one, lobes) for one in views] for views in grid]
 
@@ -55,7 +56,7 @@ def fit_lobe(one: OneView) -> tuple[float, FloatArray, FloatArray, float]:
     """Fit a mixture of one lobe and a cosine to the glossy part of a view.
 
     Returns the lobe's part of the light, its share (m,) of each of `one.samples()`, its axis and
-    its κ. The fit begins with a narrow lobe at the brightest direction.
+    its concentration κ. The fit begins with a narrow lobe at the brightest direction.
     """
     x, weights = one.samples()
     brightest = one.glossy.mean(axis=1).argmax()
@@ -72,9 +73,10 @@ def fit_lobe(one: OneView) -> tuple[float, FloatArray, FloatArray, float]:
 
 
 def kernel_bandwidth(kappa: ArrayLike, n: int) -> AnyArray:
-    """Return the bandwidth h of a kernel density estimate from `n` points of a lobe with κ `kappa`.
+    """Return the bandwidth h of a kernel density estimate from `n` points of a lobe.
 
-    The kernels are lobes with the concentration 1 / h². [García-Portugués 2013]
+    `kappa` is the lobe's concentration; the kernels have the concentration 1 / h².
+    [García-Portugués 2013]
 
     >>> round(float(kernel_bandwidth(50.0, 8)), 6)
     0.100166
@@ -97,10 +99,10 @@ def split_lobe(mu: ArrayLike, kappa: ArrayLike, n: int) -> tuple[FloatArray, Any
 
 
 def estimate_concentration(kappa: ArrayLike, n: int) -> AnyArray:
-    """Return the κ of the kernel density estimate from `n` points of a lobe with κ `kappa`."""
+    """Return the κ of the kernel density estimate from `n` points of a lobe of κ = `kappa`."""
     kappa = np.asarray(kappa, float)
     mean = vmf.spread_lobe_points(np.array([0.0, 0.0, 1.0]), kappa, n).mean(axis=-2)
-    # The estimate is a convolution, whose mean cosine is the product of the two mean cosines
+    # The estimate convolves the points with the kernel, so that their mean cosines are multiplied
     length = np.linalg.norm(mean, axis=-1) * vmf.mean_cosine(kernel_bandwidth(kappa, n) ** -2)
     return vmf.solve_kappa(length)
 
@@ -108,9 +110,9 @@ def estimate_concentration(kappa: ArrayLike, n: int) -> AnyArray:
 def _sharpen_lobe(kappa: AnyArray, n: int) -> AnyArray:
     """Return the κ of a sharper lobe, whose kernel density estimate is as wide as a given lobe.
 
-    The estimate is from `n` points of the sharper lobe, and `kappa` is the given concentration.
+    The estimate uses `n` points of the sharper lobe; `kappa` is the given lobe's concentration.
     """
     sharper = kappa * (1 + n ** (-1 / 3))
-    for _ in range(10):  # converges, since both concentrations are nearly proportional
+    for _ in range(10):  # few steps suffice, as the two are nearly proportional
         sharper = sharper * kappa / estimate_concentration(sharper, n)
     return sharper

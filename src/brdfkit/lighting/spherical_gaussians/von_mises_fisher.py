@@ -40,7 +40,7 @@ def mean_cosine(kappa: ArrayLike) -> FloatArray:
     It is the length of the mean of directions that are distributed as the lobe.
     """
     kappa = np.asarray(kappa, float)
-    large = np.maximum(kappa, 0.01)  # below 0.01 the two terms cancel
+    large = np.maximum(kappa, 0.01)  # below 0.01 coth κ and 1/κ cancel, and a series is used
     return np.where(kappa < 0.01, kappa / 3 * (1 - kappa**2 / 15), 1 / np.tanh(large) - 1 / large)
 
 
@@ -64,7 +64,7 @@ def solve_kappa(mean_length: ArrayLike) -> AnyArray:
     r = np.clip(np.asarray(mean_length, float), 0, 1 - 1 / LARGEST_KAPPA)
     kappa = approximate_kappa(r)
     for _ in range(4):  # each step doubles the number of correct digits
-        # dR̄/dκ hardly changes below 0.01, where the two terms cancel; sinh overflows beyond 300
+        # The slope hardly changes below κ = 0.01, where its terms cancel; sinh overflows beyond 300
         slope = 1 / np.maximum(kappa, 0.01) ** 2 - 1 / np.sinh(np.clip(kappa, 0.01, 300)) ** 2
         kappa = np.maximum(kappa + (r - mean_cosine(kappa)) / slope, 0)
     return np.minimum(kappa, LARGEST_KAPPA)
@@ -72,7 +72,7 @@ def solve_kappa(mean_length: ArrayLike) -> AnyArray:
 
 def sample_directions(mu: FloatArray, kappa: ArrayLike, u: ArrayLike) -> FloatArray:
     """Draw directions (..., 3) from lobes, by uniform random numbers `u` (..., 2) in [0, 1)."""
-    # The inverse of the distribution of cosθ; the argument of log1p is above -1, since u < 1
+    # Inverts the distribution of cosθ; the argument of log1p is above -1, since u < 1
     u, kappa = np.asarray(u, float), np.asarray(kappa, float)
     cosine = 1 + np.log1p((1 - u[..., 0]) * np.expm1(-2 * kappa)) / kappa
     sine = np.sqrt(np.maximum(1 - cosine**2, 0))

@@ -98,7 +98,7 @@ def _decompose_mesh(mesh: MitsubaObject, concavity: float) -> list[Hull]:
     faces = np.array(buffers["faces"], int).reshape(-1, 3)
     parts = decompose(points, faces, concavity)
     if parts and not is_closed(weld_vertices(points, faces)[1]):
-        mi.Log(  # type: ignore[operator]  # an object in Mitsuba's stub
+        mi.Log(  # type: ignore[operator]  # Mitsuba's stub declares no function
             mi.LogLevel.Warn,
             f"{mesh.id()}: the mesh is not closed; its holes were closed, or it was replaced by a "
             "thicker mesh around it, before it was cut into convex parts.",

@@ -1,14 +1,14 @@
 """Intersection of rays with a convex part by its plane map [Ergun 2015, Algorithm 3].
 
-A plane map stores the part's face in each direction from its centre. All computations are in the
-part's unit frame, in which the unit sphere encloses it. The search begins where the ray enters the
-sphere, even behind the ray's origin. It moves along the ray to the plane of the face in the
-direction of the current point, again and again, until it no longer moves.
+A plane map stores the part's face in each direction from its centre. Coordinates are transformed so
+that the unit sphere encloses the part. The search begins with the point where the ray enters the
+sphere, even behind the ray's origin. It looks up the face in the direction of the point, and moves
+the point along the ray to the plane of the face. It ends when the point no longer moves.
 
 A texel of the map may have the plane of a neighbouring face. The published algorithm then counts a
 step backwards as a miss, and loses hits near the edges of faces. Here a plane that faces the ray
-can only move the point forwards, and a plane that faces away ends the search, with a miss if the
-point is already outside it. With the exact planes both forms give the same.
+can only move the point forwards. A plane that faces away ends the search, with a miss if the point
+is already outside it. With exact planes, both algorithms give the same result.
 """
 
 import drjit as dr
@@ -16,8 +16,8 @@ import drjit as dr
 from brdfkit.core.array_types import JitFloat, JitInt, JitMask, JitVector, MitsubaModule
 from brdfkit.lighting.visibility.plane_map import PlaneMap
 
-EPSILON = 3e-6  # tolerance of distances in the unit frame
-LOOKUP_LIMIT = 32  # look-ups of a plane after which the search ends
+EPSILON = 3e-6  # tolerance of distances, where the part is as large as the unit sphere
+LOOKUP_LIMIT = 32  # number of look-ups of planes after which the search ends
 GOING, HIT, MISSED = 0, 1, 2  # states of the search
 
 
@@ -31,17 +31,18 @@ def find_ray_entry(
 ) -> tuple[JitFloat, JitMask, JitInt]:
     """Find where a ray enters a convex part.
 
-    `o` and the unit vector `d` are the ray in the unit frame of the `part`, which is a number in
-    the plane map `planes`. Returns the distance of the entry from `o`, whether the ray enters, and
-    the number of look-ups. The distance is negative if `o` lies inside the part, or beyond it.
+    `o` and the unit vector `d` are the ray's origin and direction, in coordinates in which the unit
+    sphere encloses the part. `part` is the part's number in the plane map `planes`. Returns the
+    distance of the entry from `o`, whether the ray enters, and the number of look-ups. The distance
+    is negative if `o` lies inside the part, or beyond it.
     """
-    # Distances count from the ray's point nearest to the centre, to be accurate if `o` is far away
+    # Distances t count from the ray's point nearest to the centre, which is accurate for a far `o`
     middle = -dr.dot(o, d)
     nearest = o + middle * d
-    half = dr.safe_sqrt(1 + EPSILON - dr.squared_norm(nearest))  # half of the chord in the sphere
+    half = dr.safe_sqrt(1 + EPSILON - dr.squared_norm(nearest))  # half the ray's length in it
     start = dr.select(active & (half > 0), mi.UInt32(GOING), mi.UInt32(MISSED))
 
-    def look_up(t: JitFloat, state: JitInt, count: JitInt) -> tuple[JitFloat, JitInt, JitInt]:
+    def step_to_plane(t: JitFloat, state: JitInt, count: JitInt) -> tuple[JitFloat, JitInt, JitInt]:
         p = nearest + t * d
         n, distance = planes.look_up_plane(part, dr.normalize(p), active)
         cos, outside = dr.dot(n, d), dr.dot(n, p) - distance
@@ -55,6 +56,6 @@ def find_ray_entry(
     t, state, count = dr.while_loop(
         (-half, start, mi.UInt32(0)),
         lambda t, state, count: (state == GOING) & (count < LOOKUP_LIMIT),
-        look_up,
+        step_to_plane,
     )
     return t + middle, state != MISSED, count

@@ -1,9 +1,9 @@
 """A small bounding volume hierarchy, built by NumPy in a millisecond, traversed without a stack.
 
 The tree is complete: it has 2^k leaves, some of which may be empty. Node 1 is the root, and the
-children of node i are 2 i and 2 i + 1, so that no links are stored. The traversal continues after
-the subtree of node i with the node i + 1 without the trailing zeros of its binary form, and ends if
-that is 1.
+children of node i are 2 i and 2 i + 1, so that no links are stored. To find the node that follows
+the subtree of node i in the traversal, the trailing zeros of i + 1 in binary form are removed. If
+this gives 1, the traversal ends.
 """
 
 from collections.abc import Callable
@@ -29,7 +29,7 @@ class Hierarchy:
 
         order = _sort_boxes(low, high)
         self.leaves = mi.UInt32(len(order))
-        dr.make_opaque(self.leaves)  # otherwise each number of boxes would have its own kernel
+        dr.make_opaque(self.leaves)  # otherwise each number of boxes would need a new kernel
         self.order = Integers(np.maximum(order, 0))
         self.low = Rows(_combine_node_corners(_arrange_corners(low, order), np.fmin))
         self.high = Rows(_combine_node_corners(_arrange_corners(high, order), np.fmax))
@@ -40,7 +40,7 @@ class Hierarchy:
         test: Callable[[JitInt, JitMask], tuple[JitMask, JitInt]],
         active: JitMask = True,
     ) -> tuple[JitMask, JitInt]:
-        """Return whether a ray hits the content of any box before its `maxt`, and the reads.
+        """Return whether a ray hits the content of a box before its `maxt`, and the memory reads.
 
         `test(number, active)` tests the content of the box with this number: it returns whether
         the ray hits it, and its number of memory reads, which are summed to measure the costs.
@@ -111,7 +111,7 @@ def _sort_boxes(low: FloatArray, high: FloatArray) -> IntArray:
     leaves = 1 << max(int(np.ceil(np.log2(len(low)))), 0)
     order = np.full(leaves, -1)
     order[: len(low)] = np.arange(len(low))
-    centres = np.full((leaves, 3), np.nan)  # NaN sorts empty leaves to the end
+    centres = np.full((leaves, 3), np.nan)  # NaN, so that empty leaves are sorted to the end
     centres[: len(low)] = (low + high) / 2
     size = leaves
     while size > 1:

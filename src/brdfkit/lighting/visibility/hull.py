@@ -1,4 +1,4 @@
-"""A convex part of a mesh: the hull of points, and a frame in which it is as round as possible."""
+"""A convex part of a mesh: its hull, and a transform that makes it as round as possible."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -17,9 +17,10 @@ from brdfkit.mitsuba_bridge.arrays import Rows
 
 
 class Frames:
-    """The unit frames of n convex parts in Mitsuba's memory, to transform rays to them.
+    """Transforms of rays to the unit frames of n convex parts, in Mitsuba's memory.
 
-    `maps` (n, 3, 4) are the affine maps from the world to the frames.
+    In a part's unit frame, the unit sphere encloses the part. `maps` (n, 3, 4) are the affine maps
+    from the world to the frames.
     """
 
     def __init__(self, maps: ArrayLike) -> None:
@@ -28,7 +29,7 @@ class Frames:
     def transform_ray(
         self, number: JitInt, ray: MitsubaObject, active: JitMask = True
     ) -> tuple[JitVector, JitVector]:
-        """Return the origin and the direction of a ray in the frame with this `number`.
+        """Return the origin and the direction of a ray in the unit frame of the part `number`.
 
         The direction is not normalised, so that distances along the ray stay the same.
         """
@@ -41,7 +42,7 @@ class Frames:
         return mi.Vector3f(*origin), mi.Vector3f(*(dr.dot(a, ray.d) for a in linear))
 
 
-MIN_THICKNESS = 1e-4  # ratio of a hull's volume to its area, relative to its longest side
+MIN_THICKNESS = 1e-4  # smallest volume / area of a hull, relative to its longest side
 
 
 @dataclass(frozen=True)
@@ -68,9 +69,9 @@ class Hull:
 def make_hull(points: ArrayLike) -> Hull | None:
     """Return the convex hull of `points` (n, 3), or None if they enclose no volume.
 
-    The origin of its unit frame is the centre of volume. The frame is stretched so that the hull's
-    variance is equal in all directions: the ends of a long part then have as many texels in a plane
-    map as its middle. An affine map preserves planes and convexity.
+    The origin of its unit frame (see `Hull`) is the centre of volume. The frame is stretched so
+    that the hull's variance is equal in all directions: the ends of a long part then have as many
+    texels in a plane map as its middle. An affine map preserves planes and convexity.
 
     >>> corners = np.array(np.meshgrid([0, 4], [0, 1], [0, 1])).reshape(3, -1).T
     >>> make_hull(corners).planes[:, 3].round(3).tolist()    # a cube, in its unit frame
@@ -104,20 +105,21 @@ def _compute_volume_moments(solid: Any) -> tuple[FloatArray, FloatArray]:
     Both are sums over tetrahedra between a point inside and each face.
     """
     inside = solid.points[solid.vertices].mean(axis=0)
-    corners = solid.points[solid.simplices] - inside  # (faces, 3 corners, 3)
+    corners = solid.points[solid.simplices] - inside  # (faces, corners, xyz)
     volume = np.abs(np.linalg.det(corners))
     volume /= volume.sum()
     total = corners.sum(axis=1)
     mean = volume @ total / 4
-    # For a tetrahedron with a corner at 0: E[x xᵀ] = (Σ cᵢ cᵢᵀ + (Σ c)(Σ c)ᵀ) / 20
+    # A tetrahedron with the corners 0 and cᵢ has the mean x xᵀ of (Σ cᵢ cᵢᵀ + (Σ cᵢ)(Σ cᵢ)ᵀ) / 20
     squares = np.einsum("fci,fcj->fij", corners, corners) + total[:, :, None] * total[:, None, :]
     return inside + mean, np.einsum("f,fij->ij", volume, squares) / 20 - np.outer(mean, mean)
 
 
 def _transform_planes(solid: Any, stretch: FloatArray, centre: FloatArray) -> FloatArray:
-    """Return the planes (m, 4) of a SciPy `ConvexHull` in the unit frame, without duplicates.
+    """Return the planes (m, 4) of a SciPy `ConvexHull` in its unit frame, without duplicates.
 
-    The map to the unit frame is `stretch` (3, 3) times the difference from the `centre` (3,).
+    A point x has the coordinates `stretch` (3, 3) times x - `centre` (3,) in the unit frame, in
+    which the unit sphere encloses the hull.
     """
     normals, offsets = solid.equations[:, :3], solid.equations[:, 3]  # n·x + offset ≤ 0 inside
     planes = np.column_stack([normals @ np.linalg.inv(stretch), -offsets - normals @ centre])

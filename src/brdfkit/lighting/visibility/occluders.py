@@ -22,8 +22,8 @@ class Occluders:
     `objects` maps names to lists of parts; there must be at least one part. `resolution` is the
     side of the plane map of the largest part [texels]. A part that a ray enters at a distance below
     the `clearance`, a share of half the longest side of its object's bounding box, does not block
-    it. The reason is that a hull bulges out of its mesh where that is hollow, and would shade the
-    mesh beside it, in dark lines along the seams of parts.
+    it. The reason is that the hulls bulge out where the mesh is hollow, and would otherwise draw
+    dark lines on the mesh along the seams of parts.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Occluders:
         self._update_tree()
 
     def _update_tree(self) -> None:
-        """Compute the tree and the unit frames of parts for the current transforms of objects."""
+        """Compute the tree of bounding boxes and the parts' transforms after objects have moved."""
         world = self._to_world[self._vertex_part]
         placed = np.einsum("nij,nj->ni", world[:, :3, :3], self._vertices) + world[:, :3, 3]
         low = np.minimum.reduceat(placed, self._starts)

@@ -1,4 +1,4 @@
-"""Shadows in filtered light: the visible shares of lobes and of the irradiance at points."""
+"""Shadows in filtered light: it is multiplied by the visible share of the lobe or hemisphere."""
 
 import math
 from collections.abc import Callable
