@@ -16,8 +16,8 @@ from brdfkit.materials.measured.spectrum_to_rgb import format_channels
 from brdfkit.materials.measured.tabulation import choose_table_shape, tabulate
 from brdfkit.materials.resolve import Material, MaterialLike, to_material
 
-# A material and its file are compared at this many random pairs of directions, none of them farther
-# than this angle from the normal
+# The BRDFs of a material and its converted file are compared at this number of random pairs of
+# directions, at angles to the normal of at most LARGEST_ANGLE
 PAIRS, LARGEST_ANGLE = 4000, np.radians(80)
 LEAST_DIFFERENCE = 5e-4  # a smaller relative difference would be printed as 0.0 %
 
@@ -124,12 +124,13 @@ def list_changes(before: Measured, after: Measured) -> tuple[str, ...]:
 
 
 def compare_interpolations(before: Measured, after: Measured) -> str:
-    """Return in words how far the interpolated BRDFs of two materials differ, "" if hardly at all.
+    """Return in words how far the interpolated BRDFs of two materials differ, or "".
 
-    The relative difference is given in the median and for 95 of 100 random pairs of directions.
+    The words state the median of the relative differences at random pairs of directions, and the
+    bound on 95 of 100. The result is "" for differences that are negligible, or surely absent.
     """
     if not any(data.is_table or data.has_lookup for data in (before, after)):
-        return ""  # two sets of samples are interpolated alike; their contents are compared already
+        return ""  # both hold samples, which are interpolated alike and were compared before
     if before.channels != after.channels:
         before, after = before.rgb, after.rgb
     random = np.random.default_rng(0)
@@ -145,7 +146,7 @@ def compare_interpolations(before: Measured, after: Measured) -> str:
 
 
 def describe_contents(data: Measured) -> dict[str, str]:
-    """Return texts by topic on a measured material: its size, angles, values and errors."""
+    """Describe a measured material's size, angles, values and errors, as texts by topic."""
     samples, valid, errors = data.samples, data.samples.valid, data.standard_error
     values = samples.values[valid]
     cosine = min(w[valid, 2].min() for w in (samples.wi, samples.wo))

@@ -91,7 +91,7 @@ def _check_incidence(wi: ArrayLike) -> NDArray[np.float64]:
         direction = np.array(wi, float)
     except (TypeError, ValueError):
         direction = np.empty(0)
-    # NaN fails every comparison, so the condition accepts unit vectors instead of refusing others
+    # Test that the vector is a unit vector, not that it is none: comparisons with NaN are False
     is_unit = direction.shape == (3,) and abs(np.linalg.norm(direction) - 1) <= 1e-4
     if not (is_unit and direction[2] > 0):
         raise BrdfkitError(

@@ -11,10 +11,11 @@ from brdfkit.materials.measured.coverage import (
     find_largest_angles,
 )
 
-# A fit gets a note where more than this share of all pairs of directions was not measured
+# A fit gets a note if more than this share of the pairs of directions lies beyond the measured
+# angles
 LARGEST_FIT_SHARE = 0.1
-# A converted file gets a note where more than this share of its values was not measured, and the
-# note tells the largest value where it exceeds the largest measured one by more than this factor
+# A converted file gets a note if more than LARGEST_FILE_SHARE of its values were not measured. The
+# note states the file's largest value if it exceeds the largest measured one by this factor
 LARGEST_FILE_SHARE, LARGEST_RISE = 0.005, 1.05
 
 
@@ -28,8 +29,9 @@ def note_fit_extrapolation(data: Measured, max_angle: float) -> list[str]:
         return []  # a table does not say which cells were measured
     smaller, larger = find_largest_angles(data)
     inside = [1 - np.cos(np.radians(min(a, max_angle))) for a in (smaller, larger, max_angle)]
-    # Most measurements pass a cheap test: an upper bound of the share, by the solid angle of the
-    # pairs with one direction within the smaller and the other within the larger measured angle
+    # Return early for most measurements, by a cheap upper bound on the share beyond the measured
+    # angles. Pairs of directions are within them if one is within the `smaller` angle, and the
+    # other within the `larger` one
     if 1 - (inside[1] ** 2 - (inside[1] - inside[0]) ** 2) / inside[2] ** 2 <= LARGEST_FIT_SHARE:
         return []
     beyond = compute_coverage(data, max_angle).beyond
@@ -53,7 +55,7 @@ def describe_file_extrapolation(before: Measured, after: Measured) -> list[str]:
     pairs = () if after.is_table else _pick_direction_pairs(after)
     at = compute_coverage_at(before, *pairs) if pairs else compute_coverage(before)
     shares = {"extrapolated": at.beyond}
-    if not before.has_lookup:  # a format with its own interpolation has no gaps between samples
+    if not before.has_lookup:  # the file format does not define the values between the samples
         shares["interpolated across gaps"] = at.between
     phrases = [
         f"{share:.0%} {what}" for what, share in shares.items() if share > LARGEST_FILE_SHARE

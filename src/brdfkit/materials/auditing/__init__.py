@@ -4,7 +4,7 @@
 brightness near the light and at the horizon with other directions, `symmetries.py` compares values
 that should be equal, and `cosine.py` and `azimuth.py` recognise other conventions of instruments.
 `subsets.py` draws a part of large measurements. `picture.py` draws the audit, and `report.py`
-describes it in words. `data_findings.py` has the warnings that fits show, too.
+describes it in words. `data_findings.py` has the warnings that both audits and fits show.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MAX_ANGLE = 80.0  # degrees; by default a fit uses only samples with smaller angles to the normal
-DPI, WIDTH = 75, 760  # resolution of the picture in a notebook, and its width in pixels
-MOST_LISTED_ANGLES = 10  # of more measured angles, only the smallest and the largest are listed
+DPI, WIDTH = 75, 760  # resolution [pixels per inch] and width [pixels] of a notebook's picture
+MOST_LISTED_ANGLES = 10  # largest number of measured angles that an audit lists one by one
 
 
 @dataclass(frozen=True, repr=False)
@@ -79,8 +79,8 @@ class Audit(Shown):
     noise : Noise
         The relative noise of the values.
     albedo, albedo_of_samples : Albedo
-        The directional albedo over the angle of incidence, by the interpolated BRDF and by linear
-        interpolation of the samples alone. The latter is None where it is not known.
+        The directional albedo at several angles of incidence. The first one is computed from the
+        interpolated BRDF, the second one from the samples alone, None where it is not known.
     grazing, retroreflection, backwards : float
         Median values near the horizon, and near the light, relative to other directions, as
         `brdfkit.materials.auditing.ratios` computes them.
@@ -125,7 +125,7 @@ class Audit(Shown):
         return str(self.data.kind)
 
     def rows(self) -> dict[str, str]:
-        """Return the results of the audit in words, as texts by heading."""
+        """Return the results of the audit in words, as a dictionary from headings to texts."""
         return describe_audit(self)
 
     def findings(self) -> tuple[str, ...]:
@@ -137,7 +137,8 @@ class Audit(Shown):
 
         >>> audit(load("paint.astm")).picture().savefig("paint.png")    # doctest: +SKIP
         """
-        from brdfkit.materials.auditing.picture import draw_audit  # only here: matplotlib is slow
+        # Import the drawing, and so matplotlib, only when it is needed, because this takes long
+        from brdfkit.materials.auditing.picture import draw_audit
 
         return draw_audit(self)
 

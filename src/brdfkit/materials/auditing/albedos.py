@@ -1,6 +1,7 @@
-"""Computes the albedo of a measurement over the angle of incidence, in two ways.
+"""Computes the albedo of a measurement at several angles of incidence, in two ways.
 
-The first way is by the interpolated BRDF, the second by linear interpolation of the samples alone.
+The first way integrates the interpolated BRDF. The second one interpolates linearly between the
+samples.
 """
 
 from dataclasses import dataclass
@@ -13,9 +14,11 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import compute_directional_albedo
 from brdfkit.model.samples import Samples
 
-DEGREES = np.arange(0, 90, 5)  # angles of incidence [degrees]
+DEGREES = np.arange(0, 90, 5)  # angles of incidence at which the albedo is computed [degrees]
 AZIMUTHS = 8  # number of azimuths of incidence for an anisotropic material
-LEAST_AREA = 0.75  # samples must cover this share of the disc of directions for their albedo
+# Smallest share of the unit disc, onto which views are projected, that samples of one incidence
+# must cover for their albedo to be computed
+LEAST_AREA = 0.75
 
 
 @dataclass(frozen=True)
@@ -25,7 +28,7 @@ class Albedo:
     `channels`: names of the channels; `theta_i`: angles of incidence [degrees], (n,); `values`:
     albedo as a mean over the azimuth of incidence, (n, channels); `measured_to`: largest measured
     angle of incidence [degrees], beyond which the albedo is extrapolated; `brightest`: albedo at
-    the azimuth of incidence that reflects most, (n, channels).
+    the azimuth of incidence where it is largest, (n, channels).
     """
 
     channels: tuple[str, ...]
@@ -36,7 +39,7 @@ class Albedo:
 
 
 def compute_albedo(data: Measured, measured_to: float) -> Albedo:
-    """Compute the albedo ∫ f cos θo dωo of a `Measured` by its interpolated BRDF f.
+    """Compute the albedo ∫ f cos θo dωo of a `Measured`, where f is its interpolated BRDF.
 
     `measured_to` is the largest measured angle of incidence [degrees].
     """
@@ -74,10 +77,13 @@ def compute_sample_albedo(data: Measured) -> Albedo | None:
 
 
 def _integrate_over_disc(samples: Samples) -> FloatArray | None:
-    """Integrate the BRDF over the disc of views, (channels,); return None for too few samples."""
+    """Return the albedo (channels,) of samples of one incidence, or None for too few samples.
+
+    The BRDF is integrated over the unit disc onto which `_project_to_disc` projects the views.
+    """
     from scipy.spatial import ConvexHull, Delaunay
 
-    # The samples are too few where they lie on a line, or cover too little of the disc
+    # Return None for samples that lie on a line of the disc, or cover too little of its area
     places, values = _project_to_disc(samples)
     if len(places) < 4 or np.linalg.matrix_rank(places - places[0], tol=1e-3) < 2:
         return None
@@ -85,13 +91,14 @@ def _integrate_over_disc(samples: Samples) -> FloatArray | None:
     if hull.volume < LEAST_AREA * np.pi:
         return None
 
-    # Repeat the outermost samples at the horizon
+    # Repeat the outermost samples on the rim of the disc, which stands for the horizon
     outermost = places[hull.vertices]
     rim = outermost / np.linalg.norm(outermost, axis=1, keepdims=True)
     places = np.concatenate([places, rim])
     values = np.concatenate([values, values[hull.vertices]])
 
-    # Integrate linearly over triangles between the samples, and scale their area to the disc's
+    # Integrate over triangles, in which the BRDF is linear. They cover a polygon within the disc,
+    # so scale the integral to the area of the disc
     corners = Delaunay(places).simplices
     (ax, ay), (bx, by) = (places[corners[:, k]].T - places[corners[:, 0]].T for k in (1, 2))
     area = np.abs(ax * by - ay * bx)

@@ -1,6 +1,7 @@
-"""Tests whether an instrument counts phi_o from the mirror's side, so that it is off by 180°.
+"""Tests whether the azimuths phi_o of a measurement are off by 180°, as those of some instruments.
 
-The highlight then lies at the light, and a model fits the samples much better after turning phi_o.
+The highlight then lies towards the light, and a model fits the samples much better after phi_o is
+turned by 180°.
 """
 
 from dataclasses import replace
@@ -13,20 +14,21 @@ from brdfkit.model.samples import Samples
 from brdfkit.regression import losses, regress
 
 MODEL, STARTS = "ggx", 2
-FEWEST_SAMPLES, MOST_SAMPLES = 12, 1_000  # fewer prove nothing, and more are not needed
-MAX_ANGLE = 85  # degrees from the normal, beyond which few files are reliable
-TURN = np.array([-1.0, -1.0, 1.0])  # factors of a direction's components for a turn by 180°
-# Where values correlate more than this with nearness to the mirror direction, no fit is needed. 37
-# files were turned by 180°: those that are recognised have a correlation of -0.1 or less
+FEWEST_SAMPLES, MOST_SAMPLES = 12, 1_000  # smallest and largest number of samples in the test
+MAX_ANGLE = 85  # degrees; in many files, samples at larger angles to the normal are unreliable
+TURN = np.array([-1.0, -1.0, 1.0])  # times a direction (x, y, z): turns it by 180° about the normal
+# If the correlation of the values with the nearness to the mirror direction is larger, the azimuths
+# are right, and no model is fitted. Of 37 files with phi_o turned by 180°, all that the test
+# recognises have a correlation of -0.1 or less
 CLEAR_CORRELATION = 0.1
 
 
 def compute_turned_error_ratio(samples: Samples) -> float:
     """Return a model's error on samples with phi_o turned by 180°, over its error on the originals.
 
-    The ratio is above 1 for materials with a highlight in the mirror direction. It is at least 0.35
-    for CUReT's materials that are brightest towards the light, and, unless noise hides it, below
-    0.2 where the instrument counts phi_o from the mirror's side. It is NaN for too few samples, and
+    The ratio is above 1 for materials with a highlight in the mirror direction, and at least 0.35
+    for CUReT's materials that are brightest towards the light. Where the azimuths of a measurement
+    are off by 180°, it is below 0.2, unless noise hides this. It is NaN for too few samples, and
     where values clearly become larger towards the mirror direction.
     """
     samples = samples.at(samples.valid)
@@ -36,7 +38,7 @@ def compute_turned_error_ratio(samples: Samples) -> float:
     inside = samples.within(MAX_ANGLE)
     if (
         inside.sum() < FEWEST_SAMPLES
-        or _correlate_with_mirror(samples.at(inside)) > CLEAR_CORRELATION
+        or _compute_mirror_correlation(samples.at(inside)) > CLEAR_CORRELATION
     ):
         return np.nan
     turned = replace(samples, wo=samples.wo * TURN)
@@ -44,7 +46,7 @@ def compute_turned_error_ratio(samples: Samples) -> float:
     return turned_error / error if error > 0 else np.nan
 
 
-def _correlate_with_mirror(samples: Samples) -> float:
+def _compute_mirror_correlation(samples: Samples) -> float:
     """Return how strongly values rise towards the mirror direction: a correlation, -1 to 1."""
     values = samples.values.mean(axis=1)
     rows = values > 0

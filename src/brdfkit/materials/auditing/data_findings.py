@@ -1,6 +1,6 @@
-"""Warns in sentences of doubtful properties of a measurement, for its audit and for every fit.
+"""Warns in sentences of doubtful properties of a measurement.
 
-The tests take milliseconds.
+Audits and fits print these warnings. The tests take milliseconds, so that every fit can run them.
 """
 
 import math
@@ -27,62 +27,67 @@ from brdfkit.materials.measured.coverage import is_in_plane
 from brdfkit.model.samples import Samples
 from brdfkit.regression.albedo import format_share
 
-# Values are not reciprocal if the median difference is larger, of at least this number of pairs
+# Values are reported as not reciprocal if the relative difference of f(wi, wo) and f(wo, wi) is
+# larger in the median of at least FEWEST_PAIRS pairs
 RECIPROCITY_ERROR, FEWEST_PAIRS = 0.1, 20
-# The median difference of two values that are equal but for noise, over this noise
+# Median difference of two values that should be equal, over the standard deviation of their noise
 NOISE_TO_DIFFERENCE = 0.6745 * math.sqrt(2)
 # Values fall towards the horizon if the grazing ratio is below the first number, and a material is
-# retroreflective if the retroreflection ratio is above the second (`ratios.py`)
+# retroreflective if the retroreflection ratio is above the second. `ratios.py` computes both ratios
 GRAZING_BELOW, RETROREFLECTIVE = 0.5, 5
-# The highlight is at the light if the backward ratio is above the first number, or if backward and
-# retroreflection ratio are above the two others; rough plaster has 3.5 and 1.6
+# The highlight lies towards the light if the backward ratio exceeds BACKWARD, or if backward and
+# retroreflection ratio exceed the two numbers of BACKWARD_WITH_LOBE. `ratios.py` computes both;
+# rough plaster, with ratios of 3.5 and 1.6, is not reported
 BACKWARD, BACKWARD_WITH_LOBE = 5, (2, 2.5)
-# It is so, too, if a model fits turned samples better: if the error ratio is below the second
-# number, and the backward ratio not below the first
+# The highlight also lies towards the light if the backward ratio is at least LEAST_BACKWARD, and
+# turning phi_o by 180° multiplies the error of a fitted model by less than TURNED_ERROR_BELOW
 LEAST_BACKWARD, TURNED_ERROR_BELOW = 0.9, 0.3
 SAME_ANGLE = 1.0  # degrees; angles of incidence that differ by less count as equal
-ZERO_SHARE = 0.01  # a larger share of samples that are 0 is reported
-MOST_EQUAL_NEGATIVE = 4  # a larger number of values with the same negative whole number is reported
+ZERO_SHARE = 0.01  # a larger share of samples that are exactly 0 is reported
+# If more values than this equal the same negative whole number, such as -9999, it is reported as a
+# mark of missing data
+MOST_EQUAL_NEGATIVE = 4
 # An albedo above the first or below the second number, at incidences below OBLIQUE [degrees], means
 # that the unit is wrong
 LARGEST_ALBEDO, SMALLEST_ALBEDO = 1.25, 1e-3
 OBLIQUE = 60
-ALONG_NORMAL = math.cos(math.radians(5))  # directions with a larger cosine are along the normal
+# Directions whose cosine to the normal is larger count as directions along the normal
+ALONG_NORMAL = math.cos(math.radians(5))
 
-# The sentences on each material, which fits of many models ask for
+# The warnings on each material, kept because every fit to the same material needs them again
 _cache: WeakKeyDictionary[Measured, dict[str, str]] = WeakKeyDictionary()
 
 
 def list_data_findings(data: Measured, max_angle: float = 90.0) -> tuple[str, ...]:
-    """Return a sentence on each doubtful property of a `Measured` that is found quickly.
+    """Return a sentence on each doubtful property of a `Measured` that quick tests reveal.
 
     `max_angle` [degrees] is the largest angle to the normal of the samples that a fit uses; faults
     beyond it are not reported.
     """
     if data not in _cache:
-        _cache[data] = {topic: text for topic, text in _describe_findings(data).items() if text}
+        _cache[data] = {topic: text for topic, text in _find_faults(data).items() if text}
     sentences = _cache[data]
     return tuple(s for topic, s in sentences.items() if topic != "horizon" or max_angle > GRAZING)
 
 
-def _describe_findings(data: Measured) -> dict[str, str]:
-    """Test a `Measured` for faults of all kinds; return a sentence on each, or "", by its topic."""
+def _find_faults(data: Measured) -> dict[str, str]:
+    """Test a `Measured` for each kind of fault; return a sentence on it by its topic, or ""."""
     samples = draw_samples(data)
-    cosine = _describe_cosine(data)
+    cosine = _warn_of_cosine_factor(data)
     return {
-        "azimuth": _describe_backward_highlight(data, samples),
+        "azimuth": _warn_of_backward_highlight(data, samples),
         "cosine": cosine,
-        "reciprocity": "" if cosine else _describe_reciprocity(data),
-        "horizon": "" if cosine else _describe_horizon(samples),
-        "plane": _describe_plane(samples),
-        "incidence": _describe_single_incidence(samples),
-        "zero": _describe_zeros(samples),
-        "sentinel": _describe_sentinel(samples),
-        "unit": _describe_unit(data),
+        "reciprocity": "" if cosine else _warn_of_broken_reciprocity(data),
+        "horizon": "" if cosine else _warn_of_dark_horizon(samples),
+        "plane": _warn_of_single_plane(samples),
+        "incidence": _warn_of_single_incidence(samples),
+        "zero": _warn_of_zeros(samples),
+        "sentinel": _warn_of_missing_value_mark(samples),
+        "unit": _warn_of_wrong_unit(data),
     }
 
 
-def _describe_backward_highlight(data: Measured, samples: Samples) -> str:
+def _warn_of_backward_highlight(data: Measured, samples: Samples) -> str:
     """Return a warning of retroreflection, or of azimuths that are off by 180°, or ""."""
     ratio, near_light = compute_backward_ratio(samples), compute_retroreflection_ratio(samples)
     mendable = can_mend(data, "mirror_azimuth")
@@ -114,7 +119,7 @@ def _describe_backward_highlight(data: Measured, samples: Samples) -> str:
     return ""
 
 
-def _describe_cosine(data: Measured) -> str:
+def _warn_of_cosine_factor(data: Measured) -> str:
     """Return a warning of values that seem to be the BRDF times cos theta_o, or ""."""
     why = explain_suspected_cosine(data)
     if not why:
@@ -125,7 +130,7 @@ def _describe_cosine(data: Measured) -> str:
     return f"the values seem to be the BRDF times cos theta_o, because {why}{mend}"
 
 
-def _describe_reciprocity(data: Measured) -> str:
+def _warn_of_broken_reciprocity(data: Measured) -> str:
     """Return a warning of values that are not reciprocal to within their noise, or ""."""
     difference = compare_reciprocal(data)
     if difference.pairs < FEWEST_PAIRS or not difference.median > RECIPROCITY_ERROR:
@@ -139,7 +144,7 @@ def _describe_reciprocity(data: Measured) -> str:
     )
 
 
-def _describe_horizon(samples: Samples) -> str:
+def _warn_of_dark_horizon(samples: Samples) -> str:
     """Return a warning of values that fall towards the horizon, which is rare, or ""."""
     ratio = compute_grazing_ratio(samples)
     if not ratio < GRAZING_BELOW:
@@ -151,7 +156,7 @@ def _describe_horizon(samples: Samples) -> str:
     )
 
 
-def _describe_plane(samples: Samples) -> str:
+def _warn_of_single_plane(samples: Samples) -> str:
     """Return a warning of samples that all lie in the plane of incidence, or ""."""
     oblique = (samples.wi[:, 2] < ALONG_NORMAL) & (samples.wo[:, 2] < ALONG_NORMAL)
     oblique &= samples.valid
@@ -163,7 +168,7 @@ def _describe_plane(samples: Samples) -> str:
     )
 
 
-def _describe_single_incidence(samples: Samples) -> str:
+def _warn_of_single_incidence(samples: Samples) -> str:
     """Return a warning of samples that all have the same angle of incidence, or ""."""
     angles = np.degrees(np.arccos(np.clip(samples.wi[samples.valid, 2], -1, 1)))
     if len(angles) < 2 or np.ptp(angles) > SAME_ANGLE:
@@ -174,7 +179,7 @@ def _describe_single_incidence(samples: Samples) -> str:
     )
 
 
-def _describe_zeros(samples: Samples) -> str:
+def _warn_of_zeros(samples: Samples) -> str:
     """Return a warning of samples that are 0 in all channels, which no surface is, or ""."""
     share = (samples.values[samples.valid] == 0).all(axis=1).mean()
     if not share > ZERO_SHARE:
@@ -183,7 +188,7 @@ def _describe_zeros(samples: Samples) -> str:
     return f"{percent} of the samples are exactly 0: probably clipped, or not measured"
 
 
-def _describe_sentinel(samples: Samples) -> str:
+def _warn_of_missing_value_mark(samples: Samples) -> str:
     """Return a warning of a mark for missing values, such as many values of -9999, or ""."""
     values = samples.values[samples.valid]
     whole = (values < 0) & (values == np.round(values))
@@ -197,7 +202,7 @@ def _describe_sentinel(samples: Samples) -> str:
     )
 
 
-def _describe_unit(data: Measured) -> str:
+def _warn_of_wrong_unit(data: Measured) -> str:
     """Return a warning of a wrong unit, if the albedo is above 1 or nearly 0, or ""."""
     albedo = data.rgb.albedo
     angles = zip(albedo.theta_i, albedo.means, strict=False)

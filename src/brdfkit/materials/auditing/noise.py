@@ -12,7 +12,7 @@ from brdfkit.materials.measured import Measured
 
 TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, for a normal distribution
 FEWEST_DIFFERENCES = 20  # an estimate needs at least this number of differences
-LEAST_NOISE = 1e-6  # if all values differ by less, they are copies of a single measurement
+LEAST_NOISE = 1e-6  # smaller relative noise means that mirrored values are copies of each other
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ def estimate_noise(data: Measured) -> Noise:
     """Estimate the `Noise` of a measurement.
 
     Standard errors that it states are used. Otherwise the noise is estimated from differences that
-    should be 0: those of mirrored samples, or fourth differences along phi_d of a table.
+    should be 0: between mirrored samples, or fourth differences along phi_d of a table.
     """
     if data.standard_error is not None:
         values = np.where(data.values == 0, np.nan, data.values)
@@ -44,7 +44,8 @@ def estimate_noise(data: Measured) -> Noise:
         return Noise(noise, "fourth differences along phi_d")
     unknown = (np.nan,) * len(data.channels)
 
-    # Compare scattered samples that mirror each other; √2: a difference has the noise of two values
+    # Compare scattered samples that mirror each other. Both values are noisy, so their difference
+    # has √2 times the noise of one
     samples = draw_valid_samples(data)
     rows, values = find_mirrored_pairs(samples, data.anisotropic), samples.values
     sigmas = tuple(
@@ -59,15 +60,17 @@ def estimate_noise(data: Measured) -> Noise:
 
 
 def _compute_fourth_differences(f: FloatArray) -> FloatArray:
-    """Return fourth differences (n, channels) along phi_d of a table's values `f`, over the values.
+    """Return relative fourth differences (n, channels) along phi_d of a table's values `f`.
 
-    They are scaled to have the standard deviation of one value. The fourth difference of a smooth
-    BRDF is 10⁻⁵ of its value, whereas its second difference reaches 10⁻³ in a highlight.
+    They are divided by the values, and scaled so that their standard deviation is the relative
+    noise of one value. Without noise they are only 10⁻⁵, whereas second differences reach 10⁻³ in a
+    highlight.
     """
     before, behind = f[..., :-4, :] + f[..., 4:, :], f[..., 1:-3, :] + f[..., 3:-1, :]
     middle = f[..., 2:-2, :]
     with np.errstate(divide="ignore", invalid="ignore"):
-        # √70 is the root of the sum of the squared factors 1, -4, 6, -4, 1
+        # The noise of a fourth difference is √70 times the noise of a value: the root of the sum of
+        # the squares of its factors 1, -4, 6, -4, 1
         return ((before - 4 * behind + 6 * middle) / middle / np.sqrt(70)).reshape(-1, f.shape[-1])
 
 

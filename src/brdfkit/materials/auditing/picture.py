@@ -20,10 +20,10 @@ from brdfkit.model.samples import Table
 
 SIZE = 12.6, 6.8  # inches
 GREY = "0.45"  # colour of legend entries that stand for all channels
-COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2"}  # by channel; others are black
+COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2"}  # of channels; all others are black
 TICKS = np.array([0, 1, 5, 10, 20, 40, 60, 90])  # theta_h [degrees] at the ticks of its axis
-# The scale of the albedo ends at this multiple of the interpolated BRDF's albedo, if the albedo of
-# the samples alone is larger
+# The axis of the albedo reaches to the albedo of the samples alone, but at most to this multiple of
+# the interpolated BRDF's albedo
 LARGEST_RATIO = 4
 FAINT_OPACITY = 0.35  # opacity of cells that were not measured
 
@@ -56,19 +56,19 @@ def _draw_title(figure: Figure, audit: Any) -> None:
 
 
 def _draw_slice(figure: Any, axes: Any, data: Measured) -> None:
-    """Draw the luminance over theta_h and theta_d at phi_d ≈ 90°, hatched where not measured."""
+    """Draw the BRDF's luminance over theta_h and theta_d at phi_d ≈ 90°; hatch unmeasured cells."""
     # Select the cells at phi_d ≈ 90°
     table = data.table
     across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
     cells = (0,) * table.anisotropic + (slice(None), slice(None), across)
     values = luminance(table.filled_values[cells])
-    known = is_measured(data, table, cells)
+    known = find_measured_cells(data, table, cells)
 
-    # Draw the cells; the axis of theta_h is linear in its square root, as in a table
+    # Draw the cells; the axis is linear in the square root of theta_h, in which the cells are even
     axes.patch.set(facecolor="0.92", hatch="////", edgecolor="0.75", linewidth=0)
     norm = make_colour_scale(values[known] if known.any() else values)
     image = axes.imshow(
-        np.maximum(values, 0.99 * norm.vmin).T,  # so that 0 gets the colour for "below the scale"
+        np.maximum(values, 0.99 * norm.vmin).T,  # a logarithmic scale would leave zeros blank
         norm=norm,
         alpha=np.where(known, 1, FAINT_OPACITY).T,
         extent=(0, 1, 0, 90),
@@ -92,7 +92,7 @@ def _draw_slice(figure: Any, axes: Any, data: Measured) -> None:
         bar.ax.yaxis.set_minor_formatter("{x:.2g}")
 
 
-def is_measured(data: Measured, table: Table, cells: Any) -> BoolArray:
+def find_measured_cells(data: Measured, table: Table, cells: Any) -> BoolArray:
     """Return a mask of the cells of a table that were measured, or are near a measured sample.
 
     `cells` is an index of the table, which selects a slice.
@@ -128,7 +128,7 @@ def _draw_albedo(axes: Any, audit: Any) -> None:
     if not measured.all():
         axes.plot([], ":", color=GREY, linewidth=1.8, label="extrapolated")
 
-    # Draw the circles
+    # Draw circles for the samples alone; the axis of the albedo ends at `top`
     top = 1.12 * albedo.values.max() or 1.0
     if samples:
         top = max(top, 1.12 * min(samples.values.max(), LARGEST_RATIO * albedo.values.max()))

@@ -9,27 +9,31 @@ import numpy as np
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.model.samples import Samples
 
-# The smallest number of samples of each median, in general and for the backward ratio, which also
-# serves instruments that take large steps
+# Smallest numbers of samples of which a median is computed: in general, and for the backward ratio,
+# which must also work for instruments that measure at few angles
 FEWEST_SAMPLES, FEWEST_IN_LARGE_STEPS = 10, 3
-# The grazing ratio compares directions beyond the first angle to the normal with those between the
-# two others [degrees]
+# The grazing ratio compares the BRDF at angles to the normal beyond GRAZING degrees with the BRDF
+# between the two angles of STEEP [degrees]
 GRAZING, STEEP = 80, (60, 70)
-# The retroreflection ratio compares views within NEAR_LIGHT of the light with views at least this
-# far from the light, the mirror direction and the horizon [degrees]
+# The retroreflection ratio compares views within NEAR_LIGHT degrees of the light with views that
+# are at least FROM_LIGHT, FROM_MIRROR and FROM_HORIZON degrees from the light, the mirror direction
+# and the horizon
 NEAR_LIGHT = 5
 FROM_LIGHT, FROM_MIRROR, FROM_HORIZON = 20, 30, 15
-# The backward ratio compares views within this angle [degrees] of the light and of the mirror
+# The backward ratio compares views within this angle [degrees] of the light with views within the
+# same angle of the mirror direction
 LARGE_STEP = 10
-OBLIQUE = 29.5  # smallest incidence of both [degrees], below 30 because files round angles
+# Smallest angle of incidence [degrees] of samples in the retroreflection and the backward ratio; it
+# is a little below 30, because files round angles
+OBLIQUE = 29.5
 
 
 def compute_grazing_ratio(samples: Samples) -> float:
     """Return the median BRDF beyond 80° from the normal over the median between 60° and 70°.
 
-    The larger angle of each pair of directions counts. The BRDF of most surfaces stays equal or
+    The larger one of the angles of light and view counts. The BRDF of most surfaces stays equal or
     rises towards the horizon. The ratio is small if a goniometer's spot is larger than the sample,
-    or if somebody filled unmeasured rows by a line down to 0.
+    or if somebody filled in unmeasured values that fall to 0.
     """
     cosine = np.minimum(samples.wi[:, 2], samples.wo[:, 2])
     beyond, below, above = map(cos_degrees, (GRAZING, *STEEP))
@@ -79,10 +83,11 @@ def cos_degrees(degrees: float) -> float:
 def _divide_medians(
     samples: Samples, above: BoolArray, below: BoolArray, fewest: int = FEWEST_SAMPLES
 ) -> float:
-    """Return the median value of some samples over the median value of others.
+    """Return the median value of some samples, divided by the median value of others.
 
-    `above` and `below` are the masks (n,) of the two groups, of which valid samples count, with
-    their mean over the channels. The result is NaN if one group has fewer than `fewest` samples.
+    The mask `above` (n,) selects the samples of the numerator, `below` those of the denominator.
+    Valid samples count, with their mean over the channels. The result is NaN if one of the two
+    medians has fewer than `fewest` samples.
     """
     values = [samples.values[samples.valid & rows] for rows in (above, below)]
     if min(map(len, values)) < fewest:

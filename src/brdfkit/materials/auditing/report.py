@@ -11,13 +11,16 @@ from brdfkit.materials.auditing.symmetries import Difference
 from brdfkit.materials.measured.coverage import Coverage
 from brdfkit.materials.measured.spectrum_to_rgb import format_channels
 
-MOST_SPIKES = 3  # number of spikes that are described; the others are counted
+MOST_SPIKES = 3  # largest number of spikes that are described one by one; the others are counted
 NEGATIVE_SHARE = 0.01  # a larger share of negative values is reported as a finding
-LARGEST_ALBEDO = 1.001  # a larger albedo is reported; the quadrature is accurate to 10⁻³
+LARGEST_ALBEDO = 1.001  # a larger albedo is reported; the quadrature has an error of up to 10⁻³
 
 
 def describe_audit(audit: Any) -> dict[str, str]:
-    """Describe what was measured and how well, by the results of an `Audit`: texts by heading."""
+    """Describe the results of an `Audit`: what was measured, and how well.
+
+    The texts are returned in a dictionary, by their headings.
+    """
     unit = "cells" if audit.data.is_table else "samples"
     below = audit.size - audit.above
     beneath = f"; {below:,} at or below the horizon" if below else ""
@@ -26,9 +29,9 @@ def describe_audit(audit: Any) -> dict[str, str]:
         "kind": audit.kind,
         "channels": format_channels(audit.channels),
         "valid": f"{audit.valid:,} of {audit.above:,} {unit}, {missing:,} not measured{beneath}",
-        "negative": f"{_describe_negative(audit)}; exactly 0: {audit.zero:,}",
-        "BRDF": _describe_range(audit),
-        "angles": f"θi {_join_angles(audit.theta_i)}; θo {_join_angles(audit.theta_o)}",
+        "negative": f"{_describe_negative_values(audit)}; exactly 0: {audit.zero:,}",
+        "BRDF": _describe_value_range(audit),
+        "angles": f"θi {_format_angles(audit.theta_i)}; θo {_format_angles(audit.theta_o)}",
         "coverage": _describe_coverage(audit.coverage, audit.data.is_table),
         "reciprocity": _describe_reciprocity(audit),
         "mirror symmetry": _describe_difference(audit.mirror, "no mirrored pairs"),
@@ -51,7 +54,7 @@ def list_findings(audit: Any) -> tuple[str, ...]:
     return (*findings, *list_data_findings(audit.data))
 
 
-def _describe_negative(audit: Any) -> str:
+def _describe_negative_values(audit: Any) -> str:
     """Describe how many of the values are below 0, and at which angles to the normal."""
     values = audit.valid * len(audit.channels)
     count = f"{audit.negative:,} of {values:,} values"
@@ -64,7 +67,7 @@ def _describe_negative(audit: Any) -> str:
     )
 
 
-def _describe_range(audit: Any) -> str:
+def _describe_value_range(audit: Any) -> str:
     """Describe the smallest, largest and median BRDF value."""
     if math.isnan(audit.smallest):
         return "nowhere above 0"
@@ -84,8 +87,8 @@ def _describe_coverage(coverage: Coverage, is_table: bool) -> str:
     )
 
 
-def _join_angles(angles: tuple[float, ...]) -> str:
-    """Return a text that lists angles [degrees], or, if they are two, gives a range."""
+def _format_angles(angles: tuple[float, ...]) -> str:
+    """Return a text that lists angles [degrees]; two angles become a range."""
     if len(angles) > 2:
         return ", ".join(f"{a:g}" for a in angles) + "°"
     return " to ".join(f"{a:g}°" for a in angles)
@@ -131,26 +134,29 @@ def _describe_noise(noise: Noise) -> str:
 
 
 def _describe_albedos(audit: Any) -> dict[str, str]:
-    """Describe the albedo, by heading: by the interpolated BRDF, and by the samples alone."""
-    ends = _join_albedo_ranges(audit.albedo)
+    """Describe the albedo of the interpolated BRDF, and, if it is known, that of the samples alone.
+
+    The texts are returned in a dictionary, by their headings.
+    """
+    ends = _format_albedo_ranges(audit.albedo)
     rows = {"albedo": f"{ends}, over θi 0° to {audit.albedo.theta_i[-1]:g}°"}
     if audit.albedo_of_samples:
         low, high = audit.albedo_of_samples.theta_i[[0, -1]]
-        ends = _join_albedo_ranges(audit.albedo_of_samples)
+        ends = _format_albedo_ranges(audit.albedo_of_samples)
         rows["albedo of samples"] = (
             f"{ends}, over θi {low:g}° to {high:g}°, linear between the samples"
         )
     return rows
 
 
-def _join_albedo_ranges(albedo: Albedo) -> str:
+def _format_albedo_ranges(albedo: Albedo) -> str:
     """Return a text with the smallest and the largest albedo of each channel."""
     columns = zip(albedo.channels, albedo.values.T, strict=True)
     return ", ".join(f"{name} {a.min():.3f} to {a.max():.3f}" for name, a in columns)
 
 
 def _describe_excess_albedo(audit: Any) -> list[str]:
-    """Return a sentence on each kind of albedo that is above 1 somewhere."""
+    """Return a sentence on each albedo, interpolated or of the samples alone, that exceeds 1."""
     sentences = []
     for albedo, what in (
         (audit.albedo, "albedo, interpolated," if audit.albedo_of_samples else "albedo"),

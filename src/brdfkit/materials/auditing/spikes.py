@@ -14,9 +14,10 @@ from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Table
 from brdfkit.model.samples.coordinates import compute_coordinates
 
-# A spike exceeds its largest neighbour by this factor; paints, cloth and stone reach 3.4
+# A spike exceeds its largest neighbour by at least this factor. Factors up to 3.4 occur in good
+# measurements of paints, cloth and stone
 LEAST_FACTOR = 4
-NEIGHBOURS = 6  # number of neighbours of a scattered sample
+NEIGHBOURS = 6  # number of neighbours with which a scattered sample is compared
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,8 @@ class Spike:
 
     `theta_i`, `theta_o`: angles to the normal of light and view [degrees]; `delta_phi`: azimuth
     between them [degrees], 180 in the mirror direction; `value`: mean over the channels [sr⁻¹];
-    `factor`: f cos θi cos θo over the largest one of its neighbours, where f is the value.
+    `factor`: f cos θi cos θo of the sample, where f is its value, over the largest such product of
+    its neighbours.
     """
 
     theta_i: float
@@ -48,7 +50,8 @@ def find_spikes(data: Measured) -> tuple[Spike, ...]:
     of a table's cell share a side with it; the neighbours of a sample are the 6 samples with the
     nearest half and difference vectors.
     """
-    # Find the largest neighbour of each value, bounded below lest all values beside zeros be spikes
+    # Find the largest neighbour of each value. It gets a lower bound, because otherwise every value
+    # beside zeros would be a spike
     samples = data.samples
     brightness = np.where(samples.valid, samples.values.mean(axis=1), np.nan)
     projected = brightness * samples.wi[:, 2] * samples.wo[:, 2]
@@ -58,7 +61,7 @@ def find_spikes(data: Measured) -> tuple[Spike, ...]:
         around = _find_largest_nearby(data, projected)
     around = np.maximum(around, 1e-3 * abs(np.nanmedian(projected)))
 
-    # Sort the spikes by their factor
+    # Sort the spikes by their ratio to the largest neighbour, the worst first
     stands_out = (projected > LEAST_FACTOR * around) & (brightness > np.nanmedian(brightness))
     worst = np.flatnonzero(stands_out)
     worst = worst[np.argsort(-projected[worst] / around[worst])]
@@ -71,7 +74,7 @@ def find_spikes(data: Measured) -> tuple[Spike, ...]:
 def _find_largest_adjacent(table: Table, values: FloatArray) -> FloatArray:
     """Return for each cell the largest of `values` (n,) in the cells that share a side with it.
 
-    The result (n,) is NaN where these have no values.
+    The result (n,) is NaN where none of these cells has a value.
     """
     f = values.reshape(table.shape)
     around = np.full(f.shape, np.nan)
@@ -79,7 +82,7 @@ def _find_largest_adjacent(table: Table, values: FloatArray) -> FloatArray:
         here, there = np.moveaxis(around, axis, 0), np.moveaxis(f, axis, 0)
         np.fmax(here[1:], there[:-1], out=here[1:])
         np.fmax(here[:-1], there[1:], out=here[:-1])
-        if axis not in (f.ndim - 3, f.ndim - 2):  # the ends of an axis of azimuths are neighbours
+        if axis not in (f.ndim - 3, f.ndim - 2):  # azimuths are periodic: both ends are neighbours
             np.fmax(here[0], there[-1], out=here[0])
             np.fmax(here[-1], there[0], out=here[-1])
     return around.reshape(-1)

@@ -8,7 +8,7 @@ from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Samples, Table
 
 MOST_SAMPLES = 50_000  # largest number of samples, or cells, that are drawn
-MOST_CELLS = 200_000  # largest number of cells of a table that are compared with each other
+MOST_CELLS = 200_000  # largest number of cells of a table, approximately, that are compared
 
 
 def draw_row_numbers(count: int) -> IntArray:
@@ -40,6 +40,6 @@ def draw_valid_samples(data: Measured) -> Samples:
 
 
 def thin_out_theta_h(table: Table) -> FloatArray:
-    """Return a table's values, thinned out along theta_h if they are many, to save time."""
+    """Return a table's values; of a large table, only every few theta_h, to save time."""
     step = -(-table.values[..., 0].size // MOST_CELLS)
     return table.values[..., ::step, :, :, :]

@@ -39,7 +39,7 @@ NOTHING = Difference(0, np.nan, np.nan)
 def compare_reciprocal(data: Measured) -> Difference:
     """Return how far values f(wi, wo) and f(wo, wi) of a `Measured` differ, as a `Difference`."""
     if data.is_table:
-        # Exchanging wi and wo adds π to phi_d
+        # Compare the two halves of the axis of phi_d, because exchanging wi and wo adds π to phi_d
         half, odd = divmod(data.table.shape[-1], 2)
         if data.table.phi_d_period == np.pi or odd:
             return NOTHING
@@ -61,7 +61,8 @@ def compare_mirrored(data: Measured) -> Difference:
         return NOTHING
     if data.is_table:
         f = thin_out_theta_h(data.table)
-        half = f.shape[-2] // 2  # number of cells on one side; phi_d is compared with -phi_d
+        # Compare values at phi_d with values at -phi_d, across the plane of incidence
+        half = f.shape[-2] // 2
         return compare_values(f[..., :half, :], f[..., : -half - 1 : -1, :])
     if data.has_lookup:
         mirrored = (w * [1, -1, 1] for w in (data.samples.wi, data.samples.wo))
@@ -90,7 +91,9 @@ def find_swapped_pairs(samples: Samples, anisotropic: bool) -> IntArray:
     images = map_pairs_to_points(samples.wo, samples.wi, anisotropic)
     if not anisotropic:
         images[np.abs(images[:, 0] - images[:, 1]) < 2 * SAME_ANGLE] = np.inf
-    return _match_images(map_pairs_to_points(samples.wi, samples.wo, anisotropic), images)
+    return _pair_points_with_images(
+        map_pairs_to_points(samples.wi, samples.wo, anisotropic), images
+    )
 
 
 def find_mirrored_pairs(samples: Samples, anisotropic: bool) -> IntArray:
@@ -101,10 +104,10 @@ def find_mirrored_pairs(samples: Samples, anisotropic: bool) -> IntArray:
     if anisotropic:
         return np.empty((0, 2), int)
     points = map_pairs_to_points(samples.wi, samples.wo)
-    return _match_images(points, points * [1, 1, 1, -1])
+    return _pair_points_with_images(points, points * [1, 1, 1, -1])
 
 
-def _match_images(points: FloatArray, images: FloatArray) -> IntArray:
+def _pair_points_with_images(points: FloatArray, images: FloatArray) -> IntArray:
     """Find pairs (n, 2) of different rows of `points` where one is the image of the other.
 
     `images` are the images of the points by a symmetry; rows that are not finite are ignored. Each
@@ -121,7 +124,7 @@ def _match_images(points: FloatArray, images: FloatArray) -> IntArray:
 
 def compute_relative_differences(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the differences (a - b) / ½ (a + b) of positive values, as a flat array."""
-    both = (a > 0) & (b > 0)  # False also where one is NaN
+    both = (a > 0) & (b > 0)  # a comparison with NaN is False, so pairs with NaN are left out
     a, b = a[both], b[both]
     return 2 * (a - b) / (a + b)
 

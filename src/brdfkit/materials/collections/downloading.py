@@ -22,15 +22,16 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.collections import public
 from brdfkit.materials.collections.public import PART, Collection, ListedFile
 
-CHUNK = 2**18  # bytes that are written at once
-BLOCK = 2**22  # bytes per request; small blocks need many requests, whose number servers limit
-TIMEOUT = 30  # seconds to wait for an answer
+CHUNK = 2**18  # number of bytes that are written to disk at once
+BLOCK = 2**22  # number of bytes per request; it is large because servers limit the requests
+TIMEOUT = 30  # seconds to wait for a server's answer
 PARTIAL = 206  # HTTP status of an answer with a part of the file
-# Ask for bytes without compression, because positions count the bytes of the file
+# HTTP header that asks for the file's bytes without compression, so that positions can be computed
 PLAIN = {"Accept-Encoding": "identity"}
 RANGE_NOT_SATISFIABLE = 416  # HTTP status where the requested part begins at the file's end
 
-# A function that is called with the number of bytes done, and of all bytes if that is known
+# A function that reports progress: it gets the number of bytes done, and the number of all bytes or
+# None where it is unknown
 Report = Callable[[int, int | None], object]
 
 
@@ -48,7 +49,8 @@ def download(name: str, progress: Report | None = None) -> Path:
     owner = public.find_collection(name)
     listed = owner.files.get(name)
     if listed is None or not listed.url:
-        return public.find_file(name)  # the user has put it there, or an error explains how to
+        # Return the file that the user has put there, or raise an error that explains how to get it
+        return public.find_file(name)
     pooch.get_logger().setLevel("WARNING")
     with _explain_errors(listed, owner):
         pooch.retrieve(
@@ -85,7 +87,7 @@ def _explain_errors(listed: ListedFile, owner: Collection) -> Iterator[None]:
         raise BrdfkitError(
             f"{listed.name}: {host} does not give this file of its archive; {by_hand}."
         ) from error
-    except ValueError as error:  # pooch raises it where the checksum differs
+    except ValueError as error:  # pooch raises it for a file with another checksum
         raise BrdfkitError(
             f"{listed.name}: what {host} sent is not the file that was published (its "
             f"checksum differs), and was removed; run the command again, or {by_hand}."
@@ -116,16 +118,18 @@ class _Download:
     def _fetch_file(self, url: str, target: Path) -> None:
         """Download the file at `url` to `target`, resuming an interrupted download."""
         part = self.listed.path.with_name(self.listed.file + PART)
-        # Resume only if a checksum can prove that both parts belong to the same file
+        # Resume an interrupted download only if a checksum can prove that its parts fit together
         have = part.stat().st_size if self.listed.sha256 and part.is_file() else 0
         headers = PLAIN | ({"Range": f"bytes={have}-"} if have else {})
         with requests.get(url, headers=headers, stream=True, timeout=TIMEOUT) as answer:
             if answer.status_code != RANGE_NOT_SATISFIABLE:
                 answer.raise_for_status()
-                self._append_answer(answer, part, have if answer.status_code == PARTIAL else 0)
+                self._append_answer_to_file(
+                    answer, part, have if answer.status_code == PARTIAL else 0
+                )
         os.replace(part, target)
 
-    def _append_answer(self, answer: requests.Response, part: Path, have: int) -> None:
+    def _append_answer_to_file(self, answer: requests.Response, part: Path, have: int) -> None:
         """Append the server's `answer` to the incomplete file `part`, which has `have` bytes."""
         length = answer.headers.get("Content-Length")
         total = have + int(length) if length else None
@@ -165,7 +169,7 @@ class RemoteFile(io.RawIOBase):
         headers = PLAIN | {"Range": f"bytes={first}-{last}"}
         with requests.get(self.url, headers=headers, stream=True, timeout=TIMEOUT) as answer:
             answer.raise_for_status()
-            if answer.status_code != PARTIAL:  # the whole archive would come, perhaps gigabytes
+            if answer.status_code != PARTIAL:  # the server would send all of perhaps gigabytes
                 raise BadZipFile("the server sends no parts")
             return answer.content, answer.headers["Content-Range"]
 

@@ -14,7 +14,7 @@ from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import compute_sha256
 from brdfkit.materials import formats
 
-PART = ".part"  # suffix of a file that is not downloaded completely
+PART = ".part"  # suffix of a file while its download is incomplete
 
 
 @dataclass(frozen=True)
@@ -23,8 +23,8 @@ class ListedFile:
 
     `name`: name of the material for `brdfkit.load`, such as ``merl/alum-bronze``; `file`: name of
     the file in the collection's folder; `bytes`: size, or 0 where it is unknown; `sha256`:
-    checksum, or "" where it is unknown; `url`: address, or "" where it is unknown. In an address
-    with #, the file's name within a zip archive follows.
+    checksum, or "" where it is unknown; `url`: address, or "" where it is unknown. An address with
+    # is that of a zip archive, followed by the file's name in the archive.
     """
 
     name: str
@@ -95,7 +95,7 @@ def list_collections() -> dict[str, Collection]:
 
 
 def find_collection(name: str) -> Collection:
-    """Return the collection of this name, as in ``merl`` or ``merl/alum-bronze``.
+    """Return the collection with the `name` ``merl``, or of the material ``merl/alum-bronze``.
 
     Raises `BrdfkitError`, which proposes the closest name, where there is none.
     """
@@ -147,7 +147,10 @@ def _name_material(collection: str, file: str) -> str:
 
 
 def _make_collection(name: str, entry: dict[str, Any]) -> Collection:
-    """Make a `Collection` from its index `entry`, which lists the files or names their table."""
+    """Make a `Collection` from its index `entry`.
+
+    The entry lists the collection's files, or it names a table of text that lists them.
+    """
     rows, url = entry.pop("files"), entry.pop("url", "")
     if isinstance(rows, str):
         with (catalogue.find_data_folder() / rows).open(encoding="utf-8", newline="") as stream:

@@ -27,7 +27,7 @@ from brdfkit.core.files import COMPRESSED, GZIP
 from brdfkit.materials.formats._source import Source as Source
 from brdfkit.materials.formats._source import find_format_suffix
 
-HEAD = 4096  # number of bytes that are passed to the function `sniff` of a format
+HEAD = 4096  # number of a file's first bytes by which a format recognises the file
 
 
 @cache
@@ -50,7 +50,7 @@ def write(obj: Any, path: Path, beside: Path) -> None:
     suitable = [module for module in writers if find_format_suffix(path) in module.SUFFIXES]
     if not suitable:
         raise BrdfkitError(
-            f"{path}: no format with this suffix; written are {_list_names(writers)}."
+            f"{path}: no format with this suffix; written are {_list_format_names(writers)}."
         )
     with _open_for_writing(beside) as stream:
         try:
@@ -74,21 +74,24 @@ def _recognise_format(source: Source) -> ModuleType:
     """
     sniffed = [module for module in list_formats() if module.sniff(source.data[:HEAD])]
     named = [m for m in sniffed or list_formats() if source.suffix in m.SUFFIXES]
-    # Two formats have the suffix .dat: choose the one that holds many materials if one is named
+    # Two formats have the suffix .dat: choose the one whose files hold many materials if the path
+    # names one of them, otherwise the other
     named.sort(key=lambda m: getattr(m, "MANY", False) != (source.sample is not None))
     if len(sniffed) == 1:
         return sniffed[0]
-    if named:  # where no format recognises the content, this format's reader says what is wrong
+    if named:  # the suffix decides, and if this is no such file, the reader says what is wrong
         return named[0]
     if sniffed:
-        raise source.error(f"could be {_list_names(sniffed)}; rename it to one of these suffixes")
+        raise source.error(
+            f"could be {_list_format_names(sniffed)}; rename it to one of these suffixes"
+        )
     raise source.error(
-        f"is in no known format of materials; read are {_list_names(list_formats())}, each also "
-        "as .gz or .xz"
+        "is in no known format of materials; read are "
+        f"{_list_format_names(list_formats())}, each also as .gz or .xz"
     )
 
 
-def _list_names(modules: Iterable[ModuleType]) -> str:
+def _list_format_names(modules: Iterable[ModuleType]) -> str:
     return ", ".join(f"{module.NAME} ({' '.join(module.SUFFIXES)})" for module in modules)
 
 
@@ -103,7 +106,7 @@ def _open_for_writing(path: Path) -> Iterator[IO[bytes]]:
             yield raw
         elif path.suffix.lower() == GZIP:
             with gzip.GzipFile(filename="", mode="wb", fileobj=raw, mtime=0) as stream:
-                yield stream  # type: ignore[misc]  # GzipFile is a binary stream, but no IO
+                yield stream  # type: ignore[misc]  # mypy does not accept a GzipFile as an IO
         else:
             with lzma.open(raw, "wb", preset=1) as compressed:
                 yield compressed

@@ -22,7 +22,8 @@ from brdfkit.materials.measured.column_names import (
 )
 from brdfkit.materials.measured.long_form import parse_colour_name
 
-# Separators of the columns: the first of these in the line of names, or blanks if it has none
+# Columns are separated by the first of these characters that occurs in the line with the names of
+# the columns, or else by blanks
 DELIMITERS = "\t;,"
 UNITS = {"", *DEGREES, *RADIANS, *PER_STERADIAN, "nm"}
 WHOLE = re.compile(r"[-+]?[0-9]*([eE][-+]?[0-9]+)?")
@@ -57,15 +58,16 @@ def read_columns(source: Source) -> tuple[list[str], list[int], list[FloatArray]
             "'theta_i,phi_i,theta_o,phi_o,BRDF'"
         )
     delimiter = _choose_delimiter(header)
-    names, rows = _attach_units(split_fields(header), rows, delimiter)
-    named = [k for k, name in enumerate(names) if name]  # skip the index column of pandas
+    names, rows = _append_units_to_names(split_fields(header), rows, delimiter)
+    # Skip columns without a name, such as the index that pandas writes as the first column
+    named = [k for k, name in enumerate(names) if name]
     texts = [k for k in named if match_channel_column(names[k]) == "channel"]
     lines: list[int] = []
     data: list[list[float]] = []
     marks: dict[str, int] = {}
     for n, line in rows:
         fields = split_fields(line, delimiter)
-        if not any(fields):  # a row of delimiters alone, as spreadsheets write at the end
+        if not any(fields):  # spreadsheets write rows of delimiters alone at the end
             continue
         _refuse_split_numbers(source, n, fields, names, delimiter)
         source.require_column_count(n, fields, len(names))
@@ -114,7 +116,9 @@ def _choose_delimiter(header: str) -> str:
     return next((mark for mark in DELIMITERS if mark in header), " ")
 
 
-def _attach_units(names: list[str], rows: Lines, delimiter: str) -> tuple[list[str], Lines]:
+def _append_units_to_names(
+    names: list[str], rows: Lines, delimiter: str
+) -> tuple[list[str], Lines]:
     """Append units to the columns' names if the first row states them, and remove that row."""
     units = split_fields(rows[0][1], delimiter) if rows else []
     if len(units) != len(names) or not any(units) or not UNITS.issuperset(map(str.lower, units)):
@@ -138,10 +142,10 @@ def _refuse_split_numbers(
 
 
 def _require_one_decimal_mark(source: Source, line: int, text: str, marks: dict[str, int]) -> None:
-    """Raise `BrdfkitError` if numbers of the file contain both points and commas.
+    """Raise `BrdfkitError` if some numbers of the file contain points, and others commas.
 
-    One of them would then separate thousands. `text` are the fields of line number `line`. `marks`,
-    which is updated, has the first line with each mark.
+    One of the two would then separate thousands. `text` has the fields of line number `line`.
+    `marks` has the number of the first line with a point or a comma, and is updated.
     """
     marks |= {mark: line for mark in ",." if mark in text and mark not in marks}
     if len(marks) == 2:

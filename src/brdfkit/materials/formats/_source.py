@@ -16,14 +16,15 @@ from brdfkit.core.files import COMPRESSED, read_bytes
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured import Measured
 
-SPHERICAL = (np.pi / 2, 2 * np.pi, np.pi / 2, 2 * np.pi)  # limits of theta, phi, theta, phi [rad]
-ANGLE_TOLERANCE = 1e-3  # excess [rad] over a limit that is accepted: files round 90° to 1.5708
+# Largest absolute values [rad] of the angles theta and phi of one direction, then of the other
+SPHERICAL = (np.pi / 2, 2 * np.pi, np.pi / 2, 2 * np.pi)
+ANGLE_TOLERANCE = 1e-3  # rad; angles may exceed a limit by this much: files round 90° to 1.5708
 REMEDY = "mend the line or fetch the file again"
 
 
 @dataclass(frozen=True)
 class Source:
-    """A file that a format's reader gets, whose content is in memory.
+    """A file, with its content in memory, that the reader of a file format gets.
 
     `path`: path of the file; `sample`: text behind '#' in the path that the user gave, which names
     one of several materials, or None; `data`: content of the file as decompressed bytes.
@@ -44,7 +45,7 @@ class Source:
     @property
     def name(self) -> str:
         """The file's name without its suffixes."""
-        name = _strip_compression(self.path).name
+        name = _strip_compression_suffix(self.path).name
         return name[: -len(self.suffix)] if self.suffix else name
 
     @cached_property
@@ -69,8 +70,8 @@ class Source:
 
     @property
     def _all_lines(self) -> list[str]:
-        """All lines of the file as text, decoded from UTF-8, or from UTF-16 with a mark."""
-        # Spreadsheets write UTF-16 when they are asked to save "Unicode text"
+        """All lines of the file as text, decoded from UTF-8, or UTF-16 with a byte-order mark."""
+        # Spreadsheets write UTF-16 where the user chooses to save "Unicode text"
         wide = self.data.startswith((BOM_UTF16_LE, BOM_UTF16_BE))
         text = self.data.decode("utf-16" if wide else "utf-8-sig", errors="replace")
         return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
@@ -165,7 +166,8 @@ class Source:
             finite &= np.isfinite(standard_error).all(axis=1)
             details["standard_error"] = standard_error
         notes, name = dict(info or {}), name or self.name
-        if (masked := ~finite & valid).any():  # rows that the reader has not noted as masked
+        # Count the rows that are not finite, but only those that the reader has not masked itself
+        if (masked := ~finite & valid).any():
             notes["not finite"] = f"{masked.sum():,} of {len(finite):,} rows, masked"
         try:
             return Measured.from_samples(
@@ -187,12 +189,13 @@ class Source:
     def require_radians(
         self, lines: Sequence[int], angles: FloatArray, limits: Sequence[float]
     ) -> None:
-        """Raise `BrdfkitError` where `angles` (n, k) [rad], of either sign, exceed `limits` (k,).
+        """Raise `BrdfkitError` where the `angles` (n, k) exceed the `limits` (k,) [rad].
 
-        They are then probably in degrees. `lines` (n,) are the numbers of their lines.
+        They are then probably in degrees. Signs do not matter. `lines` (n,) are the numbers of the
+        lines with the angles.
         """
         limit = np.array(limits) + ANGLE_TOLERANCE
-        wrong = ~(np.abs(angles) <= limit)  # True for NaN, too
+        wrong = ~(np.abs(angles) <= limit)  # True also for NaN, which a test with > would accept
         if wrong.any():
             row, column = np.argwhere(wrong)[0]
             raise self.error(
@@ -207,14 +210,14 @@ def find_format_suffix(path: Path) -> str:
     >>> find_format_suffix(Path("copper.astm.xz"))
     '.astm'
     """
-    return _strip_compression(path).suffix.lower()
+    return _strip_compression_suffix(path).suffix.lower()
 
 
-def _strip_compression(path: Path) -> Path:
+def _strip_compression_suffix(path: Path) -> Path:
     return path.with_suffix("") if path.suffix.lower() in COMPRESSED else path
 
 
 def _parse_number(text: str) -> float:
-    if "_" in text:  # Python would read 1_0 as ten, but in a file it is an error
+    if "_" in text:  # Python reads 1_0 as the number ten, but in a file it is an error
         raise ValueError
     return float(text)

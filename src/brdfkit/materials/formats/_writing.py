@@ -11,7 +11,7 @@ from brdfkit.core.geometry.directions import to_angles
 from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Samples
 
-LARGEST_RATIO = 5  # the brightest sample is suspicious if it exceeds the next by a larger factor
+LARGEST_RATIO = 5  # the brightest sample is suspicious if it exceeds all others by more than this
 
 
 def require_measured(obj: object, name: str, anisotropic: bool = False) -> Measured:
@@ -56,7 +56,7 @@ def write_rows(
 ) -> None:
     """Write the lines of `header`, then the numbers in `columns` (n,) as rows, with all digits."""
     lines = "".join(f"{line}\n" for line in header)
-    # A name of a file that is no UTF-8 has surrogates in Python, which become "?"
+    # The name of a file may have characters that UTF-8 cannot encode: write "?" in their place
     stream.write(lines.encode(errors="replace"))
     np.savetxt(stream, np.stack(columns, axis=1), "%.17g", delimiter)
 

@@ -5,8 +5,8 @@
 
 - ``DIM``: the numbers of coordinates and of values in a row;
 - ``PARAM_IN``: the kind of coordinates, in whose names L is the light and V the view;
-- ``PARAM_OUT``: the kind of values. INV_STERADIAN_COSINE_FACTOR is the BRDF times cos theta_v:
-  divided by it, the real files are reciprocal, but not if they are divided by cos theta_l;
+- ``PARAM_OUT``: the kind of values. INV_STERADIAN_COSINE_FACTOR stands for the BRDF times cos
+  theta_v: known files become reciprocal if they are divided by it, but not by cos theta_l;
 - ``VS``: the kind of confidence interval of each value. 0 stands for none, 1 for one column behind
   the values with half the width, 2 for two columns with the ends. A single number belongs to the
   first value; the others have 0. Half the width is read as the standard error, because files do not
@@ -43,35 +43,40 @@ QUARTER, FULL = np.pi / 2, 2 * np.pi
 Directions = tuple[FloatArray, FloatArray]  # unit vectors to light and view, both (n, 3)
 
 
-def _from_projection(theta_l: FloatArray, x: FloatArray, y: FloatArray) -> Directions:
+def _make_directions_from_projection(
+    theta_l: FloatArray, x: FloatArray, y: FloatArray
+) -> Directions:
     return from_angles(theta_l, 0), from_angles(np.hypot(x, y), np.arctan2(y, x))
 
 
-def _from_spherical(
+def _make_directions_from_angles(
     theta_l: FloatArray, phi_l: FloatArray, theta_v: FloatArray, phi_v: FloatArray | float
 ) -> Directions:
     return from_angles(theta_l, phi_l), from_angles(theta_v, phi_v)
 
 
-def _from_half_difference(
+def _make_directions_from_half_difference(
     theta_h: FloatArray, phi_h: FloatArray | float, theta_d: FloatArray, phi_d: FloatArray
 ) -> Directions:
     view, light = from_half_difference(theta_h, theta_d, phi_d, phi_h)
     return light, view
 
 
-# Limits of the coordinates [rad] by the name of their kind, and the function that converts them
+# For each kind of coordinates, by its name in the file: the coordinates' largest absolute values
+# [rad], and the function that converts them to directions
 PARAM_IN: dict[str, tuple[tuple[float, ...], Callable[..., Directions]]] = {
-    "SPHERICAL_TL_PL_TV_PV": (SPHERICAL, _from_spherical),
-    "ISOTROPIC_TL_TV_PROJ_DPHI": ((QUARTER,) * 3, _from_projection),
+    "SPHERICAL_TL_PL_TV_PV": (SPHERICAL, _make_directions_from_angles),
+    "ISOTROPIC_TL_TV_PROJ_DPHI": ((QUARTER,) * 3, _make_directions_from_projection),
     "ISOTROPIC_TV_TL_DPHI": (
         (QUARTER, QUARTER, FULL),
-        lambda theta_v, theta_l, phi: _from_spherical(theta_l, phi, theta_v, 0),
+        lambda theta_v, theta_l, phi: _make_directions_from_angles(theta_l, phi, theta_v, 0),
     ),
-    "RUSIN_TH_PH_TD_PD": (SPHERICAL, _from_half_difference),
+    "RUSIN_TH_PH_TD_PD": (SPHERICAL, _make_directions_from_half_difference),
     "RUSIN_TH_TD_PD": (
         (QUARTER, QUARTER, FULL),
-        lambda theta_h, theta_d, phi_d: _from_half_difference(theta_h, 0, theta_d, phi_d),
+        lambda theta_h, theta_d, phi_d: _make_directions_from_half_difference(
+            theta_h, 0, theta_d, phi_d
+        ),
     ),
 }
 
@@ -95,16 +100,17 @@ def read(source: Source) -> Measured:
     intervals = _read_intervals(source, header.get("VS", "0"), len(channels))
     limits, to_directions = PARAM_IN[header["PARAM_IN"]]
 
-    # A row consists of coordinates, values and confidence intervals
+    # Split each row into coordinates, values and the columns of the confidence intervals
     data = source.parse_rows(source.lines, coordinates + len(channels) + sum(intervals))
     where, values, ends = np.split(data, [coordinates, coordinates + len(channels)], axis=1)
     source.require_radians([n for n, _ in source.lines], where, limits)
     # Convert to directions, BRDF values and standard errors
     wi, wo = to_directions(*where.T)
     factor, valid, notes = _find_value_factor(source, header, wo)
-    with np.errstate(over="ignore", invalid="ignore"):  # values that overflow are masked later
+    # Ignore overflow here: values that are not finite are masked later
+    with np.errstate(over="ignore", invalid="ignore"):
         values = values / factor
-        errors = _halve_intervals(ends / factor, intervals)
+        errors = _compute_half_widths(ends / factor, intervals)
     return source.make_measured_from_directions(
         wi,
         wo,
@@ -130,7 +136,7 @@ def write(obj: object, stream: IO[bytes]) -> None:
     channels = len(data.channels)
     columns, interval = [*where, *samples.values.T], "0"
     errors = None if data.standard_error is None else data.standard_error[valid]
-    # Errors that are not finite are not written, because a reader would mask their values
+    # Leave out standard errors if any is not finite, because `read` would mask the samples with it
     if errors is not None and np.isfinite(errors).all():
         columns += [*errors.T]
         interval = " ".join(["1"] * channels)
@@ -175,7 +181,7 @@ def _read_intervals(source: Source, text: str, channels: int) -> list[int]:
     return [int(kind) for kind in kinds] + [0] * (channels - len(kinds))
 
 
-def _halve_intervals(columns: FloatArray, intervals: Sequence[int]) -> FloatArray | None:
+def _compute_half_widths(columns: FloatArray, intervals: Sequence[int]) -> FloatArray | None:
     """Return half the width (n, channels) of each confidence interval, or None if any is missing.
 
     `intervals` has the number of `columns` of each channel: 1 with half the width, or 2 with the
@@ -191,10 +197,10 @@ def _halve_intervals(columns: FloatArray, intervals: Sequence[int]) -> FloatArra
 def _find_value_factor(
     source: Source, header: dict[str, str], wo: FloatArray
 ) -> tuple[FloatArray | float, BoolArray | bool, dict[str, str]]:
-    """Return the factor (n, 1) by which to divide the values to get the BRDF.
+    """Return the factor (n, 1) by which to divide a file's values to get the BRDF.
 
-    It is 1 or cos theta_v, as the header states. The second result is a mask (n,) of the rows where
-    the division is possible; the third are notes.
+    It is 1 or the cosine of the views `wo` (n, 3), as the header's key PARAM_OUT states. The second
+    result is a mask (n,) of the rows where the division is possible; the third are notes.
     """
     stated = header.get("PARAM_OUT")
     if stated == COSINE:

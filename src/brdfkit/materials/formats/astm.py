@@ -6,8 +6,8 @@ known:
 
 - Cornell/Kodak: phi_i is 0; values may be negative and are kept.
 - Light Tec Mini-Diff V2: phi_i is 180°; VARS leaves out phi_s, though the rows have it; the
-  wavelengths 465, 525, 630 nm stand for B, G, R; beyond theta_s = 75° nothing was measured, and the
-  values there, on a straight line down to 0, are masked.
+  wavelengths 465, 525, 630 nm stand for B, G, R; beyond theta_s = 75° nothing was measured: the
+  values there merely fall along a straight line to 0, and are masked.
 
 In both, the mirror direction is at Δφ = 180°.
 """
@@ -35,7 +35,7 @@ SUFFIXES = (".astm",)
 ANGLES = ("theta_i", "phi_i", "theta_s", "phi_s")
 KNOWN_CHANNELS = "R,G,B or wavelengths such as 550nm, or a single channel"
 MINI_DIFF = "Mini-Diff"
-MINI_DIFF_CHANNELS = ("630nm", "525nm", "465nm")  # read as R, G, B
+MINI_DIFF_CHANNELS = ("630nm", "525nm", "465nm")  # channels that are read as R, G, B
 MINI_DIFF_LIMIT = np.radians(75) + 1e-6
 Lines = list[tuple[int, str]]  # pairs of the number of a line and its text
 
@@ -52,7 +52,7 @@ def read(source: Source) -> Measured:
     NUM_POINTS differs from the number of rows, or when text stands among numbers.
     """
     header, vars_line, rows = _read_header(source)
-    names, notes = _read_names(source, header["VARS"], vars_line, rows)
+    names, notes = _read_column_names(source, header["VARS"], vars_line, rows)
     data = source.parse_rows(rows, len(names), ",")
     named = tuple(name for name in names if name not in ANGLES)
     known = _find_channels(named)
@@ -64,7 +64,7 @@ def read(source: Source) -> Measured:
     channels, columns, note = known
     notes.update(note)
 
-    # Put the columns in the order of `ANGLES` and of the channels
+    # Sort the columns, which a file may have in any order
     column = dict(zip(names, data.T, strict=True))
     angles = np.stack([column[name] for name in ANGLES], axis=1)
     values = np.stack([column[name] for name in columns], axis=1)
@@ -114,7 +114,7 @@ def _read_header(source: Source) -> tuple[dict[str, str], int, Lines]:
     )
 
 
-def _read_names(
+def _read_column_names(
     source: Source, text: str, vars_line: int, rows: Lines
 ) -> tuple[list[str], dict[str, str]]:
     """Return the names of the columns in `text`, the value of VARS; add phi_s if it is left out.
@@ -138,7 +138,10 @@ def _read_names(
 def _find_channels(
     columns: Sequence[str],
 ) -> tuple[Sequence[str], Sequence[str], dict[str, str]] | None:
-    """Return the channels, their columns, and a note if these differ; None for no channels."""
+    """Return the channels, the columns that hold them, and a note if their names differ.
+
+    The result is None where `columns` cannot be the names of channels.
+    """
     if set(columns) == set(RGB):
         return RGB, RGB, {}
     if set(columns) == set(MINI_DIFF_CHANNELS):

@@ -1,8 +1,8 @@
 """Tables of text with named columns, `.csv`, as spreadsheets, pandas and goniometers write them.
 
 One line names the columns, in any order, and every line below it is a sample. Lines of text above
-it are ignored, and a line below it may state the units. Directions are given by
-one of these sets of columns:
+it are ignored, and a line below it may state the units. Directions are given by one of these sets
+of columns:
 
 - ``theta_i, phi_i, theta_o, phi_o``: angles to the normal and azimuths of the light (i) and of the
   viewer (o); the mirror direction is at phi_o - phi_i = 180°, and a theta below 0 is on the other
@@ -57,7 +57,7 @@ from brdfkit.materials.measured.validation import Origin
 NAME = "CSV"
 SUFFIXES = (".csv",)
 
-NOTE = re.compile(r"([^:]{1,40}):\s+(.+)")  # a comment that becomes a note
+NOTE = re.compile(r"([^:]{1,40}):\s+(.+)")  # the form of a comment "key: text" that becomes a note
 ANISOTROPIC = {"yes": True, "no": False}
 CONVENTION = (
     "BRDF in 1/sr, without a cosine; theta from the normal; i to the light, o to the viewer; the "
@@ -85,7 +85,7 @@ def read(source: Source, name: str = NAME) -> Measured:
         if stated not in ANISOTROPIC:
             raise source.error(f"says 'anisotropic: {stated[:20]}', where yes or no belongs")
         details["anisotropic"] = ANISOTROPIC[stated]
-    notes.pop("format", None)  # replaced by the name of this format
+    notes.pop("format", None)  # the format of the original file, if this one was converted from it
     details["info"] = {"format": name, **notes, **details["info"]}
     return source.make_measured_from_directions(**details)
 
@@ -136,7 +136,7 @@ def _name_value_columns(data: Measured, name: str) -> list[str]:
         if len(parse_layout([*ANGLES, *names], Origin(data.name)).values) == len(names):
             return names
     except BrdfkitError:
-        pass  # that error is about columns, but the user has channels
+        pass  # raise an error about the material's channels below, in place of one about columns
     holds = "R, G, B, or wavelengths of 100 to 100,000 nm, each once, or one channel"
     raise make_channel_error(data, name, holds)
 

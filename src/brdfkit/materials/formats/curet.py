@@ -33,10 +33,10 @@ def read(source: Source) -> Measured:
     Raises `BrdfkitError` when none is named, `table.txt` is missing, or a file has another number
     of rows or columns.
     """
-    rows = _read_rows(source, SAMPLES, GEOMETRIES)
+    rows = _read_numbered_rows(source, SAMPLES, GEOMETRIES)
     sample = _parse_sample_number(source)
     table = source.open_sibling(TABLE)
-    theta_v, phi_v, theta_i, phi_i = zip(*_read_rows(table, GEOMETRIES, 4), strict=True)
+    theta_v, phi_v, theta_i, phi_i = zip(*_read_numbered_rows(table, GEOMETRIES, 4), strict=True)
     angles = list(zip(theta_i, phi_i, theta_v, phi_v, strict=True))
     lines = [n for n, _ in table.lines]
     info = {
@@ -63,7 +63,7 @@ def _parse_sample_number(source: Source) -> int:
     )
 
 
-def _read_rows(source: Source, count: int, columns: int) -> list[list[float]]:
+def _read_numbered_rows(source: Source, count: int, columns: int) -> list[list[float]]:
     """Return the numbers of each of `count` rows, without the first one, the row's number."""
     rows = [source.parse_numbers(n, line.split(), 1 + columns) for n, line in source.lines]
     if [row[0] for row in rows] != list(range(1, count + 1)):

@@ -17,9 +17,10 @@ SUFFIXES = (".json",)
 VERSION_KEY = "brdfkit"
 TYPES = get_type_hints(Fit)
 FIELDS = [f.name for f in fields(Fit) if f.name not in ("model", "certainty", "albedo")]
-# Attributes of a `Fit` that files of earlier versions do not have
+# Attributes of a `Fit` that files written by earlier versions of brdfkit lack
 LATER_FIELDS = ("checksum", "versions", "effective_samples", "unrepresented")
-# Errors that a damaged file causes: by an entry of another type, a missing one, or a huge number
+# Errors that reading a damaged file raises: for an entry of another type, for a missing entry, for
+# a huge number, or for deep nesting
 DAMAGED = ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError
 
 
@@ -41,7 +42,7 @@ def read(source: Source) -> Fit:
         entries = record["fit"]
         stored = [name for name in FIELDS if name in entries or name not in LATER_FIELDS]
         details = {name: _convert_to_type(TYPES[name], entries[name]) for name in stored}
-        details["settings"] = _parse_settings(details["settings"])
+        details["settings"] = _parse_bounds_in_settings(details["settings"])
         details["certainty"] = _parse_certainty(entries.get("certainty"))
         details["albedo"] = _parse_albedo(entries.get("albedo"))
     except DAMAGED:
@@ -141,7 +142,7 @@ def _parse_albedo(record: dict[str, Any] | None) -> Albedo | None:
     return Albedo(tuple(map(float, angles)), tuple(rows[: len(fit)]), tuple(rows[len(fit) :]), peak)
 
 
-def _parse_settings(settings: dict[str, Any]) -> dict[str, Any]:
+def _parse_bounds_in_settings(settings: dict[str, Any]) -> dict[str, Any]:
     """Convert the bounds in a fit's settings from JSON lists to pairs of floats."""
     if bounds := settings.get("bounds"):
         settings |= {"bounds": {n: tuple(map(float, pair)) for n, pair in bounds.items()}}
@@ -153,7 +154,7 @@ def _is_newer_version(version: str) -> bool:
     numbers = ([int(part) for part in v.split(".")[:2]] for v in (version, __version__))
     try:
         theirs, ours = numbers
-    except ValueError:  # a development version between two releases has parts that are no numbers
+    except ValueError:  # versions of a development between releases contain words: do not compare
         return False
     return theirs > ours
 
@@ -169,7 +170,8 @@ def _convert_to_type(kind: Any, value: Any) -> Any:
             raise TypeError
         return tuple(value)
     if origin in (int, float) and isinstance(value, int):
-        return origin(float(value))  # raises OverflowError for a number too large for a float
+        # Convert to a float first, which raises OverflowError for a number that is too large
+        return origin(float(value))
     if not isinstance(value, origin):
         raise TypeError
     return value

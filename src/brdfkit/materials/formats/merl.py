@@ -51,7 +51,7 @@ def read(source: Source) -> Measured:
             f"{len(wrong):,} values are not finite, the first at byte {HEADER + 8 * wrong[0]:,}; "
             "a MERL table holds none, so fetch the file again"
         )
-    # The stored sign marks unmeasured cells, so it is tested before scaling
+    # Find the unmeasured cells, which have a negative value in at least one channel
     unknown = functools.reduce(np.logical_or, (plane < 0 for plane in raw))
     if unknown.all():
         raise source.error("every cell is marked as not measured; fetch the file again")

@@ -8,8 +8,8 @@ n_theta_h, n_theta_d, n_phi_d, channels). Samples are the members ``wi``, ``wo``
 
 Some formats define their own interpolation function, which no file can store. Its values at the
 cells of a table are stored beside the samples, as ``table``, and replace the function when the file
-is read. The samples keep their values, but the values between them are then interpolated in the
-table, and reciprocal.
+is read. The samples keep their values, but the BRDF between them is then interpolated in the table,
+which makes it reciprocal.
 
 The members are not compressed, so that no small file can demand much memory; ``.npz.xz`` is
 compressed as a whole.
@@ -40,11 +40,11 @@ SUFFIXES = (".npz",)
 FIRST = "about"
 SAMPLES = ("wi", "wo", "values", "valid")
 MEMBERS = tuple(f"{name}.npy" for name in (FIRST, "table", *SAMPLES, "standard_error"))
-EPOCH = (1980, 1, 1, 0, 0, 0)  # a fixed date for all members, so that equal data give equal bytes
+EPOCH = (1980, 1, 1, 0, 0, 0)  # date of all files in the archive: equal data give equal bytes
 REMEDY = "save it again or fetch it again"
-# The header that numpy.save writes for arrays of the types used here. numpy.load is avoided,
-# because it evaluates a header as Python, and allocates the memory that the header claims before it
-# checks the data.
+# The header that numpy.save writes for arrays of the types that brdfkit saves. It is parsed here
+# because numpy.load evaluates a header as Python, and allocates the memory that the header claims
+# before it checks the data
 HEADER = re.compile(
     rb"\x93NUMPY\x01\x00..\{'descr': '(<f4|<f8|\|b1|\|u1)', 'fortran_order': False, "
     rb"'shape': \(((?:[0-9]{1,18}, ?){1,4}(?:[0-9]{1,18})?)\), \} *\n",
@@ -95,7 +95,7 @@ def write(obj: object, stream: IO[bytes]) -> None:
     if data.standard_error is not None:
         arrays["standard_error"] = data.standard_error
     text = np.frombuffer(json.dumps(about).encode(), np.uint8)
-    stream.write(_pack_zip({FIRST: text, **arrays}))
+    stream.write(_pack_arrays_into_zip({FIRST: text, **arrays}))
 
 
 def _make_measured(about: dict[str, Any], arrays: Mapping[str, AnyArray]) -> Measured:
@@ -125,7 +125,8 @@ def _make_measured_from_samples(
 ) -> Measured:
     """Make a `Measured` from samples in a file, with exactly the stored directions.
 
-    `details` are the arguments that samples and tables share, and `errors` the standard errors.
+    `about` are the file's notes, and `arrays` its arrays by name. `details` are the arguments that
+    samples and tables share, and `errors` the standard errors, or None.
     """
     wi, wo, values, valid = (arrays[name] for name in SAMPLES)
     if not all(((np.abs(w) < 1 + 1e-6) | np.isnan(w)).all() for w in (wi, wo)):
@@ -164,7 +165,7 @@ def _read_members(source: Source) -> dict[str, bytes]:
             return {i.filename.removesuffix(".npy"): archive.read(i) for i in infos}
     except BrdfkitError:
         raise
-    # A damaged archive makes zipfile raise any of these
+    # For a damaged archive, zipfile may raise any of these errors
     except (zipfile.BadZipFile, RuntimeError, ValueError, EOFError, OSError, struct.error) as error:
         raise source.error(f"is no whole zip archive ({str(error)[:100]}); {REMEDY}") from error
 
@@ -179,11 +180,11 @@ def _parse_array(source: Source, name: str, data: bytes) -> AnyArray:
     array = np.frombuffer(data, dtype, offset=header.end()).reshape(shape)
     if dtype.kind == "b":
         return array.view(np.uint8) != 0
-    with np.errstate(invalid="ignore"):  # NumPy warns when it converts a signalling NaN
+    with np.errstate(invalid="ignore"):  # NumPy would warn where it converts a signalling NaN
         return array if dtype.kind == "u" else array.astype(float)
 
 
-def _pack_zip(arrays: Mapping[str, AnyArray]) -> bytes:
+def _pack_arrays_into_zip(arrays: Mapping[str, AnyArray]) -> bytes:
     """Return a zip archive with the uncompressed `arrays`; equal arrays give equal bytes."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
@@ -191,6 +192,6 @@ def _pack_zip(arrays: Mapping[str, AnyArray]) -> bytes:
             member = io.BytesIO()
             np.lib.format.write_array(member, np.ascontiguousarray(array), version=(1, 0))
             info = zipfile.ZipInfo(f"{name}.npy", EPOCH)
-            info.create_system = 3  # Unix, even on other systems, so that bytes are equal
+            info.create_system = 3  # state Unix on every system: equal data give equal bytes
             archive.writestr(info, member.getvalue())
     return packed.getvalue()

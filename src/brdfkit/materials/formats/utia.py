@@ -108,5 +108,5 @@ def _find_angle_brackets(theta: FloatArray, phi: FloatArray) -> tuple[Any, Any]:
     """
     theta = theta / THETA[1]
     i = np.minimum(theta.astype(int), len(THETA) - 2)
-    # Beyond 75° the share exceeds 1: linear extrapolation
+    # Beyond 75°, the last stored angle, the weight exceeds 1, which extrapolates linearly
     return (i, i + 1, theta - i), find_periodic_bracket(phi / PHI[1], len(PHI))

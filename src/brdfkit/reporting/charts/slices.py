@@ -13,7 +13,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.colours import luminance
 from brdfkit.core.pages import images
-from brdfkit.materials.auditing.picture import is_measured, make_colour_scale
+from brdfkit.materials.auditing.picture import find_measured_cells, make_colour_scale
 from brdfkit.materials.measured import Measured
 from brdfkit.regression import Fit
 from brdfkit.reporting.charts.svg import Axis, Chart, make_linear_axis
@@ -33,7 +33,7 @@ def draw_slices(material: Measured, fits: Sequence[Fit]) -> dict[str, Any]:
     across = int(np.argmin(np.abs(table.centres[-1] - np.pi / 2)))
     cells = (0,) * table.anisotropic + (slice(None), slice(None), across)
     wi, wo = (w[cells] for w in table.directions())
-    known = is_measured(data, table, cells)
+    known = find_measured_cells(data, table, cells)
     measured = luminance(table.filled_values[cells])
     scale = make_colour_scale(measured[known] if known.any() else measured)
 
