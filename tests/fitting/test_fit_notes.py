@@ -271,7 +271,7 @@ def test_a_table_of_few_samples_is_extrapolated():
 
 NOTES = {  # the files that make notes, and in which of their functions or names; None: in all
     "fitting/notes.py": None,
-    "fitting/uncertainty/isotropic_limit.py": ("note_on_azimuth",),
+    "fitting/uncertainty/isotropic_limit.py": ("note_on_isotropic_model",),
     "fitting/lobe_notes.py": None,
     "fitting/lobe_widths.py": None,
     "fitting/lobe_colours.py": None,
@@ -288,9 +288,9 @@ NOTES = {  # the files that make notes, and in which of their functions or names
         "_warn_of_zeros",
     ),
     "regression/certainty_notes.py": (
-        "describe_undetermined",
-        "_describe_trade",
-        "describe_trades",
+        "describe_undetermined_parameters",
+        "_describe_trade_off",
+        "describe_parameter_trade_offs",
     ),
     "regression/measurement_noise.py": ("regress_with_noise",),
     "regression/robust/search.py": ("note",),

@@ -26,7 +26,7 @@ from brdfkit.regression.certainty import compute_certainty
 from brdfkit.regression.losses.named_losses import OFFSET
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
-from brdfkit.regression.robust.search import search_robust
+from brdfkit.regression.robust.search import search_robust_solution
 from brdfkit.regression.search.levenberg_marquardt import levenberg_marquardt
 
 
@@ -78,7 +78,7 @@ def held(name, loss, noise, replicates, n=600, robust=None, seed=0):
     own |= given
     space = Space.for_model(model, {}, given, False)
     u = np.clip(space.to_coordinates(own), 0.15, 0.85)[None]  # inside the bounds
-    own |= space.to_values(u[0])
+    own |= space.to_named_values(u[0])
     truth = model(**own)
     values = truth.eval(wi, wo)
     weights = np.array([truth.values[w] for w in model.weights()]).T[None]
@@ -97,7 +97,7 @@ def held(name, loss, noise, replicates, n=600, robust=None, seed=0):
         ).ends
         point, passes = (ends.u, ends.weights), None
         if robust:
-            *point, _, _, passes = search_robust(
+            *point, _, _, passes = search_robust_solution(
                 problem, *point, robust, rng, lambda done, total: None
             )
         certainty = compute_certainty(problem, *point, passes)

@@ -9,7 +9,7 @@ from brdfkit.regression.robust.reweighting import (
     compute_leverages,
     compute_smallest_scale,
     estimate_residual_scale,
-    require_more_samples,
+    require_more_samples_than_parameters,
 )
 
 PASSES = 50
@@ -45,7 +45,7 @@ def robust_least_squares(design, values, name="bisquare", tune=None):
     between solutions.
     """
     design, values = np.asarray(design, float), np.asarray(values, float)
-    require_more_samples(*design.shape)
+    require_more_samples_than_parameters(*design.shape)
     lever = np.sqrt(1 - compute_leverages(design.T))
     rank, least = np.linalg.matrix_rank(design), compute_smallest_scale(values)
 

@@ -59,7 +59,7 @@ def test_squared_error_and_gradient(name, loss):
         return problem.expand_at_weights(u, weights).error
 
     for k in range(len(u)):
-        values = problem.space.to_values(u[k])
+        values = problem.space.to_named_values(u[k])
         linear = dict(zip(problem.model.weights(), map(tuple, weights[k].T), strict=True))
         model = problem.model(**values, **linear)
         expected = bk.compare(data, model, max_angle=90.0).errors[model.name][loss]

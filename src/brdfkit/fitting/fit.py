@@ -158,14 +158,14 @@ def fit(
     error = to_loss(loss)
     samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
 
-    light = find_target_albedo(data if spectral else data.rgb, weights, max_angle)
+    target = find_target_albedo(data if spectral else data.rgb, weights, max_angle)
 
     def make_fit(solution: Any) -> Fit:
         """Return the `Fit` of a `Solution`, with its albedo, notes and warnings."""
         known = wavelengths(data) if spectral else ()
         fitted = make_model(model_class, solution.shapes, solution.weights, known)
-        albedo = light.compare_with_fit(fitted.eval)
-        warnings = [] if light.has_another_unit else albedo.warnings()
+        albedo = target.compare_with_fit(fitted.eval)
+        warnings = [] if target.has_another_unit else albedo.warnings()
         return Fit(
             model=fitted,
             data=data.name,
@@ -197,9 +197,9 @@ def fit(
         solve = partial(regress, pixels=pixels)
     # The measured albedo is not kept if its unit is unknown, nor if the loss weighs all samples
     # alike, because it then does not know their solid angles
-    without_light = getattr(error, "measure", None) == "samples" or light.has_another_unit
+    without_albedo = getattr(error, "measure", None) == "samples" or target.has_another_unit
     search: dict[str, Any] = settings.to_search_arguments() | {
-        "target_albedo": None if without_light else light
+        "target_albedo": None if without_albedo else target
     }
     try:
         return make_fit(solve(model_class, samples, error, **search, report=progress))

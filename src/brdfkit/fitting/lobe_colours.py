@@ -18,14 +18,14 @@ from brdfkit.model.samples.measures import compute_measure
 # A colour is pure if its smallest channel is below the share PURE of its largest; two colours have
 # different hues if the cosine of the angle between their RGB vectors is below ALIKE
 PURE, ALIKE = 0.1, 0.5
-# No note is written on a lobe with a smaller share of the highlight's albedo
+# Lobes with a smaller share of the highlight's albedo are ignored: their colour is hardly visible
 FAINT = 0.05
 # Samples whose half vector is within 5° of the normal form the highlight of the material
 HIGHLIGHT = np.cos(np.radians(5))
 # Colours are compared in the last 10° before the most grazing sample, if this is at least 60° from
 # the normal. There the shares of R, G and B in the sum may differ by 0.1
 RIM, OBLIQUE, OFF = 10.0, 60.0, 0.1
-# Effective number of samples that determine a colour: a few bright ones alone do not
+# Least effective number of samples for a colour: a few bright ones do not determine it
 SPREAD = 30
 
 

@@ -70,7 +70,7 @@ def list_lobe_notes(
     highlight = albedos[:, ~diffuse].sum(axis=1).max(axis=1)
     narrow = list_narrow_lobe_notes(samples, fitted)
     others = tuple(name for name in at_bounds if name not in narrow)
-    other_unit = data.rgb.albedo.has_another_unit  # then no albedo has a meaning
+    other_unit = data.rgb.albedo.has_another_unit  # then its albedos mean nothing
     return [
         *([] if other_unit else _list_amplifying_lobes(fitted, albedos)),
         *(
@@ -120,8 +120,10 @@ def _list_amplifying_lobes(fitted: Model, albedos: NDArray[np.float64]) -> list[
 def _list_impossible_fresnel_values(fitted: Model) -> list[str]:
     """Return a sentence on each Fresnel parameter whose value is impossible for a real surface."""
     values = {name: getattr(fitted, name) for name in fitted.shapes()}
-    high = [n for n, value in values.items() if _is_parameter(n, "ior") and value > LARGEST_IOR]
-    above = [n for n, value in values.items() if _is_parameter(n, "f0") and value > 1]
+    high = [
+        n for n, value in values.items() if _is_parameter_of_kind(n, "ior") and value > LARGEST_IOR
+    ]
+    above = [n for n, value in values.items() if _is_parameter_of_kind(n, "f0") and value > 1]
     return [
         *(
             f"{name} = {values[name]:.3g} is the index of refraction of no surface: it says only "
@@ -168,9 +170,9 @@ def _explain_bound(fitted: Model, name: str, highlight: NDArray[np.float64]) -> 
     upper = math.isclose(value, high, rel_tol=1e-5)
     if not upper and not math.isclose(value, low, rel_tol=1e-5, abs_tol=1e-9):
         return ""
-    if (_is_parameter(name, "f0") or _is_parameter(name, "ior")) and not upper:
+    if (_is_parameter_of_kind(name, "f0") or _is_parameter_of_kind(name, "ior")) and not upper:
         return "such a lobe shines at grazing angles alone, and its weight is no reflectance"
-    if _is_parameter(name, "f0"):  # f0 = 1 is usual for metals, and for one lobe of several
+    if _is_parameter_of_kind(name, "f0"):  # f0 = 1 is usual for metals, and for one lobe of several
         is_flat = highlight[0] < METALLIC and highlight[-1] < RISE * highlight[0]
         return FLAT if is_flat else ""
     if width and upper == (width < 0):
@@ -189,6 +191,6 @@ def _keep_parameters_of_used_lobes(fitted: Model, names: list[str]) -> list[str]
     return [name for name in names if lit[find_lobes_with_parameter(fitted, name)].any()]
 
 
-def _is_parameter(name: str, kind: str) -> bool:
+def _is_parameter_of_kind(name: str, kind: str) -> bool:
     """Return whether a parameter is of a `kind`, such as "ggx_2_f0" of the kind "f0"."""
     return name == kind or name.endswith(f"_{kind}")

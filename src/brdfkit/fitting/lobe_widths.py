@@ -20,7 +20,7 @@ HALF_ANGLES = np.concatenate([[0.0], np.geomspace(1e-5, 1.2, 400)])
 THETA_D = np.radians(20)
 # Half angles with a smaller difference [degrees] count as equal: goniometers round their angles
 SAME = 0.01
-# Number of samples, nearest to the mirror direction, in which the spacing is searched
+# Number of samples nearest to the mirror direction that decide the spacing of half angles
 NEAREST = 1_000
 
 

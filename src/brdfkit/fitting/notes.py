@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from brdfkit.core.names import format_percent
 from brdfkit.fitting.lobe_notes import list_lobe_notes
-from brdfkit.fitting.uncertainty.isotropic_limit import note_on_azimuth
+from brdfkit.fitting.uncertainty.isotropic_limit import note_on_isotropic_model
 from brdfkit.materials.auditing.data_findings import list_data_findings
 from brdfkit.materials.measured import Measured
 from brdfkit.model import Model
@@ -48,7 +48,7 @@ def list_fit_notes(
     if fitted.has_signed_weights():
         clamped = compute_clamped_share(fitted)
         notes.append(f"{clamped:.1%} of the hemisphere's direction pairs are clamped at 0")
-    if data.anisotropic and (note := note_on_azimuth(data, samples, loss, fitted)):
+    if data.anisotropic and (note := note_on_isotropic_model(data, samples, loss, fitted)):
         notes.append(note)
     notes += list_lobe_notes(data, samples, fitted, solution.at_bounds)
     return (*notes, *solution.certainty.undetermined, *solution.certainty.trades)

@@ -22,17 +22,19 @@ from brdfkit.images.ball import Pixels
 
 # A fit is searched once more if its albedo differs from the data's by more than this factor
 ACCEPTED_FACTOR = 1.2
-# A warning names an albedo that differs by more than this factor, 1.25 less errors of quadrature
+# An albedo gets a warning if it differs from the measured one by more than this factor: 1.25, less
+# the numerical error of the albedos
 WRONG_FACTOR = 1.24
-# Beyond this angle of incidence [degrees] an albedo may be too small, as it is in most models
-STEEP_ANGLE = 60
+# Beyond this angle of incidence [degrees] a fit may be too dark, as most models are there
+GRAZING_ANGLE = 60
 # Angles of incidence [degrees] at which the fit is also checked for an albedo above 1
 OTHER_ANGLES = 60.0, 80.0, 89.0
-# A larger albedo is wrong, as no surface reflects more than arrives; the quadrature is 0.001 off
+# Largest possible albedo of a fit: 1, because no surface reflects more light than arrives, plus the
+# numerical error of the albedo
 LARGEST_ALBEDO = 1.001
 # A measurement with a larger albedo has another unit than 1/sr, so its albedo means nothing
 LARGEST_MEASURED_ALBEDO = 2.0
-# The quadrature over outgoing directions has twice this number of rings, with this number of points
+# Albedos are sums over outgoing directions on rings: number of points on a ring, half that of rings
 POINTS = 32
 # Azimuths of incidence [rad] over which the albedo of a model is averaged
 ISOTROPIC_AZIMUTHS, ANISOTROPIC_AZIMUTHS = (0.0,), tuple(np.arange(4) * np.pi / 2)
@@ -82,12 +84,13 @@ class TargetAlbedo:
 
     @classmethod
     def from_measured(cls, albedo: Any, anisotropic: bool) -> TargetAlbedo:
-        """Return the target for fits to a material, from its `MeasuredAlbedo`."""
+        """Return the target for fits to a material, from its `MeasuredAlbedo`.
+
+        `anisotropic`: whether to average over several azimuths of incidence.
+        """
         azimuths = ANISOTROPIC_AZIMUTHS if anisotropic else ISOTROPIC_AZIMUTHS
         pixels = make_albedo_pixels(albedo.theta_i, azimuths)
-        target = np.minimum(
-            albedo.values, 1
-        )  # a file may contain albedos above 1; a fit should not
+        target = np.minimum(albedo.values, 1)  # measured albedos may be above 1; a fit's should not
         pixels = replace(pixels, values=target)
         return cls(albedo.theta_i, albedo.values, albedo.known, pixels, azimuths)
 
@@ -140,7 +143,7 @@ class TargetAlbedo:
 
     def accepts_albedos(self, albedos: FloatArray) -> bool:
         """Return whether `albedos` (n, channels) are near the measured albedos and at most 1."""
-        near = self.compute_distance(albedos) <= np.log(ACCEPTED_FACTOR)
+        near = self.compute_albedo_distance(albedos) <= np.log(ACCEPTED_FACTOR)
         return bool(near and albedos.max() <= LARGEST_ALBEDO)
 
     def find_wrong_angles(self, albedos: FloatArray) -> BoolArray:
@@ -149,21 +152,21 @@ class TargetAlbedo:
         These are all angles where the measured albedo is known, and those where one of the fit's
         `albedos` (n, channels) is above 1. Grazing angles where the fit is too dark are left out.
         """
-        dark = self._find_steep_angles() & (self.compute_ratios(albedos) < 1)
+        dark = self._find_grazing_angles() & (self.compute_albedo_ratios(albedos) < 1)
         return (self.known & ~dark) | (albedos.max(axis=1) > LARGEST_ALBEDO)
 
-    def compute_distance(self, albedos: FloatArray) -> float:
+    def compute_albedo_distance(self, albedos: FloatArray) -> float:
         """Return how far `albedos` (n, channels) are from the measured albedos, as one number.
 
         The number is the logarithm of the largest factor between both, plus the logarithm of the
         largest albedo if this is above 1. Grazing angles where the fit is too dark do not count.
         """
-        logs = np.log(self.compute_ratios(albedos))
-        logs = np.where(self._find_steep_angles(), np.maximum(logs, 0), np.abs(logs))
+        logs = np.log(self.compute_albedo_ratios(albedos))
+        logs = np.where(self._find_grazing_angles(), np.maximum(logs, 0), np.abs(logs))
         most = float(albedos.max())
         return float(logs.max()) + (math.log(most / LARGEST_ALBEDO) if most > LARGEST_ALBEDO else 0)
 
-    def compute_ratios(self, albedos: FloatArray) -> FloatArray:
+    def compute_albedo_ratios(self, albedos: FloatArray) -> FloatArray:
         """Return the ratios (n,) of `albedos` (n, channels) to the measured albedos.
 
         Both are averaged over the channels. A ratio is 1 where the measured albedo is unknown.
@@ -171,9 +174,9 @@ class TargetAlbedo:
         measured, own = (np.maximum(a.mean(axis=1), 1e-9) for a in (self.limited_values, albedos))
         return np.where(self.known, own / measured, 1.0)
 
-    def _find_steep_angles(self) -> BoolArray:
-        """Return for each angle of incidence (n,) whether it is grazing, beyond `STEEP_ANGLE`."""
-        return np.array(self.theta_i) > STEEP_ANGLE
+    def _find_grazing_angles(self) -> BoolArray:
+        """Return for each angle of incidence (n,) whether it is grazing, beyond `GRAZING_ANGLE`."""
+        return np.array(self.theta_i) > GRAZING_ANGLE
 
 
 @dataclass(frozen=True)
@@ -205,17 +208,19 @@ class Albedo:
         pairs = list(zip(self.theta_i, most, strict=True))
         angle, gain = self.peak or max(pairs, key=lambda pair: pair[1])
         if gain > LARGEST_ALBEDO:
-            text = f"{gain:.3f}" if gain < 1.01 else format_share(gain)
+            text = f"{gain:.3f}" if gain < 1.01 else format_light_share(gain)
             sentences.append(
                 f"it reflects {text} of the light at {angle:g}°, more than arrives; a "
                 "constraint prevents it: AlbedoAtMost(1), or --albedo-at-most 1"
             )
         means = zip(self.theta_i, *self.average_channels(), strict=True)
-        angle, fit, measured = max(means, key=lambda row: factor_between(row[1], min(row[2], 1.0)))
-        if factor_between(fit, min(measured, 1.0)) > WRONG_FACTOR:
+        angle, fit, measured = max(
+            means, key=lambda row: compute_factor_between(row[1], min(row[2], 1.0))
+        )
+        if compute_factor_between(fit, min(measured, 1.0)) > WRONG_FACTOR:
             sentences.append(
-                f"it reflects {format_share(fit)} of the light at {angle:g}°, where the "
-                f"measurement reflects {format_share(measured)}"
+                f"it reflects {format_light_share(fit)} of the light at {angle:g}°, where the "
+                f"measurement reflects {format_light_share(measured)}"
             )
         return sentences
 
@@ -229,10 +234,10 @@ class Albedo:
         return fit, measured
 
 
-def format_share(share: float) -> str:
+def format_light_share(share: float) -> str:
     """Return an albedo, a share of the incident light, as text with two digits.
 
-    >>> format_share(0.3521), format_share(0.01201), format_share(2e9)
+    >>> format_light_share(0.3521), format_light_share(0.01201), format_light_share(2e9)
     ('0.35', '0.012', '2e+09')
     """
     if share >= 1000:
@@ -240,7 +245,7 @@ def format_share(share: float) -> str:
     return f"{share:.2f}" if share >= 0.1 else f"{share:#.2g}"
 
 
-def factor_between(one: float, other: float) -> float:
+def compute_factor_between(one: float, other: float) -> float:
     """Return the larger of two albedos over the smaller one, or 1 if one of them is NaN."""
     if math.isnan(one + other):
         return 1.0

@@ -17,7 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from brdfkit.core.array_types import BoolArray, FloatArray
-from brdfkit.regression.certainty_notes import ABSENT, describe_trades, describe_undetermined
+from brdfkit.regression.certainty_notes import (
+    ABSENT,
+    describe_parameter_trade_offs,
+    describe_undetermined_parameters,
+)
 from brdfkit.regression.certainty_scores import (
     SINGULAR,
     compute_scores,
@@ -27,7 +31,8 @@ from brdfkit.regression.problem.parameter_space import join_point
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import draw_subset
 
-# Of more samples, half this number are drawn to estimate the covariance, which saves time
+# With more samples than this, the covariance is estimated from half this number, drawn at random,
+# which saves time
 MANY_SAMPLES = 40_000
 # A parameter nearer to its bound than this share of its range counts as on the bound
 ON_BOUND = 1e-6
@@ -70,7 +75,7 @@ class Certainty:
         errors = self.compute_standard_errors().items()
         return {name: t * error for t, (name, error) in zip(quantiles, errors, strict=True)}
 
-    def compute_criterion(self, loss: float, price: float) -> float:
+    def compute_information_criterion(self, loss: float, price: float) -> float:
         """Return an information criterion, N ln(E²) + `price` · k, to compare models of the data.
 
         E is the `loss`, N the number of measured values and k the number of parameters. Akaike's
@@ -81,7 +86,7 @@ class Certainty:
 
     def compute_bic(self, loss: float) -> float:
         """Return the Bayesian information criterion of a fit with the loss E = `loss`."""
-        return self.compute_criterion(loss, np.log(self.numbers))
+        return self.compute_information_criterion(loss, np.log(self.numbers))
 
     def make_covariance_matrix(self) -> NDArray[np.float64]:
         """Return the covariance of the determined parameters as a NumPy array (n, n)."""
@@ -101,7 +106,7 @@ class Certainty:
         return self.make_covariance_matrix() / np.outer(root, root)
 
 
-def make_intervals(values: Mapping[str, Any], half: Mapping[str, Any]) -> dict[str, Any]:
+def make_confidence_intervals(values: Mapping[str, Any], half: Mapping[str, Any]) -> dict[str, Any]:
     """Return confidence intervals (low, high) by parameter: `values` less and plus half a width.
 
     `values`: a number for each name, or a tuple for the channels of a weight; `half`: half the
@@ -128,9 +133,10 @@ def compute_certainty(
 
     `u` (1, shapes): coordinates of the shape parameters; `weights` (1, channels, lobes): weights of
     the lobes; `passes`: for a robust fit, the weights ω of the samples and the derivatives of ω r
-    by the residual r, each a list by channel; `rng`: a generator that draws a part of many samples.
+    by the residual r, each a list by channel; `rng`: a generator that draws some of the
+    samples if there are many.
     """
-    names, free = _list_parameters(problem, u, weights)
+    names, free = _list_searched_parameters(problem, u, weights)
     at = join_point(problem.space.to_parameters(u), weights)[0]
     counted = problem.importance > 0
     numbers = int(counted.sum()) * problem.channels
@@ -171,7 +177,8 @@ def compute_certainty_from_derivatives(
     parameters in `scores` and `hessian`; `numbers`: number of measured values; `most`: upper limit
     of the degrees of freedom of a variance.
     """
-    # Along eigenvectors with an eigenvalue of 0 the loss does not rise: they are undetermined
+    # Along an eigenvector of the Hessian with eigenvalue 0 the loss stays the same: the data do not
+    # determine the parameters that change
     values, vectors = np.linalg.eigh(hessian)
     open_ = np.abs(values) <= SINGULAR * max(values.max(), 1)
     inner = vectors[:, ~open_] / np.abs(values[~open_]) @ vectors[:, ~open_].T
@@ -184,8 +191,10 @@ def compute_certainty_from_derivatives(
         tuple(name for name, is_loose in zip(own, loose, strict=True) if not is_loose),
         tuple(map(tuple, covariance[np.ix_(~loose, ~loose)].tolist())),
         tuple(freedom[~loose].tolist()),
-        describe_undetermined(own, vectors[:, open_] * scale[:, None], at[free], vectors[:, open_]),
-        describe_trades(own, inner, scale, at[free], ~loose),
+        describe_undetermined_parameters(
+            own, vectors[:, open_] * scale[:, None], at[free], vectors[:, open_]
+        ),
+        describe_parameter_trade_offs(own, inner, scale, at[free], ~loose),
         numbers,
         len(names),
     )
@@ -204,7 +213,7 @@ def _estimate_degrees_of_freedom(spread: FloatArray, most: float) -> FloatArray:
     return np.clip(3 * total**2 / np.maximum(fourth, 1e-300), 1, most)
 
 
-def _list_parameters(
+def _list_searched_parameters(
     problem: Problem, u: FloatArray, weights: FloatArray
 ) -> tuple[list[str], BoolArray]:
     """Return the names of all searched parameters, and whether each is inside its bounds."""

@@ -11,25 +11,25 @@ import numpy as np
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.names import join_words
 
-# A parameter whose entry in an eigenvector of length 1 is smaller takes no part in the direction
+# Least entry of a parameter in an eigenvector of length 1 that counts as a change of the parameter
 ABSENT = 1e-3
-# Sentences mention pairs of parameters with a larger correlation
+# Two parameters are mentioned if their correlation is larger than this
 HIGH_CORRELATION = 0.99
-# Sentences mention several parameters if their matrix of correlations has a smaller eigenvalue
+# Several parameters are mentioned if the matrix of their correlations has a smaller eigenvalue
 SMALL_EIGENVALUE = 1e-5
 
 
-def describe_undetermined(
+def describe_undetermined_parameters(
     names: Sequence[str], steps: FloatArray, at: FloatArray, vectors: FloatArray
 ) -> tuple[str, ...]:
     """Return a sentence on each set of parameters that can change without a change of the loss.
 
-    `names`: the n parameters; `vectors` (n, count): directions, each of length 1, along which the
-    loss stays the same; `steps` (n, count): these directions in the units of the parameters; `at`
+    `names`: the n parameters; `vectors` (n, m): m directions, each of length 1, along which the
+    loss stays the same; `steps` (n, m): these directions in the units of the parameters; `at`
     (n,): values of the parameters.
     """
     sentences = {}
-    # Changes relative to the values of the parameters, practically infinite for a value of 0
+    # Changes of parameters along each direction, as shares of their values; huge for a value of 0
     shares = np.clip(steps, -1e5, 1e5) / np.where(at == 0, 1e-300, at)[:, None]
     for share_of, vector in zip(shares.T, vectors.T, strict=True):
         relative: dict[str, float] = {}
@@ -41,11 +41,11 @@ def describe_undetermined(
             continue
         several = sorted(relative, key=lambda name: list(map(_strip_channel, names)).index(name))
         share = relative[several[0]] / relative[several[1]] if len(several) == 2 else np.nan
-        sentences[_describe_trade(several, share)] = True
+        sentences[_describe_trade_off(several, share)] = True
     return tuple(sentences)
 
 
-def describe_trades(
+def describe_parameter_trade_offs(
     names: Sequence[str],
     inverse: FloatArray,
     scale: FloatArray,
@@ -70,7 +70,7 @@ def describe_trades(
             pairs[pair] = size, relative[i] / relative[j]
     worst, sentences = sorted(pairs.items(), key=lambda item: -abs(item[1][0])), []
     for pair, (size, share) in worst[:3]:
-        trade = _describe_trade(pair, np.copysign(share, size))
+        trade = _describe_trade_off(pair, np.copysign(share, size))
         sentences.append(f"{trade} (correlation {size:.4f})")
     if len(worst) > 3:
         sentences.append(f"so do {len(worst) - 3} more pairs of parameters")
@@ -79,19 +79,19 @@ def describe_trades(
         strong = np.abs(vectors[:, 0]) > 0.1 * np.abs(vectors[:, 0]).max()
         several = list(dict.fromkeys(n for n, is_in in zip(plain, strong, strict=True) if is_in))
         if values[0] < SMALL_EIGENVALUE and len(several) > 1:
-            sentences.append(_describe_trade(several, np.nan))
+            sentences.append(_describe_trade_off(several, np.nan))
     return tuple(sentences)
 
 
-def _describe_trade(names: Sequence[str], share: float) -> str:
+def _describe_trade_off(names: Sequence[str], ratio: float) -> str:
     """Return a sentence that says which combination of some parameters is determined.
 
-    `share`: for two parameters, the relative change of the first over the relative change of the
+    `ratio`: for two parameters, the relative change of the first over the relative change of the
     second along the direction in which the loss stays the same; NaN for more parameters.
     """
     what = "a combination of them"
-    if 0.8 < abs(share) < 1.25:
-        what = "their product" if share < 0 else "their ratio"
+    if 0.8 < abs(ratio) < 1.25:
+        what = "their product" if ratio < 0 else "their ratio"
     if len(names) > 4:
         names = [*names[:3], f"{len(names) - 3} other parameters"]
     return f"{join_words(names)} trade off: only {what} is determined"

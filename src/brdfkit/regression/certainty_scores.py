@@ -12,7 +12,7 @@ from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.regression.certainty_notes import ABSENT
 from brdfkit.regression.problem.parameter_space import find_channel_entries
 
-# Eigenvalues of a Hessian with unit diagonal that are smaller come from rounding, and count as 0
+# Smaller eigenvalues of a Hessian whose diagonal is 1 are rounding errors, and count as 0
 SINGULAR = 1e-11
 
 
@@ -28,7 +28,7 @@ def find_undetermined_at_bounds(
     """
     is_open = np.zeros(len(free), bool)
     moving = free.copy()
-    # Shape parameters of lobes without weight have derivatives of 0, and are left out here
+    # Shape parameters of a lobe with weight 0 have no effect (derivatives of 0); leave them out
     moving[:shapes] |= np.any([jacobian[:shapes].any(axis=1) for jacobian in jacobians], axis=0)
     if (moving != free).any():
         hessian, _, _, _ = _sum_hessian(jacobians, moving, shapes)
@@ -50,8 +50,9 @@ def compute_scores(
 
     A score is the contribution of a sample to the gradient of the squared loss, over √(1 - its
     leverage). Both are in units of the n `free` parameters that make the diagonal of the Hessian 1;
-    the units (n,) are returned, too. `residuals`, `jacobians`: by channel; `shares` (samples,):
-    number of samples for which a drawn sample stands; `passes`: as in `compute_certainty`.
+    the units (n,) are returned, too. `residuals`, `jacobians`: by channel; `shares` (samples,): if
+    the samples were drawn from many, the number for which each stands, otherwise 1; `passes`: as in
+    `compute_certainty`.
     """
     hessian, scale, owns, jacobians = _sum_hessian(jacobians, free, shapes)
     inverse = np.linalg.pinv(hessian, rcond=SINGULAR, hermitian=True)

@@ -22,11 +22,12 @@ from brdfkit.model.samples import Samples
 from brdfkit.regression.losses.loss import Loss
 from brdfkit.regression.regression import Solution, regress
 
-# τ² is at least this share of the mean σ², so that samples with σ = 0 do not rule the fit
+# Least squared error of the model, as a share of the mean squared standard error of the samples, so
+# that samples with a standard error of 0 do not rule the fit
 SMALLEST_MODEL_ERROR = 0.01
-# The note on a fit with such weights starts so, by which `Fit` recognises it
+# Start of the note on a fit that weights samples by their standard errors; `Fit` recognises it so
 BY_ERRORS = "samples count by their standard errors"
-# If all weights differ by less than this share, the fit with equal weights is good enough
+# If all weights of samples differ by less than this share, the fit with equal weights is kept
 EQUAL_WEIGHTS = 0.05
 
 
@@ -61,7 +62,7 @@ def compute_noise_weights(
     ]
     variance = sum(variances, np.zeros(len(values)))
     mean = loss.importance(samples) @ variance
-    # E² is a mean over the channels, so the variance of a sample has to be one, too
+    # E² is a mean over the channels, so the variance of a sample has to be a mean over them, too
     variance /= values.shape[1] if loss.channel_mean else 1
     tau2 = max(error**2 - mean, SMALLEST_MODEL_ERROR * mean)
     return tau2 / (tau2 + variance) if tau2 else np.ones(len(values))
@@ -82,6 +83,7 @@ def _compute_variances(
         lambda value: loss.difference(value, measured, cos_i, cos_o),
         double_precision.to_array(model),
     )
-    # A σ of 0 only means that few repeated measurements agreed; the smallest other σ replaces it
+    # A standard error of 0 only means that a few repeated measurements happened to agree; it is
+    # replaced by the smallest other one
     known = sigma[sigma > 0]
     return (np.array(slope) * np.maximum(sigma, known.min() if len(known) else 0)) ** 2

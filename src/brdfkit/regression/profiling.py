@@ -10,11 +10,11 @@ import numpy as np
 
 from brdfkit.regression.refitting import Refit
 
-# A profile first extends to this number of standard errors from the fitted value
+# Number of standard errors from the fitted value to which a profile extends at first
 REACH = 3.0
-# Up to this many times the range of a profile is doubled, until the loss reaches its level
+# Largest number of times that a profile's range is doubled for the loss to reach the wanted level
 WIDENINGS = 6
-# Within this number of standard errors of the fit, the least squared loss is nearly a parabola
+# Distance from the fitted value, in standard errors, over which E² is nearly a parabola
 PARABOLA_STEP = 0.3
 
 
@@ -25,7 +25,7 @@ def follow_profile(
 
     Return the limit, the value at which the loss reaches the `level`, or the last value tried, and
     the pairs (value, loss) on the way. `refit`: the `Refit` of the fit; `middle`: the fitted value;
-    `bound`: the bound of the parameter towards which to go; `points`: number of values per range.
+    `bound`: the bound of the parameter towards which to go; `points`: number of values on the way.
     """
     error, width = refit.fit.standard_errors[parameter], abs(bound - middle)
     if width == 0:
@@ -34,12 +34,12 @@ def follow_profile(
     for _ in range(WIDENINGS):
         steps = np.copysign(reach, bound - middle) * np.arange(1, points + 1) / points
         low, high = sorted((middle, bound))
-        path = _refit_path(refit, parameter, np.clip(middle + steps, low, high))
+        path = _refit_along_path(refit, parameter, np.clip(middle + steps, low, high))
         if path[-1][1] > level or reach >= width:
             break
         reach = min(2 * reach, width)
     values, losses = np.array([(middle, refit.fit.loss), *path]).T
-    # E² is nearly a parabola, so the root of E² - E²_min is interpolated, which is nearly linear
+    # E² is nearly a parabola, so the root of its rise is nearly linear, and is interpolated
     height = np.sqrt(np.maximum(losses**2 - losses[0] ** 2, 0))
     wanted = np.sqrt(level**2 - losses[0] ** 2)
     above = np.flatnonzero(height > wanted)
@@ -50,7 +50,9 @@ def follow_profile(
     return float(values[j - 1] + share * (values[j] - values[j - 1])), path
 
 
-def profile_curvature(refit: Refit, parameter: str, low: float, high: float) -> float | None:
+def estimate_profile_curvature(
+    refit: Refit, parameter: str, low: float, high: float
+) -> float | None:
     """Return the curvature of the profile at the fitted value of a parameter.
 
     The curvature is the rise of the least squared loss over the square of a small step; it shows
@@ -64,13 +66,16 @@ def profile_curvature(refit: Refit, parameter: str, low: float, high: float) -> 
         s for s in (-PARABOLA_STEP * error, PARABOLA_STEP * error) if low <= middle + s <= high
     ]
     rises = [
-        (_refit_path(refit, parameter, [middle + step])[0][1] ** 2 - refit.fit.loss**2) / step**2
+        (_refit_along_path(refit, parameter, [middle + step])[0][1] ** 2 - refit.fit.loss**2)
+        / step**2
         for step in steps
     ]
     return max(float(np.mean(rises)), 0.0) if rises else None
 
 
-def _refit_path(refit: Refit, parameter: str, values: Iterable[float]) -> list[tuple[float, float]]:
+def _refit_along_path(
+    refit: Refit, parameter: str, values: Iterable[float]
+) -> list[tuple[float, float]]:
     """Return the pairs (value, least loss) at `values` of a parameter.
 
     The search at a value starts from the solution at the value before it.
@@ -78,6 +83,6 @@ def _refit_path(refit: Refit, parameter: str, values: Iterable[float]) -> list[t
     shapes, weights, path = refit.fit.values, refit.weights, []
     for value in values:
         problem = refit.make_problem(**{parameter: float(value)})
-        shapes, weights, error = refit.search_from(problem, shapes, weights)
+        shapes, weights, error = refit.search_from_start(problem, shapes, weights)
         path.append((float(value), float(np.sqrt(error))))
     return path

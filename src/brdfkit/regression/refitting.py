@@ -18,7 +18,7 @@ from brdfkit.regression.losses.named_losses import to_loss
 from brdfkit.regression.losses.picture import Picture
 from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
-from brdfkit.regression.robust.search import search_robust
+from brdfkit.regression.robust.search import search_robust_solution
 from brdfkit.regression.search.albedo_search import NOTE, correct_albedo
 from brdfkit.regression.search.levenberg_marquardt import levenberg_marquardt
 from brdfkit.regression.search.multistart import EXACT, LARGEST_STEPS
@@ -84,7 +84,7 @@ class Refit:
         """Whether a second search corrected the albedo of the fit."""
         return any(note.startswith(NOTE) for note in self.fit.notes)
 
-    def require_least_loss(self) -> None:
+    def require_uncorrected_albedo(self) -> None:
         """Raise `BrdfkitError` if the fit minimises its loss and a term for the albedo together."""
         if self.has_corrected_albedo:
             raise BrdfkitError(
@@ -101,7 +101,7 @@ class Refit:
         space = Space.for_samples(self.samples, model, bounds, fixed, anisotropic)
         return Problem(model, self.samples, losses.named.by_sample[self.fit.loss_name], space)
 
-    def search_from(
+    def search_from_start(
         self,
         problem: Problem,
         values: Mapping[str, Any],
@@ -124,12 +124,12 @@ class Refit:
                 u, weights = corrected[:2]
                 error = problem.compute_sums(u, weights, curvature=False).error[0]
         if robust := self.fit.settings.get("robust"):
-            u, weights, *_ = search_robust(
+            u, weights, *_ = search_robust_solution(
                 problem, u, weights, robust, rng, lambda done, total: None
             )
-        return problem.space.to_values(u[0]), weights, error
+        return problem.space.to_named_values(u[0]), weights, error
 
-    def to_values(self, shapes: dict[str, Any], weights: FloatArray) -> dict[str, Any]:
+    def to_named_values(self, shapes: dict[str, Any], weights: FloatArray) -> dict[str, Any]:
         """Return all parameters of the model by name, from `shapes` by name and lobe `weights`."""
         model, wavelengths = type(self.fit.model), self.fit.wavelengths
         return make_model(model, shapes, weights[0], wavelengths).values

@@ -29,11 +29,11 @@ from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.pixel_problem import PictureProblem
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import average_to_bands
-from brdfkit.regression.robust.search import search_robust
+from brdfkit.regression.robust.search import search_robust_solution
 from brdfkit.regression.search.albedo_search import correct_albedo
 from brdfkit.regression.search.levenberg_marquardt import ROUNDING
 from brdfkit.regression.search.multistart import (
-    default_start_count,
+    choose_start_count,
     make_part_problems,
     make_start_points,
     search_from_starts,
@@ -41,7 +41,7 @@ from brdfkit.regression.search.multistart import (
 from brdfkit.regression.solvers import SLSQP, LevenbergMarquardt, Objective
 from brdfkit.regression.solvers.constraints import Constraints
 
-# Number of start points of the search that corrects an albedo, next to the solution before it
+# Number of start points of the search that corrects an albedo, besides the solution itself
 CORRECTION_STARTS = 8
 
 
@@ -93,7 +93,7 @@ def regress(
     `robust`: name of a weight function in `robust.reweighting.WEIGHTS` that reduces outliers.
     `solver`: a `Solver`, by default the result of `choose_solver`.
     `constraints`: constraints of `solvers`, or a user's functions of the model.
-    `starts`: number of start points, by default the result of `default_start_count`.
+    `starts`: number of start points, by default the result of `choose_start_count`.
     `bounds`: (low, high) by shape parameter.
     `fixed`: a value by shape parameter that is not searched.
     `anisotropic`: whether to search the second roughness of an anisotropic model, as ``alpha_v``.
@@ -116,13 +116,13 @@ def regress(
         whole = PictureProblem.for_fit(model, samples, loss, space, pixels, rng)
         problems = [whole.make_smaller(rng), whole]
     default = space.to_coordinates(first or model().values)
-    points = make_start_points(default, starts or default_start_count(len(space.names)), seed)
+    points = make_start_points(default, starts or choose_start_count(len(space.names)), seed)
     evaluations = 0
     if len(whole.groups) > 1:  # a spectral fit: means of a few bands suffice to choose the starts
         bands = make_part_problems(whole.with_samples(average_to_bands(samples)), rng)
         try:
             ends, _, evaluations = search_from_starts(bands, points, report)
-        except Interrupted:  # there is no solution for all channels yet that could be returned
+        except Interrupted:  # so far only the bands are fitted, not all channels
             raise KeyboardInterrupt from None
         points = ends.u
     limits = Constraints(constraints, whole) if constraints else None
@@ -140,11 +140,11 @@ def regress(
     (u, weights), passes = objective.split(end.point[None]), None
     error, message, notes = end.error, end.message, limits.write_notes(end.point) if limits else ()
     if message != "converged" and error <= ROUNDING * whole.black_squares.sum():
-        message = "converged"  # the model meets the data exactly: E² is a rounding error
-    # The robust search starts from the optimum of the plain loss, which weights no outlier less
+        message = "converged"  # E² is a rounding error: the model meets the data exactly
+    # The robust search starts from the optimum of the plain loss, in which outliers count fully
     if robust and not stopped:
         try:
-            u, weights, message, notes, passes = search_robust(
+            u, weights, message, notes, passes = search_robust_solution(
                 whole, u, weights, robust, rng, report
             )
         except Interrupted as stop:
@@ -164,10 +164,12 @@ def regress(
     if pixels is not None:
         certainty = certainty.without_standard_errors(samples.values.size)
     message = (
-        "interrupted: the best so far" if stopped else _explain_undetermined(certainty) or message
+        "interrupted: the best so far"
+        if stopped
+        else _explain_undetermined_parameters(certainty) or message
     )
     solution = Solution(
-        space.to_values(u[0]),
+        space.to_named_values(u[0]),
         weights[0],
         math.sqrt(error),
         evaluations + objective.count(),
@@ -181,7 +183,7 @@ def regress(
     return solution
 
 
-def _explain_undetermined(certainty: Certainty) -> str | None:
+def _explain_undetermined_parameters(certainty: Certainty) -> str | None:
     """Return the message of a fit whose data do not determine all parameters, otherwise None."""
     numbers, parameters = certainty.numbers, certainty.parameters
     if numbers < parameters:

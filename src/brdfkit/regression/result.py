@@ -18,13 +18,13 @@ from brdfkit.model import Model
 from brdfkit.model.value_table import make_value_table
 from brdfkit.regression.albedo import Albedo
 from brdfkit.regression.albedo_cells import describe_albedo
-from brdfkit.regression.certainty import Certainty, make_intervals
+from brdfkit.regression.certainty import Certainty, make_confidence_intervals
 from brdfkit.regression.measurement_noise import BY_ERRORS
 
 NAN = float("nan")
-# A fit prints its effective samples if they are fewer than this share; a full table has more
+# A fit prints the effective number of its samples if it is below this share of their number
 FEW_EFFECTIVE = 0.49
-# A fit prints the share of directions without samples from this share on
+# A fit prints the share of directions without samples if it is at least this
 MANY_UNREPRESENTED = 0.01
 
 
@@ -144,7 +144,7 @@ class Fit(Shown):
         half = self._arrange_like_values(
             self.certainty.compute_half_widths() if self.certainty else {}
         )
-        return make_intervals(self.values, half)
+        return make_confidence_intervals(self.values, half)
 
     @property
     def covariance(self) -> NDArray[np.float64]:
@@ -172,7 +172,7 @@ class Fit(Shown):
         samples.
         """
         return (
-            self._sample_certainty.compute_criterion(self.loss, 2.0)
+            self._sample_certainty.compute_information_criterion(self.loss, 2.0)
             if self._sample_certainty
             else NAN
         )

@@ -245,11 +245,12 @@ def _choose_picture_path(request: Request, name: str) -> Path:
 
 def _warn_of_energy_gain(models: Sequence[Any]) -> None:
     """Print a warning for each model that reflects more light than arrives, by its parameters."""
-    from brdfkit.regression.albedo import LARGEST_ALBEDO, format_share, make_albedo_pixels
+    from brdfkit.regression.albedo import LARGEST_ALBEDO, format_light_share, make_albedo_pixels
 
     for model in models:
         albedo = float(make_albedo_pixels((5.0, 45.0, 75.0)).evaluate(model.eval).max())
         if albedo > LARGEST_ALBEDO:
             print_message(
-                f"{model.name} reflects {format_share(albedo)} of the light, more than arrives."
+                f"{model.name} reflects {format_light_share(albedo)} of the light, "
+                "more than arrives."
             )

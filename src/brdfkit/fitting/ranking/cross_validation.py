@@ -45,20 +45,20 @@ def cross_validate(
     model: type[Model],
     held_out: HeldOut,
     appearance: Appearance,
-    light: TargetAlbedo,
+    target: TargetAlbedo,
     anisotropic: bool | None,
     seed: int,
     report: Callable[[int], object],
 ) -> Validated:
     """Cross-validate a model class; `report` is called with the number of finished fits.
 
-    The fit to all samples should keep the albedos `light` of the material; `appearance` judges its
+    The fit to all samples should keep the albedos `target` of the material; `appearance` judges its
     picture and its colour at grazing angles.
     """
     settings = {"anisotropic": anisotropic, "seed": seed}
     report(0)
     began = time.perf_counter()
-    whole = held_out.regress(model, held_out.folds >= 0, target_albedo=light, **settings)
+    whole = held_out.regress(model, held_out.folds >= 0, target_albedo=target, **settings)
     seconds = time.perf_counter() - began
     report(1)
 
@@ -66,7 +66,7 @@ def cross_validate(
         model, held_out, whole.shapes, settings, lambda done: report(1 + done)
     )
     brdf, certainty = make_model(model, whole.shapes, whole.weights).eval, whole.certainty
-    albedo = light.compare_with_fit(brdf)
+    albedo = target.compare_with_fit(brdf)
     return Validated(
         errors,
         albedo,

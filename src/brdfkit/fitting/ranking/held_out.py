@@ -27,10 +27,11 @@ from brdfkit.regression.regression import Solution
 
 # Of larger measurements this number of samples is drawn at random
 SAMPLE_LIMIT = 8_000
-RINGS = 8  # intervals of the half angle theta_h, which are narrow at the highlight
-BANDS = 6  # equal intervals of the difference angle theta_d, between half vector and incidence
-STEPS = 5  # equal intervals of |cosθ_i - cosθ_o|
-DISC_RINGS, DISC_SECTORS = 4, 12  # rings of equal area on the ball's disc, and sectors of each
+RINGS = 8  # number of intervals of the half angle theta_h, narrow at the highlight
+BANDS = 6  # number of equal intervals of theta_d, the angle from half vector to incidence
+STEPS = 5  # number of equal intervals of |cosθ_i - cosθ_o|
+# Number of rings of equal area on the ball's disc, and of sectors in each
+DISC_RINGS, DISC_SECTORS = 4, 12
 
 
 @dataclass(frozen=True, eq=False)

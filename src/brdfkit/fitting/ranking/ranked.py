@@ -12,7 +12,7 @@ from brdfkit.fitting.ranking.cross_validation import Validated
 from brdfkit.fitting.ranking.ties import compare_with_best, is_tied
 from brdfkit.regression.albedo import Albedo
 
-# Smaller errors of a picture are rounding errors
+# Least error of a picture that is not a rounding error
 ROUNDING = 1e-6
 
 

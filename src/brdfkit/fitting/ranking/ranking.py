@@ -102,8 +102,8 @@ def rank(
         pixels = draw_pixels(chosen.lights, data.rgb.eval, max_angle, seed)
     held_out = HeldOut.divide(samples, chosen, data.anisotropic, folds, rng, pixels)
     appearance = Appearance(data, samples, max_angle, seed + 1)
-    light = TargetAlbedo.from_measured(data.rgb.albedo, data.anisotropic)
-    how = appearance, light, anisotropic, seed
+    target = TargetAlbedo.from_measured(data.rgb.albedo, data.anisotropic)
+    how = appearance, target, anisotropic, seed
 
     report, fits = progress or (lambda done, total: None), folds + 1
     results: dict[str, Any] = {}

@@ -18,12 +18,12 @@ def compare_with_best(
 ) -> tuple[float, float, float]:
     """Return a model's error E, its excess over the best E, and the standard error of the excess.
 
-    `errors` and `best` (blocks,) are the shares of the blocks of directions in E² of the model and
-    of the best model; `shares` (blocks,) are the weights of the blocks.
+    `errors` and `best` (blocks,) are the contributions of the blocks of directions to E² of the
+    model and of the best model; `shares` (blocks,) are the weights of the blocks.
     """
     error, least = (math.sqrt(squares.sum()) for squares in (errors, best))
     noise = compute_paired_standard_error(errors - best, shares)
-    # Dividing by E + least turns the standard error of E² - least² into that of E - least
+    # Divided by the sum of both errors, the standard error of E² - least² becomes that of E - least
     return error, error - least, noise / (error + least) if noise else 0.0
 
 

@@ -14,7 +14,11 @@ from brdfkit.fitting.sweeping import tables
 from brdfkit.materials.measured.albedos import ANGLES
 from brdfkit.regression import losses
 from brdfkit.regression.albedo import WRONG_FACTOR
-from brdfkit.regression.albedo_cells import average_albedos, format_albedo, is_wrong_albedo
+from brdfkit.regression.albedo_cells import (
+    average_albedos_over_channels,
+    format_albedo,
+    is_wrong_albedo,
+)
 
 TINT_STEPS = 10  # number of shades that the style sheet defines for cells
 COLOURLESS_RATIO = 4.0  # a cell whose error is this multiple of the best one has no colour
@@ -43,17 +47,17 @@ def write_sweep_page(sweep: Any, path: str | Path) -> None:
         title=f"{_format_count(models, 'model')} fitted to {_format_count(materials, 'material')}",
         summary=sweep.summary,
         comparisons=[
-            _describe_table(sweep, materials, models, quantity, path.parent)
+            _make_table_of_quantity(sweep, materials, models, quantity, path.parent)
             for quantity in tables.list_quantities(sweep)
         ],
         problems=sweep.problems,
-        fits=_list_fits(sweep),
+        fits=_make_table_of_fits(sweep),
         albedos=ALBEDOS,
         version=__version__,
     )
 
 
-def _describe_table(
+def _make_table_of_quantity(
     sweep: Any, materials: Any, models: Sequence[str], quantity: Any, folder: Path
 ) -> dict[str, Any]:
     """Return the table of a quantity, by materials and models, for the page's template.
@@ -63,7 +67,7 @@ def _describe_table(
     columns, texts, foot = tables.compare_models(sweep, quantity)
     rows = []
     for (material, by_model), row in zip(materials.items(), texts, strict=True):
-        best = quantity.find_best(by_model.values())
+        best = quantity.find_best_row(by_model.values())
         cells = [_make_cell(by_model.get(model), best, quantity, folder) for model in models]
         file = next(iter(by_model.values())).file
         rows.append({"material": material, "file": file, "cells": cells, "best": row[-1]})
@@ -120,7 +124,7 @@ def _make_cell(row: Any, best: Any, quantity: Any, folder: Path) -> dict[str, st
     }
 
 
-def _list_fits(sweep: Any) -> dict[str, Any] | None:
+def _make_table_of_fits(sweep: Any) -> dict[str, Any] | None:
     """Return the table of all fits for the page's template; None if there are no fits."""
     if not sweep.fits:
         return None
@@ -137,7 +141,9 @@ def _list_fits(sweep: Any) -> dict[str, Any] | None:
                 ],
                 "albedos": [
                     (format_albedo(own), format_albedo(measured), is_wrong_albedo(own, measured))
-                    for own, measured in zip(*average_albedos(row.fit.albedo), strict=True)
+                    for own, measured in zip(
+                        *average_albedos_over_channels(row.fit.albedo), strict=True
+                    )
                 ],
                 "numbers": [row.parameters, f"{row.samples:,}", f"{row.seconds:.2f}"],
                 "remarks": "; ".join([*bounds, *row.fit.notes, row.message]),

@@ -27,10 +27,10 @@ def plan_tasks(files: Any, models: Any, settings: FitSettings) -> list[Task]:
     an unreadable file contains the reason. Raises `BrdfkitError` if a model is unknown, or if there
     is no file or no model.
     """
-    classes = [labels.model(labels.load_files(m)) for m in _as_list(models, "model")]
+    classes = [labels.model(labels.load_files(m)) for m in _require_list(models, "model")]
     defined = {c.label(): _compute_checksums(c) for c in classes}
     tasks: dict[str, Task] = {}
-    for file in _as_list(files, "file"):
+    for file in _require_list(files, "file"):
         task = _plan_file(file, defined, settings)
         if task.path not in tasks:
             taken = {t.material for t in tasks.values()}
@@ -94,7 +94,7 @@ def _compute_checksums(model: type[Model]) -> dict[str, str]:
     return checksums
 
 
-def _as_list(things: Any, what: str) -> list[Any]:
+def _require_list(things: Any, what: str) -> list[Any]:
     """Return one or several things as a list; raise `BrdfkitError` if there is none."""
     several = isinstance(things, Iterable) and not isinstance(things, str)
     items = list(things) if several else [things]

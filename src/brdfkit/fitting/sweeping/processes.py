@@ -150,7 +150,7 @@ def _prepare_for_spawn() -> Iterator[None]:
     main, old_threads = sys.modules["__main__"], os.environ.get(THREADS)
     masked = None
     if hasattr(signal, "pthread_sigmask"):
-        resource_tracker.ensure_running()  # its start would unmask Ctrl-C, so not later
+        resource_tracker.ensure_running()  # if it started later, it would unmask Ctrl-C
         masked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     sys.modules["__main__"] = ModuleType("__main__")
     os.environ.setdefault(THREADS, "1")

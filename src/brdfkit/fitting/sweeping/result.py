@@ -107,7 +107,7 @@ class Sweep(Shown):
     def best(self) -> dict[str, Fit]:
         """The fit with the least error for each material, by the material's name."""
         best = {
-            m: tables.ERROR.find_best(found.values())
+            m: tables.ERROR.find_best_row(found.values())
             for m, found in tables.group_by_material(self).items()
         }
         return {material: row.fit for material, row in best.items() if row}

@@ -95,8 +95,8 @@ def sweep(
             require_writable(folder / name)
 
     # Read the fits that an earlier sweep saved, so that only the others are fitted
-    rows = {key: row for task in tasks for key, row in _find_rows(task, folder)}
-    left = [_remove_finished(task, rows) for task in tasks]
+    rows = {key: row for task in tasks for key, row in _find_saved_rows(task, folder)}
+    left = [_remove_finished_models(task, rows) for task in tasks]
     found, total = len(rows), sum(len(task.models) for task in left)
 
     # Save each fit as soon as it is finished, so that Ctrl-C loses none
@@ -111,7 +111,7 @@ def sweep(
                 report(len(rows) - found, total)
     except KeyboardInterrupt:
         for task in tasks:  # Ctrl-C may come after a fit is saved and before its row is stored
-            rows.update(_find_rows(_remove_finished(task, rows), folder))
+            rows.update(_find_saved_rows(_remove_finished_models(task, rows), folder))
         if not rows:
             raise
 
@@ -143,14 +143,14 @@ def _run_tasks(tasks: list[Task], slots: int, client: Any) -> Generator[Outcome,
     yield from run_in_processes(parts, slots) if client is None else run_on_cluster(parts, client)
 
 
-def _find_rows(task: Task, folder: Path | None) -> Iterator[tuple[tuple[str, str], Row]]:
+def _find_saved_rows(task: Task, folder: Path | None) -> Iterator[tuple[tuple[str, str], Row]]:
     """Yield the key (material, model) and the row of every fit of a task that `folder` contains."""
     for label in task.models:
         if folder and (saved := saved_fits.find_saved_fit(folder, task, label)):
             yield (task.material, label), _make_row(task, label, *saved)
 
 
-def _remove_finished(task: Task, rows: Mapping[tuple[str, str], Row]) -> Task:
+def _remove_finished_models(task: Task, rows: Mapping[tuple[str, str], Row]) -> Task:
     """Return the task without the models that already have a row."""
     models = {n: files for n, files in task.models.items() if (task.material, n) not in rows}
     return replace(task, models=models)

@@ -15,7 +15,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import write_safely
 from brdfkit.fitting.compare import format_error
 from brdfkit.materials.measured.albedos import ANGLES
-from brdfkit.regression.albedo_cells import average_albedos
+from brdfkit.regression.albedo_cells import average_albedos_over_channels
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Quantity:
         """Return the number of a `Row`; nan if its fit failed."""
         return float(getattr(row, self.name)) if row.fit else math.nan
 
-    def find_best(self, rows: Iterable[Any]) -> Any:
+    def find_best_row(self, rows: Iterable[Any]) -> Any:
         """Return the `Row` with the best number; None if no row has a number."""
         numbers = [row for row in rows if not math.isnan(self.read_number(row))]
         return (max if self.decibels else min)(numbers, key=self.read_number, default=None)
@@ -84,7 +84,9 @@ def compare_models(
     """
     rows = group_by_material(sweep)
     models = list(dict.fromkeys(row.model for row in sweep.rows))
-    best = {material: quantity.find_best(by_model.values()) for material, by_model in rows.items()}
+    best = {
+        material: quantity.find_best_row(by_model.values()) for material, by_model in rows.items()
+    }
     names = {material: row.fit.name if row else "" for material, row in best.items()}
     body = [
         (
@@ -159,7 +161,7 @@ def _make_record(row: Any) -> dict[str, Any]:
     record = {f.name: getattr(row, f.name) for f in fields(row) if f.name not in ("fit", "saved")}
     record["at_bounds"] = " ".join(row.at_bounds)
     record["values"] = json.dumps(row.fit.values) if row.fit else None
-    means = average_albedos(row.fit.albedo if row.fit else None)
+    means = average_albedos_over_channels(row.fit.albedo if row.fit else None)
     for name, albedos in zip(("albedo", "measured_albedo"), means, strict=True):
         record |= {f"{name}_{angle:g}": a for angle, a in zip(ANGLES, albedos, strict=True)}
     record["warnings"] = "; ".join(row.fit.warnings) if row.fit else None

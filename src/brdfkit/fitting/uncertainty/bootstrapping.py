@@ -127,8 +127,8 @@ def bootstrap(
         drawn = samples.at(rows)
         drawn = replace(drawn, weight=drawn.weight * times[rows])
         part = problem.with_samples(drawn)
-        shapes, weights, _ = again.search_from(part, fit.values, again.weights, rng)
-        refitted.append(again.to_values(shapes, weights))
+        shapes, weights, _ = again.search_from_start(part, fit.values, again.weights, rng)
+        refitted.append(again.to_named_values(shapes, weights))
         if progress:
             progress(number, draws)
     return Bootstrap(fit, {name: np.array([f[name] for f in refitted]) for name in refitted[0]})

@@ -32,7 +32,7 @@ def is_isotropic(model: Model, wi: FloatArray, wo: FloatArray) -> bool:
     return bool(largest_change <= 1e-9 * abs(values).max())
 
 
-def note_on_azimuth(
+def note_on_isotropic_model(
     data: Measured, samples: Samples, loss: Loss | Picture, fitted: Model
 ) -> str | None:
     """Return a note if an isotropic model was fitted to an anisotropic material, otherwise None.
@@ -47,12 +47,12 @@ def note_on_azimuth(
     note = "the material changes as the surface turns, and the model as fitted does not"
     if isinstance(loss, Picture) or not (data.is_table or data.has_lookup):
         return note  # the error of a picture cannot be computed at single azimuths
-    least = _compute_least_error(data if fitted.wavelengths else data.rgb, part, loss)
+    least = _compute_isotropic_limit(data if fitted.wavelengths else data.rgb, part, loss)
     return f"{note}: no isotropic one has an error below about {least:.2g}"
 
 
 @in_turn
-def _compute_least_error(data: Measured, samples: Samples, loss: Loss) -> float:
+def _compute_isotropic_limit(data: Measured, samples: Samples, loss: Loss) -> float:
     """Return the least error E that an isotropic model can have on samples and their turned copies.
 
     An isotropic model has one value for all azimuths of a direction pair. Its best value is found

@@ -98,9 +98,9 @@ def prediction_error(
     >>> print(prediction_error(linear, "plaster"))    # doctest: +SKIP
     """
     samples = select_fitted_samples(fit, material)
-    _require_linear(fit, samples)
+    _require_linear_fit(fit, samples)
     # A fit does not keep the weights of its samples, so fits with such weights are rejected
-    Refit(fit, samples).require_least_loss()
+    Refit(fit, samples).require_uncorrected_albedo()
     Z = compute_lobe_values(fit.model, samples.wi, samples.wo)[0]
     # `solve` is (Z'WZ)⁻¹ Z'W with the weights W of the loss: it maps values to weights of the lobes
     root = _compute_root_weights(to_loss(fit.loss_name), samples)
@@ -115,13 +115,16 @@ def prediction_error(
     if sigma is None:
         residuals = Z @ (solve @ samples.values) - samples.values
         sigma = np.sqrt((residuals**2).sum(axis=0) / max(len(Z) - Z.shape[1], 1))
-    sigma = _to_numbers(sigma, values.shape[1])
+    sigma = _check_noise_deviation(sigma, values.shape[1])
     spread = ((Z @ (solve @ solve.T)) * Z).sum(axis=1, keepdims=True)
     return PredictionError(spread * np.broadcast_to(sigma, values.shape[1:]) ** 2, bias)
 
 
-def _to_numbers(sigma: ArrayLike, channels: int) -> FloatArray:
-    """Return the standard deviation of the noise as an array, of one number or one per channel."""
+def _check_noise_deviation(sigma: ArrayLike, channels: int) -> FloatArray:
+    """Return the standard deviation of the noise as an array: one number, or one per channel.
+
+    Raises `BrdfkitError` unless `sigma` is that.
+    """
     try:
         numbers = np.asarray(sigma, float)
     except (TypeError, ValueError):
@@ -133,7 +136,7 @@ def _to_numbers(sigma: ArrayLike, channels: int) -> FloatArray:
     return numbers
 
 
-def _require_linear(fit: Fit, samples: Samples) -> None:
+def _require_linear_fit(fit: Fit, samples: Samples) -> None:
     """Raise `BrdfkitError` unless the values that a fit predicts are linear in the data."""
     model, settings = type(fit.model), fit.settings
     known = {*model.determine_parameters(samples), *settings.get("fixed", ())}

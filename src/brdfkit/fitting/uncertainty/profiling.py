@@ -17,7 +17,7 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.fitting.settings import prepare_refit
 from brdfkit.materials.resolve import MaterialLike
 from brdfkit.regression import Fit
-from brdfkit.regression.profiling import follow_profile, profile_curvature
+from brdfkit.regression.profiling import estimate_profile_curvature, follow_profile
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -113,7 +113,7 @@ def profile(fit: Fit, material: MaterialLike, *, parameter: str, points: int = 2
 
     points = to_whole_number("points", points, least=5)
     again = prepare_refit(fit, material)
-    again.require_least_loss()
+    again.require_uncorrected_albedo()
     space = again.make_problem().space
     if parameter not in space.names:
         raise BrdfkitError(
@@ -128,7 +128,7 @@ def profile(fit: Fit, material: MaterialLike, *, parameter: str, points: int = 2
         )
     middle: Any = fit.values[parameter]
     k = space.names.index(parameter)
-    rise = profile_curvature(again, parameter, float(space.low[k]), float(space.high[k]))
+    rise = estimate_profile_curvature(again, parameter, float(space.low[k]), float(space.high[k]))
     low, high = np.ravel(fit.intervals[parameter]).tolist()
     if rise is None:  # the fit is on a bound, where `Fit.intervals` gives no interval
         level = fit.loss * np.sqrt(1 + stdtrit(freedom, 0.975) ** 2 / freedom)

@@ -25,7 +25,7 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.conventions import can_mend
 from brdfkit.materials.measured.coverage import is_in_plane
 from brdfkit.model.samples import Samples
-from brdfkit.regression.albedo import format_share
+from brdfkit.regression.albedo import format_light_share
 
 # Values are reported as not reciprocal if the relative difference of f(wi, wo) and f(wo, wi) is
 # larger in the median of at least FEWEST_PAIRS pairs
@@ -213,7 +213,7 @@ def _warn_of_wrong_unit(data: Measured) -> str:
     share = shares[angle]
     if SMALLEST_ALBEDO <= share <= LARGEST_ALBEDO:
         return ""
-    what = f"the measurement reflects {format_share(share)} of the light at {angle:g}°"
+    what = f"the measurement reflects {format_light_share(share)} of the light at {angle:g}°"
     if share > LARGEST_ALBEDO:
         return (
             f"{what}, more than arrives: the values are in another unit than 1/sr, or hold a "

@@ -77,7 +77,7 @@ class Loss:
 
     @cached_property
     def linear(self) -> bool:
-        """Whether the difference is linear in the BRDF: κ (model - measured).
+        """Whether the difference is linear in the BRDF: a factor κ times (model - measured).
 
         κ may depend on the cosines. The best weights of a model's lobes under a linear loss follow
         from one linear system, without a search.

@@ -1,8 +1,9 @@
 """Defines the losses that a fit can minimise by name, such as "cbrt" and "log".
 
-The formula of some losses has only the cosine of the angle of incidence θ_i. They are computed with
-a mean of the cosines of θ_i and of the angle of view θ_o, because a file may list either direction
-first. The integral over all pairs of directions is the same, because a BRDF is reciprocal.
+The formula of some losses contains only the cosine of the angle of incidence θ_i. They are computed
+with a mean of the cosines of θ_i and of the angle of view θ_o, so that it does not matter which
+direction a file lists first. The integral over all pairs of directions stays the same, because a
+BRDF is reciprocal.
 
 A measured value may be negative, because of noise or of a colour out of gamut. Losses that are
 linear in the model use it unchanged; the other losses use 0, because their functions need values
@@ -23,19 +24,19 @@ from brdfkit.regression.losses.picture import Picture
 
 # Name of the loss that a fit minimises by default
 DEFAULT = "cbrt"
-# BRDF values below this [sr⁻¹], the noise of a measured table, count little in "log" and "relative"
+# Noise of a measured table [sr⁻¹]; smaller BRDF values count little in the losses log and relative
 OFFSET = 1e-3
-# This is added inside the cube root, whose derivative at 0 is infinite
+# Added to the argument of the cube root, because its derivative at 0 is infinite
 CBRT_OFFSET = 1e-6
 
 
-def _cosine_difference(
+def _compute_cosine_difference(
     model: JitFloat, measured: JitFloat, cos_i: JitFloat, cos_o: JitFloat
 ) -> JitFloat:
     return dr.sqrt((dr.square(cos_i) + dr.square(cos_o)) / 2) * (model - measured)
 
 
-def _cbrt_difference(
+def _compute_cbrt_difference(
     model: JitFloat, measured: JitFloat, cos_i: JitFloat, cos_o: JitFloat
 ) -> JitFloat:
     squares = dr.square(dr.cbrt(cos_i)) + dr.square(dr.cbrt(cos_o))
@@ -43,20 +44,20 @@ def _cbrt_difference(
     return dr.sqrt(squares / 2) * (roots[0] - roots[1])
 
 
-def _log_difference(
+def _compute_log_difference(
     model: JitFloat, measured: JitFloat, cos_i: JitFloat, cos_o: JitFloat
 ) -> JitFloat:
     cosines = cos_i * cos_o
     return dr.log(cosines * model + OFFSET) - dr.log(cosines * dr.maximum(measured, 0) + OFFSET)
 
 
-def _relative_difference(
+def _compute_relative_difference(
     model: JitFloat, measured: JitFloat, cos_i: JitFloat, cos_o: JitFloat
 ) -> JitFloat:
     return (model - measured) / (dr.maximum(measured, 0) + OFFSET)
 
 
-def _sine(cosine: FloatArray) -> FloatArray:
+def _compute_sine(cosine: FloatArray) -> FloatArray:
     return np.sqrt(np.maximum(1 - cosine**2, 0))
 
 
@@ -99,19 +100,19 @@ named = Losses(
         Loss(
             name="cosine",
             meaning="RMS difference of f cos θ_i by solid angle: the light that is reflected",
-            difference=_cosine_difference,
+            difference=_compute_cosine_difference,
             measure="solid_angle",
         ),
         Loss(
             name="log",
             meaning="RMS difference of ln(f cos θ_i cos θ_o + 0.001): relative error, dark counts",
-            difference=_log_difference,
+            difference=_compute_log_difference,
             measure="angles",
         ),
         Loss(
             name="cbrt",
             meaning="RMS difference of the cube root of f cos θ_i: between cosine and log",
-            difference=_cbrt_difference,
+            difference=_compute_cbrt_difference,
         ),
         Loss(
             name="plain",
@@ -128,7 +129,7 @@ named = Losses(
         Loss(
             name="relative",
             meaning="RMS difference of f as a share of the measured f + 0.001: dark counts",
-            difference=_relative_difference,
+            difference=_compute_relative_difference,
             measure="angles",
         ),
         Loss(
@@ -137,7 +138,7 @@ named = Losses(
             "channels summed",
             difference=lambda model, measured, cos_i, cos_o: cos_i * (model - measured),
             measure="samples",
-            weights=_sine,
+            weights=_compute_sine,
             channel_mean=False,
         ),
         Picture(),

@@ -33,8 +33,9 @@ class Picture:
     lights : tuple of str, default ("court", "hall", "sky", "studio")
         The environments; the loss compares one picture for each.
     share : float, default 0.003
-        Factor of the squared log loss, at least 0, which is added to the mean square of pixels. A
-        larger factor keeps the fit closer to the measurement in directions that no picture shows.
+        Factor of the squared log loss, at least 0, which is added to the mean squared difference of
+        pixels. A larger factor keeps the fit closer to the measurement in directions that no
+        picture shows.
 
     Raises
     ------
@@ -91,6 +92,6 @@ class Picture:
 
 
 def _encode_srgb(x: JitFloat) -> JitFloat:
-    """Return linear values (any shape) on the tone curve of sRGB, which goes on above 1."""
+    """Return linear values (any shape) encoded by the tone curve of sRGB, also above 1."""
     bright = 1.055 * dr.power(dr.maximum(x, 0.0031308), 1 / 2.4) - 0.055
     return dr.select(x < 0.0031308, 12.92 * x, bright)

@@ -21,9 +21,9 @@ from brdfkit.model.samples import Samples
 from brdfkit.regression.losses.loss import Loss
 from brdfkit.regression.problem.columns import Columns
 
-# One kernel evaluates at most this number of channels; more channels are evaluated in groups
+# Largest number of channels that one kernel evaluates; more channels are split into groups
 GROUP = 8
-# Largest product of the number of samples in a block, of points and of groups of channels
+# Largest size of a block: its samples times the points of the search times the groups of channels
 BLOCK_SIZE = 2**17
 
 
@@ -79,7 +79,7 @@ class Block:
         column.
         """
         float64, columns = double_precision.choose_float_type(), table.shape[1]
-        if not double_precision.has_derivatives():  # these arrays do not support dr.gather
+        if not double_precision.has_derivatives():  # then arrays do not support dr.gather
             size = self.rows.stop - self.rows.start
             return [float64(np.repeat(column, size)) for column in table.T]
         flat, first = double_precision.to_array(table.ravel()), self.point * columns
@@ -99,8 +99,8 @@ class Block:
     ) -> tuple[JitFloat, JitFloat]:
         """Return the loss's difference in a channel, and its derivative by the model's `value`.
 
-        `clamped`: whether a negative value is replaced by 0; `extended`: whether the difference
-        then continues below 0 with the slope that it has at 0.
+        `clamped`: whether a negative value counts as 0; `extended`: whether the difference instead
+        continues below 0 as a straight line, with the slope that it has at 0.
         """
 
         def difference(value: JitFloat) -> JitFloat:
@@ -119,7 +119,7 @@ class Block:
         _, slope = differentiate(difference, 0 * value)
         return differentiate(lambda v: clamp_difference(v) + slope * dr.minimum(v, 0), value)
 
-    def directions(self) -> tuple[Vector, Vector]:
+    def get_sample_directions(self) -> tuple[Vector, Vector]:
         """Return the incident and outgoing directions of the samples, without repetition."""
         wi, wo = (
             Vector(*(double_precision.to_array(self.split_by_point(x)[0]) for x in (w.x, w.y, w.z)))

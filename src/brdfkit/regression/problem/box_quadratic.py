@@ -8,7 +8,8 @@ import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 
-# After this number of rounds only one variable moves onto or off a bound, which is sure to end
+# Number of rounds in which many variables at once may move onto or off their bounds. In later
+# rounds only one moves, so that the search is sure to end
 PARALLEL_ROUNDS = 10
 
 
@@ -25,7 +26,8 @@ def minimise_in_box(
     >>> minimise_in_box(np.eye(2)[None], np.array([[-1.0, 1.0]]), 0.0, np.inf)
     array([[1., 0.]])
     """
-    # Variables are scaled to a unit diagonal of H, so that one with small entries is not lost
+    # Variables are scaled so that the diagonal of the Hessian is 1. Otherwise rounding errors would
+    # hide a variable whose entries are small
     n = gradient.shape[1]
     scale = 1 / np.sqrt(np.maximum(hessian.diagonal(axis1=1, axis2=2), 1e-300))
     form = hessian * (scale[:, :, None] * scale[:, None, :])

@@ -100,7 +100,7 @@ class Columns:
     ) -> list[JitFloat]:
         """Return the values of the lobes as Dr.Jit arrays (n,), like `evaluate` without slopes."""
         lobes = [lobe for _, lobe in self.make_model(shapes).terms()]
-        zeros = 0 * wi.z  # adding it turns the number of a constant lobe into an array (n,)
+        zeros = 0 * wi.z  # a constant lobe is one number; adding zeros makes it an array
         plain = [(factor(lobe) if factor else lobe.eval(wi, wo)) + zeros for lobe in lobes]
         return plain + [lobe.quadratic(wi, wo) + zeros for lobe in lobes if lobe.quadratic]
 

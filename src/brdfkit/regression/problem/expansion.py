@@ -80,14 +80,14 @@ class Expansion:
     def predict_weights(self, u: FloatArray, least: FloatArray) -> FloatArray:
         """Return the best weights (points, channels, lobes) for other coordinates of the shapes.
 
-        With them, a step follows the curve along which the weight of a lobe and its Fresnel
-        reflectance trade off. The prediction takes the lobes as linear in their parameters, and the
-        loss as quadratic in the model. `u` (points, shapes): the other coordinates; `least`
-        (lobes,): lower limits of the weights.
+        A search needs them because a lobe's weight and its Fresnel reflectance can make up for each
+        other: if one changes, so must the other. The prediction assumes that the lobes are linear
+        in their parameters, and the loss is quadratic in the model. `u` (points, shapes): the other
+        coordinates; `least` (lobes,): lower limits of the weights.
         """
         columns, count = self.columns, len(self.columns.lobes)
         by = self.space.to_parameters(u) - self.space.to_parameters(self.u)
-        # Each row expresses a lobe at `u` as a linear combination of the columns at the old points
+        # Each row expresses a lobe at the new coordinates as a combination of the old columns
         lobes = np.zeros((len(u), count, len(columns)))
         lobes[:, range(count), range(count)] = 1
         for k, (value, j) in enumerate(columns.slopes, count):

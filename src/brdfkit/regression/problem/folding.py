@@ -1,13 +1,17 @@
 """Speeds up fits to tables under a linear loss, by sums over samples with equal half vectors.
 
-Some lobes are a product of two factors: S contains the shape parameters and depends only on the
-half vector and θ_d, the angle between it and the incident direction; A contains no parameters. A
-loss is linear if its difference is κ (model - measured). Then its sums over samples,
+Some lobes are a product S A of two factors. S contains the shape parameters, and depends only on
+the half vector and on θ_d, the angle between it and the incident direction. A contains no
+parameters, so it stays the same in all steps of a fit.
 
-    Σ w κ² S S A A,   Σ w κ² S A R,   Σ w κ² R²,
+A loss is linear if its difference is a factor κ times (model - measured). With weights w and
+measured values R of the samples, the squared loss then follows from three sums over the samples:
 
-with measured values R and weights w, can be folded: the products of κ, A and R are summed once, for
-each half vector (a "node", 90 in MERL's tables). Each step of a fit sums over the nodes only.
+    Σ w κ² (S A)_k (S A)_l for lobes k and l,   Σ w κ² S A R,   Σ w κ² R².
+
+Samples with equal half vectors, and equal θ_d if S depends on it, form a "node"; MERL's tables have
+90 half vectors. The samples of a node have the same S, so the products of w, κ, A and R are summed
+once for each node. Every step of a fit then sums over the nodes only.
 """
 
 from __future__ import annotations
@@ -25,23 +29,23 @@ from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.sums import Sums, move_sums_to_weights, solve_weights
 
-# Folding saves time only if a node stands for at least this number of samples on average
+# Least number of samples per node (half vector), on average, at which folding saves time
 SAMPLES_PER_NODE = 20
-# From this number of samples per node on, one matrix product for each node is the fastest
+# Number of samples per node from which one matrix product for each node is fastest
 LONG_NODE = 1000
 
 
 def fold_problem(problem: Problem) -> FoldedProblem | None:
     """Return the `FoldedProblem` of a problem, or None if folding is impossible or too slow."""
     cells = problem.samples.cells
-    few = len(problem.groups) == 1  # the sums of a node are for all channels at once
+    few = len(problem.groups) == 1  # folding cannot split channels into groups
     if not (problem.linear and few) or cells is None or not double_precision.has_derivatives():
         return None
     pairs = _depends_on_cos_d(problem)
     if pairs is None:
         return None
     numbers = cells[1 if pairs else 0]
-    if not problem.columns.slopes:  # no shape parameters: S is constant, one node is enough
+    if not problem.columns.slopes:  # all lobes stay the same, so one node is enough
         numbers = np.zeros_like(numbers)
     starts = np.flatnonzero(np.diff(numbers, prepend=-1))
     return (
@@ -128,7 +132,10 @@ class FoldedProblem:
         return solve_weights(self.columns, self._sum_nodes(u), self.least)
 
     def expand_loss(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
-        """Return the `Expansion` about coordinates `u` and the weights that are best for them."""
+        """Return the `Expansion` about coordinates `u` and the weights that are best for them.
+
+        `weights` and `curvature` have no effect; `Problem.expand_loss` needs them.
+        """
         sums = self._sum_nodes(u)
         weights = solve_weights(self.columns, sums, self.least)
         sums = move_sums_to_weights(self.columns, sums, weights)
@@ -137,7 +144,10 @@ class FoldedProblem:
     def expand_at_weights(
         self, u: FloatArray, weights: FloatArray, curvature: bool = True
     ) -> Expansion:
-        """Return the `Expansion` about coordinates `u` and these `weights`, with its Hessian."""
+        """Return the `Expansion` about coordinates `u` and these `weights`, with its Hessian.
+
+        `curvature` has no effect; `Problem.expand_at_weights` needs it.
+        """
         sums = move_sums_to_weights(self.columns, self._sum_nodes(u), weights)
         return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 

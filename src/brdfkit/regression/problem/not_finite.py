@@ -43,13 +43,13 @@ def require_finite_columns(
                 columns.model,
                 lobe,
                 value[~np.isfinite(value)][0],
-                describe_pair(*block.directions(), row),
+                describe_pair(*block.get_sample_directions(), row),
             )
     for point in np.flatnonzero(
         [not np.isfinite([v[k] for v in values]).all() for k in range(len(u))]
     ):
-        shapes = space.to_values(u[point])
-        require_finite_slopes(columns.model, shapes, space.names, *block.directions())
+        shapes = space.to_named_values(u[point])
+        require_finite_slopes(columns.model, shapes, space.names, *block.get_sample_directions())
     return [*values[:count], *(np.nan_to_num(v, posinf=0, neginf=0) for v in values[count:])]
 
 
@@ -105,7 +105,7 @@ def require_finite_slopes(
     `wi`, `wo`: pairs of directions. Derivatives are taken in reverse mode, because Dr.Jit's forward
     mode returns NaN for the derivative of 0^p by p, which is 0.
     """
-    # Each pair of directions has its own copy of a parameter, so that it has its own derivative
+    # Each pair of directions gets its own copy of a parameter, and so its own derivative
     count = len(wi.x)
     bound = {n: double_precision.to_array(np.full(count, v)) for n, v in values.items()}
     for name in names:
@@ -117,7 +117,7 @@ def require_finite_slopes(
         dr.clear_grad(bound)
         dr.backward(lobe, dr.ADFlag.ClearInterior)
         slopes = {name: dr.grad(bound[name]) for name in names}
-        dr.eval(slopes)  # in one kernel
+        dr.eval(slopes)  # all of them in one kernel
         for name in names:
             slope = np.array(slopes[name])
             if not np.isfinite(slope).all():

@@ -35,7 +35,9 @@ def split_point(z: FloatArray, shapes: int, channels: int) -> tuple[FloatArray, 
     return z[:, :shapes], z[:, shapes:].reshape(len(z), channels, lobes)
 
 
-def make_limits(shapes: int, channels: int, least: FloatArray) -> tuple[FloatArray, FloatArray]:
+def make_point_limits(
+    shapes: int, channels: int, least: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Return the lower and upper bounds (n,) of the vectors that `join_point` makes.
 
     `shapes`, `channels`: numbers of shape parameters and channels; `least` (lobes,): lower bounds
@@ -83,7 +85,7 @@ class Space:
         a name that is no searched parameter, and for bounds beyond the model's.
         """
         shapes = model.shapes(anisotropic)
-        _check_arguments(model, shapes, bounds, fixed)
+        _check_bounds_and_fixed_values(model, shapes, bounds, fixed)
         names = tuple(name for name in shapes if name not in fixed)
         limits = [bounds.get(n, model.parameters[n].bounds) for n in names]
         low, high = np.array(limits).reshape(-1, 2).T
@@ -114,7 +116,7 @@ class Space:
         linear = self.low + u * (self.high - self.low)
         return np.where(self.log, self._interpolate_logarithmically(u), linear)
 
-    def to_values(self, u: FloatArray) -> dict[str, float]:
+    def to_named_values(self, u: FloatArray) -> dict[str, float]:
         """Return all shape parameters by name, fixed ones too, at coordinates `u` (shapes,)."""
         return dict(zip(self.names, map(float, self.to_parameters(u)), strict=True)) | self.fixed
 
@@ -138,7 +140,7 @@ class Space:
             return self.low * (self.high / self.low) ** u
 
 
-def _check_arguments(
+def _check_bounds_and_fixed_values(
     model: type[Model],
     shapes: Sequence[str],
     bounds: Mapping[str, tuple[float, float]],

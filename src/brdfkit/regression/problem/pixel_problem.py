@@ -32,9 +32,9 @@ from brdfkit.regression.problem.subset import draw_subset
 
 UP = (0.0, 0.0, 1.0)
 LOG = named.by_sample["log"]
-# A fit to pictures uses about this number of samples in addition to the pixels
+# About this number of samples is used in a fit to pictures, in addition to the pixels
 SAMPLES = 20_000
-# To compare start points, a fit to pictures uses about this number of samples, and share of pixels
+# About this number of samples, and this share of the pixels, is used to compare start points
 FEW_SAMPLES, PIXEL_SHARE = 2_000, 1 / 12
 
 
@@ -189,7 +189,7 @@ class PictureProblem(PixelProblem):
         pixels: Pixels,
         rng: np.random.Generator,
     ) -> PictureProblem:
-        """Return the problem with a part of many samples, which the generator `rng` draws."""
+        """Return the problem of a fit. If there are many `samples`, `rng` draws some of them."""
         samples = _draw_samples(model, samples, space, SAMPLES, rng)
         return cls(model, samples, picture, space, pixels)
 

@@ -82,7 +82,7 @@ class Problem:
                 total += sum(
                     dr.square(block.evaluate_difference(0.0, c, *self.clamping)[0]) for c in group
                 )
-                self._evaluate_group(total)
+                self._evaluate_channel_group(total)
             squares.append(np.asarray(block.importance * total))
         contributions = np.concatenate(squares)
         if not np.isfinite(contributions).all():
@@ -109,7 +109,7 @@ class Problem:
                     slope = 0 * slope + 1 if evenly else slope
                     weights.append(block.importance * slope * slope)
                     moments.append(-weights[-1] * value)
-                self._evaluate_group(columns, moments, weights)
+                self._evaluate_channel_group(columns, moments, weights)
             squares = [0 * block.importance]
             sums.add_samples(*self._evaluate_block(block, u, columns, squares, moments, weights))
         if not sums.is_finite():
@@ -188,7 +188,7 @@ class Problem:
                     moments.append(importance * difference * slope)
                     grams.append(importance * slope * slope)
                 squares.append(sum(own))
-                self._evaluate_group(columns, squares, moments, grams)
+                self._evaluate_channel_group(columns, squares, moments, grams)
             yield block, self._evaluate_block(block, u, columns, squares, moments, grams)
 
     def expand_at_weights(
@@ -213,11 +213,11 @@ class Problem:
                 parts[-1] += [
                     root * block.evaluate_difference(m, c, *self.clamping)[0] for c, m in pairs
                 ]
-                self._evaluate_group(columns, parts[-1])
+                self._evaluate_channel_group(columns, parts[-1])
             dr.eval(parts[-1])
         return [np.concatenate([np.asarray(p) for p in part]) for part in zip(*parts, strict=True)]
 
-    def _evaluate_group(self, *arrays: Any) -> None:
+    def _evaluate_channel_group(self, *arrays: Any) -> None:
         """Evaluate the arrays of a group of channels, so that kernels stay small."""
         if len(self.groups) > 1:
             dr.eval(*arrays)

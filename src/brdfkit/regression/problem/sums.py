@@ -15,7 +15,7 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.columns import Columns
 
-# Columns are multiplied in parts of this many numbers, so that they stay in the processor's cache
+# Columns are multiplied in parts of this many numbers, which fit into the processor's cache
 PART_SIZE = 2**16
 
 

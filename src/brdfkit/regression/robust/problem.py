@@ -12,19 +12,19 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.expansion import Expansion
-from brdfkit.regression.problem.parameter_space import join_point, make_limits
+from brdfkit.regression.problem.parameter_space import join_point, make_point_limits
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.robust.reweighting import (
     WEIGHTS,
     compute_leverages,
     compute_smallest_scale,
     estimate_residual_scale,
-    require_more_samples,
+    require_more_samples_than_parameters,
 )
 
-# One of this many samples, with a residual next to the median, estimates the median's derivative
+# The derivative of the median residual is estimated from the samples next to it, one in this many
 MEDIAN_SHARE = 200
-# Step of the central difference for the derivative of a weight by the scaled residual r
+# Step of the scaled residual r in the central difference for the derivative of its weight
 DIFFERENCE_STEP = 1e-5
 
 
@@ -53,9 +53,9 @@ class RobustProblem:
     indices, from which Hessians are estimated; by default the problem itself.
 
     A point has k parameters. The methods take `scales`: for each channel the scale of its
-    residuals' noise, times the constant of the weight function. A residual is a difference of the
-    loss times √w of its sample, but only the difference makes a sample an outlier. So residuals are
-    divided by `levers`, which contain √w as well as √(1 - leverage).
+    residuals' noise, times the constant of the weight function. A residual is the loss's
+    difference at a sample, times the root √w of its weight. Whether the sample is an outlier
+    depends on the difference alone. So residuals are divided by `levers`, √w √(1 - leverage).
     """
 
     def __init__(
@@ -70,16 +70,16 @@ class RobustProblem:
         self.problem, self.part, self.rows = problem, part or problem, rows
         self.function, self.tune, self.rho = WEIGHTS[name]
         self.rank = u.shape[1] + weights.shape[2]
-        require_more_samples(len(problem.samples.wi), self.rank)
-        # Leverages, smallest scales and the metric of changes stay the same in all passes
+        require_more_samples_than_parameters(len(problem.samples.wi), self.rank)
+        # What follows stays the same in all passes; `metric` measures how a step changes the model
         self.metric = self.part.expand_at_weights(u, weights).hessian[0]
         root = np.sqrt(problem.importance / problem.importance.mean())
-        root[root == 0] = 1.0  # a sample with w = 0 has residuals of 0, which any divisor keeps
+        root[root == 0] = 1.0  # a sample of weight 0 has residual 0, whatever divides it
         self.levers = [root * np.sqrt(1 - h) for h in self._find_leverages(u, weights)]
         black = problem.compute_residuals(u, 0 * weights)
         self.least = [compute_smallest_scale(target / root) for target in black]
         self.spread = np.sqrt(sum(len(t) * np.var(t) for t in black)) or 1.0
-        self.low, self.high = make_limits(u.shape[1], problem.channels, problem.least)
+        self.low, self.high = make_point_limits(u.shape[1], problem.channels, problem.least)
 
     def _find_leverages(self, u: FloatArray, weights: FloatArray) -> list[FloatArray]:
         """Return the leverages (n,) of the samples in each channel, for the lobes' weights.
@@ -87,18 +87,18 @@ class RobustProblem:
         They are exact, or with a part of the samples, estimated from the part.
         """
         if self.part is self.problem:
-            blocks = [own for _, own in _iterate_columns(self.problem, u, weights)]
+            blocks = [own for _, own in _iterate_weight_derivatives(self.problem, u, weights)]
             return [
                 compute_leverages(np.concatenate(own, axis=1)) for own in zip(*blocks, strict=True)
             ]
-        # The weights of the part's samples stand for all samples, so its Gram matrices do, too
-        blocks = [own for _, own in _iterate_columns(self.part, u, weights)]
+        # The part's samples have larger weights, which stand for all; so its Gram matrices do, too
+        blocks = [own for _, own in _iterate_weight_derivatives(self.part, u, weights)]
         inverses = []
         for own in zip(*blocks, strict=True):
             gram = sum(columns @ columns.T for columns in own)
             inverses.append(np.linalg.pinv(gram, hermitian=True))
         all_leverages: list[FloatArray] = [np.empty(len(self.problem.samples.wi)) for _ in inverses]
-        for rows, own_columns in _iterate_columns(self.problem, u, weights):
+        for rows, own_columns in _iterate_weight_derivatives(self.problem, u, weights):
             for h, inverse, columns in zip(all_leverages, inverses, own_columns, strict=True):
                 h[rows] = np.minimum((columns * (inverse @ columns)).sum(axis=0), 0.9999)
         return all_leverages
@@ -126,7 +126,7 @@ class RobustProblem:
             for r, least in zip(adjusted, self.least, strict=True)
         ]
 
-    def divide_residuals(self, point: Point, scales: list[float]) -> list[FloatArray]:
+    def scale_residuals(self, point: Point, scales: list[float]) -> list[FloatArray]:
         """Return the scaled residuals r (n,) in each channel, arguments of the weight function.
 
         They are the residuals over their `levers` and `scales`.
@@ -140,7 +140,7 @@ class RobustProblem:
         It is the sum of lever² ρ(r) over samples and channels, in units of squared residuals, where
         ρ is the integral of ω r and ω the weight function.
         """
-        each = zip(self.divide_residuals(point, scales), self.levers, scales, strict=True)
+        each = zip(self.scale_residuals(point, scales), self.levers, scales, strict=True)
         return sum(scale**2 * (lever**2 * self.rho(r)).sum() for r, lever, scale in each)
 
     def compute_weights_and_slopes(
@@ -151,10 +151,12 @@ class RobustProblem:
         Both are lists of arrays (n,) by channel; r are the scaled residuals.
         """
         point = self.make_point(u, weights)
-        ratios = self.divide_residuals(point, self.estimate_scales(point))
-        return [self.function(r) for r in ratios], [self._differentiate_weight(r) for r in ratios]
+        ratios = self.scale_residuals(point, self.estimate_scales(point))
+        return [self.function(r) for r in ratios], [
+            self._differentiate_weighted_residual(r) for r in ratios
+        ]
 
-    def expand_weighted(
+    def expand_weighted_loss(
         self, point: Point, factors: list[FloatArray]
     ) -> tuple[FloatArray, FloatArray]:
         """Return the gradient (k,) and Hessian (k, k) of the squared loss with weighted samples.
@@ -162,20 +164,24 @@ class RobustProblem:
         `factors`: weights (n,) of the samples in each channel, which are constant.
         """
         own = self.part is self.problem
-        here = self._expand_weighted(self.problem, point, factors, own)
+        here = self._expand_weighted_problem(self.problem, point, factors, own)
         if not own:
             factors = [f[self.rows] for f in factors]
-        hessian = here.hessian if own else self._expand_weighted(self.part, point, factors).hessian
+        hessian = (
+            here.hessian
+            if own
+            else self._expand_weighted_problem(self.part, point, factors).hessian
+        )
         return here.gradient[0], hessian[0]
 
     def compute_newton_matrix(self, point: Point, ratios: list[FloatArray]) -> FloatArray:
         """Return Newton's matrix (k, k), the exact Hessian of the merit for constant scales.
 
-        Unlike the Hessian of `expand_weighted`, it includes the change of the samples' weights.
-        `ratios`: scaled residuals (n,) in each channel.
+        Unlike the Hessian of `expand_weighted_loss`, it includes the change of the samples'
+        weights. `ratios`: scaled residuals (n,) in each channel.
         """
-        slopes = [self._differentiate_weight(r[self.rows]) for r in ratios]
-        return self._expand_weighted(self.part, point, slopes).hessian[0]
+        slopes = [self._differentiate_weighted_residual(r[self.rows]) for r in ratios]
+        return self._expand_weighted_problem(self.part, point, slopes).hessian[0]
 
     def differentiate_scales(
         self, point: Point, ratios: list[FloatArray], scales: list[float]
@@ -189,7 +195,9 @@ class RobustProblem:
         for c, (r, scale) in enumerate(zip(ratios, scales, strict=True)):
             r = r[self.rows]
             of_gradient.append(
-                self._compute_gradient(point, c, self.function(r) - self._differentiate_weight(r))
+                self._compute_gradient(
+                    point, c, self.function(r) - self._differentiate_weighted_residual(r)
+                )
             )
             of_scale.append(
                 self._compute_gradient(point, c, self._weigh_samples_at_median(c, r, scale))
@@ -208,7 +216,7 @@ class RobustProblem:
         """
         every = [0 * factors for _ in self.levers]
         every[channel] = factors
-        return self._expand_weighted(self.part, point, every, curvature=False).gradient[0]
+        return self._expand_weighted_problem(self.part, point, every, curvature=False).gradient[0]
 
     def _weigh_samples_at_median(self, channel: int, r: FloatArray, scale: float) -> FloatArray:
         """Return weights (n,) of the part's samples for the gradient of the scale of the noise.
@@ -227,25 +235,25 @@ class RobustProblem:
         weights[near] = 1 / (size * count * (len(levers) / len(r)))
         return weights
 
-    def _expand_weighted(
+    def _expand_weighted_problem(
         self, problem: Problem, point: Point, factors: list[FloatArray], curvature: bool = True
     ) -> Expansion:
         """Return the `Expansion` of the squared loss with samples weighted by `factors`."""
         problem.factors = factors
         try:
             sums = problem.compute_sums(point.u, point.weights, curvature)
-        finally:  # Ctrl-C must not leave these weights in the problem
+        finally:  # Ctrl-C must not leave the factors in the problem
             problem.factors = None
         return Expansion.from_sums(problem.columns, problem.space, sums, point.u, point.weights)
 
-    def _differentiate_weight(self, r: FloatArray) -> FloatArray:
+    def _differentiate_weighted_residual(self, r: FloatArray) -> FloatArray:
         """Return the derivatives (n,) of ω r by the scaled residuals r, with the weight ω."""
         steps = -DIFFERENCE_STEP, DIFFERENCE_STEP
         ends = [self.function(r + step) * (r + step) for step in steps]
         return (ends[1] - ends[0]) / (2 * DIFFERENCE_STEP)
 
 
-def _iterate_columns(
+def _iterate_weight_derivatives(
     problem: Problem, u: FloatArray, weights: FloatArray
 ) -> Iterator[tuple[slice, list[FloatArray]]]:
     """Yield the indices of each block's samples, and derivatives of residuals by lobe weights.

@@ -24,19 +24,19 @@ from brdfkit.core.errors import BrdfkitError
 ZERO_BELL = 30.0  # exp(-r²) is 0 in floating point for larger r
 
 
-def _andrews_weight(r: FloatArray) -> FloatArray:
+def _compute_andrews_weight(r: FloatArray) -> FloatArray:
     return np.where(np.abs(r) < np.pi, np.sinc(r / np.pi), 0)
 
 
-def _logistic_weight(r: FloatArray) -> FloatArray:
+def _compute_logistic_weight(r: FloatArray) -> FloatArray:
     return np.tanh(r) / np.where(r == 0, 1, r) + (r == 0)
 
 
-def _welsch_weight(r: FloatArray) -> FloatArray:
+def _compute_welsch_weight(r: FloatArray) -> FloatArray:
     return np.exp(-(np.minimum(np.abs(r), ZERO_BELL) ** 2))
 
 
-def _make_piecewise(
+def _make_piecewise_function(
     limit: float, inside: Callable[[FloatArray], Any], outside: Callable[[FloatArray], Any]
 ) -> Callable[[FloatArray], FloatArray]:
     """Return a function of |r| that is `inside(r)` up to `limit`, and `outside(r)` beyond."""
@@ -49,17 +49,17 @@ def _make_piecewise(
     return evaluate_piecewise
 
 
-# By name: the weight function ω(r), its constant `tune`, and the integral ρ(r) of ω r
+# By name of a weight function: ω(r) itself, its constant `tune`, and ρ(r), the integral of ω(r) r
 WEIGHTS = {
     "andrews": (
-        _andrews_weight,
+        _compute_andrews_weight,
         1.339,
-        _make_piecewise(np.pi, lambda r: 1 - np.cos(r), lambda r: 2.0),
+        _make_piecewise_function(np.pi, lambda r: 1 - np.cos(r), lambda r: 2.0),
     ),
     "bisquare": (
         lambda r: (1 - np.minimum(np.abs(r), 1) ** 2) ** 2,
         4.685,
-        _make_piecewise(1, lambda r: (1 - (1 - r**2) ** 3) / 6, lambda r: 1 / 6),
+        _make_piecewise_function(1, lambda r: (1 - (1 - r**2) ** 3) / 6, lambda r: 1 / 6),
     ),
     "cauchy": (
         lambda r: 1 / (1 + np.minimum(np.abs(r), 1e100) ** 2),
@@ -70,15 +70,15 @@ WEIGHTS = {
     "huber": (
         lambda r: 1 / np.maximum(1, np.abs(r)),
         1.345,
-        _make_piecewise(1, lambda r: r**2 / 2, lambda r: r - 0.5),
+        _make_piecewise_function(1, lambda r: r**2 / 2, lambda r: r - 0.5),
     ),
-    "logistic": (_logistic_weight, 1.205, lambda r: np.logaddexp(r, -r) - np.log(2)),
+    "logistic": (_compute_logistic_weight, 1.205, lambda r: np.logaddexp(r, -r) - np.log(2)),
     "talwar": (
         lambda r: (np.abs(r) < 1).astype(float),
         2.795,
-        _make_piecewise(1, lambda r: r**2 / 2, lambda r: 0.5),
+        _make_piecewise_function(1, lambda r: r**2 / 2, lambda r: 0.5),
     ),
-    "welsch": (_welsch_weight, 2.985, lambda r: (1 - _welsch_weight(r)) / 2),
+    "welsch": (_compute_welsch_weight, 2.985, lambda r: (1 - _compute_welsch_weight(r)) / 2),
 }
 
 
@@ -90,13 +90,13 @@ def estimate_residual_scale(residuals: FloatArray, rank: int, least: float) -> f
     limit of the scale, because smaller residuals are rounding errors.
     """
     left = len(residuals) - max(rank - 1, 0)
-    # Indices, among all sorted residuals, of the one or two in the middle of the larger ones
+    # Indices of the one or two residuals in the middle of the larger ones, which give the median
     middle = len(residuals) - left + (left - 1) // 2, len(residuals) - left + left // 2
     ordered = np.partition(np.abs(residuals), middle)
     return max((ordered[middle[0]] + ordered[middle[1]]) / 2 / 0.6745, least)
 
 
-def require_more_samples(samples: int, rank: int) -> None:
+def require_more_samples_than_parameters(samples: int, rank: int) -> None:
     """Raise `BrdfkitError` unless there are more `samples` than parameters.
 
     Otherwise the model can meet every sample, and no residual shows the scale of the noise.

@@ -6,9 +6,9 @@ step towards the best parameters for these weights.
 
 With few samples, the first passes are those of MATLAB's robustfit, which keeps the weights constant
 during a step. Such "ordinary" passes become slow if much of a highlight is an outlier. Then Newton
-steps replace them, which include the change of the weights. Far from the end they reduce a merit,
-with constant scales of the noise. Near the end they solve for the point where an ordinary pass
-would change nothing, including the change of the scales.
+steps replace them, which allow for the change of the weights during the step. Far from the fixed
+point they reduce a merit function, in which the scales of the noise are constant. Near the fixed
+point they solve for it directly, and allow for the change of the scales, too.
 """
 
 from collections.abc import Sequence
@@ -24,30 +24,35 @@ from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import draw_subset
 from brdfkit.regression.robust.problem import Point, RobustProblem
 
-# A Newton step is at most 1 / this factor times as long as the ordinary step, in each direction
+# Least curvature in a Newton step, as a share of the ordinary step's, so that it is not too long
 SMALLEST_CURVATURE = 0.02
 # Largest number of passes
 PASSES = 150
-# With more samples than this, the search starts on a part with half this number of them
+# With more samples than this, the search starts on a part with half as many
 MANY_SAMPLES = 80_000
-# Passes have converged if the next changes fitted values by this share of their standard deviation
+# Passes have converged if the next would change the fitted values by less than this share of their
+# standard deviation
 SETTLED = 3e-7
-# With few samples the passes go on to this smaller share
+# Passes on few samples only end at this smaller share of the standard deviation
 EXACT = 1e-11
-# On a part of the samples, whose solution is only a start, this larger share is enough
+# Passes on a part of the samples end at this larger share, because their solution is only a start
 LOOSE = 1e-5
-# Newton steps solve for the end if the last pass changed the fitted values by less than this share
+# Newton steps solve for the fixed point once an ordinary pass would change the fitted values by
+# less than this share of their standard deviation
 NEAR_END = 1e-3
-# All samples are used for Hessians if a step to the end leaves more than this share of the change
+# If a Newton step to the fixed point leaves more than this share of the change to be made, Hessians
+# are computed from all samples from then on
 SLOW = 0.5
-# With few samples, this many first passes are ordinary ones, so that the solution is MATLAB's
+# Number of first passes on few samples that are ordinary ones, so that the solution is MATLAB's
 ORDINARY_PASSES = 60
 
 
-def make_convex(newton: FloatArray, hessian: FloatArray) -> tuple[FloatArray, FloatArray | None]:
+def make_newton_matrix_convex(
+    newton: FloatArray, hessian: FloatArray
+) -> tuple[FloatArray, FloatArray | None]:
     """Return Newton's matrix (n, n) made positive definite, so that its step reduces the merit.
 
-    Return also the projection (n, n) onto the directions in which the matrix was not, or None.
+    Return also the projection (n, n) onto the directions of negative curvature, or None.
     `newton` (n, n): the matrix; `hessian` (n, n): the positive definite Hessian of an ordinary
     pass, relative to which eigenvalues of `newton` become positive and not small.
     """
@@ -131,10 +136,10 @@ class RobustSearch:
         for number in range(1, PASSES + 1):
             report(number, PASSES)
             scales = problem.estimate_scales(point)
-            ratios = problem.divide_residuals(point, scales)
+            ratios = problem.scale_residuals(point, scales)
             factors = [problem.function(r) for r in ratios]
-            # The step of an ordinary pass, and how much it would change the fitted values
-            gradient, hessian = problem.expand_weighted(point, factors)
+            # How much would the step of an ordinary pass change the fitted values?
+            gradient, hessian = problem.expand_weighted_loss(point, factors)
             ordinary = problem.find_best_step(hessian, gradient, point)
             change = np.sqrt(max(ordinary @ problem.metric @ ordinary, 0)) / problem.spread
             if solved and change > SLOW * self.best.change:
@@ -147,13 +152,13 @@ class RobustSearch:
                 break
             solved = False
             if astray:
-                # The step led away: go back, and reduce the merit until the end is nearer
+                # The last step led away: return to the best point, and reduce the merit for a while
                 point, near = self.best.point, self.best.change / 3
             elif number <= ordinary_passes:
                 point = self._reduce_merit(point, scales, (ordinary,))
             else:
                 newton = problem.compute_newton_matrix(point, ratios)
-                convex, concave = make_convex(newton, hessian)
+                convex, concave = make_newton_matrix_convex(newton, hessian)
                 step = problem.find_best_step(convex, gradient, point)
                 solved = change < near
                 if solved:
@@ -204,9 +209,10 @@ class RobustSearch:
     ) -> FloatArray:
         """Return Newton's step v to the point where an ordinary pass would change nothing.
 
-        The step solves g + H v + A (B v) = 0 with the gradient g and Newton's matrix H. A B v is
-        the effect of the change of the noise's scales s, with ∂g/∂ln s as A and ∂ln s/∂z as B.
-        Parameters that `step` moves to a bound stay there. `ratios`: scaled residuals by channel.
+        The step solves g + H v + A (B v) = 0 with the gradient g and Newton's matrix H. A (B v)
+        is the effect of the change of the noise's scales s: B is ∂ln s/∂z, with the parameters z of
+        the point, and A is ∂g/∂ln s. Parameters that `step` moves to a bound stay there. `ratios`:
+        scaled residuals by channel.
         """
         A, B = self.problem.differentiate_scales(point, ratios, scales)
         z = point.to_vector() + step
@@ -219,7 +225,7 @@ class RobustSearch:
         return whole_step
 
 
-def search_robust(
+def search_robust_solution(
     problem: Problem,
     u: FloatArray,
     weights: FloatArray,
@@ -231,7 +237,7 @@ def search_robust(
 
     Return (u, weights, message, notes) of the solution and the weights and slopes of the samples
     there, as `RobustProblem.compute_weights_and_slopes` returns them. `name`: a weight function of
-    `WEIGHTS`; `rng`: a generator that draws a part of many samples, on which the search starts. On
+    `WEIGHTS`; `rng`: a generator; of many samples it draws a part, on which the search starts. On
     Ctrl-C `Interrupted` is raised with the best `RobustEnd`.
     """
     samples = problem.samples

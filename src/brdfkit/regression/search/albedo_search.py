@@ -18,21 +18,22 @@ import numpy as np
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.model.evaluation import mix_lobes
 from brdfkit.model.samples import Samples
-from brdfkit.regression.albedo import TargetAlbedo, format_share
+from brdfkit.regression.albedo import TargetAlbedo, format_light_share
 from brdfkit.regression.losses.loss import Loss
 from brdfkit.regression.problem.pixel_problem import PixelProblem
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.search.levenberg_marquardt import ROUNDING
 from brdfkit.regression.search.multistart import make_part_problems, search_from_starts
 
-# Factors `share` of the term for the albedo in the minimised function, tried one after the other
+# Factors of the albedo term in the minimised function, which are tried one after the other
 SHARES = 10.0, 40.0, 160.0
-# The second search is accepted if the albedos' distance from the data's falls to this share
+# The second search is accepted if the distance of the albedos from the data falls to this share
 DISTANCE_SHARE = 0.6
-# The loss may grow by this factor in the second search, times the first albedo if that is above 1
+# Largest factor by which the loss may grow in the second search; it is multiplied by the largest
+# albedo after the first search, if this is above 1
 LARGEST_LOSS_RATIO = 1.4
 
-# The note on a fit with corrected albedo starts so, by which `Refit` recognises such a fit
+# Start of the note on a fit with corrected albedo, by which `Refit` recognises such a fit
 NOTE = "by the loss alone"
 
 DIFFERENCE = Loss(
@@ -56,12 +57,12 @@ def correct_albedo(
     Return the new solution and a note, (u, weights, note), or None if the albedo is right or cannot
     be corrected. `whole`: the problem on all samples; `u` (1, shapes), `weights` (1, channels,
     lobes): the solution of the first search; `target`: the albedo of the data; `points` (count,
-    shapes): further starts; `rng`: a generator that draws parts of many samples.
+    shapes): further starts; `rng`: a generator that draws parts of the samples if there are many.
     """
 
     def compute_albedos(u: FloatArray, weights: FloatArray) -> FloatArray:
         """Return the albedos (angles, channels) of the model with these parameters."""
-        model = whole.model(**whole.space.to_values(u[0]))
+        model = whole.model(**whole.space.to_named_values(u[0]))
         return target.compute_albedos(lambda wi, wo: mix_lobes(model, weights[0].T, wi, wo))
 
     free = compute_albedos(u, weights)
@@ -79,7 +80,9 @@ def correct_albedo(
         error = whole.compute_sums(*end, curvature=False).error[0]
         if error > (LARGEST_LOSS_RATIO * max(free.max(), 1)) ** 2 * first:
             break
-        if target.compute_distance(corrected) <= DISTANCE_SHARE * target.compute_distance(free):
+        if target.compute_albedo_distance(
+            corrected
+        ) <= DISTANCE_SHARE * target.compute_albedo_distance(free):
             accepted = *end, _describe_correction(target, wrong, free, corrected)
         if target.accepts_albedos(corrected):
             break
@@ -96,9 +99,11 @@ def _describe_correction(
     albedos after the first and after the second search.
     """
     gains = np.log(np.maximum(free.max(axis=1), 1e-9))
-    logs = np.maximum(np.abs(np.log(target.compute_ratios(free))), gains)
+    logs = np.maximum(np.abs(np.log(target.compute_albedo_ratios(free))), gains)
     row = int(np.argmax(np.where(wrong, logs, -np.inf)))
-    shares = (format_share(albedos[row].mean()) for albedos in (free, target.values, corrected))
+    shares = (
+        format_light_share(albedos[row].mean()) for albedos in (free, target.values, corrected)
+    )
     before, measured, after = shares
     measured = f", where the measurement reflects {measured}"
     return (

@@ -13,13 +13,14 @@ from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.problem.expansion import Expansion
-from brdfkit.regression.problem.parameter_space import join_point, make_limits
+from brdfkit.regression.problem.parameter_space import join_point, make_point_limits
 
-# A search is given up if this many next gains would not bring it below the best converged one
+# A search is given up if it would stay above the best converged one even if E² fell by this many
+# times as much as the next step promises
 PATIENCE = 10
-# Ends of searches count as one if their squared losses differ by less than this share
+# Two ends of searches count as one if their squared losses differ by less than this share
 SAME_END = 1e-4
-# A squared loss below this share of the largest one at the start counts as 0
+# A squared loss below this share of the worst start's counts as 0
 ROUNDING = 1e-24
 SMALLEST_DAMPING, LARGEST_DAMPING = 1e-15, 1e9
 
@@ -37,7 +38,7 @@ class Search:
     converged: np.ndarray
     evaluations: int
 
-    def find_best(self, count: int) -> IntArray:
+    def find_best_ends(self, count: int) -> IntArray:
         """Return the indices of the `count` best ends, those with the least squared loss E².
 
         Of ends with equal E² only one is returned: in a model with two equal lobes, they differ
@@ -69,10 +70,10 @@ def levenberg_marquardt(
     ends without converging if it would not come below a search that has converged. On Ctrl-C
     `Interrupted` is raised with the `Expansion` about the current points.
     """
-    now = expand(u.copy(), weights.copy())  # the ends are stored in these arrays
+    now = expand(u.copy(), weights.copy())  # copies, because the search writes into them
     points, shapes = now.u.shape
     channels = weights.shape[1]
-    low, high = make_limits(shapes, channels, least)
+    low, high = make_point_limits(shapes, channels, least)
     correction = np.zeros_like(now.hessian)
     dampings, growth, evaluations = np.full(points, damping), np.full(points, 4.0), points
     exact = ROUNDING * now.error.max()
@@ -94,7 +95,7 @@ def levenberg_marquardt(
             at = join_point(here.u, here.weights)
             step = minimise_in_box(damped, g, low - at, high - at)
             gain = -((2 * g + (H @ step[:, :, None])[:, :, 0]) * step).sum(axis=1)
-            # Searches end whose step would gain nothing; the steps of the others are tried
+            # Searches whose step would lower E² too little end; the steps of the others are tried
             over = gain <= tolerance * here.error
             converged[rows[over]] = True
             leader = now.error[converged].min(initial=np.inf)
@@ -161,7 +162,7 @@ def _add_correction(hessian: FloatArray, correction: FloatArray) -> FloatArray:
         return hessian
     scale = 1 / np.sqrt(np.maximum(hessian.diagonal(axis1=1, axis2=2), 1e-300))
     both = hessian + correction
-    # A parameter that has no effect has a diagonal of 0, and its entries overflow
+    # A parameter without effect has a diagonal entry of 0, so that its scaled entries overflow
     with np.errstate(over="ignore", invalid="ignore"):
         scaled = both * scale[:, :, None] * scale[:, None, :]
     finite = np.asarray(np.isfinite(scaled).all(axis=(1, 2)))

@@ -18,27 +18,29 @@ from brdfkit.regression.problem.subset import draw_subset
 from brdfkit.regression.search.levenberg_marquardt import Search, levenberg_marquardt
 from brdfkit.regression.search.zero_weights import revive_zero_weights
 
-# Sizes of parts of many samples, the largest first; a part is at most half of the next larger one
+# Numbers of samples in the parts of many samples, the largest first. A part is used if it is less
+# than half of the next larger one
 PARTS = 40_000, 3_000
 # Models with more shape parameters, such as sums of models, need more steps from more starts
 FEW_SHAPES = 3
-# Pairs (number of starts that continue, number of steps before they are chosen)
+# Rounds of a search, each a pair: number of starts that continue, number of steps before they are
+# chosen
 FEW_SHAPES_ROUNDS, MANY_SHAPES_ROUNDS = ((24, 4), (8, 6)), ((32, 20), (8, 30))
 # Ends on a part go on to more samples if their squared loss is within this share of the least one
 CLOSE = 0.02
-# At most this number of ends go on to more samples
+# Largest number of ends that go on to more samples
 FINALISTS = 3
-# Largest number of steps of a search on all samples, with its own Hessian and with a part's
+# Largest number of steps of a search, first with the Hessian of its samples, then with a part's
 LARGEST_STEPS, FEW_STEPS = 200, 10
 # A search converges if the next step would lower the squared loss by less than this share
 EXACT = 1e-11
-# On many samples, a search converges at this many times the share
+# Factor by which this share is larger in a search on many samples
 MANY_SAMPLES_FACTOR = 100
-# On a part of the samples, a search converges at least at this share
+# Least such share in a search on a part of the samples, whose end is only a start for all
 LOOSE = 1e-6
 
 
-def default_start_count(shapes: int) -> int:
+def choose_start_count(shapes: int) -> int:
     """Return the default number of start points for a model with this many shape parameters."""
     return max(1, min(16 * shapes, 96))
 
@@ -67,7 +69,7 @@ def make_part_problems(whole: Problem, rng: np.random.Generator) -> list[Problem
     With few samples there is only the whole problem. `rng`: a generator that draws the parts.
     """
     problems = [whole]
-    # A clamped model has many local minima, which are different ones on a small part
+    # A model clamped at 0 has many local minima, and a small part of the samples has different ones
     for size in PARTS[:1] if whole.clamped else PARTS:
         samples = problems[0].samples
         if 2 * size < len(samples.wi):
@@ -98,18 +100,18 @@ def search_from_starts(
     for count, steps in MANY_SHAPES_ROUNDS if u.shape[1] > FEW_SHAPES else FEW_SHAPES_ROUNDS:
         search = levenberg_marquardt(first.expand_loss, u, weights, first.least, steps)
         evaluations += search.evaluations
-        ends = search.ends.select_points(search.find_best(count))
+        ends = search.ends.select_points(search.find_best_ends(count))
         u, weights = ends.u, ends.weights
     revived = revive_zero_weights(first, ends.select_points([0]), starts)
     u, weights = (np.concatenate(parts) for parts in zip((u, weights), revived, strict=True))
     for number, problem in enumerate(problems):
         report(number, len(problems))
         if number:
-            rows = search.find_best(FINALISTS)
+            rows = search.find_best_ends(FINALISTS)
             error = search.ends.error
             ends = search.ends.select_points(rows[error[rows] <= (1 + CLOSE) * error[rows[0]]])
             u, weights = ends.u, ends.weights
-        # A clamped model takes many steps along kinks of the loss, which are cheaper on a part
+        # A model clamped at 0 takes many steps along kinks of the loss; on a part they cost less
         tight = MANY_SAMPLES_FACTOR * tolerance
         loose = tight if problem.clamped else max(LOOSE, tight)
         limit = loose if problem is not last else tight if number else tolerance
@@ -117,7 +119,7 @@ def search_from_starts(
         search, count = _search_problem(problem, part, u, weights, iterations, limit)
         evaluations += count
     report(len(problems), len(problems))
-    best = search.find_best(FINALISTS)
+    best = search.find_best_ends(FINALISTS)
     return search.ends.select_points(best), search.converged[best], evaluations
 
 
@@ -151,7 +153,7 @@ def _search_problem(
     evaluations, damping = 0, 1e-4
     if part is not None:
         # The Hessian of a part is nearly the Hessian of all samples, and takes less time
-        expand, damping = _borrow_curvature(problem, part), 1e-7
+        expand, damping = _borrow_hessian_from_part(problem, part), 1e-7
         search = levenberg_marquardt(
             expand, u, weights, problem.least, FEW_STEPS, tolerance, damping
         )
@@ -164,7 +166,7 @@ def _search_problem(
     return search, evaluations + search.evaluations
 
 
-def _borrow_curvature(
+def _borrow_hessian_from_part(
     whole: Problem, part: Problem
 ) -> Callable[[FloatArray, FloatArray], Expansion]:
     """Return a function like `whole.expand_loss` that takes the Hessian from a part of the samples.

@@ -1,4 +1,4 @@
-"""Gives lobes a new start whose weight became 0 in a search.
+"""Gives a new start to lobes whose weight became 0 in a search.
 
 The squared loss E² does not depend on the shape parameters of a lobe without weight, so a search
 never changes them again. With other shape parameters the lobe might lower E²; the derivative of E²
@@ -19,7 +19,7 @@ LARGEST_COUNT, SMALLEST_GAIN = 4, 1e-7
 
 
 def revive_zero_weights(problem: Problem, end: Expansion, starts: FloatArray) -> list[FloatArray]:
-    """Return start points [u, weights] where lobes have weight that lost it in a search.
+    """Return start points [u, weights] at which lobes that lost their weight have some again.
 
     These are the points where the squared loss E² falls most; there are none if no lobe would lower
     it. `end`: expansion of E² about the end of the search; `starts` (count, shapes): coordinates to
@@ -27,7 +27,7 @@ def revive_zero_weights(problem: Problem, end: Expansion, starts: FloatArray) ->
     """
     points = [(end.u[:0], end.weights[:0])]
     for lobe in np.flatnonzero((end.weights[0] == 0).all(axis=0) & (problem.least == 0)):
-        shapes = _find_own_shapes(problem.columns, int(lobe))
+        shapes = _find_unshared_shapes(problem.columns, int(lobe))
         if not shapes:
             continue
         corners = np.array(list(itertools.product((0.0, 1.0), repeat=len(shapes))))
@@ -46,7 +46,7 @@ def revive_zero_weights(problem: Problem, end: Expansion, starts: FloatArray) ->
     return [np.concatenate(parts) for parts in zip(*points, strict=True)]
 
 
-def _find_own_shapes(columns: Columns, lobe: int) -> list[int]:
+def _find_unshared_shapes(columns: Columns, lobe: int) -> list[int]:
     """Return the indices of those searched shape parameters that only this lobe depends on."""
     users: dict[int, set[int]] = {}
     for value, shape in columns.slopes:

@@ -21,7 +21,7 @@ from brdfkit.regression.problem.not_finite import require_finite_lobes
 from brdfkit.regression.problem.parameter_space import find_channel_entries
 from brdfkit.regression.problem.problem import Problem
 
-# A quadrature has this many points on each of twice as many rings, and is exact to 1e-7
+# Albedos are sums over this many points on each of twice as many rings, and exact to 1e-7
 POINTS = 128
 
 Angles: TypeAlias = tuple[float, ...]
@@ -54,8 +54,8 @@ class AlbedoAtMost:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "limit", to_positive_number("AlbedoAtMost: limit", self.limit))
-        object.__setattr__(self, "theta", _to_angles("theta", self.theta, 0, 90))
-        object.__setattr__(self, "phi", _to_angles("phi", self.phi, -np.inf, np.inf))
+        object.__setattr__(self, "theta", _check_angles("theta", self.theta, 0, 90))
+        object.__setattr__(self, "phi", _check_angles("phi", self.phi, -np.inf, np.inf))
 
     def values(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
         """Return the limit less the albedo for each incident direction and channel, (m,).
@@ -135,7 +135,7 @@ def _evaluate_model(problem: Problem, weights: FloatArray, T: FloatArray) -> Flo
     return factors @ T[: len(columns.lobes)]
 
 
-def _to_angles(name: str, given: Any, low: float, high: float) -> tuple[float, ...]:
+def _check_angles(name: str, given: Any, low: float, high: float) -> tuple[float, ...]:
     """Return one or several angles [degrees] as a tuple of floats.
 
     Raises `BrdfkitError` unless they are from `low` to below `high`; `name`: name of the argument.

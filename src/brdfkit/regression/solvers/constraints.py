@@ -18,15 +18,15 @@ from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import Model
 from brdfkit.model.evaluation import make_model
-from brdfkit.regression.problem.parameter_space import join_point, make_limits, split_point
+from brdfkit.regression.problem.parameter_space import join_point, make_point_limits, split_point
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.solvers.objective import End
 
-# A constraint counts as met if its value is above minus this number
+# A constraint counts as met even if its value is below 0 by as much as this
 MET_TOLERANCE = 1e-8
 # A constraint counts as active, at its limit, if its value is below this number
 ACTIVE_TOLERANCE = 1e-6
-# Step of the finite differences of a user's constraint
+# Step of the finite differences that give the derivatives of a user's constraint
 DIFFERENCE_STEP = 1e-5
 
 
@@ -80,28 +80,30 @@ class UserConstraint:
 
     def values(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
         """Return the numbers (m,) that the user's function returns for the model at a point."""
-        return self._call_function(problem, join_point(u, weights)[0])
+        return self._call_user_function(problem, join_point(u, weights)[0])
 
     def slopes(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
         """Return the derivatives (m, n) of the numbers by parameters, by central differences."""
         z = join_point(u, weights)[0]
-        low, high = make_limits(u.shape[1], problem.channels, problem.least)
+        low, high = make_point_limits(u.shape[1], problem.channels, problem.least)
         slopes = []
         for k in range(len(z)):
             below, above = z.copy(), z.copy()
             step = DIFFERENCE_STEP * max(1.0, abs(z[k]))
             below[k], above[k] = max(z[k] - step, low[k]), min(z[k] + step, high[k])
-            change = self._call_function(problem, above) - self._call_function(problem, below)
+            change = self._call_user_function(problem, above) - self._call_user_function(
+                problem, below
+            )
             slopes.append(change / (above[k] - below[k]))
         return np.stack(slopes, axis=1)
 
-    def _call_function(self, problem: Problem, z: FloatArray) -> FloatArray:
+    def _call_user_function(self, problem: Problem, z: FloatArray) -> FloatArray:
         """Return the numbers (m,) of the function for the model at a point z (n,).
 
         Raises `BrdfkitError` if the function fails or returns something else.
         """
         u, weights = split_point(z[None], len(problem.space.names), problem.channels)
-        model = make_model(problem.columns.model, problem.space.to_values(u[0]), weights[0])
+        model = make_model(problem.columns.model, problem.space.to_named_values(u[0]), weights[0])
         try:
             returned = self.function(model)
         except Exception as error:
@@ -152,7 +154,7 @@ class Constraints:
         met = [end for end in ends if self.are_met(end.point)]
         if not met:
             nearest = max((end.point for end in ends), key=lambda z: self.values(z).min())
-            broken = " and ".join(self._describe_below(nearest, -MET_TOLERANCE))
+            broken = " and ".join(self._describe_values_below(nearest, -MET_TOLERANCE))
             raise BrdfkitError(
                 f"{self.problem.model.type_name()}: no parameters were found that meet the "
                 f"constraints: {broken} stays beyond the limit; loosen it, or take another model."
@@ -163,10 +165,10 @@ class Constraints:
         """Return a sentence on each constraint that is at its limit at a point z, for a fit."""
         return tuple(
             f"{quantity} is at its limit, which standard errors and intervals do not know of"
-            for quantity in self._describe_below(z, ACTIVE_TOLERANCE)
+            for quantity in self._describe_values_below(z, ACTIVE_TOLERANCE)
         )
 
-    def _describe_below(self, z: FloatArray, limit: float) -> list[str]:
+    def _describe_values_below(self, z: FloatArray, limit: float) -> list[str]:
         """Return in words what the constraints limit whose values at z are below `limit`."""
         quantities = []
         for constraint in self.each:

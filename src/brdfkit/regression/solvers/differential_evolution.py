@@ -14,9 +14,9 @@ from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt
 from brdfkit.regression.solvers.objective import End, Objective
 
-# Largest number of steps to the best weights at a point; a linear loss needs none
+# Largest number of steps towards the best weights of a point; a linear loss needs none
 WEIGHT_STEPS = 4
-# The steps end if the last one lowered no E² by more than this share
+# These steps end if the last one lowered E² by less than this share at all points
 SETTLED = 1e-3
 
 

@@ -18,7 +18,7 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.progress_bar import Progress
 from brdfkit.regression.problem.expansion import Expansion
-from brdfkit.regression.problem.parameter_space import join_point, make_limits, split_point
+from brdfkit.regression.problem.parameter_space import join_point, make_point_limits, split_point
 from brdfkit.regression.problem.problem import Problem
 
 
@@ -79,8 +79,8 @@ class Objective:
         self.seed, self.report = seed, report
         self.constraints, self.parts = constraints, parts
         self.shapes, self.evaluations = coordinates.shape[1], 0
-        self.best: tuple[float, FloatArray] | None = None  # (E², point) with the least E² so far
-        self.low, self.high = make_limits(self.shapes, problem.channels, problem.least)
+        self.best: tuple[float, FloatArray] | None = None  # (E², point) of the best point so far
+        self.low, self.high = make_point_limits(self.shapes, problem.channels, problem.least)
 
     @classmethod
     def from_problems(cls, problems: Sequence[Any], *given: Any) -> Objective:
@@ -160,8 +160,8 @@ class Objective:
     def best_so_far(self, ends: Expansion | None = None) -> End | None:
         """Return the best `End` so far of an interrupted search, or None if there is none.
 
-        `ends`: expansion about the last points of the search; by default, all points that were
-        evaluated count, those on the largest part of the samples.
+        `ends`: expansion about the last points of the search, of which the best is returned. By
+        default it is the best point evaluated on all samples, or on the largest part so far.
         """
         if ends is not None:
             best = ends.select_points([int(np.argmin(ends.error))])

@@ -32,7 +32,7 @@ def to_solver(value: Any) -> Any:
     if isinstance(value, str):
         value = {"name": value}
     if isinstance(value, Mapping):
-        return _make_from_data("solver", SOLVERS, value)
+        return _make_object_from_data("solver", SOLVERS, value)
     if value is not None and (isinstance(value, type) or not hasattr(value, "minimise")):
         raise BrdfkitError(
             f"solver = {value!r} should be a solver such as SLSQP(), or the name of one: "
@@ -55,7 +55,7 @@ def to_constraints(value: Any) -> tuple[Any, ...]:
 def _to_constraint(value: Any) -> Any:
     """Return one constraint; `value`: an object of brdfkit, a function, or a dictionary."""
     if isinstance(value, Mapping):
-        return _make_from_data("constraint", CONSTRAINTS, value)
+        return _make_object_from_data("constraint", CONSTRAINTS, value)
     if isinstance(value, type) or not (callable(value) or hasattr(value, "slopes")):
         raise BrdfkitError(
             f"{value!r} is no constraint; give one such as AlbedoAtMost(1.0), or a function of the "
@@ -100,7 +100,7 @@ def require_plain_data(solver: Any, constraints: tuple[Any, ...]) -> None:
             )
 
 
-def _make_from_data(kind: str, classes: Mapping[str, Any], data: Mapping[str, Any]) -> Any:
+def _make_object_from_data(kind: str, classes: Mapping[str, Any], data: Mapping[str, Any]) -> Any:
     """Return an object of one of the `classes` from the data that `to_plain_data` made of it.
 
     `kind`: "solver" or "constraint", for error messages.

@@ -8,13 +8,13 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.search.multistart import CLOSE, FINALISTS
 from brdfkit.regression.solvers.objective import End, Objective
 
-# Ends of searches whose E² differs by a smaller share count as one
+# Two ends of searches count as one if their squared losses E² differ by a smaller share
 SAME_END = 1e-6
 # An end within this distance of a bound is moved onto the bound if E² grows by less than this share
 BOUND_DISTANCE, EQUAL_ERROR = 1e-4, 1e-10
 
 
-def search_stages(
+def search_in_stages(
     objective: Objective,
     minimise: Callable[[Objective, FloatArray], End],
     points: Iterable[FloatArray],

@@ -12,11 +12,11 @@ from brdfkit.core.arguments import check_number_fields
 from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.solvers.levenberg_marquardt import LevenbergMarquardt
 from brdfkit.regression.solvers.objective import End, Objective
-from brdfkit.regression.solvers.several_starts import find_best_starts, search_stages
+from brdfkit.regression.solvers.several_starts import find_best_starts, search_in_stages
 
-# SciPy's search may end too early, and is repeated in new units of the parameters, at most so often
+# Largest number of SciPy's searches: each may end too early, so it is repeated in new units
 REPETITIONS = 8
-# E² is divided by its value at the start, but at least by this share of a black model's E²
+# SciPy minimises E² over its value at the start, or over this share of a black model's, if larger
 SMALLEST_UNIT = 1e-6
 
 
@@ -54,14 +54,14 @@ class SLSQP:
     def minimise(self, objective: Objective) -> End:
         """Return the `End` with the least squared loss that meets the constraints."""
         if objective.constraints is None:
-            return search_stages(
+            return search_in_stages(
                 objective, self._search_from_point, find_best_starts(objective, self.starts)
             )
         # If the optimum without constraints happens to meet them, it is the result
         free = LevenbergMarquardt().search_best_ends(objective, objective.coordinates)
         if objective.constraints.are_met(free[0].point):
             return free[0]
-        end = search_stages(objective, self._search_from_point, [end.point for end in free])
+        end = search_in_stages(objective, self._search_from_point, [end.point for end in free])
         without = f"without the constraints E would be {math.sqrt(free[0].error):.6g}"
         return replace(end, message=f"{end.message}; {without}")
 
@@ -87,7 +87,7 @@ class SLSQP:
         """
         from scipy.optimize import Bounds, minimize
 
-        # In these units E² has equal curvature along all axes, which the search is made for
+        # In these units E² has equal curvature along all axes, as SciPy's search expects
         unit = 1 / np.sqrt(np.maximum(hessian.diagonal(), 1))
 
         def compute_error(y: FloatArray) -> tuple[float, FloatArray]:

@@ -15,9 +15,9 @@ from brdfkit.core.arguments import check_number_fields
 from brdfkit.core.array_types import FloatArray
 from brdfkit.regression.problem.expansion import Expansion
 from brdfkit.regression.solvers.objective import End, Objective
-from brdfkit.regression.solvers.several_starts import find_best_starts, search_stages
+from brdfkit.regression.solvers.several_starts import find_best_starts, search_in_stages
 
-# Eigenvalues of a Hessian below this share of the largest are rounding errors, and count as 0
+# Eigenvalues of a Hessian below this share of the largest one are rounding errors, and count as 0
 SINGULAR = 1e-14
 
 
@@ -48,7 +48,7 @@ class TrustRegion:
 
     def minimise(self, objective: Objective) -> End:
         """Return the `End` with the least squared loss that the search finds."""
-        return search_stages(
+        return search_in_stages(
             objective, self._search_from_point, find_best_starts(objective, self.starts)
         )
 

@@ -13,7 +13,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.scenes.problem.targets import find_white_level
 from brdfkit.inverse.scenes.result.summary import describe_refinement
 from brdfkit.regression import Fit
-from brdfkit.regression.certainty import Certainty, make_intervals
+from brdfkit.regression.certainty import Certainty, make_confidence_intervals
 from brdfkit.rendering.result import Rendering
 
 Value = float | tuple[float, ...] | FloatArray
@@ -115,7 +115,7 @@ class Refinement(Shown):
     def intervals(self) -> dict[str, Any]:
         """The 95 % confidence intervals (low, high) of `values`, from Student's t distribution."""
         half_widths = self.certainty.compute_half_widths()
-        return make_intervals(self.values, self._arrange_like_values(half_widths))
+        return make_confidence_intervals(self.values, self._arrange_like_values(half_widths))
 
     @property
     def covariance(self) -> FloatArray:
