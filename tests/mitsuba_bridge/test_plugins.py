@@ -39,7 +39,7 @@ def test_loads_in_every_variant(name, chosen, variant):
     import mitsuba as mi
 
     if (OTHERS[name], chosen) == ("volumes", "scalar_rgb"):
-        pytest.skip("volumes are not registered there, see `register_all`")
+        pytest.skip("volumes are not registered there, see `register_new_plugins`")
     variant(chosen)
     base, _ = KINDS[OTHERS[name]]
     plugin = mi.load_dict(make_example(name))
@@ -162,7 +162,7 @@ def test_a_users_folder_of_every_kind(folder, variant, chosen, before):
         loaded = bk.load_plugins(folder)
     assert loaded == {f"users_{kind}": kind for kind in KINDS}
     for kind, (base, _) in KINDS.items():
-        if (kind, chosen) != ("volumes", "scalar_rgb"):  # see `register_all`
+        if (kind, chosen) != ("volumes", "scalar_rgb"):  # see `register_new_plugins`
             assert isinstance(mi.load_dict({"type": f"users_{kind}"}), getattr(mi, base))
     (folder / "scene.xml").write_text(
         '<scene version="3.0.0"><integrator type="users_integrators"/>'

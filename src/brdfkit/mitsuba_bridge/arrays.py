@@ -1,4 +1,4 @@
-"""Constant arrays that a plugin reads by index, and the nodes of an axis around a coordinate."""
+"""Arrays of constants that plugins read by index, and searches for nodes around a coordinate."""
 
 from typing import Any
 
@@ -65,7 +65,7 @@ def find_cell(x: JitFloat, n: int) -> JitInt:
 
 
 def find_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
-    """Return the lower and upper node around `x` among 0 ... n - 1, and the upper one's weight."""
+    """Return the nodes below and above `x` among 0 ... n - 1, and the upper one's weight."""
     import drjit as dr
     import mitsuba as mi
 
@@ -75,7 +75,7 @@ def find_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
 
 
 def find_periodic_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat]:
-    """Return the lower and upper node around `x` (node n is node 0), and the upper one's weight."""
+    """Return the nodes below and above `x` on a circle of `n` nodes, and the upper one's weight."""
     import drjit as dr
     import mitsuba as mi
 
@@ -85,7 +85,7 @@ def find_periodic_bracket(x: JitFloat, n: int) -> tuple[JitInt, JitInt, JitFloat
 
 
 class Nodes:
-    """The nodes of an axis: increasing numbers at any distances."""
+    """The nodes of an axis for interpolation: increasing numbers, evenly spaced or not."""
 
     def __init__(self, values: Any) -> None:
         self.count, self.rows = len(values), Rows(values)

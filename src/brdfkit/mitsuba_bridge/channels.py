@@ -74,7 +74,7 @@ def make_white_light() -> Callable[[Any], Any]:
     daylight: Any = mi.Texture.D65(1.0)
 
     def evaluate_daylight(it: MitsubaObject) -> JitColour:
-        si = mi.SurfaceInteraction3f()  # a texture takes no other interaction
+        si = mi.SurfaceInteraction3f()  # Mitsuba's textures take no other kind of interaction
         si.wavelengths = it.wavelengths
         return mi.unpolarized_spectrum(daylight.eval(si))
 

@@ -25,9 +25,10 @@ def make_cube_camera() -> dict[str, Any]:
 
 
 def make_shadow_scene(integrator: dict[str, Any]) -> tuple[dict[str, Any], AnyArray]:
-    """Return a scene with an integrator, and the radiance (3,) of its pixels, ρ E cosθ / π.
+    """Return a scene with an integrator, and the radiance (3,) of its ground in the sun.
 
-    The sun shines aslant on a wide ground; a ball shadows another part of it.
+    The sun shines aslant on a wide matt ground; the radiance is albedo × irradiance × cosine / π.
+    The shadow of a ball, which is outside the picture, reaches only the picture's edge.
     """
     import mitsuba as mi
 

@@ -24,8 +24,8 @@ def derive_shadow_integrator(mi: MitsubaModule, parameters: dict[str, Any]) -> A
     """Return the base class of integrators that find all shadows before each picture.
 
     A derived class adds the method `prepare_shadows(scene, sensor)`. It returns a function that
-    makes the shadow of an emitter, for `direct_light`, or raises `Empty` if the emitter lights
-    nothing that the camera sees.
+    makes the shadow of an emitter, for `reflect_direct_light`, or raises `Empty` if the emitter
+    lights nothing that the camera sees.
     """
 
     Base: Any = derive_plugin(mi.SamplingIntegrator, parameters)
@@ -69,7 +69,11 @@ def derive_shadow_integrator(mi: MitsubaModule, parameters: dict[str, Any]) -> A
                     "asks it for single rays; render with it alone."
                 )
             si = scene.ray_intersect(mi.Ray3f(ray), active)
-            return direct_light(si, sampler, self.lights, active), active & si.is_valid(), []
+            return (
+                reflect_direct_light(si, sampler, self.lights, active),
+                active & si.is_valid(),
+                [],
+            )
 
     return Shadowed
 
@@ -89,14 +93,13 @@ def _find_or_omit_shadow(make_shadow: Callable[[Any], Any], emitter: MitsubaObje
         return NoShadow()
 
 
-def direct_light(
+def reflect_direct_light(
     si: MitsubaObject, sampler: MitsubaObject, lights: Iterable[tuple[Any, Any]], active: JitMask
 ) -> JitColour:
-    """Return the light that surfaces reflect to the camera: Σ ρ(ω_l, ω_o) cosθ_l E_l V.
+    """Return the light of emitters that surfaces at `si` reflect to the camera, with shadows.
 
-    si : a `mi.SurfaceInteraction3f`.
-    lights : pairs of an emitter and its shadow, whose `visibility(p, n, active)` is the visibility
-        V, in [0, 1], at points of surfaces with normals n.
+    It is the sum of BRDF × cosine × irradiance × visibility over the `lights`, pairs of an emitter
+    and its shadow. The shadow's `visibility(p, n, active)` is 0 to 1 at points `p` with normals n.
     """
     import mitsuba as mi
 

@@ -18,8 +18,9 @@ from brdfkit.mitsuba_bridge.properties.declarations import derive_plugin
 def derive_phase_function(mi: MitsubaModule, parameters: dict[str, Any]) -> Any:
     """Return a class derived from `mi.PhaseFunction` with `parameters` as in `derive_plugin`.
 
-    A derived class adds `density(mu)`, p(μ) [sr⁻¹] at the cosine μ of the scattering angle, 1 for
-    straight on, and `draw_cosine(lobe, u)`, a random μ for two numbers from 0 to 1.
+    A derived class adds two methods: `density(mu)` returns the phase function p(μ) [sr⁻¹] at the
+    cosine μ of the scattering angle, which is 1 straight ahead; `draw_cosine(lobe, u)` returns a
+    random μ, from two uniform random numbers, 0 to 1.
     """
 
     Base: Any = derive_plugin(mi.PhaseFunction, parameters)
@@ -60,12 +61,15 @@ def derive_phase_function(mi: MitsubaModule, parameters: dict[str, Any]) -> Any:
 
 
 def even_and_forward_density(n: float, mu: JitFloat) -> JitFloat:
-    """Return the phase function p(μ) = (1 + (n + 1) ((1 + μ) / 2)ⁿ) / 8π [sr⁻¹] at a cosine μ."""
+    """Return the phase function (1 + (n + 1) ((1 + μ) / 2)ⁿ) / 8π [sr⁻¹], μ = cos(deflection)."""
     return (1 + (n + 1) * (0.5 + 0.5 * mu) ** n) / (8 * dr.pi)
 
 
 def draw_cosine(n: float, lobe: JitFloat, u: JitFloat) -> JitFloat:
-    """Draw a cosine μ from the half of p(μ) that `lobe` chooses, by the random number `u`."""
+    """Draw a cosine μ with the density of `even_and_forward_density`, by two random numbers.
+
+    `lobe` chooses the uniform or the forward half of the density, and `u` the cosine from it.
+    """
     return 2 * dr.select(lobe < 0.5, u, u ** (1 / (n + 1))) - 1
 
 

@@ -15,7 +15,7 @@ from brdfkit.mitsuba_bridge.properties.radiance_rows import require_intact_rows
 
 SUFFIX = ".xml"
 RADIANCE_FILE = re.compile(r"""["']([^"'\n]+\.(?:hdr|rgbe))["']""", re.IGNORECASE)
-DEFAULT_ID = "material"  # of the BSDF that a material replaces if the user names none
+DEFAULT_ID = "material"  # id of the BSDF that a material replaces if the user names none
 
 
 def load_scene_file(path: str | PathLike[str], **how: Any) -> MitsubaObject:
@@ -59,7 +59,7 @@ def make_scene_builder(source: str | PathLike[str]) -> Callable[[Any, Any], Mits
             if shape.bsdf():
                 by_id.setdefault(shape.bsdf().id(), []).append(shape)
         if place not in by_id:
-            raise _missing_id_error(path, place, sorted(by_id))
+            raise _make_missing_id_error(path, place, sorted(by_id))
         for shape in by_id[place]:
             shape.set_bsdf(bsdf)
         if size:
@@ -77,7 +77,7 @@ def _require_intact_maps(path: Path) -> None:
             require_intact_rows(file, f"{path}: {file}")
 
 
-def _missing_id_error(path: Path, place: str, known: Sequence[str]) -> BrdfkitError:
+def _make_missing_id_error(path: Path, place: str, known: Sequence[str]) -> BrdfkitError:
     """Return the error where no shape has the BSDF that the material should replace."""
     near = find_nearest_name(place, known)
     guess = f"did you mean {path}#{near}? " if near else ""

@@ -1,14 +1,15 @@
 """Points on surfaces: their interactions, and rays that begin off the surface by a safe distance.
 
-Rounding would make a ray hit the surface that it begins on. Mitsuba begins its rays at ε (1 + max
-|p_i|). In a world of 1e-5, such as an object of 10 µm in metres, the 1 is larger than the whole
-world, and a tenth and more of the shadows are wrong. Here the distance is
+Because of rounding, a ray that begins exactly on a surface may hit it again. Mitsuba begins rays at
+the distance ε (1 + |p|) from the surface, where |p| is the largest coordinate of the point p. In a
+tiny world, such as an object of 10 µm in metres, the 1 is larger than the whole world, and a tenth
+and more of the shadows are wrong. Here the distance is
 
-    max(ε/2 |p|, ε/40 t),   |p| the largest coordinate, t the distance from the eye to p
+    max(ε/2 |p|, ε/40 t),   t the distance from the eye to p
 
-since both the point and the distance were rounded. Half of Mitsuba's ε is as far as in scenes of
-usual size. With twice or a quarter of it, single pixels of leaves or of a street differ between
-rays and shadow volumes. A share ε/2 of t would be too long for a distant eye: half of a house.
+since both p and t were rounded. With twice or a quarter of ε/2, single pixels of leaves or of a
+street differ between rays and shadow volumes. The factor of t is smaller, since with ε/2 a distant
+eye would make rays begin half a house off the surface.
 """
 
 import drjit as dr
@@ -19,10 +20,10 @@ from brdfkit.core.array_types import JitFloat, JitMask, JitVector, MitsubaObject
 def make_interaction(
     ray: MitsubaObject, t: JitFloat, p: JitVector, n: JitVector, found: JitMask
 ) -> MitsubaObject:
-    """Return the `mi.SurfaceInteraction3f` of rays at points p with the normals n.
+    """Return the `mi.SurfaceInteraction3f` of rays at points `p` with the normals `n`.
 
-    u and v are x and y; t is infinite where no point was `found`. The tangent is the x axis
-    projected onto the surface, or the z axis where the surface stands upright.
+    The texture coordinates are x and y of the point; t is infinite where no point was `found`. The
+    tangent is the x axis projected onto the surface, or the z axis where the surface is upright.
     """
     import mitsuba as mi
 
@@ -40,14 +41,17 @@ def make_interaction(
 
 
 def clearance(p: JitVector, t: JitFloat) -> JitFloat:
-    """Return how far off a surface rays from `p` begin, which the eye sees at the distance `t`."""
+    """Return how far off the surface rays from `p` begin; `t` is the distance from the eye to p."""
     import mitsuba as mi
 
     return mi.math.RayEpsilon * dr.maximum(0.025 * t, 0.5 * dr.max(dr.abs(p)))
 
 
 def spawn_ray(p: JitVector, n: JitVector, t: JitFloat, direction: JitVector) -> MitsubaObject:
-    """Return the `mi.Ray3f` from `p`, which begins off the surface with the normal `n`."""
+    """Return the `mi.Ray3f` from `p` in a direction, which begins off the surface of normal `n`.
+
+    `t` is the distance from the eye to p.
+    """
     import mitsuba as mi
 
     off = dr.mulsign(clearance(p, t), dr.dot(n, direction))

@@ -1,7 +1,8 @@
 """Adapts any `Model` to a BSDF of Mitsuba.
 
-The BSDF has a texture for every parameter. Each lobe is a component, which is drawn in proportion
-to its weight and energy; lobes that share a sampling are one component.
+The BSDF has a texture for every parameter. Each lobe, a term of the model's sum, is a component of
+the BSDF, which is drawn in proportion to its weight and energy. Lobes whose directions are drawn by
+the same object are one component.
 """
 
 import functools
@@ -19,7 +20,7 @@ from brdfkit.mitsuba_bridge.bsdf.textures import define_textured_bsdf
 from brdfkit.model import Model
 from brdfkit.model.lobes import group_components
 
-# Outgoing directions over which `eval_diffuse_reflectance` averages
+# Outgoing directions of the quadrature in `eval_diffuse_reflectance`
 DIRECTIONS = make_cosine_directions(64)
 
 
@@ -94,7 +95,8 @@ def find_component_flags(
 ) -> list[Any]:
     """Return all flags of each component except for `SpatiallyVarying`.
 
-    In an anisotropic model, glossy and signed components are anisotropic.
+    In an anisotropic model, components are anisotropic if they are glossy or in `signed`, the
+    indices of those whose weights may be negative.
     """
     flags = mi.BSDFFlags
     anisotropic = flags.Anisotropic if model.is_anisotropic() else flags.Empty

@@ -1,8 +1,8 @@
 """Looks up and samples a BRDF in RGL's adaptive parameterisation within Mitsuba.
 
-In `materials/formats/rgl/` `parameterisation.py` explains it; `adaptive_table.py` evaluates it in
-NumPy. Here Mitsuba's own distributions warp the unit square and interpolate between the stored
-incidences.
+The folder `materials/formats/rgl/` explains it (`parameterisation.py`), and evaluates it in NumPy
+(`adaptive_table.py`). Here Mitsuba's own distributions warp the unit square of stored values to
+half vectors, and interpolate between the stored incidences.
 
 [Dupuy & Jakob 2018]
 """
@@ -24,9 +24,14 @@ LEAST_X = 1e-4
 class AdaptiveLookup:
     """Finds the stored values around a direction pair and samples the BRDF, in the current variant.
 
-    The arguments are attributes of the BRDF's `Parameterisation`, with a azimuths `phi_i`, b polar
-    angles `theta_i` and tables `ndf`, `sigma` (y, x) and `vndf` (a, b, y, x), and of its
-    `Adaptive`: `density` (a, b, n, n) and `divided`.
+    The arguments are attributes of the BRDF's `Parameterisation` and of its `AdaptiveTable`:
+
+    - `phi_i` (a,), `theta_i` (b,): azimuths and polar angles of the stored incidences [rad]
+    - `ndf`, `sigma` (y, x): distribution of normals and projected area, on a square of directions
+    - `vndf` (a, b, y, x): density of the normals visible from each incidence, on the same square
+    - `isotropic`, `parts`: the symmetry, as in `Parameterisation`
+    - `density` (a, b, n, n): density on the square of stored values, to draw directions
+    - `divided`: whether the stored values are f cosθ_o divided by the factor of `ndf` and `sigma`
     """
 
     def __init__(
@@ -64,7 +69,7 @@ class AdaptiveLookup:
     def find_corners(self, wi: JitVector, wo: JitVector) -> Iterator[tuple[JitInt, JitFloat]]:
         """Yield (row, factor) of stored values; the BRDF is the sum of factor times value.
 
-        A row is an index among all stored values (a b n n,).
+        A row is an index among the stored values of all incidences, a · b · n · n numbers.
         """
         incidences = self.find_incidences(wi)
         wi, wo = self._fold_azimuth(wi, wi), self._fold_azimuth(wo, wi)
@@ -89,7 +94,7 @@ class AdaptiveLookup:
 
         folded = self._fold_azimuth(wi, wi)
         angles = self._incident_angles(folded)
-        # A point on the square of stored values is warped to the square of directions
+        # Draw a point on the square of stored values, and warp it to the square of directions
         point, _ = self.density.sample(mi.Point2f(u.x, u.y), angles)
         m, _ = self.normals.sample(point, angles)
         sin_theta, cos_theta = dr.sincos(m.x * m.x * (dr.pi / 2))
@@ -103,7 +108,7 @@ class AdaptiveLookup:
         wi, wo = self._fold_azimuth(wi, wi), self._fold_azimuth(wo, wi)
         m, u, density = self._find_half_vector(wi, wo)
         density *= self.density.eval(u, self._incident_angles(wi))
-        # The solid angle dω_m per area dx dy on the square of directions
+        # The solid angle of half vectors per area on the square of directions
         solid_angle = 2 * dr.pi**2 * m.x * dr.sin(m.x * m.x * (dr.pi / 2))
         return density / (solid_angle * 4 * cos_theta_d(wi, wo))
 
@@ -126,7 +131,7 @@ class AdaptiveLookup:
     def _incident_angles(self, wi: JitVector) -> list[JitFloat]:
         """Return [phi_i, theta_i] of a direction within the stored azimuths."""
         phi_i = dr.atan2(wi.y, wi.x)
-        # Nodes on a part of the circle begin at -π, so that the azimuth π must become -π
+        # Azimuths of a part of the circle begin at -π, for which atan2 may give π
         return [phi_i if self.parts < 2 else -dr.abs(phi_i), _polar_angle(wi)]
 
     def _fold_azimuth(self, w: JitVector, wi: JitVector) -> JitVector:

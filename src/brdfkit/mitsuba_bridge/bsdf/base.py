@@ -1,8 +1,8 @@
 """The base class of brdfkit's BSDF plugins, which has the methods of `mi.BSDF` for all of them.
 
-Directions below the horizon are masked. Directions are drawn without derivatives. A share of the
-samples follows the cosine, so that the weight of a sample is bounded where the BRDF is. Values are
-unpolarised.
+The value and the density are 0 for directions below the horizon. Directions are drawn without
+derivatives. A share of the samples follows the cosine, so that the weight of a sample is bounded
+wherever the BRDF is. Values are unpolarised.
 """
 
 from typing import Any

@@ -1,8 +1,9 @@
 """Draws the outgoing direction of any BRDF from a table of its half vectors.
 
-For a few incidences the table holds the density of half vectors in proportion to f cosθ_o, constant
-within a cell; between the incidences the densities are mixed. At grazing angles a cell of half
-vectors shrinks with the highlight, while a cell of outgoing directions would not.
+For a few incidences the table holds the density of half vectors, in proportion to the reflected
+light f cosθ_o with the BRDF f, and constant within a cell. Between the incidences the densities are
+mixed. At grazing angles a cell of half vectors shrinks with the highlight, while a cell of outgoing
+directions would not.
 
 A density p_h of half vectors is the density p_h / (4 wi·h) of the directions to which they reflect
 wi.
@@ -22,7 +23,7 @@ from brdfkit.mitsuba_bridge.arrays import BELOW_ONE, Rows, find_bracket, find_pe
 
 
 class HalfVectorTable:
-    """A `Sampling` of a BRDF in the current variant.
+    """A `Sampling` that draws directions in proportion to a BRDF, in the current variant.
 
     `f(wi, wo)` is the BRDF (n, channels) in sr⁻¹ at NumPy direction pairs (n, 3). `azimuths` and
     `angles` are the numbers of azimuths (1 for an isotropic BRDF) and of polar angles of the
@@ -48,17 +49,17 @@ class HalfVectorTable:
         light = np.concatenate([_integrate_cells(f, theta_i, phi, cells, points) for phi in phi_i])
         self.albedo = light.sum(axis=(1, 2))
 
-        # Shares by which a row of cells (theta_h) and a cell in it (phi_h) are drawn
+        # Probabilities of drawing a row of cells (theta_h), and a cell in it (phi_h)
         masses = light.mean(axis=-1)
-        masses[masses.sum(axis=(1, 2)) == 0] = 1  # any direction will do for a black incidence
+        masses[masses.sum(axis=(1, 2)) == 0] = 1  # if nothing is reflected, any direction will do
         rows = _cumulate_shares(masses.sum(axis=2))
         columns = _cumulate_shares(masses)
         self.rows, self.columns = Rows(rows.ravel()), Rows(columns.ravel())
 
-        # The density per solid angle of these shares, which are rounded to single precision
-        shares = _compute_shares(rows)[..., None] * _compute_shares(columns)
-        self.density = Rows((shares / _solid_angles(cells)[:, None]).ravel())
-        self.edges = Rows(_edge_versines(cells[0]))
+        # The density per solid angle of the drawn cells, with the rounding of their probabilities
+        shares = _shares_from_sums(rows)[..., None] * _shares_from_sums(columns)
+        self.density = Rows((shares / _cell_solid_angles(cells)[:, None]).ravel())
+        self.edges = Rows(_compute_edge_versines(cells[0]))
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
         """Draw a direction, possibly below the surface, by the random numbers u.x, u.y and u.z."""
@@ -101,14 +102,15 @@ class HalfVectorTable:
     def _choose_incidence(self, wi: JitVector, z: JitFloat) -> JitInt:
         """Return the index of an incidence, chosen by its share with a random number `z`.
 
-        x and y of the point stay as they are. So equal numbers draw nearly equal half vectors at
-        neighbouring incidences, and a picture that uses the same numbers everywhere has no rings.
+        The two random numbers for the half vector stay as they are. So equal numbers draw nearly
+        equal half vectors at neighbouring incidences, and a picture that uses the same numbers in
+        all pixels has no rings.
         """
         incidence = 0
         for lower, upper, t in self._find_brackets(wi):
             up = z < t
-            # The rest of z serves for the next choice. It is divided once, by the chosen number,
-            # since a scalar variant raises an error if the other is 0
+            # What is left of z is scaled to 0..1 for the next choice. The divisor is selected
+            # first, since scalar variants raise an error for a division by 0
             z = dr.select(up, z, z - t) / dr.select(up, t, 1 - t)
             incidence = incidence * self.angles + dr.select(up, upper, lower)
         return incidence
@@ -117,14 +119,14 @@ class HalfVectorTable:
 def _integrate_cells(
     f: Callable[..., Any], theta_i: FloatArray, phi_i: float, cells: tuple[int, int], points: int
 ) -> AnyArray:
-    """Compute the share of the light that each cell of half vectors reflects, f cosθ_o dω_o.
+    """Compute the share of the light that each cell of half vectors reflects, ∫ f cosθ_o dω_o.
 
     It has the shape (incidences, theta_h, phi_h, channels). The incidences have the polar angles
     `theta_i` (incidences,) and one azimuth `phi_i`.
     """
     # Half vectors h on a grid of points in every cell, even in solid angle within the cell
     n_h, n_p = cells
-    edges = _edge_versines(n_h)
+    edges = _compute_edge_versines(n_h)
     inside = (np.arange(points) + 0.5) / points
     cos_theta = 1 - (edges[:-1, None] + np.diff(edges)[:, None] * inside).ravel()
     phi = phi_i + (np.arange(n_p * points) + 0.5) / (n_p * points) * 2 * np.pi
@@ -136,22 +138,22 @@ def _integrate_cells(
     wo = 2 * cos_d[..., None] * h - wi
     above = (wo[..., 2] > 0) & (cos_d > 0)
 
-    # f cosθ_o dω_o/dω_h, its mean over the points of a cell, times the cell's solid angle
+    # The mean of f cosθ_o dω_o/dω_h over the points of a cell, times the cell's solid angle
     values = np.asarray(f(wi[above], wo[above]))
     light = np.zeros((*above.shape, values.shape[1]))
     light[above] = values * (wo[above][:, 2] * 4 * cos_d[above])[:, None]
     means = light.reshape(len(theta_i), n_h, points, n_p, points, -1).mean(axis=(2, 4))
-    return means * _solid_angles(cells)[:, None, None]
+    return means * _cell_solid_angles(cells)[:, None, None]
 
 
-def _edge_versines(n: int) -> FloatArray:
+def _compute_edge_versines(n: int) -> FloatArray:
     """Return 1 - cosθ_h (n + 1,) at the edges of `n` cells, which are even in √θ_h."""
     return 2 * np.sin((np.arange(n + 1) / n) ** 2 * np.pi / 4) ** 2
 
 
-def _solid_angles(cells: tuple[int, int]) -> FloatArray:
+def _cell_solid_angles(cells: tuple[int, int]) -> FloatArray:
     """Return the solid angle (n_h,) [sr] of a cell of half vectors in each row of theta_h."""
-    return np.diff(_edge_versines(cells[0])) * 2 * np.pi / cells[1]
+    return np.diff(_compute_edge_versines(cells[0])) * 2 * np.pi / cells[1]
 
 
 def _cumulate_shares(masses: AnyArray) -> AnyArray:
@@ -166,8 +168,8 @@ def _cumulate_shares(masses: AnyArray) -> AnyArray:
         return np.where(total > 0, sums / total, even).astype(np.float32)
 
 
-def _compute_shares(sums: AnyArray) -> AnyArray:
-    """Return the shares whose cumulative sums are `sums`."""
+def _shares_from_sums(sums: AnyArray) -> AnyArray:
+    """Return the shares (..., n) from their cumulative sums, along the last axis."""
     return np.diff(sums.astype(float), axis=-1, prepend=0)
 
 
@@ -176,9 +178,9 @@ def _draw_cell(sums: Rows, start: JitInt, n: int, x: JitFloat) -> tuple[JitInt, 
 
     The cumulative shares of the `n` cells begin at `start` in `sums`.
     """
-    x = dr.minimum(x, BELOW_ONE)  # 1 would fall into an empty last cell with the width 0
+    x = dr.minimum(x, BELOW_ONE)  # 1 would draw a last cell whose probability is 0
     cell: Any = 0
-    low, high = 0, 1  # cumulative shares before the cell and with it
+    low, high = 0, 1  # cumulative shares without the cell, and with it
     for step in 2 ** np.arange(int(n - 1).bit_length())[::-1]:
         there = dr.minimum(cell + int(step), n)
         share = sums.at(start + there - 1)

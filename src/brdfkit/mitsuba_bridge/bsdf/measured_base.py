@@ -58,7 +58,10 @@ def define_measured_bsdf(mi: MitsubaModule) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A measured BRDF at a surface point for light from `wi`; the context sets `enabled`."""
+    """A measured BRDF `bsdf` at a surface point `si`, for light from `wi`.
+
+    `mi` is Mitsuba; `enabled` says whether its context asks for the BSDF's only component.
+    """
 
     mi: Any
     bsdf: Any
@@ -71,7 +74,7 @@ class Point:
         import drjit as dr
 
         share = self.bsdf.cosine_share
-        # The rest of sample1 is a third random number, uniform like sample2
+        # What is left of sample1 after the choice is a third uniform random number
         u = self.mi.Point3f(sample2.x, sample2.y, dr.maximum(sample1 - share, 0) / (1 - share))
         by_cosine, by_itself = COSINE.sample(self.wi, u), self.bsdf.sampling.sample(self.wi, u)
         wo = dr.select(sample1 < share, by_cosine, by_itself)

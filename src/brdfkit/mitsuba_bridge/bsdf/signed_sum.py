@@ -1,7 +1,7 @@
 """Samples a sum of lobes with signed weights, clamped at 0, by a table of half vectors.
 
-A single lobe cannot be sampled if its weight may be negative. So the sum is tabulated whenever a
-parameter changes, with the mean of each texture.
+A single lobe cannot be sampled if its weight may be negative. So the sum is tabulated, with each
+parameter at the mean of its texture, and again whenever a parameter changes.
 """
 
 from typing import Any
@@ -16,8 +16,8 @@ from brdfkit.model.evaluation import compute_lobe_values
 # The tables are coarse, since the models with signed weights are smooth polynomials
 ISOTROPIC: dict[str, Any] = {"azimuths": 1, "angles": 32, "cells": (24, 20), "points": 2}
 ANISOTROPIC: dict[str, Any] = {"azimuths": 12, "angles": 16, "cells": (24, 20), "points": 1}
-BATCH = 8192  # directions at once, since a model may have a thousand lobes
-# Points along each side, and wavelengths [nm], over which a texture is averaged
+BATCH = 8192  # number of direction pairs evaluated at once, since a model may have a thousand lobes
+# The number of points along each side, and the wavelengths [nm], over which a texture is averaged
 TEXELS = 8
 WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)
 

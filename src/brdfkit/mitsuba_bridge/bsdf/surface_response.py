@@ -44,7 +44,7 @@ class Point:
         return [None if e is None else share * e / total for e in energies]
 
     def draw_direction(self, sample1: JitFloat, sample2: JitVector) -> tuple[JitVector, JitInt]:
-        """Draw an outgoing direction from the cosine or a component; return also the component."""
+        """Draw an outgoing direction by the cosine or a component; return the component as well."""
         wo = base.COSINE.sample(self.wi, sample2)
         first = next((k for k, enabled in enumerate(self.enabled) if enabled), 0)
         component = self.mi.UInt32(first)
@@ -53,8 +53,8 @@ class Point:
             if share is None:
                 continue
             hit = (sample1 >= chosen_up_to) & (sample1 < chosen_up_to + share)
-            # The rest of sample1 is a third random number, uniform like sample2. It is used where
-            # this component was chosen, but must stay in [0, 1) elsewhere, too
+            # What is left of sample1 after the choice is a third uniform random number. It is used
+            # only where this component was chosen, but must stay in [0, 1) elsewhere, too
             left = dr.clip((sample1 - chosen_up_to) / share, 0, BELOW_ONE)
             u = self.mi.Point3f(sample2.x, sample2.y, left)
             chosen_up_to += share

@@ -33,8 +33,8 @@ def to_half_difference(
     """Return the angles (theta_h, theta_d, phi_d, phi_h) [rad] of half and difference vector."""
     h = half_vector(wi, wo)
     sin_h = dr.safe_sqrt(h.x * h.x + h.y * h.y)
-    # The difference vector is wi in the frame of the half vector; where that is the normal, any
-    # azimuth phi_h will do
+    # The difference vector is wi in the frame of the half vector h. If h is the normal, its azimuth
+    # may be any number
     off = sin_h > 1e-7
     inverse = 1 / dr.select(off, sin_h, 1)
     cos_p, sin_p = dr.select(off, h.x * inverse, 1), h.y * inverse

@@ -102,10 +102,10 @@ def define_textured_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
             si: MitsubaObject,
             active: JitMask,
         ) -> Any:
-            """Return the value of an attribute, for a parameter by the `method` of its texture.
+            """Return the value of a surface's attribute, which may be a parameter, by its `name`.
 
-            Other attributes go to `inherited`, Mitsuba's own method. Parameters do not, because
-            that method calls the plugin's method once more.
+            A parameter is evaluated by the `method` of its texture, any other attribute by
+            `inherited`, Mitsuba's own method, which would call the plugin again for a parameter.
             """
             key = self.find_texture_name(name)
             if key not in self.textures:
@@ -127,8 +127,8 @@ def define_textured_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
 
 def clamp_to_bounds(value: Any, parameter: Parameter) -> Any:
     """Clamp the value of a texture, which may hold anything, to the bounds of the parameter."""
-    # dr.clip would have half the derivative on a bound
+    # Not by dr.clip, which halves the derivative of a value that lies on a bound
     low, high = parameter.bounds
     clamped = value if low == -math.inf else dr.select(value < low, low, value)
     clamped = clamped if high == math.inf else dr.select(clamped > high, high, clamped)
-    return type(value)(clamped)  # select turns a spectrum into a plain array
+    return type(value)(clamped)  # dr.select turns a spectrum into a plain array

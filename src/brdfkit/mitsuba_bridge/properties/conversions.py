@@ -14,8 +14,8 @@ from brdfkit.model import Model
 def require_known_properties(props: MitsubaObject, plugin: str, known: Iterable[str]) -> None:
     """Raise `BrdfkitError` for a property that a new `plugin` has not read, such as a misspelt one.
 
-    `known` are the names of the plugin's parameters. Mitsuba's own error would print all such
-    properties, objects with all that is in them.
+    `known` are the names of the plugin's parameters. Mitsuba's own error would print each unread
+    property in full, even a large object.
     """
     unknown = props.unqueried()
     if unknown:

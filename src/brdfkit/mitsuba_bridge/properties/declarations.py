@@ -39,13 +39,13 @@ class Setting:
 
 
 def declare_number(default: float, bounds: tuple[float, float], meaning: str) -> Setting:
-    """Declare a differentiable number within `bounds`; its values share a compiled kernel."""
+    """Declare a differentiable number within `bounds`; all its values share one compiled kernel."""
 
     def read_number(value: Any) -> Any:
         import drjit as dr
         import mitsuba as mi
 
-        opaque = mi.Float(_to_number(value, bounds))
+        opaque = mi.Float(_convert_to_number(value, bounds))
         dr.make_opaque(opaque)
         return opaque
 
@@ -56,7 +56,7 @@ def declare_int(default: int, bounds: tuple[float, float], meaning: str) -> Sett
     """Declare a whole number within `bounds`; each of its values compiles a kernel of its own."""
 
     def read_int(value: Any) -> int:
-        number = _to_number(value, bounds)
+        number = _convert_to_number(value, bounds)
         if not number.is_integer():
             raise ValueError("a whole number")
         return int(number)
@@ -68,7 +68,7 @@ def declare_float(default: float, bounds: tuple[float, float], meaning: str) -> 
     """Declare a Python float within `bounds`, for computations before a render."""
 
     def read_float(value: Any) -> float:
-        return _to_number(value, bounds)
+        return _convert_to_number(value, bounds)
 
     return Setting(default, bounds, meaning, read_float)
 
@@ -169,7 +169,7 @@ def declare_phase(meaning: str) -> Setting:
 
 
 def declare_volume(default: Any, meaning: str, coloured: bool = True, least: float = 0) -> Setting:
-    """Declare a volume of values from `least` on, such as Mitsuba's gridvolume.
+    """Declare a volume, such as Mitsuba's gridvolume, whose values are `least` or more.
 
     A number or a colour makes a constant volume. If not `coloured`, it has one channel.
     """
@@ -185,7 +185,7 @@ def declare_volume(default: Any, meaning: str, coloured: bool = True, least: flo
         if not is_number(value):
             constant = "a number or a colour" if coloured else "or a number"
             raise ValueError(f"a volume, such as a gridvolume, {constant}")
-        return make_constant_volume(_to_number(value, (least, math.inf)))
+        return make_constant_volume(_convert_to_number(value, (least, math.inf)))
 
     return Setting(default, None, meaning, read_volume, differentiable=True)
 
@@ -193,9 +193,10 @@ def declare_volume(default: Any, meaning: str, coloured: bool = True, least: flo
 def read_settings(
     settings: Mapping[str, Setting], get: Callable[[str, Any], Any], owner: str
 ) -> dict[str, Any]:
-    """Read the values of the declared `settings`, by name, from `get(name, default)`.
+    """Read the values of the declared `settings`, and return them by name.
 
-    Raises `BrdfkitError`, which names the `owner`, for a value that is not allowed.
+    `get(name, default)` returns what the user has given, or else the default. Raises
+    `BrdfkitError`, which names the `owner`, for a value that is not allowed.
     """
     values = {}
     for name, setting in settings.items():
@@ -203,7 +204,7 @@ def read_settings(
         try:
             values[name] = setting.read(value)
         except (TypeError, ValueError) as error:
-            message = f"{owner}: {name} = {_shorten(value)} should be {error}."
+            message = f"{owner}: {name} = {_shorten_for_message(value)} should be {error}."
             raise BrdfkitError(message) from error
     return values
 
@@ -211,7 +212,7 @@ def read_settings(
 def derive_plugin(base: Any, parameters: Mapping[str, Setting]) -> Any:
     """Derive a class from `base`, one of Mitsuba's, with declared `parameters` by name.
 
-    Each is an attribute of an instance; the differentiable ones are exposed to optimisers.
+    Each parameter is an attribute of an instance; optimisers see the differentiable ones.
     """
 
     class Declared(base):
@@ -234,7 +235,7 @@ def derive_plugin(base: Any, parameters: Mapping[str, Setting]) -> Any:
     return Declared
 
 
-def _to_number(value: Any, bounds: tuple[float, float]) -> float:
+def _convert_to_number(value: Any, bounds: tuple[float, float]) -> float:
     """Return a property as a float; raise a ValueError if it is no number within `bounds`."""
     low, high = bounds
     if not (is_number(value) and low <= value <= high):
@@ -242,6 +243,6 @@ def _to_number(value: Any, bounds: tuple[float, float]) -> float:
     return float(value)
 
 
-def _shorten(value: object) -> str:
+def _shorten_for_message(value: object) -> str:
     """Return a value as text in one line of at most 60 characters, for an error message."""
     return " ".join(str(value).split())[:60]

@@ -1,7 +1,8 @@
 """Checks the packed rows of a Radiance file (.hdr), which Mitsuba 3.9 does not check.
 
-A row is 2, 2 and its length in two bytes, then runs for each of R, G, B and the exponent: n > 128
-and a byte stand for n - 128 times this byte, n ≤ 128 and n bytes for these bytes [Ward 1991].
+A packed row begins with the bytes 2 and 2, and its length in two bytes. Then come all bytes of R,
+of G, of B and of the exponent, in runs. A byte n > 128 means that the next byte occurs n - 128
+times, a byte n ≤ 128 that the next n bytes are not packed [Ward 1991].
 """
 
 import re
@@ -10,7 +11,7 @@ from os import PathLike
 from brdfkit.core.errors import BrdfkitError
 
 SIZE = re.compile(rb"\n\n-Y (\d+) \+X (\d+)\n")
-NARROWEST, WIDEST = 8, 32767  # pixels; rows of another length are not packed
+NARROWEST, WIDEST = 8, 32767  # lengths of rows [pixels]; shorter and longer rows are not packed
 
 
 def require_intact_rows(path: str | PathLike[str], name: object) -> None:

@@ -23,7 +23,7 @@ def require_volume(volume: MitsubaObject, coloured: bool, least: float = 0.0) ->
         channels = values.shape[-1] if values.ndim == 4 else values.size
         if channels > 1 and not coloured:
             raise ValueError("a volume of one channel")
-        if channels > 1 and mi.is_spectral:  # the values are coefficients of spectra, not colours
+        if channels > 1 and mi.is_spectral:  # coefficients of spectra, no colours
             continue
         if not np.isfinite(values).all() or values.min() < least:
             limit = ", not negative" if least == 0 else ""

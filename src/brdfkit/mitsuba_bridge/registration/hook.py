@@ -40,7 +40,7 @@ class _After:
     ) -> ModuleSpec | None:
         if name != self.module:
             return None
-        spec = self._find_by_others(path, target)
+        spec = self._find_spec_by_others(path, target)
         if spec is not None and spec.loader is not None:
             load = spec.loader.exec_module
 
@@ -54,19 +54,19 @@ class _After:
             spec.loader.exec_module = exec_module
         return spec
 
-    def _find_by_others(self, path: Sequence[str] | None, target: ModuleType | None) -> Any:
+    def _find_spec_by_others(self, path: Sequence[str] | None, target: ModuleType | None) -> Any:
         """Return the import specification of the module, from another finder that has one."""
-        # sys.meta_path is not changed meanwhile, since another thread may be looking through it
+        # sys.meta_path stays as it is meanwhile, since another thread may be going through it
         others = [f for f in sys.meta_path if hasattr(f, "find_spec") and not isinstance(f, _After)]
         specs = (finder.find_spec(self.module, path, target) for finder in others)
         return next((spec for spec in specs if spec is not None), None)
 
 
 def _forward_to_successor(module: ModuleType) -> None:
-    """Let a module return attributes of the module that its import put into its place, if it did.
+    """Let a `module` return the attributes of its successor in `sys.modules`, if it has one.
 
-    Mitsuba's import does so, and a thread that imports Mitsuba at the same time gets the first
-    module.
+    Mitsuba replaces its module while it is imported. A thread that imports Mitsuba at the same time
+    gets the replaced one.
     """
     if sys.modules[module.__name__] is not module:
         vars(module)["__getattr__"] = functools.partial(getattr, sys.modules[module.__name__])
@@ -77,7 +77,7 @@ def _register_in_mitsuba() -> None:
     import mitsuba as mi
 
     from brdfkit.core.discovery import plugin_files
-    from brdfkit.mitsuba_bridge.registration.registering import register_all
+    from brdfkit.mitsuba_bridge.registration.registering import register_new_plugins
 
     def register_in_variant(before: str | None = None, variant: str | None = None) -> None:
         try:
@@ -85,11 +85,11 @@ def _register_in_mitsuba() -> None:
         except BrdfkitError:
             mi.set_variant("scalar_rgb")  # otherwise the refused variant would stay set
             raise
-        register_all()
+        register_new_plugins()
 
     mi.detail.add_variant_callback(register_in_variant)
-    plugin_files.call_when_plugins_added(register_all)
-    register_all()
+    plugin_files.call_when_plugins_added(register_new_plugins)
+    register_new_plugins()
 
 
 @contextmanager

@@ -31,7 +31,7 @@ def require_vectorised(plugin: str) -> None:
 _registered: set[tuple[str, str, str]] = set()
 
 
-def register_all() -> None:
+def register_new_plugins() -> None:
     """Register the plugins that are not yet registered in Mitsuba's current variant, if it has one.
 
     Volumes are left out in scalar_rgb. Mitsuba 3.9 takes the kind of a plugin in all variants from
@@ -66,7 +66,7 @@ def _make_plugin(kind: str, name: str, props: MitsubaObject) -> MitsubaObject:
         configured: Any = model.configured(**options)
         made = _define_plugin(configured, mi.variant())(props)
         known = [*model.parameters, *model.options]
-    if known is not None:  # otherwise the plugin reads its properties by itself
+    if known is not None:  # a plugin without PARAMETERS checks its properties by itself
         require_known_properties(props, name, known)
     return made
 
