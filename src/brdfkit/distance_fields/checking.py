@@ -12,8 +12,8 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.distance_fields.boxes import Box, format_point, join_boxes
 from brdfkit.distance_fields.functions import evaluate
 
-ROUNDING_ERROR = 1e-9  # the rounding error of the difference between two values of f
-BALL_SHARE = 0.999  # the longest step, over the radius of the ball that should hold no surface
+ROUNDING_ERROR = 1e-9  # the rounding error of the difference of two values of a field
+BALL_SHARE = 0.999  # the longest step, as a share of the radius of the empty ball
 
 
 def check(
@@ -76,10 +76,12 @@ def check(
 def check_steps(node: Any, walks: int = 500, steps: int = 8, seed: int = 0) -> None:
     """Check by random walks that rays can step along a field without crossing its surface.
 
-    A step is as long as the field's value, over its bound `lipschitz`. `check` demands more: an
-    estimate whose values jump, such as the Mandelbulb's, may still have safe steps. Each step of a
-    walk leads to a random point of the ball that should contain no surface, so that the walk soon
-    comes near the surface. A check that finds nothing is no proof.
+    A ray may step as far as the field's value divided by its bound `lipschitz`, as the ball of this
+    radius should contain no surface. A step of a walk leads to a random point of that ball, where
+    the field must have the same sign. So a walk soon comes near the surface.
+
+    `check` demands more: an estimate whose values jump, such as the Mandelbulb's, may still have
+    safe steps. A check that finds nothing is no proof.
 
     Parameters
     ----------
@@ -109,7 +111,8 @@ def check_steps(node: Any, walks: int = 500, steps: int = 8, seed: int = 0) -> N
     for _ in range(steps):
         _require_finite(f, a)
         n = rng.normal(size=(walks, 5))
-        inside = n[:, :3] / np.linalg.norm(n, axis=1, keepdims=True)  # uniform in the unit ball
+        # Three of the five components of a random unit vector are a uniform point of the unit ball
+        inside = n[:, :3] / np.linalg.norm(n, axis=1, keepdims=True)
         b = a + BALL_SHARE * inside * (np.abs(f) / node.lipschitz)[:, None]
         g = node(b)
         for i in np.flatnonzero(f * g < 0)[:1]:

@@ -37,18 +37,18 @@ class Point(NamedTuple):
     z: Any
 
 
-def _make_function(glsl: str, drjit: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a function that calls `drjit`, or adds a call of `glsl` to a program if given symbols.
+def _make_drjit_or_glsl_function(glsl: str, drjit: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that calls `drjit`, or for symbols adds a call of `glsl` to their program.
 
     drjit : a function of Dr.Jit arrays and numbers.
     glsl : the name of the same function in GLSL.
     """
 
-    def call(*args: Any) -> Any:
+    def call_or_record(*args: Any) -> Any:
         symbol = next((a for a in args if isinstance(a, Symbol)), None)
         return drjit(*args) if symbol is None else symbol.program.add_call(glsl, *args)
 
-    return call
+    return call_or_record
 
 
 def _sqrt(a: JitFloat) -> JitFloat:
@@ -57,18 +57,18 @@ def _sqrt(a: JitFloat) -> JitFloat:
     return dr.select(zero, 0.0, dr.sqrt(dr.select(zero, 1.0, a)))
 
 
-sqrt = _make_function("sqrt", _sqrt)
-absolute = _make_function("abs", dr.abs)
-minimum = _make_function("min", dr.minimum)
-maximum = _make_function("max", dr.maximum)
-clip = _make_function("clamp", dr.clip)
-floor = _make_function("floor", dr.floor)
-sin = _make_function("sin", dr.sin)
-cos = _make_function("cos", dr.cos)
-acos = _make_function("acos", dr.safe_acos)
-atan2 = _make_function("atan", dr.atan2)
-log = _make_function("log", dr.log)
-power = _make_function("pow", dr.power)
+sqrt = _make_drjit_or_glsl_function("sqrt", _sqrt)
+absolute = _make_drjit_or_glsl_function("abs", dr.abs)
+minimum = _make_drjit_or_glsl_function("min", dr.minimum)
+maximum = _make_drjit_or_glsl_function("max", dr.maximum)
+clip = _make_drjit_or_glsl_function("clamp", dr.clip)
+floor = _make_drjit_or_glsl_function("floor", dr.floor)
+sin = _make_drjit_or_glsl_function("sin", dr.sin)
+cos = _make_drjit_or_glsl_function("cos", dr.cos)
+acos = _make_drjit_or_glsl_function("acos", dr.safe_acos)
+atan2 = _make_drjit_or_glsl_function("atan", dr.atan2)
+log = _make_drjit_or_glsl_function("log", dr.log)
+power = _make_drjit_or_glsl_function("pow", dr.power)
 
 
 def select(condition: JitMask, a: JitFloat, b: JitFloat) -> JitFloat:

@@ -1,8 +1,8 @@
 """Materials of fields by name, and the part of a field to which a surface point belongs.
 
-A point belongs to the part that would move the surface there if the part grew. So a point where two
-parts are blended smoothly belongs to both, by shares; the surface of a cut belongs to the solid
-that was cut away.
+A point of the surface belongs to the part whose growth would move the surface there. So where two
+parts are blended smoothly, a point belongs to both, each with a share. The surface of a cut belongs
+to the solid that was cut away.
 """
 
 from collections.abc import Mapping
@@ -19,7 +19,7 @@ from brdfkit.distance_fields.shapes.motions import Motion
 from brdfkit.distance_fields.shapes.offsets import dilate
 
 
-def _check_name(what: str, value: Any, rules: Mapping[str, Any]) -> str:
+def _check_material_name(what: str, value: Any, rules: Mapping[str, Any]) -> str:
     """Return the name of a material; raise `BrdfkitError` unless it is an identifier.
 
     what : name of the parameter, for the error message.
@@ -42,7 +42,7 @@ class made_of(Motion):
     """
 
     child: Node
-    material: str = field(metadata={"check": _check_name, "fixed": True})
+    material: str = field(metadata={"check": _check_material_name, "fixed": True})
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -22,8 +22,9 @@ class Node(Operators, Conversions):
     A kind of node is a frozen dataclass that is derived from this class and has a method
     `distance(p)`, written with `functions.py`. Operators, files and parameters use its class name.
 
-    Three properties follow every operation. `lipschitz` is a bound L: from x to y, f changes by no
-    more than L ‖x - y‖, so that f / L never overstates the distance and is a safe step.
+    A node also knows properties of its field; combinations derive them from their children's.
+    `lipschitz` is a bound L on the slope: from x to y, f changes by no more than L ‖x - y‖. So
+    f / L never overstates the distance, and rays may step so far.
     `exact_outside` and `exact_inside` say that f is the distance there, not an estimate below it.
     `is_convex` says that f is a convex function, and so every {f ≤ c} a convex set.
     """

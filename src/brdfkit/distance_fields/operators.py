@@ -14,13 +14,13 @@ class Operators:
     """
 
     def __or__(self, other: Any) -> Any:
-        return _combine("union", self, other)
+        return _combine_sharply("union", self, other)
 
     def __and__(self, other: Any) -> Any:
-        return _combine("intersection", self, other)
+        return _combine_sharply("intersection", self, other)
 
     def __sub__(self, other: Any) -> Any:
-        return _combine("difference", self, other)
+        return _combine_sharply("difference", self, other)
 
     def k(self, k: Any) -> "Smooth":
         """Return this field as an operand that is blended over a width `k`: ``a | b.k(0.1)``."""
@@ -59,8 +59,8 @@ class Operators:
     def repeat(self, spacing: Any, copies: int | None = None) -> Any:
         """Return copies of the solid in a lattice with distances `spacing` along x, y and z.
 
-        Along an axis with spacing 0 there is one copy, else `copies` copies on each side of the
-        first one, or infinitely many if it is None.
+        Along an axis with spacing 0 there is only the solid itself. Along the others there are
+        `copies` copies on each side of it, or infinitely many for None.
         """
         return find_node_class("repeat")(self, spacing, copies)
 
@@ -85,7 +85,7 @@ class Smooth(NamedTuple):
         return find_node_class("difference")((other, self.field), self.k)
 
 
-def _combine(name: str, a: Any, b: Any) -> Any:
+def _combine_sharply(name: str, a: Any, b: Any) -> Any:
     """Return the sharp combination of two fields; a chain such as a | b | c becomes one node.
 
     name : kind of the combination: union, intersection or difference.

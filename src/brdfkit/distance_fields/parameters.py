@@ -26,14 +26,17 @@ def find_node_class(name: Any, where: str = "") -> type:
 
 
 def number(default: Any, least: float | None = None, above: float | None = None) -> Any:
-    """Declare a parameter that is a number, or a Dr.Jit array, which may carry derivatives."""
+    """Declare a parameter that is a number ≥ `least` or > `above`, or an array of Dr.Jit.
+
+    The array may carry derivatives.
+    """
     return field(default=default, metadata={"check": _check_number, "least": least, "above": above})
 
 
 def vector(
     default: Any, above: float | None = None, least: float | None = None, spread: bool = False
 ) -> Any:
-    """Declare a parameter of three numbers; with `spread`, one number may stand for three."""
+    """Declare a parameter of three numbers ≥ `least` or > `above`; `spread` allows one for all."""
     rules = {"check": _check_vector, "above": above, "least": least, "spread": spread}
     return field(default=default, metadata=rules)
 

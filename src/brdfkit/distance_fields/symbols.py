@@ -37,7 +37,7 @@ class Program:
 
 
 class Symbol:
-    """A float, int or bool by its name in a GLSL program; arithmetic on it adds lines to that."""
+    """A float, int or bool by its name in a GLSL program; arithmetic on it adds program lines."""
 
     def __init__(self, program: Program, name: str, kind: str = "float") -> None:
         self.program, self.name, self.kind = program, name, kind

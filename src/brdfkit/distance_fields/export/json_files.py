@@ -54,12 +54,12 @@ def from_json(text: str, where: str = "the field") -> Any:
 
 def save(node: Any, path: str | PathLike[str]) -> None:
     """Write a node to a JSON file; raise `BrdfkitError` if it contains user-defined Python."""
-    _require_own_kinds(node, path)
+    _refuse_user_defined_nodes(node, path)
     with write_safely(path) as beside:
         beside.write_text(to_json(node), encoding="utf-8")
 
 
-def _require_own_kinds(node: Any, path: str | PathLike[str]) -> None:
+def _refuse_user_defined_nodes(node: Any, path: str | PathLike[str]) -> None:
     """Raise `BrdfkitError` if a field contains user-defined nodes, which no file can store."""
     if not type(node).__module__.startswith("brdfkit.") or node.kind == "function":
         raise BrdfkitError(
@@ -68,7 +68,7 @@ def _require_own_kinds(node: Any, path: str | PathLike[str]) -> None:
             "field.to_mesh(128, bounds=(low, high)).write(path)."
         )
     for child in node.children:
-        _require_own_kinds(child, path)
+        _refuse_user_defined_nodes(child, path)
 
 
 def load(path: str | PathLike[str]) -> Any:

@@ -58,7 +58,7 @@ def to_mesh(node: Any, resolution: int = 64, bounds: Any = None) -> Mesh:
     Returns
     -------
     Mesh
-        Triangles whose vertices are within L times half a cell of the surface.
+        Triangles whose vertices are at most half a cell times `node.lipschitz` from the surface.
 
     Raises
     ------

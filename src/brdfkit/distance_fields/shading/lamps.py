@@ -67,7 +67,8 @@ class Lamp:
         if self.shape is not None and find_lamp_shape(self.shape) == "Sphere":
             centre, radius = self.bounding_sphere(si, ds, 0)
             sin2 = dr.minimum(radius * radius / dr.squared_norm(centre - si.p), 1)
-            light = light * (1 + dr.safe_sqrt(1 - sin2)) / 2  # Mitsuba's is 2π (1 - cos)
+            # From Mitsuba's solid angle of a sphere, 2π (1 - cosα), to π sin²α
+            light = light * (1 + dr.safe_sqrt(1 - sin2)) / 2
         return ds, light
 
 

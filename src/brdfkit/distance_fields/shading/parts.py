@@ -42,7 +42,7 @@ class Parts:
     named : name of a material → BSDF of the parts with this name.
     other : the BSDF of all parts without a name.
     growth : length by which parts are grown to find the one that a point belongs to: less than all
-        details, and more than single precision rounds [unit of length].
+        details, but more than the rounding errors of single precision [unit of length].
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class Parts:
         self.named, self.other, self.growth = named, other, growth
 
     def grow_each_material(self, field: Node) -> dict[str, Node]:
-        """Return material → the field with the parts of this material grown by `growth`."""
+        """Return, for each material by name, the field with its parts grown by `growth`."""
         return {name: grow_material(field, name, self.growth) for name in self.named}
 
     def find_bsdf(self, field: Node, larger: Mapping[str, Node], p: JitVector) -> MitsubaObject:

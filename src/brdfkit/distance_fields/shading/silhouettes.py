@@ -1,16 +1,19 @@
 """Derivatives at silhouettes, where a surface begins to cover what lies behind it.
 
-A cone around a camera ray meets the surface where g(t) = f / L - ρ(t) falls to 0, with the distance
-f, its bound L and the cone's radius ρ. Where it passes closely, g has a minimum g₀ > 0. As g₀ falls
-to 0, the light L_b from behind gives way to the light L_f of the surface. So the derivative of the
-picture by whatever moves the surface is
+At a silhouette the picture jumps from the light L_b from behind to the light L_f of the surface.
+Where the jump moves, the picture has a derivative that is found as follows.
+
+At the distance t along a camera ray, a cone around the ray has the gap g(t) = f / L - ρ(t) to the
+surface, with the field f, its bound L and the cone's radius ρ. The ray meets the surface where g
+falls to 0. A ray that passes closely has a smallest gap g₀ > 0. With ∂ for the derivative by
+a parameter that moves the surface, and Dirac's δ, the derivative of the picture is
 
     ∫ δ(g₀) ∂g₀ (L_b - L_f) du
 
 over the points u of the picture. δ is replaced by 1/ε where 0 < g₀ < ε, so that the camera rays
-that are traced anyway can estimate the integral. ε is `BAND_WIDTH` times ρ, less than a pixel. The
-silhouette is thus taken ε/2 outside of its place, and its derivative has a relative error of ε over
-the surface's radius of curvature.
+that are traced anyway can estimate the integral. ε is `BAND_WIDTH` times ρ, less than a pixel. So
+the silhouette is taken ε/2 outside of its place. The relative error of its derivative is ε divided
+by the surface's radius of curvature.
 
 [Wang et al. 2024]
 """
@@ -31,9 +34,10 @@ from brdfkit.distance_fields.shading.visible_point import (
 from brdfkit.distance_fields.tracing.hits import normal
 from brdfkit.mitsuba_bridge.surface_points import make_interaction
 
-BAND_WIDTH = 4.0  # the width ε of the band around silhouettes, over the cone's radius ρ
+BAND_WIDTH = 4.0  # the width of the band around silhouettes, in radii of the cone
 MAX_STEPS = 512  # the most steps along a ray, as in `cone_trace`
-GRAZING_COSINE = 0.01  # of ray and normal at a silhouette: a BSDF would reflect nothing at 0
+# The cosine between ray and normal that is used at silhouettes: at 0 a BSDF would reflect nothing
+GRAZING_COSINE = 0.01
 
 
 @dataclass(frozen=True)
@@ -68,20 +72,20 @@ def find_near_miss(
     """
     radius, tangent = compute_ray_cone(ray)
 
-    def cone_radius(t: JitFloat) -> JitFloat:
-        return radius + 1.25 * precision + t * tangent  # as wide as in `find_visible_point`
+    def compute_cone_radius(t: JitFloat) -> JitFloat:
+        return radius + 1.25 * precision + t * tangent  # at which `find_visible_point` stops
 
-    def gap(t: JitFloat) -> JitFloat:
-        return field.distance(ray(t)) / field.lipschitz - cone_radius(t)
+    def compute_gap(t: JitFloat) -> JitFloat:
+        return field.distance(ray(t)) / field.lipschitz - compute_cone_radius(t)
 
     with dr.suspend_grad():
-        t = find_nearest_pass(gap, cone_radius, tangent, dr.detach(far), active)
+        t = find_nearest_pass(compute_gap, compute_cone_radius, tangent, dr.detach(far), active)
         found = active & (t > 0)
         ball = dr.maximum(field.distance(ray(t)) / field.lipschitz, precision / 2)
         n = normal(field.distance, ray(t), dr.maximum(ball, NORMAL_STEP * precision))
         n = dr.normalize(n - ray.d * (dr.dot(n, ray.d) + GRAZING_COSINE))
         seen = VisiblePoint(make_interaction(ray, t, ray(t), n, found), ray(t), ball, found, field)
-    return NearMiss(seen, gap(t), BAND_WIDTH * cone_radius(t))
+    return NearMiss(seen, compute_gap(t), BAND_WIDTH * compute_cone_radius(t))
 
 
 def find_nearest_pass(
@@ -93,7 +97,7 @@ def find_nearest_pass(
     cone_radius : function from t to the radius of the cone.
     """
 
-    def step(
+    def take_step(
         t: JitFloat, before: JitFloat, here: JitFloat, least: JitFloat, place: JitFloat, i: JitInt
     ) -> tuple[Any, ...]:
         ahead = t + dr.maximum(here, cone_radius(t)) / (1 + abs(tangent))
@@ -107,5 +111,7 @@ def find_nearest_pass(
     first = gap(zero)
     start = zero, first, first, zero + dr.inf, zero, dr.uint32_array_t(type(zero))(0)
     return dr.while_loop(
-        start, lambda t, before, here, least, place, i: active & (t < far) & (i < MAX_STEPS), step
+        start,
+        lambda t, before, here, least, place, i: active & (t < far) & (i < MAX_STEPS),
+        take_step,
     )[4]

@@ -5,7 +5,7 @@ its end that contains no object is where shadows begin. At a sharp edge the norm
 ball would be that of a rounded edge, which would show false highlights. So the ray goes on to a
 much smaller empty ball, whose normal is used. The shaded point is where the ray meets the plane
 that touches that small ball, so that distances to lamps are exact. Objects look larger by half a
-pixel's diagonal over the root of the samples per pixel.
+pixel's diagonal, divided by the root of the number of samples per pixel.
 
 [Bálint et al. 2019, section 2.7]
 """
@@ -23,9 +23,10 @@ from brdfkit.distance_fields.tracing.cone_tracing import cone_trace
 from brdfkit.distance_fields.tracing.hits import normal, reattach
 from brdfkit.mitsuba_bridge.surface_points import make_interaction
 
-NORMAL_STEP = 10.0  # step of the finite differences of normals, over `precision`
-SMALL_BALL = 1 / 8  # the radius of the small ball over the radius of the first one
-LEAST_COSINE = 0.1  # between ray and normal, so that the way from ball to surface stays short
+NORMAL_STEP = 10.0  # step of the finite differences that give normals, in units of `precision`
+SMALL_BALL = 1 / 8  # the radius of the small ball, as a share of that of the large one
+# The least cosine between ray and normal, so that the way from a ball to the surface stays short
+LEAST_COSINE = 0.1
 
 
 @dataclass(frozen=True)

@@ -21,9 +21,10 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitVector
 
-LARGEST_SINE = 0.999  # the limit of sin α, as balls that lie within each other have no cone
-POINT_RADIUS = 1e-6  # the least radius of a section, over the cone's length
-TIP_RADIUS = 1e-3  # the radius, over the widest, at which a march counts as at the cone's tip
+LARGEST_SINE = 0.999  # the limit of sin α: balls that lie within each other have no cone
+POINT_RADIUS = 1e-6  # the least radius of a section, as a share of the cone's length
+# The radius, as a share of the widest one, at which the cone counts as ended in a tip
+TIP_RADIUS = 1e-3
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class LightCone:
     basis: tuple[Any, Any] = field(init=False)
 
     def __post_init__(self) -> None:
-        # Computed here, as a value that a Dr.Jit loop computes first is invalid after the loop
+        # Not computed on demand: a value first computed within a Dr.Jit loop is invalid after it
         z = dr.abs(self.axis.z) > 0.5
         side = type(self.axis)(dr.select(z, 1, 0), 0, dr.select(z, 0, 1))
         a = dr.normalize(side - self.axis * dr.dot(side, self.axis))
@@ -89,12 +90,12 @@ class LightCone:
     def bound_step_count(self, epsilon: float, lipschitz: float = 1.0) -> JitFloat:
         """Return an upper bound on the steps of a march along the cone, in any field.
 
-        A step is at least e ρ / (L + |tan α|) long, with e = ε π / 2, the cone's radius ρ and half
-        angle α, and the field's bound L.
+        A step is at least e ρ / (L + |tan α|) long, with the cone's radius ρ and half angle α, the
+        field's bound L = `lipschitz`, and e = `epsilon` π / 2.
         """
         wide = dr.maximum(self.R_0, self.R_1)
         narrow = dr.maximum(dr.minimum(self.R_0, self.R_1), TIP_RADIUS * wide)
-        tan = dr.maximum(dr.abs(self.tan), 1e-4 * wide / self.d)  # a cylinder's would be 0
+        tan = dr.maximum(dr.abs(self.tan), 1e-4 * wide / self.d)  # > 0, as log(1 + growth) divides
         growth = epsilon * pi / 2 * tan / (lipschitz + tan)
         decades = dr.maximum(dr.log(wide / narrow), tan * self.d / wide)
         return 2 + decades / dr.log(1 + growth)

@@ -17,7 +17,7 @@ from brdfkit.distance_fields.shadows.cone import LightCone
 from brdfkit.distance_fields.shadows.field import distance_function
 from brdfkit.distance_fields.shadows.shadow import Shadow
 
-STEP = 0.02  # step of the finite differences, over the radius of the section
+STEP = 0.02  # step of the finite differences, as a share of the section's radius
 
 
 @dataclass(frozen=True)
@@ -44,14 +44,14 @@ class Edge:
 def find_edge(field: Any, cone: LightCone, shadow: Shadow) -> Edge:
     """Return the straight edge of the occluder that a march in `cone` found.
 
-    The plane that touches the occluder goes through the apex. With the smallest ratio r of distance
-    to cone radius, and the cone's half angle α, its line on the disc is r / √(1 - r² tan² α) from
-    the centre.
+    The plane that touches the occluder goes through the cone's apex, and cuts the disc in a line.
+    With the smallest ratio r of distance to cone radius, and the cone's half angle α, the line is
+    r / √(1 - r² tan² α) from the disc's centre.
 
     shadow : result of the march.
     """
     on_axis = distance_function(field)(cone.point(shadow.t))
-    x, y = gradient_across(field, cone, shadow.t, on_axis)
+    x, y = gradient_across_axis(field, cone, shadow.t, on_axis)
     length = dr.sqrt(x * x + y * y)
     flat = length == 0  # the distance changes only along the axis, so that any direction will do
     length = dr.select(flat, 1, length)
@@ -60,7 +60,7 @@ def find_edge(field: Any, cone: LightCone, shadow: Shadow) -> Edge:
     return Edge(dr.select(flat, 1, x / length), y / length, offset)
 
 
-def gradient_across(
+def gradient_across_axis(
     field: Any, cone: LightCone, t: JitFloat, on_axis: JitFloat
 ) -> tuple[JitFloat, ...]:
     """Return the gradient of a field within the cone's section at t, by finite differences.

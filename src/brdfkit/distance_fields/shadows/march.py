@@ -18,8 +18,9 @@ from brdfkit.core.array_types import JitFloat, JitMask
 from brdfkit.distance_fields.shadows.cone import LightCone
 from brdfkit.distance_fields.shadows.field import distance_function, lipschitz_bound
 
-# A function from (t, f, R_C, memory) to the length of a step and the memory for the next step;
-# the memory is whatever the function wants to know of earlier steps
+# A function from (t, f, R_C, memory) to the length of a step and the memory for the next step, with
+# the field f at t, a place on the axis, and the limit R_C of ratios; the memory is whatever the
+# function wants to know of earlier steps
 Step: TypeAlias = Callable[[JitFloat, JitFloat, JitFloat, Any], tuple[JitFloat, Any]]
 # A function from (field, cone) to a step function and its first memory
 Pace: TypeAlias = Callable[[Any, LightCone], tuple[Step, Any]]
@@ -33,7 +34,7 @@ class Rule:
     misses no ratio below R_C. The methods of single-ray shadows differ by their rules.
 
     first : R_T and R_C at the start.
-    lower : function from a ratio below R_T, and R_T, to the new R_T and R_C.
+    lower : function that takes a ratio below R_T, and R_T, and returns the new R_T and R_C.
     last : the R_T at which hardly any light is left, and the march ends.
     """
 
@@ -63,10 +64,10 @@ def make_cone_tracing_step(field: Any, cone: LightCone) -> tuple[Step, tuple[()]
     """
     lipschitz, tan = lipschitz_bound(field), cone.tan
 
-    def step(t: JitFloat, F: JitFloat, R_C: JitFloat, memory: Any) -> tuple[JitFloat, Any]:
+    def choose_step(t: JitFloat, F: JitFloat, R_C: JitFloat, memory: Any) -> tuple[JitFloat, Any]:
         return (F - R_C * cone.radius(t)) / (lipschitz + dr.abs(R_C * tan)), memory
 
-    return step, ()
+    return choose_step, ()
 
 
 def march_along_cone(

@@ -1,10 +1,12 @@
 """The single-ray methods `linear` (the default), `hard` and `convex`.
 
-`linear` keeps the limit R_C, below which its steps miss no ratio, a constant below the smallest
-ratio R_T so far; so the lit share τ is computed only once, at the end. `hard` does the same for a
-light of radius 0. `convex` takes longer steps in a union of convex objects. The distance f_j of a
-convex object is a convex function, so that along the axis it lies above the line through its last
-two values. So the cone with the radius R_C ρ cannot touch the object before
+The steps of `linear` miss no ratio below the limit R_C, which stays a constant below the smallest
+ratio R_T so far. So the lit share τ is computed only once, at the end. `hard` does the same for a
+light of radius 0.
+
+`convex` takes longer steps in a union of convex objects. The distance f_j of a convex object is a
+convex function: along the axis it lies above the line through its last two values. So the cone
+with the radius R_C ρ cannot touch the object before the march has gone on by
 
     Δt_j = (f_j - R_C ρ) / (R_C tan α - slope of that line)
 
@@ -35,7 +37,7 @@ def compute_linear_shadow(
 ) -> Shadow:
     """Return a soft shadow by the linear march, the default method.
 
-    The visible share is at most `epsilon` too large for the straight edge that it assumes.
+    For an occluder with a straight edge, the visible share is at most `epsilon` too large.
     """
     return trace_shadow(field, cone, make_linear_rule(epsilon), epsilon, direction)
 
@@ -76,7 +78,7 @@ def make_convex_step(field: Any, cone: LightCone) -> tuple[Step, Any]:
     pieces = split_into_pieces(field)
     zero = 0 * cone.d
 
-    def step(t: JitFloat, F: JitFloat, R_C: JitFloat, memory: Any) -> tuple[JitFloat, Any]:
+    def choose_step(t: JitFloat, F: JitFloat, R_C: JitFloat, memory: Any) -> tuple[JitFloat, Any]:
         t_before, before = memory
         rho, tan = cone.radius(t), cone.tan
         now = tuple(distance_function(piece)(cone.point(t)) for piece in pieces)
@@ -90,4 +92,4 @@ def make_convex_step(field: Any, cone: LightCone) -> tuple[Step, Any]:
             dt = dr.select(clearance >= dt * closing, dt, clearance / closing)
         return dt, (t, now)
 
-    return step, (zero - 1, tuple(zero + dr.inf for _ in pieces))
+    return choose_step, (zero - 1, tuple(zero + dr.inf for _ in pieces))

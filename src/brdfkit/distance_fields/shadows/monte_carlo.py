@@ -1,8 +1,8 @@
-"""`monte_carlo`: the reference for all other methods, by hard rays through points of the disc.
+"""`monte_carlo`: the reference for all other methods, by many single rays to the light.
 
-The points are Halton's, with the coordinates u and φ in bases 2 and 3, at the distance √u from the
-disc's centre. A ray leads from the section at the surface point to the section at the light,
-through the cone's apex.
+The rays go through Halton's points of the cone's disc. A point lies at the distance √u from the
+centre and at the angle φ; u is a Halton sequence in base 2, and φ one in base 3. A ray leads from
+the section at the surface point to the section at the light, on a line through the cone's apex.
 
 [Bálint et al. 2019, section 3.3]
 """
@@ -26,7 +26,7 @@ def compute_monte_carlo_shadow(
 ) -> Shadow:
     """Return the share of `rays` that reach the light; `r` and `t` of the result are NaN.
 
-    A ray meets an object where the distance is less than `hit`, over the radius of the cone.
+    A ray meets an object where the distance is less than `hit` times the radius of the cone.
     """
     cone = cone.make_detached()
     Float = type(cone.d)
@@ -51,7 +51,7 @@ def compute_monte_carlo_shadow(
 def trace_ray(
     field: Any, cone: LightCone, x: JitFloat, y: JitFloat, hit: float
 ) -> tuple[JitFloat, JitFloat]:
-    """Trace the ray through (x, y) of the cone's disc; return its last clearance and its steps.
+    """Trace the ray through (x, y) of the cone's disc; return its last clearance and step count.
 
     The clearance is the distance less the `hit` distance, 0 or less where the ray met an object.
     """
@@ -59,14 +59,14 @@ def trace_ray(
     speed = lipschitz_bound(field) * dr.sqrt(1 + tan * tan * (x * x + y * y))
     zero = 0 * cone.d
 
-    def step(t: JitFloat, clearance: JitFloat, i: JitFloat) -> tuple[JitFloat, ...]:
+    def take_step(t: JitFloat, clearance: JitFloat, i: JitFloat) -> tuple[JitFloat, ...]:
         F = f(cone.disc_point(t, x, y))
         return t + dr.maximum(F, 0) / speed, F - hit * cone.radius(t), i + 1
 
     _, clearance, n = dr.while_loop(
         (zero, zero + 1, zero),
         lambda t, clearance, i: (t < cone.d) & (clearance > 0) & (i < MAX_STEPS),
-        step,
+        take_step,
     )
     return clearance, n
 
@@ -75,5 +75,5 @@ def halton_points_in_disc(n: int) -> tuple[FloatArray, FloatArray]:
     """Return x (n,) and y (n,) of the first Halton points, uniform over the unit disc."""
     from scipy.stats.qmc import Halton
 
-    u, phi = Halton(2, scramble=False).random(n + 1)[1:].T  # the first point is the corner (0, 0)
+    u, phi = Halton(2, scramble=False).random(n + 1)[1:].T  # the first, (0, 0), is left out
     return np.sqrt(u) * np.cos(2 * np.pi * phi), np.sqrt(u) * np.sin(2 * np.pi * phi)

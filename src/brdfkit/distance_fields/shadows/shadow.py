@@ -1,10 +1,10 @@
 """`Shadow`, the result of every method, and how a march becomes one, with derivatives.
 
-The march itself is not differentiated. By the envelope theorem a minimum has the derivative of the
-function at the minimum's place. So f / ρ is evaluated there once more, with derivatives by the
-light, its radius, the surface point, and the parameters of the field. As the march ends within ε of
-the minimum, the place is first refined. Where nothing carries derivatives, none of this is part of
-the kernel.
+The march itself is not differentiated. It finds the minimum of f / ρ, the distance over the cone's
+radius, and by the envelope theorem a minimum has the derivative of the function at the minimum's
+place. So f / ρ is evaluated there once more, with derivatives by the light, its radius, the surface
+point, and the parameters of the field. As the march ends within ε of the minimum, the place is
+first refined. Where nothing carries derivatives, none of this is part of the kernel.
 """
 
 from dataclasses import dataclass
@@ -25,10 +25,10 @@ from brdfkit.distance_fields.shadows.tau import lit_disc_share
 
 DIRECTIONS = "A", "B"  # A marches from the surface to the light, B from the light to the surface
 GOLDEN_RATIO = (5**0.5 - 1) / 2
-# The golden-section search for the exact minimum near a march's smallest ratio: its width over
-# ε ρ, about two steps of the march, and its number of iterations
+# The golden-section search for the exact minimum near the smallest ratio that a march found: its
+# reach to each side, in units of ε ρ (about two steps of the march), and its number of iterations
 SEARCH_WIDTH, SEARCH_STEPS = 4.0, 20
-SIDE_STEP = 1e-3  # the distance of the points on both sides of a minimum, over ρ
+SIDE_STEP = 1e-3  # from a minimum to the points on both sides, in radii of the cone
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,8 @@ def trace_shadow(
     visible = dr.select(dr.isnan(r), r, lit_disc_share(r))
     minimum = attach_ratio_derivatives(r, field, cone, t, epsilon)
     if dr.grad_enabled(minimum):
-        # The march's own ratio is up to ε above the minimum, where the slope τ' would be inexact
+        # Derivatives are those at the minimum; the march's own ratio is up to ε above, where the
+        # slope of `lit_disc_share` is another
         attach: Any = dr.replace_grad  # Dr.Jit's own annotation says that it returns None
         visible, r = attach(visible, lit_disc_share(minimum)), attach(r, minimum)
     return Shadow(visible, r, t, walk.evaluations)

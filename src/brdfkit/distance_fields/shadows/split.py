@@ -3,9 +3,9 @@
 One straight edge is wrong for small and pointed occluders, and for several of them. So the disc is
 cut into a centre and rings of 6, 12 ... cells of equal area, and a cone leads through each cell.
 
-Where f does not change sideways in the section at the smallest ratio, the cone has met the inside
-of a thin wall. Therefore the ratio is divided by |∇f| across the axis, which moves the edge far
-away then.
+Where the ratio is smallest, the distance may be nearly the same all over the cone's section. Then
+the cone is inside of a thin wall, and meets no edge. So the ratio is divided by the slope of the
+distance across the axis: 1 at an edge, but nearly 0 in the wall, which moves the edge far away.
 
 Only rays that the march of the whole cone finds partly lit are split.
 """
@@ -17,7 +17,7 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitMask
 from brdfkit.distance_fields.shadows.cone import LightCone
-from brdfkit.distance_fields.shadows.edge import gradient_across
+from brdfkit.distance_fields.shadows.edge import gradient_across_axis
 from brdfkit.distance_fields.shadows.marches import make_convex_step, make_linear_rule
 from brdfkit.distance_fields.shadows.shadow import Shadow, trace_shadow
 from brdfkit.distance_fields.shadows.tau import lit_disc_share
@@ -40,13 +40,13 @@ def compute_split_shadow(
     for x, y in centres:
         cell = make_cell_cone(cone, x, y, 1 / sqrt(len(centres)))
         shadow = trace_shadow(field, cell, rule, epsilon, direction, make_convex_step, partly)
-        offset = shadow.r / slope_across(field, cell, shadow, partly)
+        offset = shadow.r / slope_across_axis(field, cell, shadow, partly)
         visible = visible + lit_disc_share(offset) / len(centres)
         evaluations = evaluations + shadow.evaluations + dr.select(partly, 2, 0)
     return Shadow(dr.select(partly, visible, whole.visible), whole.r, whole.t, evaluations)
 
 
-def slope_across(field: Any, cone: LightCone, shadow: Shadow, active: JitMask) -> JitFloat:
+def slope_across_axis(field: Any, cone: LightCone, shadow: Shadow, active: JitMask) -> JitFloat:
     """Return the slope of the field across the axis where the ratio is smallest.
 
     It is 1 at an edge, and nearly 0 within a wall; it is 1, too, for rays that are not `active`. It
@@ -55,7 +55,7 @@ def slope_across(field: Any, cone: LightCone, shadow: Shadow, active: JitMask) -
     cone = cone.make_detached()
 
     def clipped_slope(r: JitFloat, t: JitFloat) -> JitFloat:
-        x, y = gradient_across(field, cone, t, r * cone.radius(t))
+        x, y = gradient_across_axis(field, cone, t, r * cone.radius(t))
         return dr.clip(dr.sqrt(x * x + y * y), 1 / FURTHEST_EDGE, 1)
 
     with dr.suspend_grad():
@@ -80,7 +80,7 @@ def cell_centres(rings: int) -> list[tuple[float, float]]:
     centres = [(0.0, 0.0)]
     for k in range(1, rings + 1):
         inner, outer = (sqrt((1 + 3 * j * (j + 1)) / count) for j in (k - 1, k))
-        half = pi / (6 * k)  # the angle from the middle of a cell to its side
+        half = pi / (6 * k)  # the angle [rad] from the middle of a cell to its side
         r = 2 / 3 * (outer**3 - inner**3) / (outer**2 - inner**2) * sin(half) / half
         angles = [2 * half * (i + k / 2) for i in range(6 * k)]
         centres += [(r * sin(angle + pi / 2), r * sin(angle)) for angle in angles]

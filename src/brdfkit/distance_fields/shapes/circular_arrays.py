@@ -64,7 +64,7 @@ class circular_array(Node):
             angles = [first * self.sector, (first + 1.0) * self.sector]
         else:
             angles = [k * self.sector for k in range(self.copies)]
-        return reduce(minimum, [self.child.distance(rotate_back(p, a)) for a in angles])
+        return reduce(minimum, [self.child.distance(rotate_back_about_z(p, a)) for a in angles])
 
     def bounds(self, level: float = 0.0) -> Box:
         box = self.child.bounds(level)
@@ -89,7 +89,7 @@ class circular_array(Node):
         return middle, max(abs((end + pi) % (2 * pi) - pi) for end in ends)
 
 
-def rotate_back(p: JitVector, angle: JitFloat) -> Point:
+def rotate_back_about_z(p: JitVector, angle: JitFloat) -> Point:
     """Return p, rotated about z by -`angle` [rad]."""
     c, s = cos(angle), sin(angle)
     return Point(c * p.x + s * p.y, c * p.y - s * p.x, p.z)

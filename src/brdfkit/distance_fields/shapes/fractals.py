@@ -23,8 +23,9 @@ from brdfkit.distance_fields.functions import (
 from brdfkit.distance_fields.node import Node
 from brdfkit.distance_fields.parameters import count, number
 
-ESCAPE_RADIUS = 16.0  # the iteration ends beyond it; more changes the estimate by less than 1e-8
-LARGEST_ESTIMATE = 0.5  # far from the surface the formula overestimates the distance
+# The length of w at which the iteration ends; a larger one changes the estimate by less than 1e-8
+ESCAPE_RADIUS = 16.0
+LARGEST_ESTIMATE = 0.5  # far from the surface, the formula would overestimate the distance
 MEASURED_SLOPE = 3.0  # in tests, the estimate was at most this multiple of the distance
 
 
@@ -33,8 +34,9 @@ class mandelbulb(Node):
     """The points c for which the iteration w ↦ wⁿ + c, which starts with w = c, does not diverge.
 
     The power wⁿ has n times the angles of w and the n-th power of its length. The estimate of the
-    distance is ½ ‖w‖ log ‖w‖ / s. Each iteration replaces the slope s by n ‖w‖ⁿ⁻¹ s + 1, or by more
-    towards the poles, where azimuths are stretched by sin(nθ) / sin(θ), at the polar angle θ.
+    distance is ½ ‖w‖ log ‖w‖ / s, where s, at first 1, bounds how fast w changes with c. Each
+    iteration replaces s by n ‖w‖ⁿ⁻¹ s + 1, or by more towards the poles, where azimuths are
+    stretched by sin(nθ) / sin(θ), at the polar angle θ.
 
     No bound on its slope is proven. `lipschitz` is 3: at 10⁵ points, compared with the distances to
     a dense set of surface points, 2.8 was needed. Between neighbouring points, f itself may jump.

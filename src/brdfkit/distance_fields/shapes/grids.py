@@ -85,9 +85,9 @@ class grid(Node):
     def half_diagonal(self) -> float:
         """Half of the diagonal of a cell, which bounds the error of sampling.
 
-        Samples of a field with the slope L at most differ from it by at most L times this length,
-        as the mean distance of a point from the corners of its cell, by the weights of the
-        interpolation, is not larger.
+        A grid of samples of a field with the bound L differs from that field by at most L times
+        this length. For that is the most that a point is away from the corners of its cell, in the
+        mean by the weights of interpolation.
         """
         return float(np.linalg.norm(self.spacing) / 2)
 

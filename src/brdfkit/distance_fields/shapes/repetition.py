@@ -1,16 +1,18 @@
-"""Repetition of a solid in a lattice, where only the nearest cell's copy is evaluated.
+"""Repetition of a solid in a lattice, where only the copy in the cell of a point is evaluated.
 
-g is the distance to the copy in the cell of a point. All other copies lie beyond the cell's faces,
-each by the gap between a copy and the face. So a step to a face plus half of that gap is safe. To
-make f continuous where cells meet, g is limited from below by the distance b to a box around the
-copy, which takes up the other half of the gap:
+Let g be the distance to this copy. All other copies lie beyond the cell's faces, with a gap between
+face and copy. So a step to a face plus half of the gap is safe. The other half is taken up by a box
+around each copy; g is limited from below by the distance b to that box, which makes f continuous
+where cells meet:
 
     f = max(min(max(g, b), min_faces(e + gap/2)), B)
 
-with the distance e to each face beyond which there is a copy, and the distance B to the box of the
-whole lattice, which makes steps long outside of it. f is an estimate whose error is at most about
-the size of a cell; its sign is right, and its bound L is the child's. Its derivatives by the
-child's parameters are right near the surface, where f equals g; gaps and boxes have none.
+Here e is the distance to a face, and min_faces the minimum over the faces beyond which there is a
+copy. B is the distance to the box of the whole lattice, which makes steps outside of it long.
+
+f is an estimate whose error is at most about the size of a cell. Its sign is right, and its bound L
+is the child's. Its derivatives by the child's parameters are right near the surface, where f equals
+g; gaps and boxes have none.
 """
 
 from dataclasses import dataclass

@@ -126,7 +126,7 @@ def _takes_drjit_arrays(f: Callable[[Any], Any]) -> bool:
     """Return whether f gives a Dr.Jit array, or a number, for points with p.x, p.y and p.z."""
     try:
         value = f(double_precision.to_vector(np.array([[0.1, 0.2, 0.3], [0.3, 0.1, 0.2]])))
-    except Exception:  # a function of NumPy points may raise anything
+    except Exception:  # a function made for NumPy's points may raise anything here
         return False
     return bool(dr.is_array_v(value)) or isinstance(value, float)
 

@@ -1,9 +1,9 @@
 """Sphere tracing and cone tracing: where a ray, or a cone around it, first touches a surface.
 
-As f / L, the field over its bound L, is at most the distance, a step of this length along a ray
-crosses no surface [Hart 1996]; [Bálint et al. 2019, algorithm 2]. For a cone, the distance less the
-cone's radius ρ is divided by its own bound 1 + |tan α|, with the angle α between axis and side. The
-result is a distance again [Bálint et al. 2019, chapter 2]:
+The field f divided by its bound L is at most the distance. So a step of this length along a ray
+crosses no surface [Hart 1996]; [Bálint et al. 2019, algorithm 2]. Along a cone, f / L less the
+cone's radius ρ changes by at most 1 + |tan α| per length, with the angle α between axis and side.
+Divided by that, it is a safe step again [Bálint et al. 2019, chapter 2]:
 
     F(t) = (f(o + t d) / L - ρ(t)) / (1 + |tan α|),   ρ(t) = R₀ + t tan α
 
@@ -18,7 +18,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray, JitFloat, JitInt, JitMask, JitVector
 from brdfkit.distance_fields.node import Node
-from brdfkit.distance_fields.tracing.hits import Hit, start_march
+from brdfkit.distance_fields.tracing.hits import Hit, make_march_start
 
 
 def cone_trace(
@@ -38,9 +38,9 @@ def cone_trace(
 ) -> Hit:
     """Find where rays, or cones about them, first touch a surface, be it as thin as a line.
 
-    Without `radius` and `tangent` it traces rays. A cone stops where f / L ≤ (1 + slack) ρ +
-    precision, with its radius ρ. As each step ends at ρ, nothing that reaches into the cone is
-    missed; a surface between ρ and (1 + slack) ρ may be found or not.
+    Without `radius` and `tangent` it traces rays. A cone of the radius ρ stops where
+    f / L ≤ (1 + slack) ρ + precision. No step goes beyond the place where f / L could be ρ, so that
+    nothing in the cone is missed; a surface between ρ and (1 + slack) ρ may be found or not.
 
     Parameters
     ----------
@@ -80,12 +80,12 @@ def cone_trace(
     Hit(t=..., found=True, ...)
     """
     with dr.suspend_grad():
-        t, count = start_march(o, t_min)
+        t, count = make_march_start(o, t_min)
 
         def touch_threshold(t: JitFloat) -> JitFloat:
             return (1.0 + slack) * (radius + t * tangent) + precision
 
-        def advance(t: JitFloat, f: JitFloat, i: JitInt) -> tuple[JitFloat, JitFloat, JitInt]:
+        def take_step(t: JitFloat, f: JitFloat, i: JitInt) -> tuple[JitFloat, JitFloat, JitInt]:
             t = t + (f - (radius + t * tangent)) / (1.0 + abs(tangent))
             return t, distance(o + d * t) / lipschitz, i + 1
 
@@ -93,7 +93,7 @@ def cone_trace(
         t, f, count = dr.while_loop(
             (t, first, count + 1),
             lambda t, f, i: active & (f > touch_threshold(t)) & (t < t_max) & (i < steps),
-            advance,
+            take_step,
         )
         return Hit(t, active & (f <= touch_threshold(t)) & (t < t_max), f, count)
 

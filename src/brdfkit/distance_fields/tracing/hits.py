@@ -25,7 +25,7 @@ class Hit(NamedTuple):
     steps: Any
 
 
-def start_march(o: JitVector, t: JitFloat) -> tuple[JitFloat, JitInt]:
+def make_march_start(o: JitVector, t: JitFloat) -> tuple[JitFloat, JitInt]:
     """Return `t` and a count of 0, as arrays over the rays that begin at `o`."""
     return o.x * 0.0 + t, dr.uint32_array_t(type(o.x))(0)
 

@@ -9,9 +9,9 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitInt, JitMask, JitVector
-from brdfkit.distance_fields.tracing.hits import Hit, start_march
+from brdfkit.distance_fields.tracing.hits import Hit, make_march_start
 
-BISECTIONS = 24  # halvings of the last step; single precision does not resolve a step / 2²⁴
+BISECTIONS = 24  # halvings of the last step, after which single precision resolves nothing more
 
 
 def raymarch(
@@ -48,9 +48,9 @@ def raymarch(
     Hit(t=..., found=True, ...)
     """
     with dr.suspend_grad():
-        t, count = start_march(o, step)
+        t, count = make_march_start(o, step)
 
-        def advance(t: JitFloat, before: JitFloat, after: JitFloat, i: JitInt) -> tuple[Any, ...]:
+        def take_step(t: JitFloat, before: JitFloat, after: JitFloat, i: JitInt) -> tuple[Any, ...]:
             t = t + step
             return t, after, distance(o + d * t), i + 1
 
@@ -58,7 +58,7 @@ def raymarch(
         t, before, after, count = dr.while_loop(
             (t, first, second, count + 2),
             lambda t, before, after, i: active & (before * after > 0) & (t < t_max),
-            advance,
+            take_step,
         )
         found = active & (before * after <= 0)
 
