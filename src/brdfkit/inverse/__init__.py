@@ -1,4 +1,7 @@
-"""Estimate parameters from pictures: `refine` those of a scene, `svbrdf` maps of a flat sample."""
+"""Estimates parameters from pictures.
+
+`refine` finds parameters of a scene, and `svbrdf` maps (textures) of a flat sample.
+"""
 
 import lazy_loader
 

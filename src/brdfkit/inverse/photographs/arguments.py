@@ -16,7 +16,7 @@ from brdfkit.inverse.photographs.maps.maps import find_width_pair
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 from brdfkit.model import labels
 
-DEFAULT_LONGEST_SIDE = 512  # the most texels along the maps' longer side by default
+DEFAULT_LONGEST_SIDE = 512  # largest default number of texels along the maps' longer side
 SMALLEST_SMOOTHNESS = 0.003  # smoother maps would need more steps than a search takes
 
 
@@ -59,7 +59,7 @@ def to_texel_parameters(
                 f"{label}: {name} is not searched; fixed can be {join_words(shapes)}."
             )
     defaults = model().values
-    # A sum of models has an f0 for each of them, such as ggx_1_f0
+    # In a sum of models each one has its own f0, named such as ggx_1_f0
     held: dict[str, Any] = {
         name: defaults[name] for name in shapes if name == "f0" or name.endswith("_f0")
     }

@@ -29,7 +29,11 @@ from brdfkit.inverse.photographs.maps.undetermined import describe_undetermined
 from brdfkit.inverse.photographs.result.levelling import describe_capture, describe_normals
 from brdfkit.inverse.photographs.result.result import Svbrdf
 from brdfkit.inverse.photographs.result.simulated_errors import simulate_standard_errors
-from brdfkit.inverse.photographs.search.fitting_maps import UnfinishedMaps, estimate_steps, fit_maps
+from brdfkit.inverse.photographs.search.fitting_maps import (
+    UnfinishedMaps,
+    estimate_search_steps,
+    fit_maps,
+)
 from brdfkit.inverse.photographs.search.problem import Problem
 from brdfkit.inverse.photographs.search.through_renderer import (
     RenderedMaps,
@@ -113,11 +117,11 @@ def svbrdf(
     photographs = downsample(photographs, shape)
     observed = Observations.collect(photographs, shape)
     lights = len(photographs.names)
-    report = make_step_counter(progress, estimate_steps(lights, smoothness))
+    report = make_step_counter(progress, estimate_search_steps(lights, smoothness))
     problem = Problem(parameters, observed, report)
 
     def make_result(fitted: UnfinishedMaps, notes: tuple[str, ...], **known: Any) -> Svbrdf:
-        """Return the `Svbrdf` of fitted maps; `known` are attributes that only some maps have."""
+        """Return the `Svbrdf` of fitted maps; `known` has attributes that unfinished maps lack."""
         return Svbrdf(
             name=name,
             model=model,

@@ -38,7 +38,7 @@ from brdfkit.inverse.scenes.search.far_starts import (
 )
 from brdfkit.inverse.scenes.search.gauss_newton import Search, run_gauss_newton
 
-STEP_LIMIT = 30  # the default of `steps`; nearly all searches converge earlier
+STEP_LIMIT = 30  # default largest number of steps; nearly all searches converge earlier
 NO_ERRORS = "descent, the search for many numbers, gives no standard errors"
 
 
@@ -177,19 +177,19 @@ def _search_and_check(
 
     If the check disagrees, go on with all samples, and check the end with twice as many.
     """
-    state = _search_visible(views, x, steps - steps // 2, spp // 2, seed, report)
+    state = _search_visible_numbers(views, x, steps - steps // 2, spp // 2, seed, report)
     state, search_check = check_search(views, state, seed)
     agreed = state.converged and not (search_check and search_check.describe_differences())
     if agreed or state.steps == steps:
         return state, search_check
     left = steps - state.steps
-    longer = _search_visible(views, state.residuals.x, left, spp, seed + 200, report)
+    longer = _search_visible_numbers(views, state.residuals.x, left, spp, seed + 200, report)
     longer.steps += state.steps
     longer.history[:0] = state.history
     return check_search(views, longer, seed + 200)
 
 
-def _search_visible(
+def _search_visible_numbers(
     views: Views, x: FloatArray, steps: int, spp: int, seed: int, report: Callable[[], object]
 ) -> Search:
     """Search from `x`; numbers that pictures do not depend on keep the scene's own values."""

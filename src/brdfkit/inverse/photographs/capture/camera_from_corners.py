@@ -1,7 +1,8 @@
 """Finds position and orientation of a camera from the four corners of the sample in its picture.
 
-A camera sees the plane z = 0 through a homography H ~ [r_1 r_2 t] [Zhang 2000]. Its columns are the
-sample's x and y axes and the vector to the sample's centre, in coordinates of the camera.
+A homography, a 3 × 3 matrix, maps the sample's plane z = 0 to the picture [Zhang 2000]. Up to a
+common factor, its columns are the sample's x axis r_1, its y axis r_2 and the vector t to its
+centre, in coordinates of the camera.
 """
 
 import numpy as np
@@ -12,7 +13,8 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole, check_fov
 
-TOLERANCE = 0.01  # largest RMS distance of projected from given corners, over the picture's width
+# Largest RMS distance of projected from given corners, in shares of the picture's width
+TOLERANCE = 0.01
 
 
 def find_camera(
@@ -28,7 +30,10 @@ def find_camera(
     start = _estimate_pose(_find_ray_slopes(places, picture_size, fov), corners)
 
     def measure_distances(pose: FloatArray) -> FloatArray:
-        """Return the distances (8,) of projected from given corners, for a camera's pose (6,)."""
+        """Return how far a camera with the `pose` (6,) projects the corners from their places.
+
+        The result (8,) has differences of columns and rows, in shares of the picture's width.
+        """
         projected = _make_pinhole(pose, fov).project(corners, picture_size)
         return np.nan_to_num((projected - places).ravel() / picture_size[0], nan=1e3)
 
@@ -51,7 +56,7 @@ def _find_ray_slopes(places: FloatArray, picture_size: tuple[int, int], fov: flo
 def _estimate_pose(slopes: FloatArray, corners: FloatArray) -> FloatArray:
     """Return an approximate pose of the camera, position and rotation vector (6,), by a homography.
 
-    `slopes` (4, 2) are those of its rays to the sample's `corners` (4, 3) [m].
+    `slopes` (4, 2) are x / z and y / z of its rays to the sample's `corners` (4, 3) [m].
     """
     rows = []
     for (u, v), (x, y, _) in zip(slopes, corners, strict=True):

@@ -11,10 +11,10 @@ from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
 from brdfkit.inverse.photographs.capture.checks import check_capture
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole
 
-CLIPPED_SHARE = 1e-4  # if more of the pixels have the largest value, these pixels are clipped
-SMALLEST_COSINE = 0.05  # under light of a smaller cosine, bumps of the sample cast shadows
-SMALLEST_MAP = 4  # the fewest texels along a side of a map
-PIXELS_PER_TEXEL = 1.4  # the fewest, along a side, that reduced photographs keep
+CLIPPED_SHARE = 1e-4  # pixels are clipped if more than this share has the largest value
+SMALLEST_COSINE = 0.05  # cosine of incidence below which bumps of the sample cast shadows
+SMALLEST_MAP = 4  # fewest texels along a side of a map
+PIXELS_PER_TEXEL = 1.4  # fewest pixels per texel, along a side, in reduced photographs
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +131,7 @@ class Capture:
         Each colour is saturated at a value of its own, because a white balance scales the colours.
         """
         largest = self.pictures.max(axis=(0, 1, 2))
-        at_end = (self.pictures == largest) & (largest > 0)  # a colour without light is all 0
+        at_end = (self.pictures == largest) & (largest > 0)  # a black channel is not clipped
         several = at_end.sum(axis=(0, 1, 2)) > 1
         return at_end & several & (at_end.mean(axis=(0, 1, 2)) > CLIPPED_SHARE)
 

@@ -16,10 +16,10 @@ from brdfkit.inverse.photographs.capture.pinhole import Pinhole, find_corners
 from brdfkit.mitsuba_bridge.properties.picture_file import read_photograph
 
 NAME = "capture.toml"
-AT_CAMERA = "camera"  # the word for the position of a flash, which is that of the camera
+AT_CAMERA = "camera"  # entry for the position of a flash, which is the camera's position
 CAMERA_KEYS = "origin", "target", "up", "fov", "corners"
-POSITION_KEYS = "origin", "corners"  # either entry determines the position of a camera
-LARGEST_NUMBER = 1e30  # squares of larger lengths, and sums of them, could overflow
+POSITION_KEYS = "origin", "corners"  # entries of which one gives the position of a camera
+LARGEST_NUMBER = 1e30  # largest number in the file; squares of larger ones could overflow
 
 
 def load_capture(folder: str | Path, accept_8_bit: bool = False) -> Capture:
@@ -59,7 +59,7 @@ def _read_tables(folder: Path, path: Path) -> dict[str, Any]:
         raise BrdfkitError(f"{folder}: there is no {NAME} in it, which says where the lights are.")
     try:
         tables = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-    except ValueError as error:  # the text is no TOML, no UTF-8, or has a number of too many digits
+    except ValueError as error:  # no TOML, no UTF-8, or a number with too many digits
         raise BrdfkitError(f"{path}: it is no TOML ({error}).") from error
     _check_keys(path, tables, ("sample", "camera", "light"), "the file")
     return tables

@@ -8,7 +8,7 @@ from brdfkit.core.arguments import to_array
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole, find_corners
 
-SMALLEST_SAMPLE = 8  # the fewest pixels along the sample's longer side in a photograph
+SMALLEST_SAMPLE = 8  # fewest pixels along the sample's longer side in a photograph
 
 
 def check_capture(capture: Any) -> None:

@@ -12,8 +12,10 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.capture import Capture
 
 ARRAYS = "radiance", "weights", "to_light", "irradiance", "to_camera"
-POOLED_TEXELS = 8  # the most small texels along a side whose observations a large texel takes over
-DARK_OFFSET = 0.05  # mean radiances, added to a radiance so that its relative error stays finite
+# A large texel takes over the observations of at most this number of small texels along a side
+POOLED_TEXELS = 8
+# Added to radiances, as a share of their mean, so that relative errors of dark pixels stay finite
+DARK_OFFSET = 0.05
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ class Observations:
     def pool_texels(self, side: int) -> Observations:
         """Return the observations of texels that are `side` times as large.
 
-        A large texel receives all observations of the texels within it, or of 8 × 8 of them.
+        A large texel receives the observations of all texels within it, but of at most 8 × 8.
         """
         height, width = self.shape
         rows, columns = -(-height // side), -(-width // side)
@@ -95,7 +97,7 @@ class Observations:
     def _apply_to_arrays(
         self, function: Callable[[FloatArray], FloatArray], shape: tuple[int, int]
     ) -> Observations:
-        """Return observations for maps of another `shape`, a function applied to each array."""
+        """Return the results of a `function` of each array as observations for maps of `shape`."""
         arrays = {name: function(getattr(self, name)) for name in ARRAYS}
         return Observations(**arrays, shape=shape)
 

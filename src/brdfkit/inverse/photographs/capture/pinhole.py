@@ -13,8 +13,10 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.camera import Camera
 from brdfkit.core.projective.homogeneous import make_axes, make_rigid_matrix, project_points
 
-CLIP_DISTANCES = 1e-2, 1e4  # of Mitsuba's camera, near and far, in heights above the sample
-SMALLEST_SINE = 1e-5  # of the angle between view and up; for a smaller one Mitsuba finds no axes
+# Near and far clip distance of Mitsuba's camera, as multiples of its height above the sample
+CLIP_DISTANCES = 1e-2, 1e4
+# Smallest sine of the angle between view direction and `up` for which Mitsuba finds axes
+SMALLEST_SINE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)

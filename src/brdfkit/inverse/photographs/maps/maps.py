@@ -50,7 +50,7 @@ class Maps:
         for lobe, name in enumerate(parameters.lobes):
             weights = x[:, CHANNELS * lobe : CHANNELS * (lobe + 1)]
             maps[name] = weights.reshape(*shape, CHANNELS)
-        shapes = parameters.shapes.to_values(x[:, parameters.shape_columns].T)
+        shapes = parameters.shapes.to_parameter_values(x[:, parameters.shape_columns].T)
         maps |= {name: values.reshape(shape) for name, values in shapes.items()}
         slant = x[:, parameters.normal_columns]
         z = np.sqrt(np.maximum(1 - (slant**2).sum(axis=1), 1e-4))
@@ -68,7 +68,7 @@ def to_texel_numbers(svbrdf: Any) -> tuple[TexelParameters, FloatArray]:
     pair = find_width_pair(model, names) if ANGLE in maps else None
     parameters = TexelParameters(model, names, svbrdf.fixed, pair)
     columns = [maps[name].reshape(-1, CHANNELS) for name in weights]
-    shapes = [numbers.reshape(-1, 1) for numbers in parameters.shapes.to_numbers(maps)]
+    shapes = [numbers.reshape(-1, 1) for numbers in parameters.shapes.to_search_numbers(maps)]
     normals = maps["normal"].reshape(-1, 3)[:, :2]
     return parameters, np.concatenate([*columns, *shapes, normals], axis=1)
 

@@ -6,12 +6,16 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.capture.observations import Observations
 
-UNEXPLAINED = 3  # times the noise: the maps do not explain a texel with larger residuals
-UNEXPLAINED_SHARE = 0.03  # of the texels: if more are unexplained, a sentence says so
-LARGEST_NOISE = 0.04  # relative to the radiance: cameras hardly have more noise
-LARGEST_RESIDUAL = 0.5  # relative RMS over all texels: if it is larger, some lie beside the sample
-OUTLIER = 2.5  # times the median residual: photographs with larger ones are named
-PALEST, DARKEST = 1.05, 0.004  # hardly any sample has a median reflectance beyond these
+# Ratio of a texel's residuals to the noise above which the maps do not explain the texel
+UNEXPLAINED = 3
+# Share of unexplained texels above which a sentence mentions them
+UNEXPLAINED_SHARE = 0.03
+LARGEST_NOISE = 0.04  # largest usual noise of cameras, relative to the radiance
+# Relative RMS residual above which some texels probably lie beside the sample
+LARGEST_RESIDUAL = 0.5
+# Photographs are named if their residual exceeds the median of all by this factor
+OUTLIER = 2.5
+PALEST, DARKEST = 1.05, 0.004  # usual limits of a sample's median diffuse reflectance
 
 
 def compute_misfit(errors: FloatArray, noise: float, observed: Observations) -> FloatArray:

@@ -16,10 +16,11 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.model import Model
 
-ANGLE = "anisotropy_angle"  # [radians] from the sample's x to the direction of u, counterclockwise
-P_OFFSET = 1e-7  # added to p, because the angle has no derivatives at p = q = 0
-LARGEST_P = 2.0  # bound of |p| and |q|: one width is then about 50 times the other
-UNKNOWN_ANGLE_ERROR = np.pi / np.sqrt(12)  # standard deviation of a random direction [radians]
+# The map with the angle [radians] from the sample's x axis to the direction of the width u
+ANGLE = "anisotropy_angle"
+P_OFFSET = 1e-7  # added to the number p, because the angle has no derivatives at p = q = 0
+LARGEST_P = 2.0  # bound of the numbers |p| and |q|, where one width is about 50 times the other
+UNKNOWN_ANGLE_ERROR = np.pi / np.sqrt(12)  # standard deviation of a random angle from 0 to π
 
 
 @dataclass(frozen=True)
@@ -36,46 +37,49 @@ class ShapeParameters:
     pair: tuple[str, str] | None
 
     @property
-    def single(self) -> list[str]:
+    def single_names(self) -> list[str]:
         """The names of the parameters that one number represents, without the pair of widths."""
         return [name for name in self.names if name not in (self.pair or ())]
 
     @property
     def number_names(self) -> list[str]:
         """A name for each searched number; the last three belong to the pair of widths."""
-        return [*self.single, *((*self.pair, ANGLE) if self.pair else ())]
+        return [*self.single_names, *((*self.pair, ANGLE) if self.pair else ())]
 
     def find_limits(self) -> FloatArray:
         """Return the lowest and the highest value of each searched number, as two rows."""
-        names = [*self.single, *(self.pair or ())[:1]]
-        ends = [self._to_number(n, np.array(self.model.parameters[n].bounds)) for n in names]
+        names = [*self.single_names, *(self.pair or ())[:1]]
+        ends = [self._to_search_number(n, np.array(self.model.parameters[n].bounds)) for n in names]
         turning = [(-LARGEST_P, LARGEST_P)] * 2 if self.pair else []
         return np.array([*ends, *turning]).reshape(-1, 2).T
 
-    def to_values(self, numbers: Any, math: Any = np) -> dict[str, Any]:
-        """Return the parameters by name, and the `ANGLE` of a pair of widths, from their numbers.
+    def to_parameter_values(self, numbers: Any, math: Any = np) -> dict[str, Any]:
+        """Return the values of the parameters, by name, from the numbers of the search.
 
-        `numbers` holds an array for each searched number, of the module `math`: numpy or drjit.
+        A pair of widths also has its `ANGLE`. `numbers` holds an array for each searched number,
+        and `math` is the module of these arrays, numpy or drjit.
         """
-        single = self.single
-        values = {n: self._to_value(n, x, math) for n, x in zip(single, numbers, strict=False)}
+        single = self.single_names
+        values = {
+            n: self._to_parameter_value(n, x, math) for n, x in zip(single, numbers, strict=False)
+        }
         if self.pair:
             middle, p, q = numbers[len(single) :]
             p = p + P_OFFSET
             half = math.sqrt(p * p + q * q)
             for name, number in zip(self.pair, (middle + half, middle - half), strict=True):
                 low, high = self.model.parameters[name].bounds
-                value = self._to_value(name, number, math)
+                value = self._to_parameter_value(name, number, math)
                 values[name] = math.minimum(math.maximum(value, low), high)
             arc = np.arctan2 if math is np else math.atan2
             values[ANGLE] = arc(q, p) / 2
         return values
 
-    def to_numbers(self, values: Mapping[str, Any]) -> list[AnyArray]:
-        """Return an array for each searched number, from parameters by name."""
-        numbers = [self._to_number(name, values[name]) for name in self.single]
+    def to_search_numbers(self, values: Mapping[str, Any]) -> list[AnyArray]:
+        """Return an array for each searched number, from the parameters' `values` by name."""
+        numbers = [self._to_search_number(name, values[name]) for name in self.single_names]
         if self.pair:
-            u, v = (self._to_number(name, values[name]) for name in self.pair)
+            u, v = (self._to_search_number(name, values[name]) for name in self.pair)
             half, angle = (u - v) / 2, 2 * values.get(ANGLE, 0 * u)
             numbers += [(u + v) / 2, half * np.cos(angle), half * np.sin(angle)]
         return numbers
@@ -85,10 +89,10 @@ class ShapeParameters:
 
         Both arguments are (numbers, n), for n texels.
         """
-        values, count = self.to_values(numbers), len(self.single)
+        values, count = self.to_parameter_values(numbers), len(self.single_names)
         by_name = {
-            name: self._find_slope(name, values[name]) * error
-            for name, error in zip(self.single, errors, strict=False)
+            name: self._differentiate(name, values[name]) * error
+            for name, error in zip(self.single_names, errors, strict=False)
         }
         if self.pair:
             (_, p, q), (error_m, error_p, error_q) = numbers[count:], errors[count:]
@@ -96,11 +100,11 @@ class ShapeParameters:
             along = np.hypot(p * error_p, q * error_q) / half
             across = np.hypot(q * error_p, p * error_q) / half
             for name in self.pair:
-                by_name[name] = self._find_slope(name, values[name]) * np.hypot(error_m, along)
+                by_name[name] = self._differentiate(name, values[name]) * np.hypot(error_m, along)
             by_name[ANGLE] = np.minimum(across / (2 * half), UNKNOWN_ANGLE_ERROR)
         return by_name
 
-    def _to_number(self, name: str, value: AnyArray) -> AnyArray:
+    def _to_search_number(self, name: str, value: AnyArray) -> AnyArray:
         """Return the number that a search uses for a value of the parameter `name`.
 
         It is the logarithm of the value if the parameter is logarithmic, else the value itself.
@@ -108,10 +112,10 @@ class ShapeParameters:
         with np.errstate(divide="ignore"):
             return np.log(value) if self.model.parameters[name].log else value
 
-    def _to_value(self, name: str, number: Any, math: Any) -> Any:
+    def _to_parameter_value(self, name: str, number: Any, math: Any) -> Any:
         """Return the value of the parameter `name` for the number that a search uses."""
         return math.exp(number) if self.model.parameters[name].log else number
 
-    def _find_slope(self, name: str, value: AnyArray) -> Any:
-        """Return the derivative of the parameter `name` by its searched number, at a value."""
+    def _differentiate(self, name: str, value: AnyArray) -> Any:
+        """Return the derivative of the parameter `name` by its searched number, at this `value`."""
         return value if self.model.parameters[name].log else 1.0

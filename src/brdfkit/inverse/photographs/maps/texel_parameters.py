@@ -21,10 +21,10 @@ from brdfkit.inverse.photographs.capture.observations import Observations
 from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE, ShapeParameters
 from brdfkit.model import Model
 
-STEEPEST_SLANT = 0.65  # the largest |x| or |y| of a unit normal that a search may reach
+STEEPEST_SLANT = 0.65  # largest |x| or |y| of a unit normal in a search
 CHANNELS = 3
 
-Lobes = list[FloatArray]  # radiance (k, n) of each lobe, for a weight and an irradiance of 1
+Lobes = list[FloatArray]  # radiances (lights, texels) of each lobe for weight and irradiance 1
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ class TexelParameters:
             dr.enqueue(dr.ADMode.Forward, array)
             dr.traverse(dr.ADMode.Forward, dr.ADFlag.ClearInterior)
             derivatives.append([dr.grad(lobe) for lobe in lobes])
-        dr.eval(values, derivatives)  # in one kernel, so that common parts are computed once
+        dr.eval(values, derivatives)  # one kernel computes common parts once
 
         def to_numpy(lobes: Sequence[JitFloat]) -> Lobes:
             """Return the lobes' arrays of Dr.Jit as arrays of NumPy (lights, texels)."""
@@ -144,12 +144,12 @@ class TexelParameters:
         # The tangent is the x axis projected onto the surface, as in Mitsuba's normal maps
         scale = dr.rsqrt(dr.maximum(1 - x * x, 1e-4))
         tangent = double_precision.Vector((1 - x * x) * scale, -x * y * scale, -x * z * scale)
-        values = self.shapes.to_values(shapes, dr)
+        values = self.shapes.to_parameter_values(shapes, dr)
         if self.pair:
             sine, cosine = dr.sincos(values.pop(ANGLE))
             tangent = tangent * cosine + _cross_product(normal, tangent) * sine
         frame = tangent, _cross_product(normal, tangent), normal
-        wi, wo = _to_frame(to_camera, frame), _to_frame(to_light, frame)
+        wi, wo = _to_frame_coordinates(to_camera, frame), _to_frame_coordinates(to_light, frame)
         lit = (wi.z > 1e-3) & (wo.z > 1e-3)
         up = double_precision.Vector(0 * x, 0 * x, 0 * x + 1)
         wi, safe_wo = _select_vector(lit, wi, up), _select_vector(lit, wo, up)
@@ -165,7 +165,7 @@ def _cross_product(a: JitVector, b: JitVector) -> JitVector:
     )
 
 
-def _to_frame(w: JitVector, frame: tuple[JitVector, JitVector, JitVector]) -> JitVector:
+def _to_frame_coordinates(w: JitVector, frame: tuple[JitVector, JitVector, JitVector]) -> JitVector:
     """Return the coordinates of a vector in a frame of tangent, bitangent and normal."""
     return double_precision.Vector(*(w.x * a.x + w.y * a.y + w.z * a.z for a in frame))
 

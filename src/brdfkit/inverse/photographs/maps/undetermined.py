@@ -6,26 +6,32 @@ from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
 from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 
-SMALLEST_EIGENVALUE = 1e-4  # of scaled Hessians: a combination with a smaller one is undetermined
-MAIN_PART = 0.3  # of the largest entry of an eigenvector: larger entries count as taking part
-MENTIONED_SHARE = 0.25  # of the undetermined texels: a number that takes part in more is named
-UNDETERMINED_SHARE = 0.05  # of the texels: if more are undetermined, a sentence says so
+# Eigenvalue of a Hessian with unit diagonal below which a combination of numbers is undetermined
+SMALLEST_EIGENVALUE = 1e-4
+# Numbers take part in an undetermined combination if their entry of its eigenvector exceeds this
+# share of the largest entry
+MAIN_PART = 0.3
+# A number is named if it takes part in more than this share of the undetermined texels
+MENTIONED_SHARE = 0.25
+# Share of undetermined texels above which a sentence mentions them
+UNDETERMINED_SHARE = 0.05
 
 
 def describe_undetermined(
     parameters: TexelParameters, hessian: FloatArray, lights: int
 ) -> tuple[str, ...]:
-    """Return sentences for the user on numbers that many texels do not determine by themselves.
+    """Return sentences on numbers that the photographs of many single texels do not determine.
 
     `hessian` (texels, numbers, numbers) holds the second derivatives of each texel's own squared
-    residuals, without its neighbours; `lights` is the number of lights.
+    residuals, without the penalty on differences from its neighbours. `lights` is the number of
+    lights.
     """
     sentences = []
     if lights == 1:
         sentences.append(
             "One light: roughness and strength trade off here, and the normal with both."
         )
-    # Texels at the edge have no observations, hence a Hessian of 0
+    # Texels at the edge, which have no observations and a Hessian of 0, are left out
     hessian = hessian[np.diagonal(hessian, axis1=1, axis2=2).any(axis=1)]
     columns, scaled = _scale_observed_hessians(hessian)
     values, vectors = np.linalg.eigh(scaled)

@@ -37,11 +37,11 @@ def write_files(svbrdf: Any, folder: str | Path) -> list[Path]:
     files = {name: f"{name}.exr" for name in svbrdf.maps}
     written = []
     for name, values in svbrdf.maps.items():
-        # Components of normals, -1 to 1, become colours, 0 to 1
+        # Components of normals lie between -1 and 1, but colours between 0 and 1
         pixels = (values + 1) / 2 if name == "normal" else values
-        written += _write_or_remove(folder / files[name], pixels)
-        written += _write_or_remove(folder / f"{name}{ERROR}.exr", svbrdf.uncertainty.get(name))
-    written += _write_or_remove(folder / MISFIT, svbrdf.misfit)
+        written += _write_or_remove_map(folder / files[name], pixels)
+        written += _write_or_remove_map(folder / f"{name}{ERROR}.exr", svbrdf.uncertainty.get(name))
+    written += _write_or_remove_map(folder / MISFIT, svbrdf.misfit)
     scene = folder / SCENE
     with write_safely(scene) as beside:
         Path(beside).write_text(format_scene_xml(svbrdf, files), encoding="utf-8")
@@ -50,7 +50,7 @@ def write_files(svbrdf: Any, folder: str | Path) -> list[Path]:
     return [*written, scene, report]
 
 
-def _write_or_remove(path: Path, values: FloatArray | None) -> list[Path]:
+def _write_or_remove_map(path: Path, values: FloatArray | None) -> list[Path]:
     """Write a map and return its path in a list, or remove the file if there is no map.
 
     A file that an earlier result wrote would not belong to the maps beside it.
@@ -64,6 +64,6 @@ def _write_or_remove(path: Path, values: FloatArray | None) -> list[Path]:
     with write_safely(path) as beside, use_two_threads():
         try:
             mi.Bitmap(pixels).write(str(beside))
-        except RuntimeError as error:  # Mitsuba's exception for a full disk, among others
+        except RuntimeError as error:  # raised by Mitsuba, such as for a full disk
             raise OSError(str(error).splitlines()[0]) from error
     return [path]

@@ -1,4 +1,4 @@
-"""Describes to the user what photographs leave out, and whether normals suit a flat sample."""
+"""Writes sentences on what the photographs do not show, and on normals that are not level."""
 
 import numpy as np
 
@@ -8,9 +8,11 @@ from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.observations import Observations
 
 COLOURS = "red", "green", "blue"
-LONG_PIXEL = 1.25  # texels: if pixels are longer, a sentence says so
-LARGEST_LEAN, LARGEST_BULGE = 2.0, 8.0  # degrees by which a flat sample's normals may lean
-FEWEST_TEXELS = 32  # along a side: with fewer, bumps of the sample do not average to zero
+LONG_PIXEL = 1.25  # length of a pixel [texels] above which a sentence mentions it
+# Degrees by which normals of a flat sample may lean, on average and outwards at the edges
+LARGEST_LEAN, LARGEST_BULGE = 2.0, 8.0
+# Number of texels along a side below which slopes of bumps do not average to zero
+FEWEST_TEXELS = 32
 
 
 def describe_capture(capture: Capture, clipped: float, observed: Observations) -> tuple[str, ...]:
@@ -53,8 +55,8 @@ def describe_normals(normals: FloatArray) -> tuple[str, ...]:
 def _measure_lean(normals: FloatArray) -> tuple[float, float]:
     """Return the mean slant of normals, and how much larger it is at the edges [degrees].
 
-    The slant is fitted by a plane over the map; normals (height, width, 3) of a bulging sample lean
-    outwards at its edges.
+    Planes are fitted to the x and y of the normals (height, width, 3) over the map. Their mean is
+    the slant; their slope is large for a bulging sample, whose normals lean outwards at its edges.
     """
     height, width = normals.shape[:2]
     y, x = np.mgrid[-1 : 1 : height * 1j, -1 : 1 : width * 1j]

@@ -12,11 +12,13 @@ from brdfkit.core.version import __version__
 from brdfkit.inverse.photographs.capture.observations import sample_at_texels
 from brdfkit.inverse.photographs.maps.residuals import UNEXPLAINED
 
-WIDEST = 512  # pixels: wider pictures are made smaller for the page
+WIDEST = 512  # largest width of a picture on the page [pixels]
 VALUE_SCALE, DIFFERENCE_SCALE = "viridis", "RdBu_r"
-LARGEST_MISFIT = 2 * UNEXPLAINED  # times the noise: the misfit at the end of the colour scale
+# Residual of a texel at the end of the colour scale, as a multiple of the noise
+LARGEST_MISFIT = 2 * UNEXPLAINED
 LARGEST_DIFFERENCE = 0.2  # relative difference at the ends of the colour scale
-DARK_OFFSET = 0.05  # times white: added to radiances, so that relative differences are finite
+# Added to radiances, as a share of white, so that relative differences of dark pixels are finite
+DARK_OFFSET = 0.05
 
 
 def write_report(svbrdf: Any, path: Path) -> None:
@@ -60,7 +62,7 @@ def _describe_map(svbrdf: Any, name: str) -> dict[str, str | None]:
     shown = {"name": name, "picture": picture, "scale": scale, "error": None, "error_scale": None}
     if errors is not None:
         unit, errors = ("°", np.degrees(errors)) if name == "normal" else ("", errors)
-        high = float(np.quantile(errors, 0.9))  # errors at the edge are much larger than others
+        high = float(np.quantile(errors, 0.9))  # a few errors at the edge are much larger
         shown["error"] = _to_colour_png(errors, 0, high)
         shown["error_scale"] = f"standard error, 0 (dark) to {high:.2g}{unit} (bright)"
     return shown

@@ -25,9 +25,11 @@ from brdfkit.inverse.photographs.search.through_renderer import (
     render_maps,
 )
 
-AVERAGED_SIDE = 9  # texels: side of the square over which simulated errors are averaged
-LARGEST_ERROR_RATIO = 5.0  # of a simulated error to that of the equations; larger ones are clipped
-FEWEST_FREE = 0.3  # the smallest share of the photographs' noise that is left in the residuals
+AVERAGED_SIDE = 9  # side [texels] of the square over which simulated errors are averaged
+# Ratio of a simulated error to the error by the equations at which the ratio is clipped
+LARGEST_ERROR_RATIO = 5.0
+# Smallest share of the noise variance that a fit is assumed to leave in the residuals
+FEWEST_FREE = 0.3
 
 
 def simulate_standard_errors(
@@ -35,8 +37,9 @@ def simulate_standard_errors(
 ) -> FloatArray:
     """Return the standard errors (texels, numbers) of the numbers behind the maps.
 
-    They follow from the equations of each texel, times the mean ratio of simulated errors to such
-    errors in the texels around it. `rounds` is how often the maps were corrected by the renderer.
+    Each error is first computed by the equations of the texel alone. It is then enlarged by the RMS
+    ratio of simulated errors to errors of the equations, over the texels around it. `rounds` is how
+    often the renderer corrected the maps.
     """
     fitted, observed = rendered.fitted, problem.observed
     signs = np.random.default_rng(0).choice([-1.0, 1.0], capture.pictures.shape[:3])[..., None]
@@ -72,7 +75,11 @@ def _sum_over_neighbours(values: AnyArray, shape: tuple[int, int]) -> FloatArray
 
 
 def _find_noise_factor(problem: Problem, capture: Capture) -> float:
-    """Return the ratio of the photographs' noise to the residuals, which a fit to noise reduces."""
+    """Return the factor by which the photographs' noise exceeds the residuals of the maps.
+
+    A fit follows the noise of about as many values as it has numbers, so that residuals are smaller
+    than noise.
+    """
     shown = int(np.any(problem.observed.weights > 0, axis=(0, 2)).sum())
     photographed = max(1, int(capture.counted.sum()))
     free = 1 - problem.parameters.count * shown / photographed

@@ -28,8 +28,11 @@ def describe_svbrdf(svbrdf: Any) -> Document:
         f"{svbrdf.name}: {svbrdf.model}, {width} × {height} texels from {count} photographs",
         (
             Table(rows, ("map", ">5 %", ">median", ">95 %", ">± median")),
-            *(Paragraph(note) for note in (*_describe_fixed(svbrdf.fixed), *svbrdf.notes)),
-            *_describe_difference(svbrdf.residual, svbrdf.predicted.values()),
+            *(
+                Paragraph(note)
+                for note in (*_describe_fixed_parameters(svbrdf.fixed), *svbrdf.notes)
+            ),
+            *_describe_rendering_difference(svbrdf.residual, svbrdf.predicted.values()),
             Paragraph(
                 f"smoothness {svbrdf.smoothness:g}{chosen}; {svbrdf.seconds:.1f} s", kind=SOFT
             ),
@@ -37,7 +40,7 @@ def describe_svbrdf(svbrdf: Any) -> Document:
     )
 
 
-def _describe_fixed(values: dict[str, float]) -> tuple[str, ...]:
+def _describe_fixed_parameters(values: dict[str, float]) -> tuple[str, ...]:
     """Return a sentence on the parameters with one value everywhere, if there are any."""
     if not values:
         return ()
@@ -46,7 +49,9 @@ def _describe_fixed(values: dict[str, float]) -> tuple[str, ...]:
     return (f"Everywhere {equal}{at_normal if 'f0' in values else ''}.",)
 
 
-def _describe_difference(residual: float, psnr: Collection[float]) -> tuple[Paragraph, ...]:
+def _describe_rendering_difference(
+    residual: float, psnr: Collection[float]
+) -> tuple[Paragraph, ...]:
     """Return a sentence on the difference of Mitsuba's renderings from the photographs.
 
     `residual` is the RMS relative difference, and `psnr` holds the PSNR [dB] of each rendering;

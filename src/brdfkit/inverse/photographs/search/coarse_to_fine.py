@@ -1,6 +1,7 @@
 """Fits maps of a few large texels first, then maps that are twice as fine, and so on.
 
-A small texel alone may mistake a highlight for its colour; a large part of the sample less so.
+A small texel sees few directions of light and view, and may take a highlight for its colour. A
+large texel sees more directions, and its numbers are a good start for the small texels within it.
 """
 
 from collections.abc import Iterator
@@ -12,15 +13,17 @@ from brdfkit.inverse.photographs.search.least_squares import fit_all_texels, fit
 from brdfkit.inverse.photographs.search.problem import Problem
 from brdfkit.inverse.photographs.search.starts import (
     WIDTHS,
+    copy_better_neighbours,
     make_starting_numbers,
-    propagate_from_neighbours,
-    restart_unexplained,
+    restart_unexplained_texels,
 )
 
-DEFAULT_TAU = 0.1  # the smoothness: the typical difference of neighbours, in units of the numbers
-COARSEST_SIDE = 4  # texels along the longer side of the first maps
-NOISE_ROUNDS = 5  # the most searches in which the noise is estimated anew
-SETTLED = 0.7  # the searches end when the noise is above this share of the previous estimate
+# Default of the smoothness τ, the typical difference of neighbouring texels in the numbers' units
+DEFAULT_TAU = 0.1
+COARSEST_SIDE = 4  # number of texels along the longer side of the first maps
+NOISE_ROUNDS = 5  # largest number of searches after which the noise is estimated again
+# The noise is settled when its estimate exceeds this share of the previous estimate
+SETTLED = 0.7
 SWEEPS = 2  # how often texels take over better numbers of their neighbours
 
 
@@ -39,7 +42,7 @@ def fit_coarse_to_fine(problem: Problem) -> Iterator[tuple[FloatArray, float, tu
         side //= 2
         coarse, level = level.observed.shape, problem.with_observations(finest.pool_texels(side))
         x = enlarge_map(x, coarse, level.observed.shape, 2)
-        x, noise = _fit_with_noise(level, x, noise)
+        x, noise = _fit_and_estimate_noise(level, x, noise)
         strength = level.compute_smoothness_weights(
             level.compute_equations(x).hessian, noise, DEFAULT_TAU
         )
@@ -48,11 +51,14 @@ def fit_coarse_to_fine(problem: Problem) -> Iterator[tuple[FloatArray, float, tu
         yield x, noise, level.observed.shape
 
 
-def _fit_with_noise(problem: Problem, x: FloatArray, noise: float) -> tuple[FloatArray, float]:
-    """Return the texels' numbers and the variance of the noise, after repeated searches.
+def _fit_and_estimate_noise(
+    problem: Problem, x: FloatArray, noise: float
+) -> tuple[FloatArray, float]:
+    """Return the texels' numbers and the variance of the noise, by repeated searches.
 
-    `x` and `noise` are from coarser maps, whose residuals are larger than noise. Taken for noise,
-    they would make the finer maps too smooth.
+    The search begins with `x` and `noise` of the coarser maps. Their residuals contain details that
+    only finer maps explain, so this `noise` is too large and would make the maps too smooth. Each
+    search therefore estimates it again.
     """
     for _ in range(NOISE_ROUNDS):
         hessian = problem.compute_equations(x).hessian
@@ -85,9 +91,9 @@ def fit_with_restarts(
     and `noise` the variance of relative radiances.
     """
     x = fit_all_texels(problem, x, strength)
-    other = restart_unexplained(problem, x, noise)
+    other = restart_unexplained_texels(problem, x, noise)
     for _ in range(SWEEPS):
-        other = propagate_from_neighbours(problem, other)
+        other = copy_better_neighbours(problem, other)
     if (other != x).any():
         x = fit_all_texels(problem, other, strength)
     return x

@@ -17,8 +17,9 @@ from brdfkit.inverse.photographs.search.coarse_to_fine import (
 )
 from brdfkit.inverse.photographs.search.problem import Equations, Problem
 
-TAUS = 1.0, 0.3, 0.1, 0.03  # the typical differences τ of neighbouring texels that are tried
-PATCH_SIDE = 48  # texels along a side of the part of the maps on which differences τ are tried
+# Values of the smoothness τ, the typical difference of neighbouring texels, that are tried
+TAUS = 1.0, 0.3, 0.1, 0.03
+PATCH_SIDE = 48  # number of texels along a side of the patch on which they are tried
 FEWEST_LIGHTS_TO_HOLD_OUT = 8
 
 
@@ -38,7 +39,7 @@ class UnfinishedMaps:
 
 @dataclass(frozen=True)
 class FittedMaps(UnfinishedMaps):
-    """Numbers of the texels of maps, from a finished search, with what their errors depend on.
+    """Numbers of the texels of maps, from a finished search, and what is needed for their errors.
 
     equations : the normal equations of the texels at their numbers `x`.
     noise : the variance of relative radiances.
@@ -50,8 +51,8 @@ class FittedMaps(UnfinishedMaps):
     strength: FloatArray
 
 
-def estimate_steps(lights: int, smoothness: float | None) -> int:
-    """Return about how many steps a search for maps takes, as the total of its progress bar."""
+def estimate_search_steps(lights: int, smoothness: float | None) -> int:
+    """Return the approximate number of steps of a search for maps, for its progress bar."""
     chooses = smoothness is None and lights >= FEWEST_LIGHTS_TO_HOLD_OUT
     return 250 + 300 * chooses
 
@@ -81,7 +82,7 @@ def fit_maps(problem: Problem, smoothness: float | None = None) -> FittedMaps:
         if finest is None:
             raise
         x, _, shape = finest
-        raise Interrupted(_enlarge_unfinished(problem.observed.shape, x, shape)) from None
+        raise Interrupted(_enlarge_unfinished_maps(problem.observed.shape, x, shape)) from None
     return FittedMaps(x, tau, held_out, problem.compute_equations(x), noise, strength)
 
 
@@ -116,25 +117,25 @@ def _select_middle_patch(observed: Observations) -> Observations:
     return replace(patch, shape=(rows, columns))
 
 
-def _enlarge_unfinished(
+def _enlarge_unfinished_maps(
     shape: tuple[int, int], x: FloatArray, coarse: tuple[int, int]
 ) -> UnfinishedMaps:
     """Return the maps of an interrupted search enlarged to `shape` (height, width).
 
     `x` (texels, numbers) are the numbers of their texels, `coarse` is their height and width.
     """
-    side = 1  # becomes the power of 2 by which `fit_coarse_to_fine` reduced the maps
+    side = 1  # grows to the power of 2 by which `fit_coarse_to_fine` reduced the maps
     while side * coarse[0] < shape[0] or side * coarse[1] < shape[1]:
         side *= 2
     return UnfinishedMaps(enlarge_map(x, coarse, shape, side), DEFAULT_TAU, {})
 
 
 def compute_standard_errors(problem: Problem, fitted: FittedMaps) -> FloatArray:
-    """Return the standard errors (texels, numbers) of texels, as if their neighbours were known.
+    """Return the standard errors (texels, numbers) of the texels' numbers.
 
-    Where the residuals of a texel exceed the noise, its errors are scaled by the excess. Where the
-    photographs leave numbers of a texel undetermined, they leave those of its neighbours
-    undetermined, too; there each number has half of its range, or its unit, as an error instead.
+    Each error assumes that the numbers of the neighbouring texels are known. If the photographs do
+    not determine a texel, they hardly determine its neighbours either: then only the range or the
+    unit of a number limits its error. Errors are larger where residuals exceed the noise.
     """
     noise, own = fitted.noise, fitted.equations.hessian
     ranges, (low, high) = problem.find_number_units(own), problem.parameters.find_limits()

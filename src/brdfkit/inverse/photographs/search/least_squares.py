@@ -15,10 +15,14 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.inverse.photographs.search.problem import Equations, Problem
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 
-STEPS, STEPS_TOGETHER = 12, 6  # the most steps of texels fitted alone, and of all together
-DAMPING, DAMPING_TOGETHER = 1e-2, 1e-3  # damping of the first step, of texels alone and together
-SMALLEST_GAIN = 1e-4  # relative to E²: a step with a smaller gain ends a search of all texels
-SOLVER_ROUNDS, SOLVER_TOLERANCE = 40, 1e-3  # conjugate gradients: most rounds, relative residual
+# Largest number of steps if each texel is fitted alone, and if all are fitted together
+STEPS, STEPS_TOGETHER = 12, 6
+# Damping of the first step if each texel is fitted alone, and if all are fitted together
+DAMPING, DAMPING_TOGETHER = 1e-2, 1e-3
+# A search of all texels ends when a step reduces the error E² by less than this share
+SMALLEST_GAIN = 1e-4
+# Conjugate gradients end after this number of rounds, or at this relative residual
+SOLVER_ROUNDS, SOLVER_TOLERANCE = 40, 1e-3
 
 
 def fit_each_texel(
@@ -33,13 +37,13 @@ def fit_each_texel(
     damping = np.full(len(x), DAMPING)
     now = problem.compute_equations(x)
     for _ in range(steps):
-        step = minimise_in_box(now.damp(damping[:, None]), now.gradient, low - x, high - x)
+        step = minimise_in_box(now.damp_hessians(damping[:, None]), now.gradient, low - x, high - x)
         trial = np.clip(x + step, low, high)
         there = problem.compute_equations(trial)
         better = there.error < now.error
         damping *= np.where(better, 0.2, 6)
         x[better] = trial[better]
-        now.overwrite(better, there)
+        now.overwrite_texels(better, there)
         problem.report()
     return x, now.error
 
@@ -81,11 +85,11 @@ def _solve_step(
     The method is conjugate gradients [Hestenes & Stiefel 1952] with the blocks of the texels as
     preconditioner.
     """
-    matrix = now.damp(damping)
+    matrix = now.damp_hessians(damping)
     inverse = np.linalg.inv(matrix + 4 * np.diag(strength))
 
     def multiply_matrix(s: FloatArray) -> FloatArray:
-        """Return the product (texels, numbers) of the system's matrix, H + D + A, and a vector."""
+        """Return the matrix of the linear system times a vector `s`, both (texels, numbers)."""
         return np.einsum("npq,nq->np", matrix, s) + strength * apply_laplacian(s, shape)
 
     residual = -(now.gradient + strength * apply_laplacian(x, shape))
@@ -118,9 +122,10 @@ def sum_squared_differences(x: FloatArray, shape: tuple[int, int]) -> FloatArray
 
 
 def apply_laplacian(x: FloatArray, shape: tuple[int, int]) -> FloatArray:
-    """Return the Laplacian (texels, numbers) of `x`, half the slope of its squared differences.
+    """Return half of the gradient (texels, numbers) of the sum of squared neighbour differences.
 
-    `shape` is the height and width of the map.
+    This is the discrete Laplacian of the texels' numbers `x`, with the opposite sign; `shape` is
+    the height and width of the maps.
     """
     grid = x.reshape(*shape, -1)
     result = np.zeros_like(grid)

@@ -1,8 +1,7 @@
 """Defines the least-squares problem of the texels: residuals, their derivatives, noise and units.
 
-Neighbouring texels are drawn to each other: a difference of their numbers of τ units counts as much
-as a residual of one standard deviation of the noise. So maps are smoother where the photographs are
-noisy.
+A penalty draws neighbouring texels to each other: if their numbers differ by τ units, this counts
+as much as a residual of one standard deviation of the noise. So noisy photographs give smooth maps.
 """
 
 from __future__ import annotations
@@ -16,8 +15,9 @@ from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.inverse.photographs.capture.observations import Observations
 from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS, TexelParameters
 
-BLOCK = 8192  # texels whose equations are computed at once, to limit the memory
-RIDGE = 1e-9  # relative to the diagonal of a Hessian: undetermined numbers would make it singular
+BLOCK = 8192  # number of texels whose equations are computed at once, to limit the memory
+# Added to a Hessian, as a share of its diagonal, because undetermined numbers make it singular
+RIDGE = 1e-9
 
 
 @dataclass
@@ -33,7 +33,7 @@ class Equations:
     gradient: FloatArray
     hessian: FloatArray
 
-    def damp(self, damping: FloatArray | float) -> FloatArray:
+    def damp_hessians(self, damping: FloatArray | float) -> FloatArray:
         """Return the Hessians (texels, numbers, numbers), damped so that steps are shorter.
 
         Their diagonals are multiplied by 1 + `damping`, and a small ridge is added.
@@ -43,7 +43,7 @@ class Equations:
         added = np.einsum("np,pq->npq", damping * diagonal + floor, np.eye(diagonal.shape[1]))
         return self.hessian + added
 
-    def overwrite(self, texels: BoolArray, other: Equations) -> None:
+    def overwrite_texels(self, texels: BoolArray, other: Equations) -> None:
         """Overwrite the equations of the `texels` in a mask (n,) by those of `other`."""
         self.error[texels] = other.error[texels]
         self.gradient[texels] = other.gradient[texels]
@@ -134,7 +134,7 @@ class Problem:
         """Return a typical size of differences for each number (numbers,), from texels' Hessians.
 
         The unit of a weight is the weight with which its lobe alone would be as bright as the
-        photographs. The current weight would be a bad unit: a weight near 0 would stay there.
+        photographs. With the current weight as its unit, a weight near 0 could hardly change.
         """
         of_weights = slice(0, self.parameters.shape_columns.start)
         brightness = np.diagonal(hessian, axis1=1, axis2=2)[:, of_weights]

@@ -1,7 +1,7 @@
 """Chooses the numbers with which the search for a texel begins, and restarts badly fitted texels.
 
-All texels begin matt and flat, with highlights of a few widths. Texels in a poor local minimum
-begin there again, or with the numbers of their neighbours.
+All texels begin with a flat surface, a diffuse colour and a highlight, whose width is one of a few
+values. Texels that fit badly begin again with these values, or with the numbers of neighbours.
 """
 
 import numpy as np
@@ -14,12 +14,13 @@ from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
 from brdfkit.inverse.photographs.search.least_squares import fit_each_texel
 from brdfkit.inverse.photographs.search.problem import Problem
 
-WIDTHS = 0.08, 0.2, 0.45  # of highlights at the start, as shares of the shape parameters' range
-START_WEIGHT = 0.1  # the first weight of every lobe except for the diffuse one
-MATT_SHARE = 0.6  # the share of observations, the darker ones, that are taken to have no highlight
-DOUBTFUL = 2  # times the noise: texels with larger residuals are restarted
+# Widths of the highlight at the start, as shares of the range of the shape parameters
+WIDTHS = 0.08, 0.2, 0.45
+START_WEIGHT = 0.1  # weight of every lobe at the start, except for the diffuse one
+MATT_SHARE = 0.6  # share of the observations, the darkest ones, that count as free of highlights
+DOUBTFUL = 2  # ratio of a texel's residuals to the noise above which the texel is restarted
 RESTART_STEPS = 10
-# Shifts (down, right) to the eight texels whose numbers are tried, one and three texels away
+# Shifts (down, right) to the eight texels whose numbers a texel tries, at distances 1 and 3
 OFFSETS = [(way * a, way * b) for way in (1, 3) for a, b in ((0, 1), (1, 0), (0, -1), (-1, 0))]
 
 
@@ -40,10 +41,11 @@ def make_starting_numbers(problem: Problem, width: float) -> FloatArray:
 
 
 def _estimate_albedos(observed: Observations) -> FloatArray:
-    """Return the albedos (n, 3) of texels as if they were matt and flat, by darker observations.
+    """Return the albedos (n, 3) of texels, as of a matt flat surface, without highlights.
 
-    Normals from photometric stereo [Woodham 1980] are no better a start: with all lights near the
-    camera, as flashes are, they lean by 40°, and the search does not return from there.
+    Only the darkest observations are used. Photometric stereo [Woodham 1980] also gives normals,
+    but if all lights are near the camera, as flashes are, these lean by 40°, and the search does
+    not find back from there.
     """
     cosine = np.maximum(observed.to_light[..., 2], 0.05)
     ratio = (observed.radiance / np.maximum(observed.irradiance, 1e-30)).mean(axis=2)
@@ -55,7 +57,7 @@ def _estimate_albedos(observed: Observations) -> FloatArray:
     return np.pi * np.maximum(slope, 0)
 
 
-def restart_unexplained(problem: Problem, x: FloatArray, noise: float) -> FloatArray:
+def restart_unexplained_texels(problem: Problem, x: FloatArray, noise: float) -> FloatArray:
     """Return the texels' numbers (texels, numbers), searched anew where residuals of `x` are large.
 
     `noise` is the variance of relative radiances, by which residuals are judged.
@@ -72,11 +74,11 @@ def restart_unexplained(problem: Problem, x: FloatArray, noise: float) -> FloatA
     return x
 
 
-def propagate_from_neighbours(problem: Problem, x: FloatArray) -> FloatArray:
-    """Return the numbers of texels, taken over from neighbours where these fit better.
+def copy_better_neighbours(problem: Problem, x: FloatArray) -> FloatArray:
+    """Return the numbers of texels, replaced by numbers of neighbours where these fit better.
 
-    `x` is (texels, numbers). The candidates are the median around the texel and the numbers of
-    texels nearby, so that good numbers spread, as matches do in [Barnes et al. 2009].
+    `x` is (texels, numbers). A texel tries the median of the texels around it and the numbers of
+    eight texels nearby, so that good numbers spread, as matches do in [Barnes et al. 2009].
     """
     grid = x.reshape(*problem.observed.shape, -1)
     errors = problem.compute_errors(x)

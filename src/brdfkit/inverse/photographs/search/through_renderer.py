@@ -7,8 +7,8 @@ the sum:
 
     L_t ← L_t(x) + (P - R(x))_t
 
-At the end R(x) equals P up to noise, whatever the formula ignores; it only has to change with x
-about as R does. [Van Cittert 1931] removes a blur by the same iteration.
+At the end R(x) equals P up to noise, although the formula is not exact: it is enough that L_t
+changes with x about as R does. [Van Cittert 1931] removes a blur by the same iteration.
 """
 
 from collections.abc import Callable
@@ -32,10 +32,10 @@ from brdfkit.inverse.photographs.search.fitting_maps import FittedMaps
 from brdfkit.inverse.photographs.search.least_squares import fit_all_texels
 from brdfkit.inverse.photographs.search.problem import Problem
 
-SAMPLES = 16  # of a pixel in renderings, evenly spread
-ROUND_LIMIT = 5  # the most rounds of correction
-STEPS_PER_ROUND = 3  # few, because the fit of each round begins near its minimum
-LARGEST_REMAINDER = 0.9  # a round that leaves a larger share of the difference is not kept
+SAMPLES = 16  # number of samples in each rendered pixel, evenly spread
+ROUND_LIMIT = 5  # largest number of rounds of correction
+STEPS_PER_ROUND = 3  # few steps suffice, because each round begins near its minimum
+LARGEST_REMAINDER = 0.9  # a round is undone if it leaves a larger share of the difference
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class RenderedMaps:
 def refine_through_renderer(
     problem: Problem, fitted: FittedMaps, capture: Capture
 ) -> tuple[RenderedMaps, int]:
-    """Return the corrected maps with their renderings, and the number of rounds it took.
+    """Return the corrected maps with their renderings, and the number of rounds of correction.
 
     On Ctrl-C `Interrupted` holds the `RenderedMaps` so far, or None.
     """

@@ -26,7 +26,8 @@ from brdfkit.inverse.scenes.problem.tensors import (
 )
 from brdfkit.model import Model
 
-PARAMETER_LIMIT = 32  # numbers that Gauss-Newton steps search, with a picture of derivatives each
+# Largest number of unknowns for Gauss-Newton steps, which render derivatives by each of them
+PARAMETER_LIMIT = 32
 
 Bounds = tuple[float, float]
 
@@ -175,7 +176,8 @@ def _make_unknown(parameters: MitsubaObject, key: str, bounds: Bounds | None) ->
     else:
         low = -np.inf if kind.startswith(("Point", "Vector")) else 0.0
         low, high = find_default_bounds(parameters, key, (low, np.inf))
-        is_log, is_linear = low > 0, kind.startswith("Color")  # only roughnesses have a bound > 0
+        # Only a roughness has a lower bound above 0; its logarithm is searched
+        is_log, is_linear = low > 0, kind.startswith("Color")
     if bounds is not None:
         low, high = _to_bounds(key, bounds, *widest)
     elif (numbers < low).any():

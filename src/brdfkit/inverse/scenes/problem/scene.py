@@ -13,7 +13,7 @@ from brdfkit.model import Model
 from brdfkit.regression import Fit
 from brdfkit.rendering.scenes.ball import ball
 
-# An integrator without derivatives of pictures → one that renders the same light and has them
+# Class of an integrator without derivatives → plugin that renders the same light with derivatives
 DIFFERENTIABLE = {
     "PathIntegrator": "prb",
     "DirectIntegrator": "prb",
@@ -39,7 +39,7 @@ def load_scene(thing: Any, size: tuple[int, int]) -> MitsubaObject:
         scene = _load_dictionary(thing, "the scene")
     else:
         material = to_material(thing)
-        scene = _load_dictionary(ball(_colour_weights(material), size), material.name)
+        scene = _load_dictionary(ball(_convert_weights_to_colours(material), size), material.name)
     if not scene.sensors():
         raise BrdfkitError("the scene has no sensor; add one.")
     return scene
@@ -73,12 +73,12 @@ def _read_depths(integrator: MitsubaObject, kind: str) -> dict[str, int]:
     if kind == "DirectIntegrator":
         return {"max_depth": 2}
     depths = dict(re.findall(r"(max_depth|rr_depth) = (-?\d+)", str(integrator)))
-    # Mitsuba prints an unlimited depth as the largest number
+    # An unlimited depth, -1, is printed by Mitsuba as the largest unsigned number
     return {name: int(number) if int(number) < 2**31 else -1 for name, number in depths.items()}
 
 
 def _load_dictionary(scene: dict[str, Any], name: str) -> MitsubaObject:
-    """Load a scene's dictionary; Mitsuba may not merge equal BSDFs, which would rename them."""
+    """Load a scene's dictionary without merging equal BSDFs, because names would be lost."""
     import mitsuba as mi
 
     return load_by_mitsuba(
@@ -86,10 +86,10 @@ def _load_dictionary(scene: dict[str, Any], name: str) -> MitsubaObject:
     )
 
 
-def _colour_weights(material: Any) -> dict[str, Any]:
+def _convert_weights_to_colours(material: Any) -> dict[str, Any]:
     """Return a material's dictionary in which each lobe's weight is a colour.
 
-    A weight that is one number would be searched as one number, though materials are coloured.
+    A weight that is a single number would stay grey in the search, but materials are coloured.
     """
     entries: dict[str, Any] = material.scene_dict()
     model = material.model if isinstance(material, Fit) else material

@@ -20,7 +20,8 @@ from brdfkit.inverse.scenes.problem.tensors import (
 )
 from brdfkit.model import Model
 
-ROUGHNESS_BOUNDS = 0.001, 1.0  # samples of the renderer hardly ever meet a narrower lobe
+# Default bounds of roughnesses; the renderer's samples hardly ever meet a narrower lobe
+ROUGHNESS_BOUNDS = 0.001, 1.0
 SHARE_BOUNDS = 0.0, 1.0
 MITSUBA_BOUNDS = {
     **dict.fromkeys(("alpha", "alpha_u", "alpha_v", "roughness"), ROUGHNESS_BOUNDS),
@@ -31,9 +32,9 @@ MITSUBA_BOUNDS = {
     **dict.fromkeys(("metallic", "sheen", "sheen_tint", "spec_tint"), SHARE_BOUNDS),
     **dict.fromkeys(("spec_trans", "specular"), SHARE_BOUNDS),
 }
-# Parameters by which Mitsuba's derivatives of pictures are wrong: roughplastic tabulates functions
-# of alpha and eta without derivatives, so those are 0.5 to 0.7 times the true ones; those by
-# the colour below a smooth coat are 1.1 times the true ones
+# Class of a BSDF → parameters by which Mitsuba's derivatives of pictures are wrong. The derivatives
+# of rough plastic are 0.5 to 0.7 times the true ones, because it tabulates functions of alpha and
+# eta; derivatives by the colour below a smooth coat are 1.1 times the true ones
 WRONG_DERIVATIVES = {"RoughPlastic": ("alpha", "eta"), "SmoothPlastic": ("diffuse_reflectance",)}
 
 
@@ -124,9 +125,9 @@ def _to_entry(parameters: MitsubaObject, key: str, value: Any) -> MitsubaObject:
 def find_default_bounds(
     parameters: MitsubaObject, key: str, otherwise: tuple[float, float]
 ) -> tuple[float, float]:
-    """Return the bounds (low, high) of a share or a roughness of one of Mitsuba's own BSDFs.
+    """Return the default bounds (low, high) of an entry, or `otherwise` if none are known.
 
-    Returns `otherwise` for all other entries.
+    They are known for roughnesses of Mitsuba's own BSDFs, and for their numbers from 0 to 1.
     """
     owner, name = _find_mitsuba_bsdf(parameters, key)
     return MITSUBA_BOUNDS.get(name, otherwise) if owner else otherwise
@@ -147,7 +148,7 @@ def _find_mitsuba_bsdf(parameters: MitsubaObject, key: str) -> tuple[str, str]:
 
     path = key.split(".")
     owner = parameters.properties[key][2]
-    if path[-1] in ("value", "data"):  # the entry belongs to a texture, and that to the BSDF
+    if path[-1] in ("value", "data"):  # the entry belongs to a texture of the BSDF
         owner, path = parameters.hierarchy.get(owner, (None, 0))[0], path[:-1]
     is_bsdf = isinstance(owner, mi.BSDF) and type(owner).__module__ == "mitsuba"
     return (owner.class_name(), path[-1]) if is_bsdf else ("", path[-1])

@@ -13,9 +13,10 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_file
 from brdfkit.mitsuba_bridge.properties.picture_file import read_photograph, read_pixels
 
-DARK_OFFSET = 0.02  # times the mean brightness: added to each pixel, so that weights are finite
-WHITE_QUANTILE = 0.99  # the share of a picture's values that are darker than its white level
-CLIPPED_SHARE = 1e-3  # if more of the values equal the largest one, these values are clipped
+# Added to pixels, as a share of the mean brightness, so that weights of dark pixels are finite
+DARK_OFFSET = 0.02
+WHITE_QUANTILE = 0.99  # share of a picture's values that are darker than its white level
+CLIPPED_SHARE = 1e-3  # values are clipped if more than this share equals the largest value
 
 Pictures = FloatArray | str | Path | Iterable[FloatArray | str | Path]
 
@@ -27,7 +28,7 @@ class Target:
     pixels : linear values (height, width, channels).
     weights : the weight of each squared difference, in the same shape; 0 where the pixel is masked
         or clipped.
-    count : the sum of the mask over the values that are not clipped.
+    count : the number of values that are not clipped, as the sum of their mask.
     clipped : the share of values that are clipped.
     unmasked : the mask (height, width) of pixels that count.
     """
@@ -49,8 +50,9 @@ def read_targets(
 ) -> list[Target]:
     """Return the `Target`s of one or several pictures, arrays (height, width[, channels]) or paths.
 
-    `mask` is as for `read_masks`. Raises `BrdfkitError` for what is not a picture, for pixels that
-    are not finite, and for pictures of 8 bits unless `accept_8_bit`, which inverts sRGB's curve.
+    `mask` has the weights of the pixels, see `read_masks`. Raises `BrdfkitError` for what is not a
+    picture, for pixels that are not finite, and for pictures of 8 bits unless `accept_8_bit`, which
+    inverts sRGB's curve.
     """
     value: Any = pictures
     alone = isinstance(value, str | Path) or getattr(value, "ndim", 4) < 4

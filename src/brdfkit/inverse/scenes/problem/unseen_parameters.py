@@ -40,8 +40,8 @@ def describe_zero_weights(views: Views, determined: Collection[str]) -> tuple[st
 def _find_zero_weights(parameters: MitsubaObject, unknown: Unknown) -> list[str]:
     """Return the names of lobe weights that are 0 in the BSDF of an unknown shape parameter.
 
-    A weight of 0 hides the shape parameters of its lobe. Weights are not hidden by others, and only
-    brdfkit's models have known weights.
+    A weight of 0 hides the shape parameters of its lobe. The list is empty if the unknown itself is
+    a weight, or belongs to no model of brdfkit.
     """
     if not unknown.model or unknown.is_linear:
         return []

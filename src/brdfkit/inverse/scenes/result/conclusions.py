@@ -36,7 +36,7 @@ def make_refinement(
     x = here.x if x is None else x
     views.write_to_scene(x)
     values = {
-        unknown.name: _to_value(unknown, part)
+        unknown.name: _to_result_value(unknown, part)
         for unknown, part in zip(views.unknowns, views.to_values(x), strict=True)
     }
     result = Refinement(
@@ -47,10 +47,10 @@ def make_refinement(
         steps=state.steps,
         cost=views.cost,
         seconds=seconds,
-        message=_describe_end(state, interrupted),
+        message=_explain_end(state, interrupted),
         converged=state.converged and not interrupted,
         history=tuple((int(spp), float(error)) for spp, error in state.history),
-        at_bounds=_find_on_bounds(views, x),
+        at_bounds=_find_unknowns_on_bounds(views, x),
         notes=(
             *notes,
             *certainty.undetermined,
@@ -68,7 +68,7 @@ def make_refinement(
     return replace(result, fits=_make_fits(views, result))
 
 
-def _to_value(unknown: Unknown, numbers: FloatArray) -> Value:
+def _to_result_value(unknown: Unknown, numbers: FloatArray) -> Value:
     """Return the numbers of an unknown as an array for a tensor, else as a tuple or a float."""
     if unknown.shape:
         return np.array(numbers).reshape(unknown.shape)
@@ -114,13 +114,13 @@ def estimate_certainty(views: Views, state: Search, noise: ResidualNoise) -> Cer
     return replace(certainty, covariance=tuple(map(tuple, covariance.tolist())))
 
 
-def _find_on_bounds(views: Views, x: FloatArray) -> tuple[str, ...]:
+def _find_unknowns_on_bounds(views: Views, x: FloatArray) -> tuple[str, ...]:
     """Return the names of the unknowns with a number on a bound, except for tensors."""
     on_bound = views.split_by_unknown(views.is_on_bound(x))
     return tuple(
         unknown.name
         for unknown, part in zip(views.unknowns, on_bound, strict=True)
-        if part.any() and not unknown.shape  # some texel of a tensor is nearly always on a bound
+        if part.any() and not unknown.shape  # a tensor nearly always has texels on a bound
     )
 
 
@@ -130,7 +130,7 @@ def _has_too_few_blocks(state: Search) -> bool:
     return equations is not None and equations.scores.shape[1] <= len(equations.scores)
 
 
-def _describe_end(state: Search, interrupted: bool) -> str:
+def _explain_end(state: Search, interrupted: bool) -> str:
     """Return the reason why the search ended, as text."""
     if interrupted:
         return "interrupted: the best so far"

@@ -16,11 +16,13 @@ from brdfkit.inverse.scenes.problem.leverage import find_block_side
 from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 
-CLIP_DEVIATIONS = 3  # robust standard deviations: larger residuals, as at edges, are clipped
-LAGS = 6  # filter widths: the largest distance at which pixels are compared
-SMALLEST_CORRELATION = 0.1  # a smaller correlation may be chance
-SIGNIFICANT = 5  # standard errors: the correlation of noise is hardly ever larger
-CLEAR_CHI2 = 1.25  # χ² per degree of freedom that is clearly above 1, the value for noise
+# Residuals, such as those at edges, are clipped at this number of robust standard deviations
+CLIP_DEVIATIONS = 3
+LAGS = 6  # largest distance of pixels that are compared, in widths of the camera's filter
+SMALLEST_CORRELATION = 0.1  # smallest correlation that counts; a smaller one may be chance
+# Largest correlation that noise may have by chance, in standard errors
+SIGNIFICANT = 5
+CLEAR_CHI2 = 1.25  # χ² per degree of freedom that is clearly above 1, the value for pure noise
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,8 @@ class ResidualNoise:
     def measure(cls, views: Views, here: Residuals) -> ResidualNoise:
         """Return the correlations between neighbouring pixels of the residuals `here`.
 
-        They are taken between the two renderings of `here`, whose own noise is independent.
+        A pixel of one rendering is multiplied with its neighbour in the other one, because the
+        noise of the two renderings is independent.
         """
         root = np.sqrt(views.weights)
         parts = (views.split_pictures(part) for part in (root, root * here.a, root * here.b))
@@ -56,7 +59,7 @@ class ResidualNoise:
             sums += _correlate_pictures(a, b, counted, side)
             near += _compare_rows(a, b, counted, side)
             a, b, counted = (array.swapaxes(0, 1) for array in (a, b, counted))
-            near += _compare_rows(a, b, counted, side)  # after the swap these are the columns
+            near += _compare_rows(a, b, counted, side)  # axes are swapped: compares columns
         products, squares, variance = near
         if not (squares > 0 and variance > 0):
             return cls(1.0, 0.0, 1.0)
@@ -70,9 +73,10 @@ class ResidualNoise:
 def _clip_outliers(
     a: FloatArray, b: FloatArray, counted: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return both residuals clipped at three robust standard deviations of their mean.
+    """Return the residuals `a` and `b` of two renderings, with outliers clipped.
 
-    `a` and `b` are from two renderings of one picture, `counted` is its mask of usable values.
+    The limit is three robust standard deviations of (a + b) / 2. `counted` is the mask of usable
+    values.
     """
     size = np.abs(a + b)[counted > 0] / 2
     size = size[size > 0]
@@ -81,27 +85,30 @@ def _clip_outliers(
 
 
 def _compare_rows(a: FloatArray, b: FloatArray, counted: FloatArray, side: int) -> FloatArray:
-    """Compare pixels with those `side` rows below, in residuals (height, width, channels).
+    """Return sums from which the correlation of pixels with those `side` rows below follows.
 
-    Returns three sums: the products of both pixels, their squares, and the squared standard error
-    of the first sum. `a` and `b` are from two renderings; `counted` is the mask of usable values.
+    They are the sum of products of both pixels, the sum of their squares, and the squared standard
+    error of the first sum. `a` and `b` are the residuals (height, width, channels) of two
+    renderings; `counted` is the mask of usable values.
     """
     upper, lower = (np.s_[:-side], np.s_[side:])
     both = counted[upper] * counted[lower]
     products = (both * (a[upper] * b[lower] + b[upper] * a[lower]) / 2).sum(axis=2)
     squares = (both * (a[upper] * b[upper] + a[lower] * b[lower]) / 2).sum()
-    # Noise is correlated within the filter, so blocks as wide as it are the independent samples
+    # The camera's filter correlates the noise of nearby pixels, so blocks as wide as the filter are
+    # the independent samples
     height, width = (n // side for n in products.shape)
     blocks = products[: height * side, : width * side].reshape(height, side, width, side)
     return np.array([products.sum(), squares, (blocks.sum(axis=(1, 3)) ** 2).sum()])
 
 
 def _correlate_pictures(a: FloatArray, b: FloatArray, counted: FloatArray, side: int) -> FloatArray:
-    """Return sums (2, lags, lags) of the products and of the squares of pixels that are apart.
+    """Return sums over pairs of pixels, from which their correlation by distance follows.
 
-    The distances are multiples of `side` up to six, along both axes; `a` and `b` are residuals of
-    two renderings. The sums are computed by Fourier transforms of the pictures, with margins of
-    zeros.
+    The result (2, lags, lags) has the sums of the products and of the squares of pixels whose
+    distances along the axes are -6 to 6 times `side`. `a` and `b` are residuals of two renderings,
+    `counted` is the mask of usable values. Fourier transforms compute all sums at once; margins of
+    zeros keep opposite edges apart.
     """
     from scipy.fft import irfft2, next_fast_len, rfft2
 

@@ -21,10 +21,11 @@ from brdfkit.inverse.scenes.search.normal_equations import (
     Residuals,
 )
 
-SAMPLE_FACTOR = 2  # the samples of the check, over those of the search's end
-CHANCE_LIMIT = 4  # standard errors: chance alone hardly ever moves a number farther
-AGREEMENT_SHARE = 0.5  # two renderings should agree on this share of the derivatives' power
-SEED_OFFSET = 7_000  # added to seeds of the search, so that the check has other samples
+SAMPLE_FACTOR = 2  # ratio of the check's samples to those of the last step of the search
+CHANCE_LIMIT = 4  # largest move of a number by chance, in standard errors
+# Smallest share of the squared derivatives on which two renderings have to agree
+AGREEMENT_SHARE = 0.5
+SEED_OFFSET = 7_000  # added to the seed of the search, so that the check has other samples
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class SearchCheck:
 
     step : the step (n,) that the new equations suggest, in coordinates; 0 for uncertain numbers.
     moves : the size of this step for each number, by name, in standard errors.
-    error_change : the difference of E², the squared residual, from the search's, in standard
+    error_change : how much the squared residual E² differs from that of the search, in standard
         deviations.
     poorly_sampled : the names of numbers whose derivatives depend on few light paths.
     """
@@ -73,9 +74,10 @@ class SearchCheck:
 
 
 def check_search(views: Views, state: Search, seed: int) -> tuple[Search, SearchCheck | None]:
-    """Return a search with pictures and equations of twice the samples, and how it differs.
+    """Render the end of a search again with twice the samples, and compare it with the search.
 
-    If its end is worse than the scene's own values, the returned `Search` is at these and marked as
+    Returns the `Search` with the new pictures and equations, and the comparison. If the end is
+    worse than the scene's own values, the returned `Search` is at these values and marked as
     `worse`, and the second result is None.
     """
     spp = 2 * SAMPLE_FACTOR * state.residuals.spp
@@ -91,14 +93,19 @@ def check_search(views: Views, state: Search, seed: int) -> tuple[Search, Search
 def _compare_with_search(
     views: Views, before: Residuals, end: Search, equations: Equations
 ) -> SearchCheck:
-    """Return the differences of a search's residuals, `before`, from the check of its `end`."""
+    """Return how the check differs from the search.
+
+    `before` holds the residuals of the search, `end` the search with the residuals of the check,
+    and `equations` those of the check.
+    """
     here = end.residuals
     certainty = estimate_certainty(views, end, ResidualNoise.measure(views, here))
     errors = certainty.compute_standard_errors()
     certain = np.array([name in errors for name in views.names])
     step = solve_step(views, here, equations, damping=0)
     moved = dict(zip(views.names, np.abs(views.differentiate_values(here.x) * step), strict=True))
-    # The search minimised E² of its own samples, so a gain by a step of the check is no difference
+    # The search minimised E² of its own samples, so E² of new samples is larger; this excess, the
+    # predicted gain of a step, is subtracted from the change
     change = abs(here.error - before.error) - max(equations.predict_gain(step), 0)
     deviation = np.hypot(here.deviation, before.deviation)
     share = np.diagonal(equations.hessian) / np.maximum(equations.power, 1e-300)

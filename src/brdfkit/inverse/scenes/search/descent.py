@@ -17,10 +17,10 @@ from brdfkit.inverse.scenes.search.backward_derivatives import compute_error_and
 from brdfkit.inverse.scenes.search.gauss_newton import Search
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 
-STAGE_SAMPLES = 4, 16, 64  # samples per pixel of each picture, stage by stage
-SMOOTHNESS_TRIALS = 0.3, 0.03, 0.003, 0.0003, 0.00003  # weights of the penalty that are tried
-TRIAL_STEPS = 8  # L-BFGS-B steps for each of these weights
-HELD_OUT_INTERVAL = 10  # one pixel of so many is held out
+STAGE_SAMPLES = 4, 16, 64  # samples per pixel of each picture in the three stages
+SMOOTHNESS_TRIALS = 0.3, 0.03, 0.003, 0.0003, 0.00003  # weights of the smoothness penalty to try
+TRIAL_STEPS = 8  # number of L-BFGS-B steps for each weight of the penalty that is tried
+HELD_OUT_INTERVAL = 10  # one of every ten pixels is held out of the fit
 
 
 def count_descent_steps(smoothness: float | None, steps: int) -> int:
@@ -117,7 +117,7 @@ def _run_lbfgs(
     last = x
 
     def compute_loss(x: FloatArray) -> tuple[float, FloatArray]:
-        """Return the squared difference of pictures plus the smoothness penalty, and the slope."""
+        """Return the squared difference of pictures plus the smoothness penalty, and its slope."""
         error, gradient = compute_error_and_gradient(views, x, spp, seed, weights)
         penalty, slope = compute_smoothness_penalty(views.unknowns, views.split_by_unknown(x))
         return error + smoothness * penalty, gradient + smoothness * slope
@@ -132,7 +132,7 @@ def _run_lbfgs(
     _, gradient = compute_loss(x)
     if not gradient.any():
         raise make_no_effect_error(views)
-    # The first step of L-BFGS is as long as the gradient, so the gradient is scaled to 0.1 at most
+    # L-BFGS's first step is as long as the gradient; a scale keeps it at 0.1 at most
     scale = 1 / max(abs(gradient).max(), 1e-300)
     try:
         result = minimize(
@@ -146,7 +146,7 @@ def _run_lbfgs(
         )
     except KeyboardInterrupt:
         raise Interrupted(last) from None
-    state.converged = result.status != 1  # SciPy's status 1 means that all steps were used up
+    state.converged = result.status != 1  # SciPy's status is 1 if all steps were used up
     end: FloatArray = result.x
     return end
 

@@ -25,9 +25,10 @@ from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.search.multistart import make_start_points
 
 FINALISTS, FINALIST_STEPS = 3, 2  # how many of the best points take steps, and how many steps
-JUDGE_FACTOR = 2  # samples of the final comparison, over those that chose the finalists
-POINTS_PER_NUMBER = 8  # points that are tried for each number in which pictures are not linear
-POINT_LIMIT = 32  # the most points besides the scene's own values
+JUDGE_FACTOR = 2  # ratio of samples in the final comparison to samples in the choice of finalists
+# Number of points to try for each number in which pictures are not linear
+POINTS_PER_NUMBER = 8
+POINT_LIMIT = 32  # largest number of points besides the scene's own values
 
 
 def count_default_starts(views: Views) -> int:
@@ -66,7 +67,7 @@ def find_best_start(
         if not tried:
             raise
         raise Interrupted(Search(_select_best_point(finalists or tried))) from None
-    # The samples that chose a point would favour it, so other samples compare the finalists
+    # Finalists are compared by new samples, because those that chose a point favour it
     candidates = [views.start, *(end.x for end in finalists)]
     return _select_best_point(
         Residuals.render(views, x, JUDGE_FACTOR * spp, seed + 50) for x in candidates

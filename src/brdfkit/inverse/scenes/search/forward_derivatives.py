@@ -10,11 +10,12 @@ from brdfkit.core.array_types import AnyArray, FloatArray, MitsubaObject
 from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.inverse.scenes.problem.views import Views, make_opaque_array
 
-DERIVATIVE_COST = 2.3  # the time for a picture of derivatives, over that for a picture
-DIFFERENCE_STEP = 0.05  # of coordinates between bounds, or relative to coordinates without bounds
+DERIVATIVE_COST = 2.3  # time of a picture of derivatives, relative to a plain picture
+# Step of finite differences in a coordinate, relative to its value where it has no bounds
+DIFFERENCE_STEP = 0.05
 # Integrators of Mitsuba that cannot render a picture of derivatives
 BACKWARD_ONLY = "PRBVolpathIntegrator", "BasicVolumetricPrimitiveRadianceFieldIntegrator"
-NOT_ATTACHED = "not attached to the AD graph"  # in Mitsuba's error if nothing has a derivative
+NOT_ATTACHED = "not attached to the AD graph"  # part of Mitsuba's error if nothing has a derivative
 
 
 def compute_derivatives(views: Views, x: FloatArray, spp: int, seed: int) -> AnyArray:
@@ -87,11 +88,12 @@ def _render_derivative(
     tangent = np.zeros(len(x))
     tangent[numbers] = views.differentiate_values(x)[numbers]
     try:
-        # All derivatives share one kernel if every unknown has a tangent, though most are 0
+        # Every unknown gets a tangent, mostly 0, so that one compiled kernel serves all derivatives
         with raise_first_cause(), track_derivatives(views, x) as entries:
             for entry, part in zip(entries, views.split_by_unknown(tangent), strict=True):
                 dr.set_grad(entry, make_opaque_array(type(entry), part))
-            # Loops do not propagate derivatives to values that plugins computed before rendering
+            # Plugins compute some values before rendering; derivatives have to reach these first,
+            # because the loops of the renderer do not propagate them there
             dr.enqueue(dr.ADMode.Forward, entries)
             dr.traverse(dr.ADMode.Forward, flags=dr.ADFlag.ClearEdges)
             return views.join_pictures(

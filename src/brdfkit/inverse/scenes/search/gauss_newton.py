@@ -1,8 +1,9 @@
 """Minimises the difference of pictures by Gauss-Newton steps.
 
-A step needs all derivatives, which take most of the time, so there are few steps; the samples grow
-only as far as the noise of rendering demands. Damping is that of [Levenberg 1944] and
-[Marquardt 1963]. E² is the weighted squared difference of rendered and target pictures.
+A step needs derivatives by all numbers, which take most of the time, so the method takes few steps.
+The number of samples grows only as far as the noise of rendering demands. Steps are damped as by
+[Levenberg 1944] and [Marquardt 1963]. E² is the weighted squared difference of rendered and target
+pictures.
 """
 
 from collections.abc import Callable
@@ -17,17 +18,23 @@ from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search.normal_equations import CONFIDENCE, Equations, Residuals
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 
-INITIAL_RAYS = 2**18  # for the first pictures, as rays cost little compared with starting a kernel
-INITIAL_SAMPLES = 8, 128  # per pixel, the fewest and the most of the first pictures
-GROWTH = 4, 16  # the smallest and the largest factor by which the samples grow at once
-CONVERGED_GRADIENT = 0.1  # squared gradient over its variance: smaller ones promise no real gain
-QUIET_SHARE = 0.25  # of E²: noise of rendering of this size adds 12 % to the standard errors
-NONLINEAR_REACH = 0.25  # of the range: the longest step in numbers that enter nonlinearly
-WEIGHT_REACH = 10  # times a weight or 1: the longest step of weights without an upper bound
-FRESH_SAMPLES = 3  # how often other samples are tried where no step is a gain
-NOISE_JUMP = 2  # a trial with so many times the noise may have a small E² by luck
-DAMPING = 1e-2, 1e-6, 1e4  # the first, the smallest and the largest damping of steps
-BETTER, WORSE = 0.1, 8  # factors of the damping after a good and a bad step
+# Number of rays of the first pictures; fewer are hardly faster, as starting a kernel takes time
+INITIAL_RAYS = 2**18
+INITIAL_SAMPLES = 8, 128  # fewest and most samples per pixel of the first pictures
+GROWTH = 4, 16  # smallest and largest factor by which the number of samples grows at once
+# Squared gradient, relative to its variance by noise, below which a search has converged
+CONVERGED_GRADIENT = 0.1
+# Largest share of rendering noise in E²; this much adds 12 % to the standard errors
+QUIET_SHARE = 0.25
+# Longest step of a number in which pictures are not linear, as a share of its range
+NONLINEAR_REACH = 0.25
+# Longest step of a weight without an upper bound, as a multiple of the weight or of 1
+WEIGHT_REACH = 10
+FRESH_SAMPLES = 3  # how often new samples are tried where no step reduces E²
+# A trial whose noise is larger than before by this factor may have a small E² by chance
+NOISE_JUMP = 2
+DAMPING = 1e-2, 1e-6, 1e4  # first, smallest and largest damping of steps
+BETTER, WORSE = 0.1, 8  # factors of the damping after a good and after a bad step
 
 
 @dataclass
@@ -79,7 +86,9 @@ def run_gauss_newton(
             state.equations = equations = Equations.render(views, state.residuals, seed)
             grown = _grow_samples(views, state.residuals, spp, samples)
             free = find_free_numbers(views, state.residuals, equations)
-            at_rest = not free.any() or equations.test_gradient(free) < CONVERGED_GRADIENT
+            at_rest = (
+                not free.any() or equations.measure_gradient_significance(free) < CONVERGED_GRADIENT
+            )
             if at_rest and grown == spp:
                 state.converged = True
                 break
@@ -89,7 +98,7 @@ def run_gauss_newton(
                 step, damping = _find_step(views, state, damping, seed, grown == spp)
                 at_rest = step is None or damping >= DAMPING[2]
                 if at_rest and grown == spp:
-                    # With these samples no step gains, however short, but with others one may
+                    # No step reduces E² with these samples, but one may with new samples
                     tries += 1
                     state.stuck = tries > FRESH_SAMPLES
                     if state.stuck:
@@ -111,10 +120,9 @@ def _find_step(
 ) -> tuple[Residuals | None, float]:
     """Return the residuals after a step that reduces E², and the damping for the next step.
 
-    E² is the squared residual. The residuals are None where noise hides whether any step is a gain.
-    With the last, largest number of samples (`is_last`) such a step is taken all the same: the
-    equations know more about a small gain than two pictures, whose samples move with the
-    parameters.
+    E² is the squared residual. The residuals are None where noise hides whether a step is a gain.
+    If `is_last`, the number of samples cannot grow, and a step that should be a gain by the
+    equations is taken in spite of the noise.
     """
     here, equations = state.residuals, state.equations
     assert equations is not None

@@ -37,11 +37,13 @@ from brdfkit.inverse.scenes.search.forward_derivatives import (
     group_numbers_by_picture,
 )
 
-DERIVATIVE_SHARE = 2.0  # the largest cost of all derivatives, over that of the residuals
-ROUNDING = 1e-6  # relative to white: the rounding of pictures in single precision
-NOISE_FLOOR = 0.1  # relative to the power of derivatives: a smaller diagonal of H is noise
-CONFIDENCE = 2  # standard deviations: a larger difference is taken not to be chance
-SMALLEST_EIGENVALUE = 1e-5  # of H with unit diagonal: smaller eigenvalues are noise
+DERIVATIVE_SHARE = 2.0  # largest cost of all derivatives, relative to that of the residuals
+ROUNDING = 1e-6  # rounding error of pixels in single precision, relative to white
+# Smallest diagonal of the Hessian, relative to the squared derivatives; a smaller one is noise
+NOISE_FLOOR = 0.1
+CONFIDENCE = 2  # largest difference that may be chance, in standard deviations
+# Smallest eigenvalue of the Hessian with unit diagonal; smaller ones are noise
+SMALLEST_EIGENVALUE = 1e-5
 
 
 @dataclass(frozen=True)
@@ -157,7 +159,7 @@ class Equations:
         values, vectors = np.linalg.eigh(self.hessian * np.outer(scale, scale))
         return (vectors * np.maximum(values, SMALLEST_EIGENVALUE)) @ vectors.T, scale
 
-    def test_gradient(self, free: BoolArray) -> float:
+    def measure_gradient_significance(self, free: BoolArray) -> float:
         """Return the mean squared distance of the gradient from 0, in standard errors.
 
         Only the numbers in the mask `free` (n,) enter. The value is about 1 if only noise is left.
