@@ -13,7 +13,7 @@ import numpy as np
 from make_models import join_paragraphs, make_table
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.core.references import find_cited_works
 from brdfkit.materials.formats import list_formats
 
@@ -30,7 +30,7 @@ HOLDS = "## What it holds\n\nEach was written and read again."
 
 def make_materials():
     """Return small materials by the property that a format has to store."""
-    wi, wo = random_pairs(300, seed=0, max_degrees=75)
+    wi, wo = draw_direction_pairs(300, seed=0, max_degrees=75)
     grey = bk.models()["ggx"](**FORMULA).eval(wi, wo)
     brushed = bk.models()["ggx"](alpha_v=0.6, **FORMULA).eval(wi, wo)
     rgb, bands = np.repeat(grey, 3, axis=1), np.repeat(grey, 8, axis=1)

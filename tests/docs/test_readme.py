@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from user_model import USER_MODEL
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.cli import main
 from brdfkit.core import catalogue
 from brdfkit.core.discovery import plugin_files
@@ -45,7 +45,7 @@ def here(tmp_path, monkeypatch, llvm_variant):
     """A current folder with small files of the names that the pages use."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(plugin_files, "_users", {})
-    wi, wo = random_pairs(300, seed=0, max_degrees=75)
+    wi, wo = draw_direction_pairs(300, seed=0, max_degrees=75)
     copper = bk.models()["ggx"](alpha_u=0.3, specular_reflectance=(0.9, 0.6, 0.4))
     bk.save(Measured.from_samples(wi, wo, copper.eval(wi, wo)), "copper.astm")
     Path("cayman.brdf").write_bytes(small_files.cornell())

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured.selection import select_samples
@@ -28,7 +28,7 @@ def test_a_mixture_is_the_sum_of_its_parts():
         ggx(diffuse_reflectance=0.3, specular_reflectance=0.4, alpha_u=0.3, f0=0.2),
         ward(diffuse_reflectance=0.0, specular_reflectance=0.1, alpha_u=0.05),
     )
-    pairs = random_pairs(1000, seed=0)
+    pairs = draw_direction_pairs(1000, seed=0)
     np.testing.assert_allclose(both.eval(*pairs), sum(p.eval(*pairs) for p in parts), rtol=1e-12)
 
 
@@ -47,7 +47,7 @@ def test_two_lobes_come_back():
         ggx_2_alpha_u=0.06,
         ggx_2_f0=0.05,
     )
-    pairs = random_pairs(4000, seed=3, max_degrees=79)
+    pairs = draw_direction_pairs(4000, seed=3, max_degrees=79)
     data = bk.Measured.from_samples(*pairs, truth.eval(*pairs))
     found = bk.fit(data, "ggx+ggx")
     np.testing.assert_allclose(found.eval(*pairs), truth.eval(*pairs), rtol=1e-4)
@@ -66,7 +66,7 @@ def test_a_mixture_is_plain_data(tmp_path):
     assert copy.name == "lambert+ward"
     assert copy.values == model.values
     data = bk.Measured.from_samples(
-        *random_pairs(500, 1), model.eval(*random_pairs(500, 1)), channels=("Y",)
+        *draw_direction_pairs(500, 1), model.eval(*draw_direction_pairs(500, 1)), channels=("Y",)
     )
     found = bk.fit(data, "lambert+ward", starts=1)
     bk.save(found, tmp_path / "fit.json")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.images.ball import LIGHTS, draw_pixels
@@ -21,7 +21,7 @@ GLOSSY = {"diffuse_reflectance": (0.3, 0.1, 0.05), "specular_reflectance": 0.8, 
 
 def measured(model, n=3000):
     """A model as a measured material that is exact between its samples, too."""
-    wi, wo = random_pairs(n, seed=1, max_degrees=79)
+    wi, wo = draw_direction_pairs(n, seed=1, max_degrees=79)
     name = model.name
     return bk.Measured.from_samples(wi, wo, model.eval(wi, wo), lookup=model.eval, name=name)
 
@@ -127,7 +127,7 @@ def test_pixels_are_exposed_and_linear():
     dark, bright = (bk.models()["lambert"](diffuse_reflectance=r) for r in (0.1, 0.8))
     pixels = draw_pixels(("court", "hall"), dark.eval, pixels=200)
     np.testing.assert_allclose(pixels.evaluate(bright.eval), 8 * pixels.values, rtol=1e-12)
-    assert pixels.take_first(7).evaluate(dark.eval) == pytest.approx(pixels.values[:7])
+    assert pixels.take_first_pixels(7).evaluate(dark.eval) == pytest.approx(pixels.values[:7])
     for picture in (0, 1):
         values, weights = pixels.values[picture::2, 0], pixels.weights[picture::2]
         assert weights[values > 1].sum() / weights.sum() == pytest.approx(BRIGHT_SHARE, abs=0.01)

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from sample_sums import sample_sum
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.cli import main
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import to_half_difference
@@ -39,7 +39,7 @@ TIED = "that are tied in error and whose pictures are within 0.5 dB of the best"
 
 def measured(truth, n=1500, **how):
     """A material of one channel, with noise."""
-    wi, wo = random_pairs(n, seed=1, max_degrees=75)
+    wi, wo = draw_direction_pairs(n, seed=1, max_degrees=75)
     noise = np.random.default_rng(0).normal(0, NOISE, (n, 1))
     values = truth.eval(wi, wo)[:, :1] * np.exp(noise)
     return bk.Measured.from_samples(wi, wo, values, channels=("Y",), name="synthetic", **how)
@@ -102,7 +102,7 @@ def test_the_uncertainty_is_that_of_the_paired_difference():
 
 @pytest.mark.parametrize("anisotropic", [False, True])
 def test_blocks_cover_all_directions_and_folds_share_them(anisotropic):
-    wi, wo = random_pairs(40_000, seed=0, max_degrees=80)
+    wi, wo = draw_direction_pairs(40_000, seed=0, max_degrees=80)
     blocks = assign_blocks(wi, wo, anisotropic)
     theta_h, theta_d, _ = to_half_difference(wi, wo)
     assert set(blocks) == set(range(blocks.max() + 1))
@@ -187,7 +187,7 @@ def test_by_default_all_models_and_some_sums_are_ranked():
 def red():
     """A red material with a highlight of one colour, and its `Appearance`."""
     truth = bk.models()["ggx"](alpha_u=0.2, diffuse_reflectance=(0.4, 0.05, 0.05))
-    wi, wo = random_pairs(50, seed=1, max_degrees=75)
+    wi, wo = draw_direction_pairs(50, seed=1, max_degrees=75)
     samples = bk.Measured.from_samples(wi, wo, truth.eval(wi, wo)).samples
     return truth, Appearance(SimpleNamespace(rgb=truth, anisotropic=False), samples, 80.0, 1)
 

@@ -22,7 +22,7 @@ import pytest
 from click.testing import CliRunner
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.cli import main
 from brdfkit.core.discovery import plugin_files
 from brdfkit.fitting.settings import FitSettings
@@ -44,7 +44,7 @@ def made(tmp_path_factory):
     """The files of three small materials, by name."""
     folder = tmp_path_factory.mktemp("materials")
     for seed, (name, truth) in enumerate(TRUTHS.items()):
-        wi, wo = random_pairs(200, seed=seed, max_degrees=75)
+        wi, wo = draw_direction_pairs(200, seed=seed, max_degrees=75)
         bk.save(bk.Measured.from_samples(wi, wo, truth.eval(wi, wo)), folder / f"{name}.npz")
     return {file: (folder / file).read_bytes() for file in FILES}
 

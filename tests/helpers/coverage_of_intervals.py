@@ -18,7 +18,7 @@ from random_models import random_model
 from scipy.special import stdtrit
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.model import labels
 from brdfkit.model.samples import Samples
 from brdfkit.model.samples.measures import estimate_extents
@@ -59,7 +59,7 @@ NOISES = {"multiplied": multiply, "added": add, "even": even}
 def directions(n, seed):
     """Pairs at random, half of them near the mirror direction."""
     rng = np.random.default_rng(seed)
-    wi, wo = random_pairs(n, seed=seed, max_degrees=75)
+    wi, wo = draw_direction_pairs(n, seed=seed, max_degrees=75)
     near = wi * [-1, -1, 1] + rng.normal(0, 0.15, wi.shape)
     near /= np.linalg.norm(near, axis=1, keepdims=True)
     use = (np.arange(n) % 2 == 0) & (near[:, 2] > 0.26)

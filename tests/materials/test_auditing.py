@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 import brdfkit as bk
 from brdfkit import models
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.cli.commands.info import make_audit_record
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.json_values import to_json
@@ -363,7 +363,7 @@ def test_the_brightest_side_of_an_anisotropic_material_counts():
 
 
 def test_what_gives_no_colour_is_audited_by_its_mean():
-    wi, wo = random_pairs(200, seed=1, max_degrees=80)
+    wi, wo = draw_direction_pairs(200, seed=1, max_degrees=80)
     values = np.full((200, 2), 0.1) * [1, 2]
     audit = bk.audit(Measured.from_samples(wi, wo, values, channels=("900nm", "1600nm")))
     assert audit.channels == ("900nm", "1600nm")

@@ -42,7 +42,7 @@ def copy(tmp_path, monkeypatch):
     return folder
 
 
-def random_pairs(n, seed=0):
+def draw_direction_pairs(n, seed=0):
     """Direction pairs above the surface, half of them near each other's mirror direction."""
     rng = np.random.default_rng(seed)
     wi, wo = from_angles(np.arccos(rng.uniform(0.15, 1, (2, n))), rng.uniform(0, 2 * np.pi, (2, n)))
@@ -138,14 +138,14 @@ def test_all_above_the_surface_is_known_and_positive(measured, name):
 @pytest.mark.quick
 @pytest.mark.parametrize("name", NAMES)
 def test_reciprocal(measured, name):
-    wi, wo = random_pairs(5000)
+    wi, wo = draw_direction_pairs(5000)
     assert np.allclose(measured[name].eval(wo, wi), measured[name].eval(wi, wo), rtol=1e-9)
 
 
 @pytest.mark.quick
 @pytest.mark.parametrize("name", TABULATED)
 def test_mirror_symmetric(measured, name):
-    wi, wo = random_pairs(5000)
+    wi, wo = draw_direction_pairs(5000)
     flip = np.array([1, -1, 1])
     values = measured[name].eval(wi, wo)
     assert np.allclose(measured[name].eval(wi * flip, wo * flip), values, rtol=1e-3)
@@ -225,7 +225,7 @@ def test_measured_again_the_values_agree(measured, make, module_in_llvm, name):
 
 @pytest.mark.parametrize("name", TABULATED)
 def test_a_lookup_gives_the_bsdf_between_the_cells(measured, make, module_in_llvm, name):
-    wi, wo = random_pairs(20_000, seed=1)
+    wi, wo = draw_direction_pairs(20_000, seed=1)
     wi, wo = (w[to_half_difference(wi, wo)[1] < np.radians(75)] for w in (wi, wo))
     bsdf = module_in_llvm.load_dict(make.TABULATED[name]())
     error = np.abs(measured[name].eval(wi, wo) / make.evaluate(bsdf, wi, wo) - 1).max(axis=1)

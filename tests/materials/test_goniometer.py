@@ -54,7 +54,7 @@ def pairs(*degrees):
     return from_angles(theta_i, 0.3), from_angles(theta_o, phi + 0.3)
 
 
-def random_pairs(n, most=80, seed=0):
+def draw_direction_pairs(n, most=80, seed=0):
     """wi, wo (n, 3), evenly over the angles up to `most` [degrees]."""
     rng = np.random.default_rng(seed)
     theta, phi = np.radians(rng.uniform(0, most, (2, n))), rng.uniform(0, 2 * np.pi, (2, n))
@@ -148,7 +148,7 @@ def test_the_triangles_cover_the_tile_and_its_margin():
 
 @pytest.mark.quick
 def test_a_flat_diffuse_surface():
-    wi, wo = random_pairs(20, most=89)
+    wi, wo = draw_direction_pairs(20, most=89)
     mean, error = brdf(Specimen(FLAT, {"type": "diffuse", "reflectance": 0.3}), wi, wo, 100)
     assert np.allclose(mean, 0.3 / np.pi, rtol=1e-5)
     assert error.max() < 1e-5
@@ -158,7 +158,7 @@ def test_a_flat_diffuse_surface():
 @pytest.mark.parametrize("facets", [GOLD, PLASTIC], ids=lambda f: f["type"])
 def test_a_flat_surface_is_its_facets(llvm_variant, facets):
     mi = llvm_variant
-    wi, wo = random_pairs(20, most=85)
+    wi, wo = draw_direction_pairs(20, most=85)
     mean, _ = brdf(Specimen(FLAT, facets), wi, wo, 100)
     si = mi.SurfaceInteraction3f()
     si.wi = mi.Vector3f(wo.T.astype(np.float32))
@@ -256,7 +256,7 @@ def test_a_furnace_by_mitsubas_path_tracer(llvm_variant, theta):
 def test_reciprocal_within_the_errors(surface, facets):
     """χ² of 60 pairs measured both ways; chance gives p < 1e-5 once in 100,000."""
     specimen = Specimen(tile(surface), facets)
-    wi, wo = random_pairs(60, most=75)
+    wi, wo = draw_direction_pairs(60, most=75)
     (there, error), (back, other) = (
         brdf(specimen, *both, 2**13, seed) for seed, both in enumerate([(wi, wo), (wo, wi)])
     )
@@ -272,7 +272,7 @@ def test_shiny_gaussian_facets_are_beckmanns(llvm_variant):
     mi = llvm_variant
     mirrors = {"type": "roughconductor", "material": "none", "alpha": 0.1}
     specimen = Specimen(gaussian(slope=0.2), mirrors, max_bounces=1)
-    wi, wo = random_pairs(200, most=55)
+    wi, wo = draw_direction_pairs(200, most=55)
     facing = (wi + wo)[:, 2] / np.linalg.norm(wi + wo, axis=1) > np.cos(np.radians(22))
     wi, wo = wi[facing], wo[facing]
     mean, error = brdf(specimen, wi, wo, 2**13)

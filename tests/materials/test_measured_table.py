@@ -9,7 +9,12 @@ import pytest
 from small_files import adaptive, place, rgl_file, written
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import INCIDENCES, Subject, list_incidences, random_pairs
+from brdfkit.checks.material_subject import (
+    INCIDENCES,
+    Subject,
+    draw_direction_pairs,
+    list_incidences,
+)
 from brdfkit.checks.registry import checks
 from brdfkit.checks.sampling import compute_weight_spread
 from brdfkit.core import catalogue
@@ -89,7 +94,7 @@ def test_passes_the_checks(name, check, llvm_variant):
 @pytest.mark.parametrize("name", MATERIALS)
 def test_looked_up_as_in_numpy(name, llvm_variant):
     material = MATERIALS[name]()
-    wi, wo = random_pairs(5000, seed=1)
+    wi, wo = draw_direction_pairs(5000, seed=1)
     expected = material.eval(wi, wo)
     found = Subject(material).eval_plugin(wi, wo) / wo[:, 2:]
     np.testing.assert_allclose(found, expected, rtol=2e-3, atol=1e-4 * expected.max())
@@ -97,7 +102,7 @@ def test_looked_up_as_in_numpy(name, llvm_variant):
 
 def test_an_anisotropic_table_is_its_material():
     """The finer, the closer: by the square of the cells' size, as what is linear between them."""
-    wi, wo = random_pairs(5000, seed=2, max_degrees=75)
+    wi, wo = draw_direction_pairs(5000, seed=2, max_degrees=75)
     off = []
     for shape in ((12, 20, 12, 18), (24, 40, 24, 36)):
         material, model = brushed(shape=shape)
@@ -286,7 +291,7 @@ def test_at_normal_incidence_all_sides_count():
         phi = np.arctan2(wo[:, 1], wo[:, 0]) - np.arctan2(wi[:, 1], wi[:, 0])
         return (1 + 0.5 * sine * np.cos(2 * phi))[:, None] / np.pi
 
-    wi, wo = random_pairs(100, seed=4)
+    wi, wo = draw_direction_pairs(100, seed=4)
     material = bk.Measured.from_samples(wi, wo, uneven(wi, wo), channels=("Y",), lookup=uneven)
     for degrees in (0, 1, 2, 4, 45):
         albedo = bk.albedo(material.table, from_angles(np.radians(degrees), 0.3))
@@ -320,7 +325,7 @@ def test_between_and_beyond_samples(name, goniometer):
     """A table measured anew at a goniometer's angles comes back: where it was not measured, too."""
     truth = bk.load(name)
     found = bk.Measured.from_samples(*goniometer, truth.eval(*goniometer))
-    wi, wo = random_pairs(5000, seed=4, max_degrees=75)
+    wi, wo = draw_direction_pairs(5000, seed=4, max_degrees=75)
     off = np.abs(np.log(found.eval(wi, wo) / truth.eval(wi, wo)))
     assert np.median(off) < 0.03
     for degrees, tolerance in ((0, 0.03), (45, 0.04), (85, 0.2)):
@@ -336,7 +341,7 @@ def test_beyond_measured_angles_no_more_light_leaves_than_comes(paint, measured_
     found = bk.load(measured_data / "minidiff_paints" / f"{paint}.astm.xz")
     for degrees in (75, 85, 89):
         assert (bk.albedo(found, from_angles(np.radians(degrees), 0.0)) < 1.01).all(), degrees
-    wi, wo = random_pairs(5000, seed=7)
+    wi, wo = draw_direction_pairs(5000, seed=7)
     np.testing.assert_allclose(found.eval(wi, wo), found.eval(wo, wi), rtol=1e-9)
 
 
@@ -352,12 +357,12 @@ def test_a_retroreflective_peak_stays_where_it_was_measured(goniometer):
 def test_samples_come_back():
     """In any number of channels, at any height; and the BRDF is positive and reciprocal."""
     rng = np.random.default_rng(5)
-    wi, wo = random_pairs(200, seed=6, max_degrees=85)
+    wi, wo = draw_direction_pairs(200, seed=6, max_degrees=85)
     values = np.exp(rng.normal(0, 2, (200, 5)))
     found = bk.Measured.from_samples(wi, wo, values, channels=[f"{k}nm" for k in range(5)])
     np.testing.assert_allclose(found.eval(wi, wo), values, rtol=1e-6)
     np.testing.assert_allclose(found.eval(wo, wi), values, rtol=1e-6)
-    wi, wo = random_pairs(2000, seed=7)
+    wi, wo = draw_direction_pairs(2000, seed=7)
     assert (found.eval(wi, wo) > 0).all()
     np.testing.assert_allclose(found.eval(wi, wo), found.eval(wo, wi), rtol=1e-9)
 
@@ -366,7 +371,7 @@ def test_samples_come_back():
 @pytest.mark.parametrize("anisotropic", [False, True])
 def test_few_black_or_equal_samples(anisotropic):
     """What determines no highlight still is a material."""
-    wi, wo = random_pairs(100, seed=8, max_degrees=80)
+    wi, wo = draw_direction_pairs(100, seed=8, max_degrees=80)
     for n, value in ((1, 0.2), (3, 0.2), (100, 0.2), (100, 0.0)):
         values = np.full((n, 1), value)
         found = bk.Measured.from_samples(

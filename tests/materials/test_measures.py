@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.core.geometry.directions import from_angles, to_half_difference
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.samples.measures import MEASURES, compute_measure, integrate_measure
@@ -48,7 +48,7 @@ def test_cells_of_a_table_stand_for_all(measure):
 @pytest.mark.parametrize("measure", INTEGRALS)
 def test_random_samples_integrate_as_a_table_does(measure):
     """A narrow and a wide function of theta_h, and one of theta_d, to 2 %."""
-    wi, wo = random_pairs(8_000, seed=3, max_degrees=79.9)
+    wi, wo = draw_direction_pairs(8_000, seed=3, max_degrees=79.9)
     near = wi * [-1, -1, 1] + np.random.default_rng(1).normal(0, 0.1, wi.shape)
     near /= np.linalg.norm(near, axis=1, keepdims=True)
     wo = np.where((np.arange(len(wi)) % 2 == 0)[:, None] & (near[:, 2:] > 0.18), near, wo)
@@ -110,7 +110,7 @@ def test_an_unknown_measure_is_refused():
 @pytest.mark.parametrize("loss", [n for n, one in bk.losses.named.by_sample.items() if n != "kurt"])
 def test_either_direction_may_be_first(loss):
     """A goniometer that turns the detector, and one that turns the lamp, give one fit."""
-    wi, wo = random_pairs(2_000, seed=5, max_degrees=75.0)
+    wi, wo = draw_direction_pairs(2_000, seed=5, max_degrees=75.0)
     values = bk.models()["ggx"](alpha_u=0.3, alpha_v=0.3).eval(wi, wo)
     values = values * np.random.default_rng(2).lognormal(0, 0.2, values.shape)
     pairs = (wi, wo), (wo, wi)
@@ -121,7 +121,7 @@ def test_either_direction_may_be_first(loss):
 
 def test_samples_that_are_left_out_tell_no_light():
     """Of weight 0, or beyond the largest angle: values there change no fit and no albedo."""
-    wi, wo = random_pairs(1_500, seed=4, max_degrees=79.0)
+    wi, wo = draw_direction_pairs(1_500, seed=4, max_degrees=79.0)
     values = bk.models()["ggx"](alpha_u=0.3, alpha_v=0.3).eval(wi, wo)
     out = np.arange(len(wi)) % 10 == 0
     steep = np.minimum(wi[:, 2], wo[:, 2]) < np.cos(np.radians(60))
@@ -140,7 +140,7 @@ def test_samples_that_are_left_out_tell_no_light():
 def test_a_file_in_another_unit_is_told_so(factor, said):
     """In one sentence, and no constraint is advised."""
     model = bk.models()["ggx"](alpha_u=0.3, alpha_v=0.3)
-    wi, wo = random_pairs(1_500, seed=4, max_degrees=79.0)
+    wi, wo = draw_direction_pairs(1_500, seed=4, max_degrees=79.0)
     found = bk.fit(
         bk.Measured.from_samples(wi, wo, factor * model.eval(wi, wo)), "ggx", loss="plain"
     )
@@ -152,7 +152,7 @@ def test_a_file_in_another_unit_is_told_so(factor, said):
 
 
 def test_marks_of_what_was_not_measured_are_told():
-    wi, wo = random_pairs(300, seed=4, max_degrees=70.0)
+    wi, wo = draw_direction_pairs(300, seed=4, max_degrees=70.0)
     values = bk.models()["ggx"]().eval(wi, wo)
     values[::20] = -9999
     notes = bk.audit(bk.Measured.from_samples(wi, wo, values)).findings()
@@ -161,7 +161,7 @@ def test_marks_of_what_was_not_measured_are_told():
 
 def test_light_is_not_told_by_noise():
     """Where values are negative, what is interpolated between their logarithms is too low."""
-    wi, wo = random_pairs(2_000, seed=6, max_degrees=75.0)
+    wi, wo = draw_direction_pairs(2_000, seed=6, max_degrees=75.0)
     truth = bk.models()["ggx"](diffuse_reflectance=0.02, alpha_u=0.25).eval(wi, wo)
     noise = np.random.default_rng(1).normal(0, 1, truth.shape)
     found = bk.fit(

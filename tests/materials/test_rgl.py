@@ -10,8 +10,13 @@ from small_files import adaptive, rgl_file, written
 
 import brdfkit as bk
 from brdfkit import checks
-from brdfkit.checks.material_subject import INCIDENCES, Subject, list_incidences, random_pairs
-from brdfkit.checks.sampling import compute_weight_spread, draw_uniform
+from brdfkit.checks.material_subject import (
+    INCIDENCES,
+    Subject,
+    draw_direction_pairs,
+    list_incidences,
+)
+from brdfkit.checks.sampling import compute_weight_spread, draw_uniform_numbers
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.formats.rgl import encoding, tensor_file
@@ -171,7 +176,7 @@ def test_find_normals_finds_the_microfacets(alpha_x, alpha_y, n_phi):
 def test_the_database_is_looked_up_as_mitsuba_does(llvm_variant, measured_data, name):
     path = measured_data / "rgl" / f"{name}_rgb.bsdf"
     material = load(path)
-    wi, wo = random_pairs(50_000, seed=3)
+    wi, wo = draw_direction_pairs(50_000, seed=3)
     # `eval` clamps what `measured` leaves negative
     theirs = np.maximum(Rendered(path).eval(wi, wo), 0)
     ours = material.eval(wi, wo)
@@ -218,7 +223,7 @@ def test_variations_are_looked_up_as_mitsuba_does(llvm_variant, tmp_path, small_
     variations()[change](fields)
     path = tmp_path / "changed.bsdf"
     path.write_bytes(packed(fields))
-    wi, wo = random_pairs(5000, seed=4)
+    wi, wo = draw_direction_pairs(5000, seed=4)
     theirs = Rendered(path).eval(wi, wo)
     assert np.quantile(relative(load(path).eval(wi, wo), theirs), 0.999) < 1e-3
 
@@ -250,7 +255,7 @@ def test_every_symmetry_is_found_written_and_looked_up(llvm_variant, tmp_path, s
     assert encoding.detect_symmetry(brdf.eval) == quarters
     material = saved(brdf, tmp_path / "surface.bsdf")
     assert material.anisotropic == (quarters > 0)
-    wi, wo = random_pairs(5000, seed=4)
+    wi, wo = draw_direction_pairs(5000, seed=4)
     theirs = Rendered(tmp_path / "surface.bsdf").eval(wi, wo)
     assert np.quantile(relative(material.eval(wi, wo), theirs), 0.999) < 1e-3
     assert np.median(relative(theirs, brdf.eval(wi, wo))) < 0.05  # of so small a table
@@ -421,7 +426,7 @@ def test_what_is_rendered_is_what_eval_says(llvm_variant, kind):
     material = rendered(kind)
     subject = Subject(material)
     assert "MeasuredAdaptive" in str(subject.bsdf)
-    for wi, wo in (pairs(degrees=89.5), random_pairs(20_000, seed=6, max_degrees=89.99)):
+    for wi, wo in (pairs(degrees=89.5), draw_direction_pairs(20_000, seed=6, max_degrees=89.99)):
         expected = material.eval(wi, wo) * wo[:, 2:]
         found = subject.eval_plugin(wi, wo)
         assert np.median(relative(found, expected)) < 2e-6
@@ -527,7 +532,7 @@ def test_mitsuba_renders_what_was_written(llvm_variant, tmp_path, name):
     for _degrees, wi in list_incidences():
         si = rendered.make_interaction(np.tile(wi, (200_000, 1)))
         _, weight = rendered.bsdf.sample(
-            llvm_variant.BSDFContext(), si, *draw_uniform(200_000, seed=1)
+            llvm_variant.BSDFContext(), si, *draw_uniform_numbers(200_000, seed=1)
         )
         weight = np.array(weight, float).mean(axis=0)
         assert weight.mean() == pytest.approx(bk.albedo(source, wi).mean(), rel=0.01)

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
-from brdfkit.checks.sampling import draw_uniform
+from brdfkit.checks.material_subject import draw_direction_pairs
+from brdfkit.checks.sampling import draw_uniform_numbers
 from brdfkit.core.geometry.directions import from_angles, normalize
 from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate_lobe_sum
 from brdfkit.model.lobes import group_components
@@ -189,7 +189,7 @@ def test_nested(model, llvm_variant):
     mi = llvm_variant
     inner, other = coloured(model).scene_dict(), {"type": "roughplastic"}
     plain, second = mi.load_dict(inner), mi.load_dict(other)
-    wi, wo = random_pairs(2000, seed=1, max_degrees=80)
+    wi, wo = draw_direction_pairs(2000, seed=1, max_degrees=80)
     value, pdf = evaluated(mi, plain, wi, wo)
     assert value.min() >= 0
     assert value.max() > 0
@@ -228,7 +228,7 @@ def test_tilted_by_a_map(model, llvm_variant):
     """A normal map and a bump map show the model in a turned frame."""
     mi = llvm_variant
     inner = coloured(model).scene_dict()
-    wi, wo = random_pairs(2000, seed=2, max_degrees=50)
+    wi, wo = draw_direction_pairs(2000, seed=2, max_degrees=50)
     normal = np.array([0.3, -0.2, 1.0]) / math.sqrt(1.13)
     # A bump's height h(u, v) has the normal (-∂h/∂u, -∂h/∂v, 1)
     pixels = (np.arange(64)[:, None] * 0.2 - np.arange(64) * 0.3) / 64
@@ -262,7 +262,7 @@ def test_nested_parameters_are_traversed(model, llvm_variant, outer):
     found = mi.traverse(bsdf)
     name = model.weights()[0]
     (key,) = [k for k in found.keys() if f".{name}." in k]  # noqa: SIM118
-    wi, wo = random_pairs(100, seed=2, max_degrees=60)
+    wi, wo = draw_direction_pairs(100, seed=2, max_degrees=60)
     before = evaluated(mi, bsdf, wi, wo)[0]
     found[key] = found[key] * 1.5
     found.update()
@@ -330,7 +330,7 @@ def test_albedo(model, llvm_variant):
             continue
         ctx = mi.BSDFContext()
         ctx.type_mask = mi.BSDFFlags.DiffuseReflection
-        _, u = draw_uniform(200_000, seed=4)
+        _, u = draw_uniform_numbers(200_000, seed=4)
         wo = mi.warp.square_to_cosine_hemisphere(u)
         value = bsdf.eval(ctx, interaction(mi, [[0, 0, 1.0]]), wo)
         albedo = np.mean(np.array(value * (dr.pi / wo.z), float), axis=1)
@@ -368,7 +368,7 @@ def test_attributes(model, llvm_variant):
 def test_a_texture_is_held_to_the_bounds(model, llvm_variant):
     """A texture may hold anything; beyond a bound of its parameter it counts as the bound."""
     mi = llvm_variant
-    wi, wo = random_pairs(200, seed=9, max_degrees=80)
+    wi, wo = draw_direction_pairs(200, seed=9, max_degrees=80)
     entries = coloured(model).scene_dict()
     for name, parameter in model.parameters.items():
         for bound, beyond in zip(parameter.bounds, (-3.0, 3.0), strict=True):
@@ -422,7 +422,7 @@ def test_components_sum_to_the_whole(model, llvm_variant):
     mi = llvm_variant
     bsdf = mi.load_dict(coloured(model).scene_dict())
     assert bsdf.component_count() == len(group_components(model().lobes()))
-    wi, wo = random_pairs(5000, seed=5, max_degrees=85)
+    wi, wo = draw_direction_pairs(5000, seed=5, max_degrees=85)
     whole, _ = evaluated(mi, bsdf, wi, wo)
     parts = [evaluated(mi, bsdf, wi, wo, ctx)[0] for _, ctx in contexts(mi, bsdf)]
     assert all(part.max() > 0 for part in parts)
@@ -444,12 +444,12 @@ def test_sampling_of_a_component(model, llvm_variant):
     wi = from_angles(math.radians(40), 0.5)
     si = interaction(mi, np.tile(wi, (n, 1)))
     for k, ctx in contexts(mi, bsdf):
-        drawn, weight = bsdf.sample(ctx, si, *draw_uniform(n, seed=6))
+        drawn, weight = bsdf.sample(ctx, si, *draw_uniform_numbers(n, seed=6))
         assert np.unique(np.array(drawn.sampled_component)).tolist() == [k]
         assert dr.all((drawn.sampled_type & int(bsdf.flags(k))) == drawn.sampled_type)
         pdf = np.array(bsdf.pdf(ctx, si, drawn.wo))
         np.testing.assert_allclose(np.array(drawn.pdf), pdf, rtol=1e-3, atol=1e-6)
-        _, u = draw_uniform(n, seed=7)
+        _, u = draw_uniform_numbers(n, seed=7)
         wo = mi.warp.square_to_cosine_hemisphere(u)
         cosine = np.array(bsdf.eval(ctx, si, wo) * (dr.pi / wo.z), float).mean(axis=0)
         own = np.array(weight, float).mean(axis=0)
@@ -458,7 +458,7 @@ def test_sampling_of_a_component(model, llvm_variant):
         assert z < HIGHEST_Z
     ctx = mi.BSDFContext()
     ctx.type_mask = mi.BSDFFlags.DeltaTransmission
-    drawn, weight = bsdf.sample(ctx, si, *draw_uniform(n, seed=6))
+    drawn, weight = bsdf.sample(ctx, si, *draw_uniform_numbers(n, seed=6))
     assert not np.array(weight).any()
     assert not np.array(drawn.pdf).any()
 

@@ -12,7 +12,7 @@ from scipy import stats
 from scipy.special import roots_legendre
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.jit import double_precision
@@ -157,7 +157,7 @@ def test_an_albedo_is_of_one_unit_vector(wi):
 def test_ggx_is_mitsubas(llvm_variant):
     """`ggx` with F = 1 is roughconductor's GGX, whose masking is separable and not correlated."""
     mi = llvm_variant
-    from brdfkit.checks.material_subject import Subject, random_pairs
+    from brdfkit.checks.material_subject import Subject, draw_direction_pairs
 
     class Thing:
         name = "mirror"
@@ -170,7 +170,7 @@ def test_ggx_is_mitsubas(llvm_variant):
                 "alpha": 0.3,
             }
 
-    wi, wo = random_pairs(5000, seed=0, max_degrees=85)
+    wi, wo = draw_direction_pairs(5000, seed=0, max_degrees=85)
     theirs = Subject(Thing()).eval_plugin(wi, wo)[:, 0] / wo[:, 2]
     facets = mi.MicrofacetDistribution(mi.MicrofacetType.GGX, 0.3)
     h = (wi + wo) / np.linalg.norm(wi + wo, axis=1, keepdims=True)
@@ -192,7 +192,7 @@ def test_phong_reflects_its_weights_from_above():
 
 @pytest.mark.quick
 def test_lafortune_between_minus_one_and_one_is_phong():
-    wi, wo = random_pairs(10_000, seed=0)
+    wi, wo = draw_direction_pairs(10_000, seed=0)
     for exponent in (0.3, 20, 3000):
         phong = bk.models()["phong"](exponent=exponent).eval(wi, wo)
         for c in (1.0, 0.3):
@@ -202,7 +202,7 @@ def test_lafortune_between_minus_one_and_one_is_phong():
 
 @pytest.mark.quick
 def test_lafortune_knows_only_ratios():
-    wi, wo = random_pairs(10_000, seed=0)
+    wi, wo = draw_direction_pairs(10_000, seed=0)
     c = np.array([-0.8, 0.5, 0.6])
     values = [
         bk.models()["lafortune"](**dict(zip(("c_x", "c_y", "c_z"), t * c, strict=True))).eval(
@@ -221,7 +221,7 @@ def test_lafortune_knows_only_ratios():
 @pytest.mark.quick
 def test_lafortunes_lobes_add_up():
     """As printed, with the C of each lobe its own."""
-    wi, wo = random_pairs(1_000, seed=0)
+    wi, wo = draw_direction_pairs(1_000, seed=0)
     one, two = bk.models()["lafortune"], labels.model("lafortune:lobe_count=2")
     first = {"specular_reflectance": 0.3, "c_x": -0.9, "c_z": 0.5, "exponent": 40.0}
     second = {"specular_reflectance": 0.2, "c_x": 0.4, "c_z": 0.8, "exponent": 3.0}
@@ -259,7 +259,7 @@ def test_ashikhmin_shirleys_diffuse_term():
 
 @pytest.mark.quick
 def test_anisotropic_ashikhmin_shirley_is_as_printed():
-    wi, wo = random_pairs(1_000, seed=0)
+    wi, wo = draw_direction_pairs(1_000, seed=0)
     n_u, n_v, f0 = 10.0, 200.0, 0.3
     h = (wi + wo) / np.linalg.norm(wi + wo, axis=1, keepdims=True)
     phi, cos_d = np.arctan2(h[:, 1], h[:, 0]), (wi * h).sum(axis=1)
@@ -290,7 +290,7 @@ def test_oren_nayar_albedo(sigma):
 
 @pytest.mark.quick
 def test_smooth_oren_nayar_is_lambert():
-    wi, wo = random_pairs(10_000, seed=0)
+    wi, wo = draw_direction_pairs(10_000, seed=0)
     model = bk.models()["oren_nayar"](diffuse_reflectance=1, sigma=0)
     np.testing.assert_allclose(model.eval(wi, wo), 1 / np.pi, rtol=1e-12)
 
@@ -306,7 +306,7 @@ def test_white_eon_reflects_all(roughness):
 @pytest.mark.quick
 def test_eon_is_as_printed():
     """With ρ² for the light that is scattered again, which at ρ = 1 is the paper's factor."""
-    wi, wo = random_pairs(1_000, seed=0)
+    wi, wo = draw_direction_pairs(1_000, seed=0)
     r, (cos_i, cos_o) = 0.7, (wi[:, 2], wo[:, 2])
 
     def G(mu):
@@ -327,7 +327,7 @@ def test_eon_is_as_printed():
 
 @pytest.mark.quick
 def test_burley_is_as_printed():
-    wi, wo = random_pairs(1_000, seed=0)
+    wi, wo = draw_direction_pairs(1_000, seed=0)
     h = (wi + wo) / np.linalg.norm(wi + wo, axis=1, keepdims=True)
     F90 = 0.5 + 2 * 0.8 * (wi * h).sum(axis=1) ** 2
     expected = 0.6 / np.pi
@@ -394,7 +394,7 @@ def test_shadowing_of_students_slopes(gamma):
 @pytest.mark.quick
 def test_students_slopes_end_at_ggx_and_beckmann():
     """γ = 2 is GGX, D and G₂; for large γ the D of one slope goes to Beckmann's."""
-    wi, wo = random_pairs(5_000, seed=0)
+    wi, wo = draw_direction_pairs(5_000, seed=0)
     for shape in ({"alpha_u": 0.3}, {"alpha_u": 0.02, "alpha_v": 0.5}):
         ggx = bk.models()["ggx"](**shape).eval(wi, wo)
         student = bk.models()["student_t"](gamma=2, **shape).eval(wi, wo)
@@ -424,7 +424,7 @@ def test_shifted_gamma_is_the_published_one():
 
 @pytest.mark.quick
 def test_abc_is_as_printed():
-    wi, wo = random_pairs(1_000, seed=0)
+    wi, wo = draw_direction_pairs(1_000, seed=0)
     A, B, C, n = 30.0, 700.0, 1.0, 1.7
     h = (wi + wo) / np.linalg.norm(wi + wo, axis=1, keepdims=True)
     cos_d, cos_i, cos_o, cos_h = (wi * h).sum(axis=1), wi[:, 2], wo[:, 2], h[:, 2]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import labels
 from brdfkit.model.fresnel import FresnelModel
@@ -16,7 +16,7 @@ NAMES = [name for name, model in bk.models().items() if issubclass(model, Fresne
 @pytest.mark.parametrize("name", NAMES)
 def test_two_colours_of_one_f0_are_the_grey_form(name):
     """Channel by channel k₀ = k_s F₀ and k₉₀ = k_s, and so at the defaults."""
-    pairs = random_pairs(1_000, seed=0)
+    pairs = draw_direction_pairs(1_000, seed=0)
     grey, coloured = labels.model(name), labels.model(f"{name}:fresnel=coloured")
     np.testing.assert_allclose(coloured().eval(*pairs), grey().eval(*pairs), rtol=1e-12)
     f0, k_s = np.array([0.9, 0.6, 0.04]), np.array([0.3, 0.2, 0.1])
@@ -27,7 +27,7 @@ def test_two_colours_of_one_f0_are_the_grey_form(name):
 
 
 def test_coupled_ashikhmin_shirley_has_the_rest_in_its_diffuse_weight():
-    pairs = random_pairs(1_000, seed=0)
+    pairs = draw_direction_pairs(1_000, seed=0)
     grey = labels.model("ashikhmin_shirley:diffuse=coupled")
     coloured = labels.model("ashikhmin_shirley:diffuse=coupled,fresnel=coloured")
     expected = grey(diffuse_reflectance=0.5, specular_reflectance=0, f0=0.2).eval(*pairs)
@@ -42,7 +42,7 @@ def test_a_metals_colours_come_back():
         f0_reflectance=(0.9, 0.6, 0.3),
         f90_reflectance=(0.8, 0.9, 1.0),
     )
-    pairs = random_pairs(3_000, seed=1, max_degrees=80)
+    pairs = draw_direction_pairs(3_000, seed=1, max_degrees=80)
     data = bk.Measured.from_samples(*pairs, truth.eval(*pairs))
     found = bk.fit(data, "ggx:fresnel=coloured")
     assert found.loss < 1e-6

@@ -11,7 +11,7 @@ from sample_sums import sample_sum
 from scipy.stats import binom
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
@@ -55,7 +55,7 @@ def test_intervals_of_a_robust_fit_hold_the_truth():
 
 @pytest.mark.quick
 def test_a_linear_model_has_the_sandwich_of_the_textbook():
-    wi, wo = random_pairs(100, seed=1, max_degrees=79)
+    wi, wo = draw_direction_pairs(100, seed=1, max_degrees=79)
     rng = np.random.default_rng(2)
     values = 0.1 + 0.05 * wi[:, 2:] + 0.02 * wo[:, 2:] * rng.normal(size=(100, 1))
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))

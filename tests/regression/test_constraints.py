@@ -7,7 +7,7 @@ from sample_sums import sample_sum
 from scipy.optimize import minimize_scalar, nnls
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.cli import main
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.quadrature import make_ring_rule
@@ -22,7 +22,7 @@ ANGLES = 0, 30, 60, 80
 
 
 def synthetic(model, noise=0.0, n=300):
-    wi, wo = random_pairs(n, seed=0, max_degrees=79)
+    wi, wo = draw_direction_pairs(n, seed=0, max_degrees=79)
     values = model.eval(wi, wo)
     values = values * np.random.default_rng(0).lognormal(sigma=noise, size=values.shape)
     return bk.Measured.from_samples(

@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.cli import main
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.measured.selection import select_samples
@@ -17,7 +17,7 @@ N = 400
 
 def measured(model, seed=0, noise=0.0, **details):
     """A model measured at random directions, with noise of the standard error `noise` (n, 3)."""
-    wi, wo = random_pairs(N, seed=seed, max_degrees=79)
+    wi, wo = draw_direction_pairs(N, seed=seed, max_degrees=79)
     noise = np.broadcast_to(noise, (N, 3))
     values = model.eval(wi, wo) + np.random.default_rng(seed).normal(size=(N, 3)) * noise
     return bk.Measured.from_samples(wi, wo, values, **details)

@@ -7,7 +7,7 @@ from robust_least_squares import sample_weights
 from sample_sums import sample_sum
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
 from brdfkit.model.evaluation import compute_lobe_values
@@ -49,7 +49,7 @@ def point(problem, seed, points=2):
 def test_squared_error_and_gradient(name, loss):
     """E² against NumPy, its gradient against central differences: at several points at once."""
     rng = np.random.default_rng(1)
-    wi, wo = random_pairs(60, seed=2, max_degrees=79)
+    wi, wo = draw_direction_pairs(60, seed=2, max_degrees=79)
     data = bk.Measured.from_samples(wi, wo, rng.uniform(0.1, 1, (60, 3)))
     problem = problem_of(name, select_samples(data, 90.0), loss)
     u, weights = point(problem, 3)
@@ -102,7 +102,7 @@ def test_what_folds():
     assert fold_problem(problem_of("koenderink", samples))
     assert not fold_problem(problem_of("ggx", samples))
     assert not fold_problem(problem_of("ward", samples, "log"))
-    wi, wo = random_pairs(500, seed=2, max_degrees=79)
+    wi, wo = draw_direction_pairs(500, seed=2, max_degrees=79)
     scattered = Samples.from_arrays(wi, wo, np.ones((500, 1)), None, "Y", "scattered")
     assert not fold_problem(problem_of("ward", scattered))
 
@@ -127,7 +127,7 @@ def test_a_part_stands_for_the_whole():
 @pytest.mark.parametrize("model", ["koenderink", "pca_polynomial:degree=4"])
 def test_settled_weights_give_the_solution_back(model, name):
     """What "settled" means: fitted values to 1e-6 of their spread."""
-    wi, wo = random_pairs(600, seed=8, max_degrees=79)
+    wi, wo = draw_direction_pairs(600, seed=8, max_degrees=79)
     rng = np.random.default_rng(9)
     values = 0.3 + 0.1 * wi[:, 2:] * wo[:, 2:] + 0.01 * rng.standard_t(2, (600, 1))
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))

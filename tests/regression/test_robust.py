@@ -6,7 +6,7 @@ from robust_least_squares import robust_least_squares
 from sample_sums import sample_sum
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.evaluation import compute_lobe_values
 from brdfkit.regression import losses
@@ -68,7 +68,7 @@ def spoiled():
     truth = bk.models()["ggx"](
         diffuse_reflectance=0.2, specular_reflectance=0.5, alpha_u=0.3, f0=0.1
     )
-    wi, wo = random_pairs(3000, seed=5, max_degrees=79)
+    wi, wo = draw_direction_pairs(3000, seed=5, max_degrees=79)
     values = truth.eval(wi, wo) * np.random.default_rng(6).normal(1, 0.01, (3000, 1))
     values[::10] *= 5
     return truth, bk.Measured.from_samples(wi, wo, values, channels=("Y",))
@@ -80,7 +80,7 @@ def test_outliers_lose_their_say(spoiled, loss):
     plain, robust = (bk.fit(data, "ggx", loss=loss, robust=r) for r in (None, "bisquare"))
     assert robust.loss > plain.loss  # which is of all samples
     assert robust.message.startswith("settled")
-    wi, wo = random_pairs(1000, seed=7, max_degrees=75)
+    wi, wo = draw_direction_pairs(1000, seed=7, max_degrees=75)
     off = [np.median(np.abs(f.eval(wi, wo) / truth.eval(wi, wo) - 1)) for f in (plain, robust)]
     assert off[1] < 0.01 < off[0]
 
@@ -88,7 +88,7 @@ def test_outliers_lose_their_say(spoiled, loss):
 @pytest.mark.parametrize(("name", "seed"), [("cauchy", 9), ("welsch", 9), ("logistic", 3)])
 def test_few_samples_settle_where_matlabs_passes_do(name, seed):
     """Twelve samples of large leverage, which the merit of a pass knows."""
-    wi, wo = random_pairs(12, seed=seed, max_degrees=79)
+    wi, wo = draw_direction_pairs(12, seed=seed, max_degrees=79)
     values = np.random.default_rng(seed).standard_t(2, (12, 1)) + 3
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
     fit = bk.fit(data, "koenderink:order=2", loss=sample_sum("plain"), robust=name)
@@ -110,7 +110,7 @@ def test_no_weight_overflows(name):
 
 def test_a_linear_fit_is_the_least_squares():
     """Without a search, `fit` and `robust_least_squares` are the same thing."""
-    wi, wo = random_pairs(400, seed=8, max_degrees=79)
+    wi, wo = draw_direction_pairs(400, seed=8, max_degrees=79)
     values = np.random.default_rng(9).standard_t(2, (400, 1)) + 3
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
     for name in ("bisquare", "huber"):
@@ -163,7 +163,7 @@ def test_one_sample_of_cayman_makes_its_error(measured_data):
 )
 def test_more_samples_than_parameters(model, samples, parameters, robust):
     """Else every sample is met: what is left tells of no scale."""
-    wi, wo = random_pairs(samples, seed=1, max_degrees=79)
+    wi, wo = draw_direction_pairs(samples, seed=1, max_degrees=79)
     data = bk.Measured.from_samples(wi, wo, np.full((samples, 1), 0.2), channels=("Y",))
     with pytest.raises(bk.BrdfkitError, match=f"here are {samples} and {parameters}:"):
         bk.fit(data, model, robust=robust)
@@ -173,7 +173,7 @@ def test_more_samples_than_parameters(model, samples, parameters, robust):
 
 @pytest.mark.quick
 def test_one_sample_more_than_parameters():
-    wi, wo = random_pairs(15, seed=1, max_degrees=79)
+    wi, wo = draw_direction_pairs(15, seed=1, max_degrees=79)
     values = np.random.default_rng(2).uniform(0.1, 0.2, (15, 1))
     data = bk.Measured.from_samples(wi, wo, values, channels=("Y",))
     found = bk.fit(data, "koenderink:order=4", robust="bisquare")

@@ -9,7 +9,7 @@ from sample_sums import sample_sum
 from scipy.optimize import minimize
 
 import brdfkit as bk
-from brdfkit.checks.material_subject import random_pairs
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.regression import solvers
 from brdfkit.regression.solvers.settings import SOLVERS, to_plain_data, to_solver
@@ -26,7 +26,7 @@ QUICK = {
 @pytest.fixture(scope="module")
 def noisy():
     """A material that no model meets exactly: GGX in three colours, with noise of 10 %."""
-    wi, wo = random_pairs(N, seed=0, max_degrees=79)
+    wi, wo = draw_direction_pairs(N, seed=0, max_degrees=79)
     truth = bk.models()["ggx"](alpha_u=0.3, specular_reflectance=[0.5, 0.4, 0.3])
     values = truth.eval(wi, wo) * np.random.default_rng(0).lognormal(sigma=0.1, size=(N, 3))
     return bk.Measured.from_samples(wi, wo, values)
@@ -75,7 +75,7 @@ def test_slsqp_ends_where_scipy_does_by_itself(noisy):
 def test_differential_evolution_does_not_depend_on_its_start():
     """Lafortune's lobe lies far from where the single start looks for it."""
     truth = bk.models()["lafortune"](c_x=0.8, c_y=0.8, c_z=0.7, exponent=20)
-    wi, wo = random_pairs(N, seed=1, max_degrees=79)
+    wi, wo = draw_direction_pairs(N, seed=1, max_degrees=79)
     data = bk.Measured.from_samples(wi, wo, truth.eval(wi, wo), channels=("Y",))
     how = {"anisotropic": True, "starts": 1}
     assert bk.fit(data, "lafortune", loss="cosine", **how).loss > 0.005

@@ -98,7 +98,7 @@ def integrate_bsdf():
     phase = mi.load_dict(entries, parallel=False)
     it = mi.MediumInteraction3f()
     it.p, it.wi = mi.Point3f(0), mi.Vector3f(0.48, 0.6, 0.64)
-    towards, solid_angle = directions.make_quadrature()
+    towards, solid_angle = directions.make_sphere_quadrature()
     value = phase.eval_pdf(mi.PhaseFunctionContext(None), it, towards)[0]
     return float(np.array(value)[0] @ solid_angle)
 

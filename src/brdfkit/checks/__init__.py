@@ -130,7 +130,7 @@ def _make_subject(material: MaterialLike) -> tuple[Subject | PluginSubject, str,
     kind = plugin_files.find_plugin_kind(name) if isinstance(name, str) else None
     if isinstance(material, dict) and kind not in (None, MODELS):
         return PluginSubject(kind, material), kind, str(name)
-    converted = _to_material(material)
+    converted = _find_material(material)
     if name and kind is None:  # one of Mitsuba's own plugins, or an unknown one
         import mitsuba as mi
 
@@ -138,7 +138,7 @@ def _make_subject(material: MaterialLike) -> tuple[Subject | PluginSubject, str,
     return Subject(converted), MODELS, converted.name
 
 
-def _to_material(material: MaterialLike) -> Any:
+def _find_material(material: MaterialLike) -> Any:
     """Convert to a material as `to_material` does, but propose plugins, too, for unknown names."""
     try:
         return to_material(material)

@@ -6,9 +6,9 @@ from contextlib import contextmanager
 import drjit as dr
 import numpy as np
 
-from brdfkit.checks.material_subject import Subject, list_incidences, random_pairs
+from brdfkit.checks.material_subject import Subject, draw_direction_pairs, list_incidences
 from brdfkit.checks.registry import check_of, larger_or_nan
-from brdfkit.checks.sampling import draw_uniform, sample_weights
+from brdfkit.checks.sampling import draw_uniform_numbers, sample_weights
 from brdfkit.core.array_types import FloatArray, JitFloat, MitsubaModule, MitsubaObject
 from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.core.jit import double_precision
@@ -24,7 +24,7 @@ def check_plugin_is_formula(subject: Subject) -> tuple[bool, str]:
 
     The BSDF computes in single precision, the formula in double precision.
     """
-    wi, wo = random_pairs(20_000, seed=5, max_degrees=85)
+    wi, wo = draw_direction_pairs(20_000, seed=5, max_degrees=85)
     formula = subject.eval_expected(wi, wo) * wo[:, 2:]
     difference = np.abs(subject.eval_plugin(wi, wo) - formula)
     worst = float(np.max(difference / np.maximum(formula, 1e-3 * formula.max() + 1e-12)))
@@ -37,9 +37,9 @@ def check_gradient(subject: Subject) -> tuple[bool, str]:
     model = subject.model
     if model is None or not model.shapes():
         return True, NO_SHAPES
-    if unused := [n for n in model.shapes(anisotropic=True) if not is_tracked(model, n)]:
+    if unused := [n for n in model.shapes(anisotropic=True) if not depends_on_parameter(model, n)]:
         return False, f"{unused[0]} has no effect that Dr.Jit can follow"
-    wi, wo = random_pairs(2_000, seed=6, max_degrees=80)
+    wi, wo = draw_direction_pairs(2_000, seed=6, max_degrees=80)
     weights, worst = to_weight_matrix(model), 0.0
     for name in list_free_shapes(model):
         exact = compute_exact_derivative(model, weights, name, wi, wo)
@@ -56,24 +56,24 @@ def check_plugin_gradient(subject: Subject) -> tuple[bool, str]:
     model = subject.model
     if model is None:
         return True, "nothing to check: no parameters"
-    wi, wo = random_pairs(2_000, seed=7, max_degrees=80)
+    wi, wo = draw_direction_pairs(2_000, seed=7, max_degrees=80)
 
     # Every parameter must be in `mitsuba.traverse`; colours that Mitsuba stores as spectra are
     # exempt from the comparison
     exposed = {key.split(".")[0] for key in mi.traverse(subject.bsdf).keys()}  # noqa: SIM118
     if missing := [name for name in model.free_values if name not in exposed]:
         return False, f"not in traverse: {', '.join(missing)}"
-    names = [name for name in model.free_values if not _is_spectrum(mi, model, name)]
+    names = [name for name in model.free_values if not _is_weight_spectrum(mi, model, name)]
 
     # Compare the derivatives of the sum over all directions and channels
     with _track_gradients(subject.bsdf, names) as values:
         image = subject.bsdf.eval(
             mi.BSDFContext(), subject.make_interaction(wi), mi.Vector3f(wo.astype(np.float32).T)
         )
-        total = dr.sum(dr.sum(mi.unpolarized_spectrum(image)))  # over directions and channels
+        total = dr.sum(dr.sum(mi.unpolarized_spectrum(image)))  # over channels and directions
         dr.backward(total, dr.ADFlag.Default | dr.ADFlag.AllowNoGrad)
         gradients = [dr.grad(value) for value in values]
-        dr.eval(gradients)  # in one kernel, which compiles faster than one per parameter
+        dr.eval(gradients)  # one kernel compiles faster than one per parameter
         derivatives = [float(np.sum(np.array(gradient))) for gradient in gradients]
     worst = 0.0
     for name, derivative in zip(names, derivatives, strict=True):
@@ -99,11 +99,11 @@ def check_sampling_gradient(subject: Subject) -> tuple[bool, str]:
     if model is None or not model.shapes():
         return True, NO_SHAPES
     n, wi = 200_000, list_incidences()[1][1]
-    _, u = draw_uniform(n, seed=9)
+    _, u = draw_uniform_numbers(n, seed=9)
     wo = np.array(mi.warp.square_to_cosine_hemisphere(u)).T.astype(float)
     worst = 0.0
     for name in list_free_shapes(model):
-        # Derivatives of the weight of every sample
+        # Derivatives of the weight of every sample by the parameter
         with _track_gradients(subject.bsdf, [name]) as [value]:
             weight = sample_weights(subject, wi, n, seed=8)
             dr.forward_from(value)
@@ -134,7 +134,7 @@ def _track_gradients(bsdf: MitsubaObject, names: Sequence[str]) -> Iterator[list
         parameters.update({key: dr.detach(value) for key, value in values.items()})
 
 
-def _is_spectrum(mi: MitsubaModule, model: Model, name: str) -> bool:
+def _is_weight_spectrum(mi: MitsubaModule, model: Model, name: str) -> bool:
     """Return whether Mitsuba stores a weight as coefficients of a spectrum: a colour."""
     return mi.is_spectral and len(np.unique(getattr(model, name))) > 1
 
@@ -144,13 +144,13 @@ def list_free_shapes(model: Model) -> list[str]:
     return [name for name in model.free_values if not model.parameters[name].linear]
 
 
-def is_tracked(model: Model, name: str) -> bool:
-    """Return whether the value of some lobe depends on the parameter, as Dr.Jit tracks it."""
+def depends_on_parameter(model: Model, name: str) -> bool:
+    """Return whether the value of some lobe has a derivative by the parameter in Dr.Jit."""
     values = {
         n: double_precision.to_scalar(getattr(model, n)) for n in model.shapes(anisotropic=True)
     }
     dr.enable_grad(values[name])
-    wi, wo = (double_precision.to_vector(w) for w in random_pairs(2, seed=6))
+    wi, wo = (double_precision.to_vector(w) for w in draw_direction_pairs(2, seed=6))
     lobes = [lobe for _, lobe in model.bind(values).terms()]
     terms = [lobe.eval(wi, wo) for lobe in lobes]
     terms += [lobe.quadratic(wi, wo) for lobe in lobes if lobe.quadratic]
@@ -183,7 +183,8 @@ def _differentiate_lobes(
 ) -> list[FloatArray]:
     """Return the derivatives of all lobes by a shape parameter, by Dr.Jit's forward mode.
 
-    They are two arrays (n, lobes): of the terms with the weights, and with the weights' squares.
+    A lobe's value is a term times its weight, and in a few models another one times the weight's
+    square. Returns the derivatives of the terms, then those of the others, each (n, lobes).
     """
     values = to_shape_scalars(model)
     dr.enable_grad(values[name])

@@ -13,7 +13,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitFloat, JitVector, MitsubaObject
 from brdfkit.core.jit.padding import pad
 
-SIGNIFICANCE = 0.01  # probability that the χ² tests of a check reject a correct sampler
+SIGNIFICANCE = 0.01  # probability that the χ² tests of a check together reject a correct sampler
 SAMPLES = 400_000
 # Numbers of the χ² histogram's cells, and of points in a cell at which the density is integrated,
 # both along each axis; with fewer points the correct sampler of a small sun is rejected
@@ -27,7 +27,8 @@ def run_chi_squared_test(
     """Test by Pearson's χ² test whether drawn directions have the density `pdf`.
 
     Returns the p-value, or None if the test rejects. `tests` is the number of such tests in a
-    check, which share the level of significance; `dimensions` is the number of arguments of `draw`.
+    check, which divides its level of significance among them; `dimensions` is the number of
+    arguments of `draw`.
     """
     import drjit as dr
     import mitsuba as mi
@@ -51,7 +52,7 @@ def draw_points(n: int, seed: int, dimensions: int = 2) -> tuple[JitFloat, ...]:
     return tuple(mi.Float(pad(row)) for row in u)
 
 
-def make_quadrature() -> tuple[JitVector, FloatArray]:
+def make_sphere_quadrature() -> tuple[JitVector, FloatArray]:
     """Return a quadrature over the sphere: directions (mi.Vector3f) and solid angles (n,) [sr]."""
     import mitsuba as mi
 
@@ -69,7 +70,7 @@ def _make_grid() -> tuple[FloatArray, FloatArray]:
     return w.astype(np.float32), np.sin(theta) * 2 * np.pi**2 / (RINGS * POINTS)
 
 
-def to_numbers(value: JitFloat, n: int) -> FloatArray:
+def broadcast_to_array(value: JitFloat, n: int) -> FloatArray:
     """Convert a value of Mitsuba to an array (n,), even if it is one number for all directions."""
     return np.broadcast_to(np.array(value, float).ravel(), n)
 
@@ -81,6 +82,6 @@ def count_standard_errors(weights: FloatArray, expected: FloatArray) -> float:
     is the largest deviation of a channel.
     """
     weights = np.asarray(weights, float)
-    # The error combines those of the mean and of the quadrature that gave `expected`
+    # Combines the errors of the mean and of the quadrature that gave `expected`
     error = np.hypot(weights.std(axis=1) / np.sqrt(weights.shape[1]), 1e-3 * np.abs(expected))
     return float(np.max(np.abs(weights.mean(axis=1) - expected) / np.maximum(error, 1e-12)))

@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.checks import directions
 from brdfkit.checks.plugin_subject import PluginSubject
 from brdfkit.checks.registry import check_of, larger_or_nan
-from brdfkit.checks.variants import WAVELENGTHS, to_channels
+from brdfkit.checks.variants import WAVELENGTHS, stack_channels
 from brdfkit.core.array_types import JitColour, JitFloat, JitVector, MitsubaObject
 
 NO_ENVIRONMENT = "nothing to check: the emitter is no environment"
@@ -62,8 +62,8 @@ def check_weights(subject: PluginSubject) -> tuple[bool, str]:
     draw, eval_radiance_and_pdf = make_sampler(subject)
     w, weight, sample_pdf = draw(*u)
     radiance, pdf = eval_radiance_and_pdf(w)
-    weight, radiance = (to_channels(x, n) for x in (weight, radiance))
-    pdf, sample_pdf = (directions.to_numbers(x, n) for x in (pdf, sample_pdf))
+    weight, radiance = (stack_channels(x, n) for x in (weight, radiance))
+    pdf, sample_pdf = (directions.broadcast_to_array(x, n) for x in (pdf, sample_pdf))
     worst = 0.0
     for a, b in ((weight * sample_pdf, radiance), (sample_pdf, pdf)):
         # Rounding decides in which block of the map a direction on an edge lies, so 0.1 % of the
@@ -78,9 +78,9 @@ def check_normalisation(subject: PluginSubject) -> tuple[bool, str]:
     """Check that the density `pdf_direction` integrates to 1 over the sphere."""
     if not subject.plugin.is_environment():
         return True, NO_ENVIRONMENT
-    w, solid_angle = directions.make_quadrature()
+    w, solid_angle = directions.make_sphere_quadrature()
     pdf = make_sampler(subject)[1](w)[1]
-    total = float(directions.to_numbers(pdf, len(solid_angle)) @ solid_angle)
+    total = float(directions.broadcast_to_array(pdf, len(solid_angle)) @ solid_angle)
     return abs(total - 1) < 5e-3, f"integral {total:.5f}"
 
 
@@ -92,7 +92,9 @@ def check_mean_light(subject: PluginSubject) -> tuple[bool, str]:
     u = directions.draw_points(directions.SAMPLES, seed=2)
     draw, eval_radiance_and_pdf = make_sampler(subject)
     _, weight, _ = draw(*u)
-    w, solid_angle = directions.make_quadrature()
-    expected = to_channels(eval_radiance_and_pdf(w)[0], len(solid_angle)) @ solid_angle
-    deviation = directions.count_standard_errors(to_channels(weight, directions.SAMPLES), expected)
+    w, solid_angle = directions.make_sphere_quadrature()
+    expected = stack_channels(eval_radiance_and_pdf(w)[0], len(solid_angle)) @ solid_angle
+    deviation = directions.count_standard_errors(
+        stack_channels(weight, directions.SAMPLES), expected
+    )
     return deviation < 4.5, f"mean weight and quadrature {deviation:.1f} standard errors apart"

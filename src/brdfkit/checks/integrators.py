@@ -28,7 +28,7 @@ def check_reference(subject: PluginSubject) -> tuple[bool, str]:
     pixels = np.array(film, float)
     pixels = pixels.reshape(-1, pixels.shape[-1])
 
-    # Convert the expected radiance to the channels of the film, of which an alpha is left out
+    # Convert the expected radiance to the film's channels, of which an alpha channel is left out
     expected = np.asarray(expected, float)
     if pixels.shape[1] == 1:
         expected = np.atleast_1d(np.array(mi.luminance(mi.Color3f(*expected.tolist()))).ravel())

@@ -14,9 +14,9 @@ import numpy as np
 
 from brdfkit.checks.variants import (
     WAVELENGTHS,
+    convert_to_variant_channels,
     read_weights,
-    to_channels,
-    to_variant_channels,
+    stack_channels,
 )
 from brdfkit.core.array_types import FloatArray, MitsubaObject
 from brdfkit.core.geometry.directions import from_angles
@@ -25,7 +25,7 @@ from brdfkit.mitsuba_bridge.bsdf.from_dictionary import BsdfMaterial
 from brdfkit.model import Model
 from brdfkit.model.evaluation import compute_lobe_values
 
-# [degrees] angles of incidence of the statistical checks, and their azimuth [rad], off the axes
+# Angles of incidence [degrees] of the statistical checks, and their azimuth [rad], off the axes
 INCIDENCES = (0, 30, 60, 75, 85)
 AZIMUTH = 0.5
 
@@ -68,7 +68,7 @@ class Subject:
         current variant.
         """
         if isinstance(self.material, Measured):
-            return to_variant_channels(self.rendered.eval(wi, wo), self.rendered)
+            return convert_to_variant_channels(self.rendered.eval(wi, wo), self.rendered)
         if self.model is None:
             return self.material.eval(wi, wo)
         plain, squared = compute_lobe_values(self.model, wi, wo)
@@ -115,7 +115,7 @@ class Subject:
 
         outgoing = mi.Vector3f(np.asarray(wo, np.float32).T)
         value = self.bsdf.eval(mi.BSDFContext(), self.make_interaction(wi), outgoing)
-        return to_channels(value, len(wi)).T
+        return stack_channels(value, len(wi)).T
 
 
 def list_incidences() -> list[tuple[float, FloatArray]]:
@@ -123,7 +123,9 @@ def list_incidences() -> list[tuple[float, FloatArray]]:
     return [(degrees, from_angles(np.radians(degrees), AZIMUTH)) for degrees in INCIDENCES]
 
 
-def random_pairs(n: int, seed: int, max_degrees: float = 89.0) -> tuple[FloatArray, FloatArray]:
+def draw_direction_pairs(
+    n: int, seed: int, max_degrees: float = 89.0
+) -> tuple[FloatArray, FloatArray]:
     """Draw random pairs of directions, two arrays (n, 3), for comparing values of BRDFs.
 
     Polar angles are uniform, so that many directions are grazing. Every second pair is close to a

@@ -8,7 +8,7 @@ import numpy as np
 from brdfkit.checks import directions
 from brdfkit.checks.plugin_subject import PluginSubject
 from brdfkit.checks.registry import check_of, larger_or_nan
-from brdfkit.checks.variants import WAVELENGTHS, to_channels
+from brdfkit.checks.variants import WAVELENGTHS, stack_channels
 from brdfkit.core.array_types import JitColour, JitFloat, JitVector, MitsubaObject
 
 # Two directions in which light travels, because phase functions may depend on the direction
@@ -67,8 +67,8 @@ def check_weights(subject: PluginSubject) -> tuple[bool, str]:
         draw, eval_value_and_pdf = make_sampler(subject, forward)
         wo, weight, sample_pdf = draw(*u)
         value, pdf = eval_value_and_pdf(wo)
-        weight, value = (to_channels(x, n) for x in (weight, value))
-        pdf, sample_pdf = (directions.to_numbers(x, n) for x in (pdf, sample_pdf))
+        weight, value = (stack_channels(x, n) for x in (weight, value))
+        pdf, sample_pdf = (directions.broadcast_to_array(x, n) for x in (pdf, sample_pdf))
         for a, b in ((weight * pdf, value), (sample_pdf, pdf)):
             worst = larger_or_nan(worst, float(np.max(np.abs(a - b) / np.maximum(np.abs(b), 1e-6))))
     return worst < 1e-3, f"relative difference at most {worst:.1e}"
@@ -77,13 +77,13 @@ def check_weights(subject: PluginSubject) -> tuple[bool, str]:
 @check_of("phase")
 def check_normalisation(subject: PluginSubject) -> tuple[bool, str]:
     """Check that no light is lost: the density and the value integrate to 1 over the sphere."""
-    w, solid_angle = directions.make_quadrature()
+    w, solid_angle = directions.make_sphere_quadrature()
     n = len(solid_angle)
     totals: dict[str, list[float]] = {"density": [], "value": []}
     for forward in FORWARD:
         value, pdf = make_sampler(subject, forward)[1](w)
-        totals["density"].append(float(directions.to_numbers(pdf, n) @ solid_angle))
-        totals["value"].extend(to_channels(value, n) @ solid_angle)
+        totals["density"].append(float(directions.broadcast_to_array(pdf, n) @ solid_angle))
+        totals["value"].extend(stack_channels(value, n) @ solid_angle)
     farthest = {name: max(t, key=lambda x: (np.isnan(x), abs(x - 1))) for name, t in totals.items()}
     passed = all(abs(total - 1) < 1e-3 for total in farthest.values())
     return passed, ", ".join(f"integral of the {name} {t:.5f}" for name, t in farthest.items())
@@ -98,14 +98,14 @@ def check_mean_cosine(subject: PluginSubject) -> tuple[bool, str]:
     import mitsuba as mi
 
     u = directions.draw_points(directions.SAMPLES, seed=2, dimensions=3)
-    w, solid_angle = directions.make_quadrature()
+    w, solid_angle = directions.make_sphere_quadrature()
     worst = 0.0
     for forward in FORWARD:
         draw, eval_value_and_pdf = make_sampler(subject, forward)
         wo, weight, _ = draw(*u)
         cosine = np.array(mi.Vector3f(*forward)).ravel() @ np.array(wo)
-        weighted_cosine = to_channels(weight, directions.SAMPLES) * cosine
-        value = to_channels(eval_value_and_pdf(w)[0], len(solid_angle))
+        weighted_cosine = stack_channels(weight, directions.SAMPLES) * cosine
+        value = stack_channels(eval_value_and_pdf(w)[0], len(solid_angle))
         expected = value @ (np.array(forward) @ np.array(w) * solid_angle)
         worst = larger_or_nan(worst, directions.count_standard_errors(weighted_cosine, expected))
     return worst < 4.5, f"samples and quadrature at most {worst:.1f} standard errors apart"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from brdfkit.checks.material_subject import AZIMUTH, Subject, list_incidences, random_pairs
+from brdfkit.checks.material_subject import AZIMUTH, Subject, draw_direction_pairs, list_incidences
 from brdfkit.checks.registry import check_of
 from brdfkit.core.discovery.plugin_files import MODELS
 from brdfkit.core.errors import BrdfkitError
@@ -16,7 +16,7 @@ from brdfkit.regression.problem.not_finite import require_finite_lobes, require_
 @check_of(MODELS)
 def check_reciprocity(subject: Subject) -> tuple[bool, str]:
     """Check that the BRDF is reciprocal, f(wi, wo) = f(wo, wi), at 10,000 pairs of directions."""
-    wi, wo = random_pairs(10_000, seed=4)
+    wi, wo = draw_direction_pairs(10_000, seed=4)
     forth, back = subject.material.eval(wi, wo), subject.material.eval(wo, wi)
     difference = np.max(np.abs(forth - back) / np.maximum(np.abs(forth), 1e-12))
     tolerance = 1e-3 if subject.is_single_precision else 1e-10

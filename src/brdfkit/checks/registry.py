@@ -27,7 +27,7 @@ def describe_error(error: BaseException, path: Path) -> str:
     frames = traceback.extract_tb(error.__traceback__)
     lines = [f.lineno for f in frames if Path(f.filename) == path]
     place = f"{path.name}, line {lines[-1]}" if lines else path.name
-    # Mitsuba puts a plugin's traceback into the message
+    # Mitsuba puts a plugin's traceback into the message, and its last line is the reason
     words = [line.strip() for line in str(error).splitlines() if line.strip()]
     reason = words[-1].rstrip(".") if words else type(error).__name__
     reason = reason.removeprefix("BrdfkitError: ")
@@ -35,7 +35,7 @@ def describe_error(error: BaseException, path: Path) -> str:
     return f"{place}: {hint}{reason}"
 
 
-Check = Callable[..., tuple[bool, str]]  # (subject) → (passed, figure)
+Check = Callable[..., tuple[bool, str]]  # takes the subject, returns (passed, figure)
 checks: dict[str, dict[str, Check]] = {kind: {} for kind in KINDS}
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from brdfkit.checks.material_subject import INCIDENCES, Subject, list_incidences
 from brdfkit.checks.registry import check_of, larger_or_nan
-from brdfkit.checks.variants import to_channels
+from brdfkit.checks.variants import stack_channels
 from brdfkit.core.array_types import (
     FloatArray,
     JitColour,
@@ -47,10 +47,10 @@ def check_chi_squared(subject: Subject) -> tuple[bool, str]:
 
         def sample(u: Sequence[JitFloat], si: MitsubaObject = si) -> tuple[JitVector, JitFloat]:
             drawn, _ = subject.bsdf.sample(mi.BSDFContext(), si, u[0], mi.Point2f(u[1], u[2]))
-            return _to_square(mi, drawn.wo, si.wi), dr.select(drawn.pdf > 0, mi.Float(1), 0)
+            return _map_to_square(mi, drawn.wo, si.wi), dr.select(drawn.pdf > 0, mi.Float(1), 0)
 
         def pdf(point: JitVector, si: MitsubaObject = si) -> JitFloat:
-            wo, jacobian = _to_direction(mi, point, si.wi)
+            wo, jacobian = _map_to_direction(mi, point, si.wi)
             return subject.bsdf.pdf(mi.BSDFContext(), si, wo) * jacobian
 
         # If the coarser integrals of the density reject, the finest one decides
@@ -66,7 +66,7 @@ def check_chi_squared(subject: Subject) -> tuple[bool, str]:
     return not rejected, "; ".join([f"smallest p-value {np.min(p_values):.3g}", *rejected])
 
 
-def _to_square(mi: MitsubaModule, wo: JitVector, wi: JitVector) -> JitVector:
+def _map_to_square(mi: MitsubaModule, wo: JitVector, wi: JitVector) -> JitVector:
     """Map the half vector of two directions to the point (φ_h / 2π, y) of the unit square.
 
     θ_h = π/2 y³ and φ_h are the polar angle and azimuth of the half vector. The power makes cells
@@ -76,16 +76,17 @@ def _to_square(mi: MitsubaModule, wo: JitVector, wi: JitVector) -> JitVector:
 
     s = wi + wo
     s = s * dr.rsqrt(dr.maximum(dr.dot(s, s), 1e-20))
-    s = dr.select(
-        s.z < 0, -s, s
-    )  # the half vector of a direction below the surface, where the density is 0
+    # The half vector points down only if a direction is below the surface, where the density is 0
+    s = dr.select(s.z < 0, -s, s)
     theta = dr.atan2(dr.sqrt(s.x * s.x + s.y * s.y), s.z)
     phi = dr.atan2(s.y, s.x) / (2 * dr.pi)
     return mi.Point2f(dr.select(phi < 0, phi + 1, phi), (theta / (dr.pi / 2)) ** (1 / 3))
 
 
-def _to_direction(mi: MitsubaModule, point: JitVector, wi: JitVector) -> tuple[JitVector, JitFloat]:
-    """Map a point of the unit square to the direction wo, the inverse of `_to_square`.
+def _map_to_direction(
+    mi: MitsubaModule, point: JitVector, wi: JitVector
+) -> tuple[JitVector, JitFloat]:
+    """Map a point of the unit square to the direction wo, the inverse of `_map_to_square`.
 
     Returns wo, and the Jacobian of the map, d solid angle / d area.
     """
@@ -107,7 +108,7 @@ def check_coverage(subject: Subject) -> tuple[bool, str]:
     """
     worst, where = 0.0, ""
     for degrees, wi in list_incidences():
-        weights = to_channels(sample_weights(subject, wi), SAMPLES).mean(axis=0)
+        weights = stack_channels(sample_weights(subject, wi), SAMPLES).mean(axis=0)
         mean = float(weights.mean())
         expected = float(directional_albedo(subject.eval_expected, wi).mean())
         error = np.hypot(weights.std() / np.sqrt(len(weights)), TOLERANCE * expected)
@@ -128,15 +129,15 @@ def check_weights(subject: Subject) -> tuple[bool, str]:
     for _degrees, wi in list_incidences():
         n = 20_000
         si = subject.make_interaction(wi)
-        drawn, weight = subject.bsdf.sample(mi.BSDFContext(), si, *draw_uniform(n, seed=3))
+        drawn, weight = subject.bsdf.sample(mi.BSDFContext(), si, *draw_uniform_numbers(n, seed=3))
         value, pdf = subject.bsdf.eval_pdf(mi.BSDFContext(), si, drawn.wo)
         value_2 = subject.bsdf.eval(mi.BSDFContext(), si, drawn.wo)
         pdf_2 = subject.bsdf.pdf(mi.BSDFContext(), si, drawn.wo)
-        dr.eval(drawn, weight, value, pdf, value_2, pdf_2)  # in one kernel, compiled once
+        dr.eval(drawn, weight, value, pdf, value_2, pdf_2)  # one kernel computes all
 
         # Samples below the surface have a density of 0
         valid = np.array(drawn.pdf) > 0
-        value, value_2, weight = (to_channels(x, n)[:, valid] for x in (value, value_2, weight))
+        value, value_2, weight = (stack_channels(x, n)[:, valid] for x in (value, value_2, weight))
         pdf, pdf_2, sample_pdf = (np.array(x)[valid] for x in (pdf, pdf_2, drawn.pdf))
         pairs = [(weight * pdf, value), (value, value_2), (pdf, pdf_2), (pdf, sample_pdf)]
         for a, b in pairs:
@@ -151,7 +152,7 @@ def compute_weight_spread(subject: Subject, degrees: float, samples: int = SAMPL
     `INCIDENCES`.
     """
     spectrum = sample_weights(subject, dict(list_incidences())[degrees], samples)
-    weights = to_channels(spectrum, samples).mean(axis=0)
+    weights = stack_channels(spectrum, samples).mean(axis=0)
     return float(weights.std() / weights.mean())
 
 
@@ -162,10 +163,10 @@ def sample_weights(
     import mitsuba as mi
 
     si = subject.make_interaction(wi)
-    return subject.bsdf.sample(mi.BSDFContext(), si, *draw_uniform(samples, seed))[1]
+    return subject.bsdf.sample(mi.BSDFContext(), si, *draw_uniform_numbers(samples, seed))[1]
 
 
-def draw_uniform(n: int, seed: int) -> tuple[JitFloat, JitVector]:
+def draw_uniform_numbers(n: int, seed: int) -> tuple[JitFloat, JitVector]:
     """Draw the uniform random numbers for `n` samples of a BSDF, as (mi.Float, mi.Point2f)."""
     import mitsuba as mi
 

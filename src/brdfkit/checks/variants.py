@@ -8,10 +8,10 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 from brdfkit.model import Model
 
-WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # [nm] at which spectral variants are checked
+WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)  # wavelengths [nm] of the checks in spectral variants
 
 
-def to_channels(spectrum: JitColour, n: int) -> FloatArray:
+def stack_channels(spectrum: JitColour, n: int) -> FloatArray:
     """Convert `n` spectra of Mitsuba to an array (channels, n), without polarisation."""
     import mitsuba as mi
 
@@ -19,7 +19,7 @@ def to_channels(spectrum: JitColour, n: int) -> FloatArray:
     return np.broadcast_to(channels.reshape(len(channels), -1), (len(channels), n))
 
 
-def to_variant_channels(values: FloatArray, material: Measured) -> FloatArray:
+def convert_to_variant_channels(values: FloatArray, material: Measured) -> FloatArray:
     """Convert values (n, c) of a measured material to the channels of the current variant.
 
     Returns an array (n, channels). In a spectral variant a colour becomes a sum of three basis
@@ -29,7 +29,7 @@ def to_variant_channels(values: FloatArray, material: Measured) -> FloatArray:
 
     if values.shape[1] == 1:
         return np.broadcast_to(values, (len(values), len(WAVELENGTHS) if mi.is_spectral else 1))
-    if material.channels != RGB:  # only in a spectral variant, since others convert to RGB
+    if material.channels != RGB:  # wavelengths, only in a spectral variant
         nm = wavelengths(material)
         order = np.argsort(nm)
         return np.stack([np.interp(WAVELENGTHS, nm[order], row) for row in values[:, order]])
@@ -50,4 +50,4 @@ def read_weights(bsdf: MitsubaObject, model: Model) -> FloatArray:
     si: MitsubaObject = dr.zeros(mi.SurfaceInteraction3f, 1)
     if mi.is_spectral:
         si.wavelengths = WAVELENGTHS
-    return np.stack([to_channels(bsdf.eval_attribute(n, si), 1)[:, 0] for n in model.weights()])
+    return np.stack([stack_channels(bsdf.eval_attribute(n, si), 1)[:, 0] for n in model.weights()])

@@ -42,7 +42,10 @@ def find_measured(name: str, mends: Mapping[str, bool]) -> Measured:
 
 
 def refuse_mends(name: str, what: str, mends: Mapping[str, bool]) -> None:
-    """Raise `BrdfkitError` for repairs of the file `name`, which is `what`, not a measurement."""
+    """Raise `BrdfkitError` if repairs, `mends`, are asked of `name`, which is no measurement.
+
+    `what` says in the error what it is.
+    """
     if mends:
         raise BrdfkitError(
             f"{name} is {what}: --mirror-azimuth and --divide-by-cos are for measured samples only."

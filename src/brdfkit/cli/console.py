@@ -17,7 +17,7 @@ from brdfkit.core.progress_bar import Progress, progress
 if TYPE_CHECKING:
     import rich.console
 
-MINIMUM_WIDTH, UNLIMITED_WIDTH = 20, 10_000  # characters in a line
+MINIMUM_WIDTH, UNLIMITED_WIDTH = 20, 10_000  # smallest and largest length of a line [characters]
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Console:
         return out
 
     def progress(self, what: str) -> AbstractContextManager[Progress]:
-        """Show a progress bar within the block, which gets its function (steps done, in all)."""
+        """Show a progress bar in a block, which gets a function (steps done, in all) to move it."""
         return nullcontext(lambda done, total: None) if self.quiet else progress(what)
 
     def print_json(self, record: Any) -> None:

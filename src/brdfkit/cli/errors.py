@@ -29,7 +29,7 @@ class Group(click.Group):
     def make_context(
         self, info_name: str | None, args: list[str], *others: Any, **extra: Any
     ) -> Any:
-        with translate_errors() if args else nullcontext():  # without args, click shows the help
+        with translate_errors() if args else nullcontext():  # without args, click shows its help
             return super().make_context(info_name, args, *others, **extra)
 
     def invoke(self, ctx: click.Context) -> Any:
@@ -43,7 +43,7 @@ class Group(click.Group):
                 return super().invoke(ctx)
             finally:
                 if sys.stdout:  # it is None where the shell closed it
-                    sys.stdout.flush()  # here, so that `translate_errors` sees its errors
+                    sys.stdout.flush()  # here, where `translate_errors` catches errors
 
 
 class FinalMessage(click.ClickException):
@@ -73,7 +73,7 @@ def translate_errors() -> Iterator[None]:
         command = error.ctx.command_path if error.ctx else "brdfkit"
         raise FinalMessage(f"{_describe_misuse(error)}; see {command} --help.") from error
     except OSError as error:
-        if error.filename is not None:  # for instance, a file name is too long
+        if error.filename is not None:  # an error of a file, such as a too long name
             raise FinalMessage(
                 f"{error.filename!s:.200}: {error.strerror}; name another."
             ) from error

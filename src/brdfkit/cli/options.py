@@ -14,7 +14,7 @@ from brdfkit.cli.settings import Command
 from brdfkit.core import catalogue
 from brdfkit.core.errors import BrdfkitError
 
-SPP = 64  # samples per pixel
+SPP = 64  # default number of samples per pixel
 MESHES = "your own mesh, .obj or .ply"
 SCENE_FILES = (
     f"{MESHES}; or FILE.xml#ID, a scene and the id of the BSDF in it to replace; #ID may be left "

@@ -76,7 +76,7 @@ def _print_picture(picture: Rendering, path: Path, console: Console) -> None:
         if picture.differences:
             console.output.print(picture.head)
             console.print_image_errors(picture.errors())
-        else:  # without the noise floor, which `write_picture` reports
+        else:  # a noise floor that was not reached is reported by `write_picture`
             console.output.print(str(replace(picture, requested_noise_floor=None)))
         console.print_written(written)
 

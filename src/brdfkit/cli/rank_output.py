@@ -21,10 +21,10 @@ IGNORED_OPTIONS = {"robust": "robust", "spectral": "spectral", "fixed": "fixed",
 def recommend_model(
     names: list[str], material: Measured, how: Mapping[str, Any], console: Console
 ) -> tuple[list[str], Ranking | None]:
-    """Rank all models on a material, and print the ranking, if BEST is among the `names`.
+    """Rank all models on a material, and print the ranking, if "best" is among the `names`.
 
-    Returns the names with the recommended model instead of BEST, and the ranking or None. `how` are
-    the settings of the fit. An interrupted ranking ends the command.
+    Returns the names with the recommended model instead of "best", and the ranking or None. `how`
+    are the settings of the fit. An interrupted ranking ends the command.
     """
     from brdfkit.fitting.ranking import rank
     from brdfkit.fitting.settings import require_no_sample_settings
@@ -47,7 +47,7 @@ def recommend_model(
 
 
 def refuse_best(names: Iterable[str]) -> None:
-    """Raise `BrdfkitError` where BEST is among the `names` of models for several files."""
+    """Raise `BrdfkitError` where "best" is among the `names` of models for several files."""
     if BEST in names:
         raise BrdfkitError("-m best ranks models on one material; name one FILE, or a model.")
 

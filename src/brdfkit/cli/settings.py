@@ -15,7 +15,7 @@ from brdfkit.core.errors import BrdfkitError
 
 Command = Callable[..., Any]
 
-FIT_OPTIONS: dict[str, dict[str, Any]] = {  # options of a fit, except -m
+FIT_OPTIONS: dict[str, dict[str, Any]] = {  # options of a fit, except -m: name → attributes
     "--loss": {
         "default": "cbrt",
         "metavar": "LOSS",

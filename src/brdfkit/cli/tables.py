@@ -31,7 +31,7 @@ def make_table(
     rows = [row for section in sections for row in section]
     cells = [[h, *texts] for h, *texts in zip(headers, *rows, strict=True)]
     whole = [k == 0 or column.startswith(">") for k, column in enumerate(columns)]
-    widths = _compute_widths(cells, whole, width - 3 * len(columns) + 1)  # without gaps
+    widths = _compute_widths(cells, whole, width - 3 * len(columns) + 1)  # gaps take the rest
     if widths is None:
         return None
 
@@ -51,7 +51,7 @@ def make_table(
 
 
 def format_blocks(columns: Sequence[str], sections: Sections, width: int) -> Iterator[str]:
-    """Yield the lines of a narrow table, with each text of a row below the last one."""
+    """Yield the lines of a narrow table, in which the texts of a row stand below each other."""
     for row in (row for section in sections for row in section):
         for k, (column, text) in enumerate(zip(columns, row, strict=True)):
             name = column.removeprefix(">")

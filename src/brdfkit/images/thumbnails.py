@@ -16,7 +16,7 @@ from brdfkit.images.ball.ball import draw_ball
 from brdfkit.images.ball.half_vectors import Brdf
 
 BALL_SIZE = 92  # pixels
-LARGEST_RANGE = 5  # [decades] largest ratio of the values at the rim and at the centre
+LARGEST_RANGE = 5  # largest ratio [decades] of the value at the rim to that at the centre
 # The distance of the smallest value from the centre, relative to the range of values. Without it
 # both sides of a line would meet at the centre, and a dark lobe would look like a wedge
 MARGIN = 0.2
@@ -67,7 +67,7 @@ class Radius:
         self.decades = 1.03 * (highest - self.lowest)
 
     def __call__(self, values: ArrayLike) -> Any:
-        floor = 10.0**self.lowest  # unknown values (NaN) have the radius NaN
+        floor = 10.0**self.lowest  # unlike values below it, NaN stays NaN
         return (np.log10(np.maximum(values, floor)) - self.lowest) / self.decades
 
     def ticks(self) -> AnyArray:
@@ -82,11 +82,11 @@ class Radius:
         return ticks[np.log10(ticks) - self.lowest < self.decades]
 
 
-THETA_I = (30, 60)  # [degrees] angles of incidence of the plotted lobes
+THETA_I = (30, 60)  # angles of incidence [degrees] of the plotted lobes
 # Two of Okabe and Ito's colours, which are visible on white and on black
 COLOURS = ("#d55e00", "#3d94d1")
-RADIUS, BORDER = 100, 14  # [pixels] radius of the half disc, and width of the border around it
-STEP = 1.5  # [degrees] angle between neighbouring points of a line
+RADIUS, BORDER = 100, 14  # radius of the half disc, and width of the border around it [pixels]
+STEP = 1.5  # angle between neighbouring points of a line [degrees]
 
 
 def make_lobe_picture(name: str, brdf: Brdf) -> Picture:
@@ -138,21 +138,23 @@ def _draw_half_disc(radius: Radius) -> str:
 
 def _draw_curve(theta_o: AnyArray, radii: AnyArray, colour: str) -> str:
     """Draw a line through points with the `radii` (n,), relative to the rim, at `theta_o` (n,)."""
-    points = " ".join(f"{x:.1f},{y:.1f}" for x, y in zip(*_to_pixels(theta_o, radii), strict=True))
+    points = " ".join(
+        f"{x:.1f},{y:.1f}" for x, y in zip(*_polar_to_pixels(theta_o, radii), strict=True)
+    )
     return f'<polyline points="{points}" stroke="{colour}" stroke-width="1.6"/>'
 
 
 def _draw_arrow(theta_i: float, colour: str) -> str:
     """Draw an arrow at the rim for the light's direction, labelled with its angle [degrees]."""
-    (x, y), (to_x, to_y) = (_to_pixels(-theta_i, r) for r in (1.0, 0.86))
-    label_x, label_y = _to_pixels(-theta_i, 1.09)
+    (x, y), (to_x, to_y) = (_polar_to_pixels(-theta_i, r) for r in (1.0, 0.86))
+    label_x, label_y = _polar_to_pixels(-theta_i, 1.09)
     return (
         f'<path d="M{x:.1f} {y:.1f}L{to_x:.1f} {to_y:.1f}" stroke="{colour}" stroke-width="2.5"/>'
         f'<text x="{label_x:.1f}" y="{label_y + 3:.1f}" fill="{colour}">{theta_i}°</text>'
     )
 
 
-def _to_pixels(theta: Any, radius: Any) -> tuple[Any, Any]:
+def _polar_to_pixels(theta: Any, radius: Any) -> tuple[Any, Any]:
     """Convert an angle [degrees] and a radius, 1 at the rim, to pixels x and y (downwards)."""
     theta = np.radians(theta)
     return RADIUS * radius * np.sin(theta), -RADIUS * radius * np.cos(theta)

@@ -73,7 +73,7 @@ def data_get(names: tuple[str, ...], console: Console) -> None:
     files = {}
     for name in names:
         with console.progress(f"download {name}") as bar:
-            progress: Any = bar  # the total is None for a file of unknown size
+            progress: Any = bar  # its total may be None, for an unknown size
             files[name] = download(name, progress)
     _print_files(files, collections.values(), console)
 

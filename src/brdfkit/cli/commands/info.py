@@ -67,7 +67,7 @@ def info(
             raise BrdfkitError(
                 "--mirror-azimuth and --divide-by-cos mend a measurement: name a FILE."
             )
-        _print_shipped(catalogue.list_materials(), catalogue.list_environments(), console)
+        _print_shipped_data(catalogue.list_materials(), catalogue.list_environments(), console)
         return
     if transfer and not (output and looks_like_volume(file)):
         raise BrdfkitError("--transfer is drawn over a volume: name a VOLUME, and an --output.")
@@ -138,7 +138,7 @@ def _find_notes(audit: Any) -> Mapping[str, Any]:
     return getattr(audit.data, "info", {})
 
 
-def _print_shipped(
+def _print_shipped_data(
     materials: Mapping[str, Any], environments: Mapping[str, Any], console: Console
 ) -> None:
     """Print the materials and environment maps that come with brdfkit."""

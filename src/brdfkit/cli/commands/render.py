@@ -1,7 +1,7 @@
 """`brdfkit render`: renders materials, a scene, a distance field or a volume.
 
-The user's words tell the kind of thing. Each kind has one function that renders it; KINDS lists
-them.
+The command recognises the kind of thing by its name. Each kind has one function that renders it;
+KINDS lists them.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from brdfkit.rendering import Rendering
     from brdfkit.rendering.film import Film
 
-    Rendered: TypeAlias = tuple[Rendering | Film, Path]  # with the path to write
+    Rendered: TypeAlias = tuple[Rendering | Film, Path]  # the result, and the path to write it to
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Request:
     preview: bool
     shadows: bool
     tone: ToneMapping
-    values: Sequence[str]  # words behind --set
+    values: Sequence[str]  # the words PARAMETER=VALUE behind --set
     scene: str
     environment: str | None
     spp: int | None
@@ -56,11 +56,14 @@ class Request:
     volume_settings: dict[str, Any]
 
     def pick_arguments(self, *names: str) -> dict[str, Any]:
-        """Return these options and those of samples as arguments of `brdfkit.render`."""
+        """Return the options `names`, those of samples and the seed, for `brdfkit.render`."""
         return {name: getattr(self, name) for name in ("spp", "noise_floor", "seed", *names)}
 
     def require_alone(self, name: str, what: str, *options: str) -> None:
-        """Raise `BrdfkitError` if `name`, a `what`, comes with other things or these options."""
+        """Raise `BrdfkitError` if other things are named besides `name`, or `options` are given.
+
+        `what` says in the error what `name` is, such as "a scene".
+        """
         if len(self.things) > 1:
             raise BrdfkitError(f"{name} is {what}, which is rendered alone: name nothing else.")
         given = {
@@ -227,7 +230,7 @@ def _render_preview(materials: Sequence[Any], request: Request) -> Rendering:
     )
 
 
-# How to find each kind of thing among the words, and to render it
+# For each kind of thing, a function that finds it among the words, and one that renders it
 KINDS: tuple[tuple[Callable[[Request], str | None], Callable[..., Rendered]], ...] = (
     (_find_field, _render_field),
     (_find_scene, _render_scene),

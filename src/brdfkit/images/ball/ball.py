@@ -28,12 +28,12 @@ def draw_ball(brdf: Brdf, side: int) -> tuple[AnyArray, AnyArray]:
 
 
 def _place_pixels(side: int) -> tuple[AnyArray, AnyArray, AnyArray]:
-    """Return the pixels' coordinates x, y in the unit disc, and the share that the disc covers."""
+    """Return the pixels' coordinates x, y in the unit disc, and the share of each in the disc."""
     centres = (np.arange(side) + 0.5) / side * 2 - 1
     x, y = np.meshgrid(centres, -centres)
     radius = np.hypot(x, y)
     cover = np.clip((1 - radius) * side / 2 + 0.5, 0, 1)
-    inside = np.minimum(1, 0.999 / np.maximum(radius, 1e-9))  # moves points of the rim inside
+    inside = np.minimum(1, 0.999 / np.maximum(radius, 1e-9))  # moves pixels at the rim inside
     return x * inside, y * inside, cover
 
 
@@ -51,7 +51,7 @@ def _compute_radiance(brdf: Brdf, x: AnyArray, y: AnyArray) -> AnyArray:
 
 @cache
 def _compute_exposure() -> float:
-    """Return the factor of all pictures, by which a matt white ball has the peak `WHITE`."""
+    """Return the exposure of all pictures, which gives a matt white ball the peak `WHITE`."""
     x, y, cover = _place_pixels(32)
     white = _compute_radiance(
         lambda wi, wo: np.full((len(wi), 1), WHITE / np.pi), x[cover > 0], y[cover > 0]

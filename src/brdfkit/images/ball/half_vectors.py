@@ -12,12 +12,12 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.geometry.directions import from_angles, from_half_difference, normalize
 
-CELLS = 90  # in theta_h, of equal width in its square root, as in MERL [Matusik et al. 2003]
-# [degrees] angles at which the BRDF is evaluated for each cell
+CELLS = 90  # number of cells of theta_h, with equal steps of √theta_h [Matusik et al. 2003]
+# The other Rusinkiewicz angles [degrees], at which the BRDF is averaged for each cell of theta_h
 THETA_D, PHI_D, PHI_H = (5, 20, 35, 50, 65), (0, 45, 90, 135), (0, 90, 180, 270)
 FLOOR = 1e-3  # smallest density of half vectors, relative to the mean density
 
-Brdf: TypeAlias = Callable[[Any, Any], Any]  # (wi, wo), each (n, 3) → values (n, channels)
+Brdf: TypeAlias = Callable[[Any, Any], Any]  # wi (n, 3), wo (n, 3) → values (n, channels)
 
 
 class HalfVectors:

@@ -12,8 +12,8 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.geometry.directions import from_angles
 
-# Numbers of cells of a tabulated light over polar angle and azimuth, and of points along the side
-# of a cell, over which the light is averaged
+# A light is tabulated in cells: the numbers of cells over polar angle and azimuth, and of points
+# along each side of a cell, over which its radiance is averaged
 CELLS, POINTS = (96, 192), 4
 FLOOR = 0.02  # smallest density of a direction, relative to the mean density
 
@@ -26,7 +26,7 @@ def court_radiance(w: AnyArray) -> AnyArray:
 
 def hall_radiance(w: AnyArray) -> AnyArray:
     """Return the radiance (n,) of a dim hall with seven small lamps from directions `w` (n, 3)."""
-    lamps = (  # azimuth and elevation [degrees], and radiance
+    lamps = (  # (azimuth, elevation) in degrees, and radiance
         ((180, 40), 500),
         ((140, 30), 200),
         ((230, 50), 500),
@@ -92,7 +92,7 @@ class LightSampling:
 
     def __init__(self, light: Callable[[AnyArray], AnyArray]) -> None:
         heights, widths = CELLS
-        # All cells have the same range of polar angles; directions are uniform within a cell
+        # Polar angles are divided evenly into rows of cells, whose edges have these cosines
         self.z = np.cos(np.arange(heights + 1) / heights * np.pi)
         inside = (np.arange(POINTS) + 0.5) / POINTS
         z = (self.z[:-1, None] + np.diff(self.z)[:, None] * inside).ravel()

@@ -9,7 +9,7 @@ from brdfkit.images.ball.lights import LightSampling
 
 # The direction to the camera, as in the scene of `brdfkit.render`
 VIEW = normalize((0.0, -8.0, 2.2))
-SOURCES = 256  # directions drawn by a light, whose highlights get more normals
+SOURCES = 256  # number of directions drawn by a light, whose highlights get more normals
 
 
 def draw_normals(
@@ -59,8 +59,8 @@ def find_normals(x: AnyArray, y: AnyArray) -> AnyArray:
 def make_frames(normals: AnyArray) -> AnyArray:
     """Return the matrices (n, 3, 3) that rotate from the world to the frame of each normal (n, 3).
 
-    The z axis of a frame is the normal, its x axis follows the ball's parallels, which is also the
-    direction in which `brdfkit.render` brushes anisotropic materials.
+    The z axis of a frame is the normal. Its x axis follows the ball's circles of latitude, which is
+    also the direction in which `brdfkit.render` brushes anisotropic materials.
     """
     x = normalize(np.cross((0.0, 0.0, 1.0), normals))
     return np.stack([x, np.cross(normals, x), normals], axis=1)

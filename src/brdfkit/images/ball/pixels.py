@@ -1,8 +1,9 @@
-"""Pixels of pictures of a ball under direct light, as sums of a BRDF: I_p = Σ_s a_s f(wi_s, wo_s).
+"""Pixels of pictures of a ball under direct light, as sums of a BRDF f: Σ_s a_s f(wi_s, wo_s).
 
-The directions wi and the factors a are drawn once, by the light and by a measured material, and
-combined by the balance heuristic [Veach & Guibas 1995]. So the pixels of any other BRDF f, and
-their derivatives, are linear in f, and fits can compare them with the measured material's pixels.
+A pixel has the direction pairs wi_s, wo_s and the factors a_s. The light and a measured material
+draw the directions wi_s once; the balance heuristic [Veach & Guibas 1995] combines them in the
+factors. So the pixels of any other BRDF f, and their derivatives, are linear in f, and fits can
+compare them with the measured material's pixels.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ from brdfkit.images.ball.half_vectors import Brdf, HalfVectors
 from brdfkit.images.ball.lights import LIGHTS, get_light_sampling
 from brdfkit.images.ball.normals import VIEW, draw_normals, make_frames
 
-# Number of pixels in all pictures, and of directions per pixel that the light draws; the material
-# draws as many
+# Number of pixels in all pictures together, and number of directions per pixel that the light
+# draws; the material draws as many
 PIXELS, DIRECTIONS = 960, 64
 BRIGHT_SHARE = 0.01  # share of a picture's pixels that may be brighter than 1
 
@@ -48,7 +49,7 @@ class Pixels:
         """Return the values (pixels, channels) of the pixels of a ball with another BRDF."""
         return sum_pairs(brdf(self.wi, self.wo), self.shares, self.pairs)
 
-    def take_first(self, count: int) -> Pixels:
+    def take_first_pixels(self, count: int) -> Pixels:
         """Return the first `count` pixels."""
         return self.at(slice(count))
 

@@ -1,4 +1,4 @@
-"""Compares pictures with a reference by several metrics, and with the error by noise alone.
+"""Compares pictures with a reference by several metrics, and estimates the errors due to noise.
 
 Pictures are arrays (height, width, 3) of linear sRGB; a mask (height, width) selects the pixels to
 compare.

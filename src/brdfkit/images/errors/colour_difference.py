@@ -7,8 +7,8 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray
 
 TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
-WHITE_XYZ = np.array([0.3127 / 0.3290, 1, 0.3583 / 0.3290])  # D65, by its x and y
-# [cd/m²] luminance of the value 1: the white of paper in HDR pictures, by Report ITU-R BT.2408
+WHITE_XYZ = np.array([0.3127 / 0.3290, 1, 0.3583 / 0.3290])  # white D65, by its x and y
+# Luminance [cd/m²] of the value 1: that of white paper in HDR pictures, by Report ITU-R BT.2408
 WHITE = 203.0
 # Matrices from XYZ to BT.2020, from BT.2020 to LMS, and from LMS after PQ's curve to ITP
 # [ITU-R 2019]
@@ -59,7 +59,7 @@ def _compare_lab(first: tuple[Any, Any, Any], other: tuple[Any, Any, Any]) -> An
     a1, a2 = (1 + G) * a1, (1 + G) * a2
     C1, C2 = np.hypot(a1, b1), np.hypot(a2, b2)
     h1, h2 = (np.degrees(np.arctan2(b, a)) % 360 for a, b in ((a1, b1), (a2, b2)))
-    # Hues differ along the shorter arc; a grey has no hue, and takes the hue of the other colour
+    # Hues are angles, compared along the shorter arc. A grey, without hue, takes the other's hue
     grey = C1 * C2 == 0
     Δh = np.where(grey, 0, (h2 - h1 + 180) % 360 - 180)
     ΔL, ΔC, ΔH = L2 - L1, C2 - C1, 2 * np.sqrt(C1 * C2) * np.sin(np.radians(Δh / 2))

@@ -1,8 +1,8 @@
 """HDR-FLIP: the visible difference when flipping between two pictures [Andersson et al. 2021].
 
-The package flip-evaluator computes this metric at several exposures. It would choose them by all
-pixels, and a black background would make them too many and too long; here only the pixels of the
-mask determine them.
+The package flip-evaluator computes this metric at several exposures. By itself it would choose them
+from all pixels, and a black background would lead to too many and too long exposures. Here they are
+chosen from the pixels of the mask alone.
 """
 
 from math import ceil
@@ -14,10 +14,10 @@ from brdfkit.core.colours import luminance
 from brdfkit.images.errors.masks import crop_to_mask
 from brdfkit.images.errors.psnr import PEAK
 
-# The shortest exposure brings the brightest pixel to this value, the longest one the median pixel;
-# at this value the tone curve of ACES reaches 0.85 of its range
+# The shortest exposure brings the brightest pixel to this value, and the longest one the median
+# pixel. It is the value at which the tone curve of ACES reaches 0.85 of its range
 EXPOSED_VALUE = 2.1188
-# [stops] largest range of exposures, since a median of 0 would make the range infinite
+# Largest range of exposures [stops], since a median of 0 would make the range infinite
 LARGEST_RANGE = 8
 
 

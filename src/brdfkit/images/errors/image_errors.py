@@ -11,7 +11,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, BoolArray
 from brdfkit.core.documents import Document, Paragraph, Shown, Table
 from brdfkit.core.documents.parts import SOFT
-from brdfkit.images.errors.masks import to_mask
+from brdfkit.images.errors.masks import make_mask
 from brdfkit.images.errors.metrics import METRICS, Metric
 from brdfkit.images.errors.psnr import find_peak
 
@@ -20,7 +20,7 @@ NOISE = "({})"  # the format of an error that does not exceed the noise floor
 
 @dataclass(frozen=True, repr=False)
 class ImageErrors(Shown):
-    """Errors of pictures by several metrics, and the errors by noise alone; prints as a table.
+    """Errors of pictures by several metrics, and their noise floor; prints as a table.
 
     `Rendering.errors` computes them. The noise floor is the error of the reference against itself
     with another random seed. A difference that does not exceed the floor counts as none, although
@@ -38,7 +38,7 @@ class ImageErrors(Shown):
         if their packages are installed. An error is nan for a picture that is not finite, and if no
         pixel shows the material.
     floor : dict of str to float
-        Metric → the error by noise alone; nan if there is one sample per pixel.
+        Metric → noise floor; nan if there is one sample per pixel.
     peak : float
         The peak of PSNR: the 99.9th percentile of the reference.
     notes : tuple of str
@@ -83,7 +83,7 @@ class ImageErrors(Shown):
         unknown = "The noise floor needs two samples per pixel."
         shown = any(text.startswith("(") for _, *row in self.table() for text in row)
         reading = [none] * shown + [unknown] * math.isnan(self.floor["psnr"])
-        if math.isnan(self.peak):  # no pixel was compared, and a note says why
+        if math.isnan(self.peak):  # no pixel was compared; the notes say why
             return list(self.notes)
         return [*reading, f"PSNR's peak is {self.peak:.3g}.", *self.notes]
 
@@ -108,10 +108,10 @@ def compare_pictures(
     """
     reference, *names = pictures
     first = pictures[reference]
-    mask = to_mask(first, mask)
+    mask = make_mask(first, mask)
     compared = [*(pictures[name] for name in names), other_seed]
 
-    errors, absent = {}, []  # errors: metric → errors of the pictures, followed by the noise floor
+    errors, absent = {}, []  # `errors`: metric → the pictures' errors, then the noise floor
     for key, metric in METRICS.items():
         try:
             errors[key] = [_compute_error(metric, first, picture, mask) for picture in compared]
@@ -126,7 +126,7 @@ def compare_pictures(
 def _compute_error(
     metric: Metric, reference: AnyArray, picture: AnyArray | None, mask: BoolArray
 ) -> float:
-    """Return a picture's error; nan for no picture, an empty mask, or values not finite."""
+    """Return a picture's error; nan if it is None or not finite, or the mask is empty."""
     if picture is None or not mask.any() or not np.isfinite([reference[mask], picture[mask]]).all():
         return math.nan
     return metric.function(reference, picture, mask)

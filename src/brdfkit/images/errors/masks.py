@@ -7,10 +7,10 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, BoolArray
 
 
-def to_mask(picture: AnyArray, mask: BoolArray | None) -> BoolArray:
+def make_mask(picture: AnyArray, mask: BoolArray | None) -> BoolArray:
     """Return `mask` (height, width), or a mask of all pixels of the picture if it is None.
 
-    >>> to_mask(np.zeros((1, 2, 3)), None)
+    >>> make_mask(np.zeros((1, 2, 3)), None)
     array([[ True,  True]])
     """
     return np.full(picture.shape[:2], True) if mask is None else mask

@@ -12,7 +12,7 @@ from brdfkit.images.errors.flip import flip
 from brdfkit.images.errors.masks import crop_to_mask
 from brdfkit.images.errors.psnr import psnr
 
-RADIUS = 5  # [pixels] of SSIM's window: 11 × 11, a Gaussian of σ = 1.5, as in the paper
+RADIUS = 5  # pixels; SSIM's window has 11 × 11, a Gaussian of σ = 1.5 pixels, as in the paper
 
 
 def ssim(reference: AnyArray, picture: AnyArray, mask: BoolArray) -> float:

@@ -1,9 +1,9 @@
 """Estimates the noise of a path-traced picture from its passes.
 
-The passes of a rendering are independent, so the means of two halves of them differ by noise alone.
+The passes of a rendering are independent, so the means of two halves of them differ only by noise.
 From the halves follows a picture that differs from the mean as much as a rendering with another
-seed would, which need not be rendered. For squared differences this is exact on average, for other
-metrics if the noise is small: at 16 samples per pixel SSIM becomes up to 0.02 too large.
+seed would, so that no second rendering is needed. For squared differences this is exact on average.
+Other metrics need small noise: at 16 samples per pixel SSIM becomes up to 0.02 too large.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ from math import inf, nan
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, BoolArray
-from brdfkit.images.errors.masks import to_mask
+from brdfkit.images.errors.masks import make_mask
 
 PEAK = 99.9  # percentile of the reference that is the peak, so that fireflies do not determine it
 
@@ -18,7 +18,7 @@ def find_peak(reference: AnyArray, mask: BoolArray | None = None) -> float:
     >>> find_peak(np.full((4, 4, 3), 0.5))
     0.5
     """
-    values = reference[to_mask(reference, mask)]
+    values = reference[make_mask(reference, mask)]
     return float(np.percentile(values, PEAK)) if values.size else nan
 
 
@@ -37,10 +37,10 @@ def psnr(
     >>> psnr(np.full((4, 4, 3), 0.5), np.full((4, 4, 3), 0.45))
     20.0
     """
-    mask = to_mask(reference, mask)
+    mask = make_mask(reference, mask)
     if not mask.any():
         return nan
     error = np.square(picture[mask] - reference[mask], dtype=float).mean()
     peak = find_peak(reference, mask) if peak is None else peak
-    with np.errstate(divide="ignore"):  # -inf for a black reference
+    with np.errstate(divide="ignore"):  # a black reference has log10(0) = -inf
         return float(10 * np.log10(peak**2 / error)) if error else inf

@@ -196,7 +196,7 @@ class PictureProblem(PixelProblem):
     def make_smaller(self, rng: np.random.Generator) -> PictureProblem:
         """Return the problem with few samples and pixels, to compare start points quickly."""
         samples = _draw_samples(self.model, self.samples, self.space, FEW_SAMPLES, rng)
-        pixels = self.pixels.take_first(math.ceil(len(self.pixels.values) * PIXEL_SHARE))
+        pixels = self.pixels.take_first_pixels(math.ceil(len(self.pixels.values) * PIXEL_SHARE))
         return PictureProblem(self.model, samples, self.picture, self.space, pixels)
 
 
