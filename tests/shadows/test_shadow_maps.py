@@ -50,7 +50,7 @@ def test_the_nearest_surface_is_found():
     seen = np.array(si.is_valid())
     depths = placement.camera.compute_depths(np.array(si.p).T[seen])
     assert placement.nearest == pytest.approx(depths.min(), rel=0.02)
-    assert placement.depths[0] == placement.nearest
+    assert placement.visible_depths[0] == placement.nearest
 
 
 @pytest.mark.parametrize("kind", LIGHTS)

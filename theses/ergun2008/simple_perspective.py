@@ -18,7 +18,7 @@ NEAR = 0.1  # distance of the camera's near plane, over that of the nearest poin
 def make_simple_perspective(placement):
     """Return the `Projection` of a simple perspective shadow map, for a `Placement`."""
     corners, middle = placement.relevant_body.corners, placement.relevant_body.centroid
-    z_n, z_f = placement.depths
+    z_n, z_f = placement.visible_depths
     camera = placement.camera.replace_near_and_far(NEAR * z_n, z_f).move_behind(corners).matrix
     cube, (centre,) = project_points(camera, corners), project_points(camera, [middle])
     matrix = view_matrix(camera @ placement.light.point, cube, centre) @ camera

@@ -1,7 +1,7 @@
 """Shadow volumes made from a depth map in place of meshes [McCool 2000].
 
 A depth map is a picture of the distances at which the light sees surfaces. Its texels are joined to
-a surface, which is torn where neighbouring depths jump. The border of this surface is the
+a surface, except where the depth jumps from a texel to the next. The border of this surface is the
 silhouette from which the walls of the volumes lead away from the light. So shapes without triangles
 cast shadows, too, and the cost depends on the map's resolution, not on the scene.
 """
@@ -30,12 +30,12 @@ def make_hybrid_shadow(
 ) -> LightVolumes:
     """Make the shadow volumes of a scene in one light, from a depth map that the light sees.
 
-    The volumes are counted in the picture of `sensor`, by depth-pass: front and back walls between
-    the camera and a point. Depth-fail would need caps, which would lie on all surfaces that the
-    light sees.
+    The volumes are counted in the picture of `sensor`, by depth-pass: the walls between the camera
+    and a point. Depth-fail would also count caps, which would lie on all lit surfaces and darken
+    them by mistake.
 
     resolution : number of texels along a side of the depth map.
-    jump : largest change of depth between joined texels; see `make_mesh_from_depths`.
+    jump : largest change of depth between joined texels [widths of a texel].
     """
     placement = Placement.from_scene(scene, sensor, emitter)
     pixels = max(sensor.film().size())
@@ -54,8 +54,9 @@ def make_volumes_from_depth_map(
 ) -> LightVolumes:
     """Make the shadow volumes of a scene's depth map, to be counted in the picture of a camera.
 
+    resolution : number of texels along a side of the depth map.
+    jump : largest change of depth between joined texels [widths of a texel].
     pixels : number of pixels along the longer side of the picture.
-    resolution, jump : as in `make_hybrid_shadow`.
     """
     projection = focused.make_projection(placement)
     depths = np.array(render_depths(scene, projection, resolution))
@@ -64,12 +65,12 @@ def make_volumes_from_depth_map(
 
 
 def make_mesh_from_depths(depths: FloatArray, projection: Projection, jump: float) -> Mesh:
-    """Return the surface that a depth map shows, as a mesh whose vertices are the texels' centres.
+    """Return the surface that a depth map shows, as a mesh with a vertex for each texel.
 
     depths : depths (n, n) of the map, infinite where the light sees no surface.
     projection : the projection by which the map was rendered.
-    jump : the surface is torn where the distance from the light changes between neighbouring texels
-        by more than this multiple of a texel's width.
+    jump : the surface has a gap where the distance from the light changes between neighbouring
+        texels by more than this number of texel widths.
     """
     n = len(depths)
     middles = (np.arange(n) + 0.5) * 2 / n - 1
@@ -88,5 +89,5 @@ def make_mesh_from_depths(depths: FloatArray, projection: Projection, jump: floa
 
 
 def stack_cell_corners(values: AnyArray) -> AnyArray:
-    """Return the values (4, n - 1, n - 1) at the corners of each cell between texels (n, n)."""
+    """Return the values at the four corners of each cell of a grid (n, n), (4, n - 1, n - 1)."""
     return np.stack([values[:-1, :-1], values[:-1, 1:], values[1:, :-1], values[1:, 1:]])

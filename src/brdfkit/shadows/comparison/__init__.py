@@ -1,4 +1,4 @@
-"""Compares shadow techniques with exact shadows, on a scene of the user's."""
+"""Compares shadow techniques with exact, ray-traced shadows on a scene that the user chooses."""
 
 from brdfkit.shadows.comparison.comparing import compare as compare
 from brdfkit.shadows.comparison.comparison import ShadowComparison as ShadowComparison

@@ -11,13 +11,13 @@ from brdfkit.core.projective.light import Light
 from brdfkit.mitsuba_bridge.scene_file import load_scene_file
 from brdfkit.shadows.maps.scenes import SCENES, make_scene_in_all_views
 
-MAX_SIDE = 16384  # the most texels along a side of a map, and pixels along a side of a picture
+MAX_SIDE = 16384  # largest side of a shadow map [texels], and of a picture [pixels]
 
 
 def check_names(what: str, names: Any) -> tuple[str, ...]:
-    """Return names of techniques as a tuple; a single one may be given as a string.
+    """Check the names of techniques, one or several, and return them as a tuple.
 
-    what : name of the argument, for the error message.
+    what : the name of the checked argument of `compare`, for the error message.
     """
     if isinstance(names, str):
         return (names,)
@@ -38,12 +38,13 @@ def check_picture_size(size: Any) -> tuple[int, int]:
 
 
 def load_scene(scene: Any, size: tuple[int, int]) -> MitsubaObject:
-    """Return a `mi.Scene`, given a name in `SCENES`, a file, or a loaded scene.
+    """Return the `mi.Scene` to compare techniques on, which must suit shadow maps.
 
+    scene : a loaded scene, a scene file, or the name of a scene in `SCENES`.
     size : (width, height) of the pictures of a named scene [pixels].
 
     Raises `BrdfkitError` for anything else, for a file that cannot be loaded, and for a scene
-    without cameras or lights, or with kinds of them that shadow maps do not support.
+    without cameras or lights, or with cameras or lights that shadow maps do not support.
     """
     import mitsuba as mi
 

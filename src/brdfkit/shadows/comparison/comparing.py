@@ -36,7 +36,8 @@ from brdfkit.shadows.maps.techniques import FILES
 PROJECTIONS = tuple(FILES["projection"])
 FILTERS = "depth", "percentage_closer", "variance", "moment"
 
-# A function that makes a view's shadow by a technique, an object with `visibility(p, n, active)`
+# A technique is a function from a view, and the placement of its camera and light, to a shadow: an
+# object whose `visibility(p, n, active)` says how much light arrives at points p with normals n
 Technique: TypeAlias = Callable[[LitView, Placement], Any]
 
 
@@ -53,19 +54,18 @@ def compare(
 ) -> ShadowComparison:
     """Compare shadow techniques with exact shadows, in all views and lights of a scene.
 
-    After Ctrl-C, the result has the views and lights that are finished; if not even the first of
-    them is, it has the techniques that are finished there.
+    After Ctrl-C, the result has the finished pairs of a view and a light; if not even the first
+    pair is finished, it has the techniques that are finished in this pair.
 
     Parameters
     ----------
     scene : path, str or mitsuba.Scene
-        A scene file of Mitsuba's (.xml), or a loaded scene. Its lights are point, spot or
-        directional ones, its cameras perspective ones; each camera is a view. Or the name of a
-        scene that comes with brdfkit, with four views and two suns: ``"street"``, ``"foliage"`` or
-        ``"objects_on_a_ground"``.
+        A Mitsuba scene file (.xml), or a loaded scene, with point, spot or directional lights and
+        perspective cameras; each camera is a view. Or the name of a scene that comes with brdfkit,
+        with four views and two suns: ``"street"``, ``"foliage"`` or ``"objects_on_a_ground"``.
     projections : iterable of str, optional
-        Names of projections, by default all. Every combination of projections, filters and
-        partitions is scored; the plugin `shadow_map` lists them.
+        Names of projections, by default all. Every combination of a projection, a filter and a
+        partition is scored; ``brdfkit plugins shadow_map`` lists the names.
     filters : iterable of str, optional
         Names of filters, by default depth, percentage_closer, variance and moment.
     partitions : iterable of str, default ("whole",)
@@ -128,7 +128,7 @@ def compare(
                 )
             for label, technique in techniques.items():
                 report((len(results) - 1) * len(techniques) + len(scores), requested)
-                with raise_first_cause():  # so that Ctrl-C arrives as KeyboardInterrupt
+                with raise_first_cause():  # Dr.Jit would hide Ctrl-C in a RuntimeError
                     scores_here, lit = score_technique(view, placement, tracked, technique)
                 pictures.add_technique(label, lit)
                 scores[label] = scores_here
@@ -148,9 +148,9 @@ def compare(
 def score_unlit_view(
     pictures: Pictures, scores: dict[str, Scores], techniques: Mapping[str, Technique]
 ) -> None:
-    """Fill in unknown scores for a view without lit surfaces, where no technique can be wrong.
+    """Give each technique unknown scores in a view without lit surfaces, where none can be wrong.
 
-    pictures, scores : pictures and scores of the view, to which those of each technique are added.
+    pictures, scores : the view's pictures and its scores by technique, which are filled in.
     """
     for label in techniques:
         pictures.add_technique(label, np.ones(pictures.exact.size))
@@ -160,10 +160,11 @@ def score_unlit_view(
 def choose_techniques(
     kinds: Mapping[str, tuple[str, ...]], others: tuple[str, ...], resolution: int
 ) -> dict[str, Technique]:
-    """Return label → function that makes a technique's shadow, for all that are to be compared.
+    """Return all techniques to compare: label of the technique → function that makes its shadow.
 
-    kinds : kind of map technique, such as "filter" → names; all their combinations are compared.
+    kinds : the names of map techniques by kind, such as "filter"; all combinations are compared.
     others : names of techniques without maps.
+    resolution : number of texels along a side of a map.
 
     Raises `BrdfkitError` for an unknown name, and if there is no technique.
     """
@@ -188,11 +189,11 @@ def make_map_shadow(view: LitView, placement: Placement, **settings: Any) -> Lig
 
 
 def combine_technique_names(names: Mapping[str, tuple[str, ...]]) -> dict[str, dict[str, Any]]:
-    """Return label → keyword arguments of `LightShadow`, for all combinations of techniques.
+    """Combine projections, filters and partitions: label → keyword arguments of `LightShadow`.
 
     A label leaves out the kinds that have a single name. Raises `BrdfkitError` for an unknown name.
 
-    names : kind of technique → names.
+    names : the names of techniques by kind: "projection", "filter" and "partition".
     """
     for kind, its in names.items():
         for name in its:
@@ -208,9 +209,10 @@ def combine_technique_names(names: Mapping[str, tuple[str, ...]]) -> dict[str, d
 def draw_maps(
     view: LitView, placement: Placement, kinds: Mapping[str, tuple[str, ...]], resolution: int
 ) -> dict[str, MapPictures]:
-    """Return label → pictures of the shadow maps, for every projection in every partition.
+    """Draw the shadow maps of a view for every pair of a projection and a partition, by its label.
 
-    kinds : kind of technique → names.
+    kinds : the names of techniques by kind, such as "projection".
+    resolution : number of texels along a side of a map.
     """
     chosen = combine_technique_names({kind: kinds[kind] for kind in ("projection", "partition")})
     return {

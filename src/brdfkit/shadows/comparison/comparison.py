@@ -28,12 +28,13 @@ class ShadowComparison(Shown):
     Attributes
     ----------
     scores : dict
-        Technique → its `Scores` in each view and light: all lights of the first view, then of the
-        next.
+        For each technique, its `Scores` in each view and light: first in all lights of the first
+        view, then in all lights of the second view, and so on.
     lights : int
         The number of lights.
     requested : int
-        The number of scores that were requested; after Ctrl-C there are fewer.
+        The number of scores that were requested, over all techniques, views and lights; after
+        Ctrl-C fewer are finished.
     pictures : tuple of Pictures
         The pictures of each view and light for the page, in the order of the scores.
     """
@@ -45,15 +46,15 @@ class ShadowComparison(Shown):
 
     @property
     def means(self) -> dict[str, Scores]:
-        """Technique → mean scores over views and lights, sorted by descending PSNR, NaN last."""
+        """The mean scores of each technique over views and lights, the best PSNR first."""
         means = {label: average_scores(scores) for label, scores in self.scores.items()}
         return dict(sorted(means.items(), key=lambda item: -np.nan_to_num(item[1].psnr, nan=-99)))
 
     @property
     def relative(self) -> dict[str, Scores]:
-        """Technique → mean absolute differences of the scores between the two lights of a view.
+        """The mean absolute difference between the scores in light 1 and in light 2, by technique.
 
-        They show how much a small move of the light changes. The techniques have the order of
+        It shows how much a small move of the light changes. The techniques have the order of
         `means`. The dictionary is empty unless there are two lights, and a view in which both
         shine.
         """
@@ -113,10 +114,10 @@ class ShadowComparison(Shown):
         return f"Interrupted: {self.finished} of {self.requested} scores are finished. "
 
     def write(self, path: str | Path, progress: Callable[[int, int], object] | None = None) -> None:
-        """Write a page with the table, which can be sorted, and all pictures.
+        """Write an HTML page with all pictures, and with the table, which readers can sort.
 
-        For each view in each light, it shows the exact shadows, and for each technique its shadows,
-        its errors and how its maps' texels are spread over the scene.
+        For each view in each light, it shows the exact shadows. For each technique it shows the
+        shadows, the errors, and how the texels of the maps are spread over the scene.
 
         Parameters
         ----------
@@ -139,7 +140,7 @@ class ShadowComparison(Shown):
         write_page(self, path, progress)
 
     def document(self) -> Document:
-        """Return the mean scores, a row per technique, with the best of each column in bold."""
+        """Return the table of mean scores as a document, with the best of each column in bold."""
         means, texts = list(self.means.values()), self.table()
         best = []
         for name, *_, more in COLUMNS:

@@ -1,4 +1,7 @@
-"""The surfaces that a camera sees in one light, with exact shadows as a comparison's reference."""
+"""`LitView`: the surfaces that a camera sees in one light, with their exact shadows.
+
+The exact shadows are the reference to which a comparison compares the techniques.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -17,9 +20,9 @@ class LitView:
     """The surfaces at the centres of all pixels of a camera's picture, row by row, in one light.
 
     scene : the `mi.Scene`.
-    sensor : one of its cameras.
-    emitter : one of its lights: a point, spot or directional one.
-    si : the `mi.SurfaceInteraction3f` of each pixel.
+    sensor : one of the scene's cameras.
+    emitter : one of the scene's lights: a point, spot or directional light.
+    si : the `mi.SurfaceInteraction3f` of each pixel, where its central ray hits a surface.
     size : (height, width) of the picture.
     """
 
@@ -63,7 +66,7 @@ class LitView:
 
     @cached_property
     def light_sample(self) -> tuple[MitsubaObject, JitColour]:
-        """The `mi.DirectionSample3f` from each surface to the light, and the light unshadowed."""
+        """The `mi.DirectionSample3f` from each surface to the light, and the unshadowed light."""
         import mitsuba as mi
 
         sample: tuple[Any, Any] = self.emitter.sample_direction(self.si, mi.Point2f(0.5))
@@ -71,9 +74,9 @@ class LitView:
 
     @cached_property
     def facing(self) -> BoolArray:
-        """Whether (pixels,) the light would reach the visible side of a surface without shadows.
+        """True in pixels whose surface the light would reach if there were no shadows, (pixels,).
 
-        Elsewhere all is dark: the surface faces away, or a spot does not reach it.
+        Elsewhere the surface is dark, as its visible side faces away or is outside a spot's cone.
         """
         import mitsuba as mi
 
@@ -84,7 +87,7 @@ class LitView:
 
     @cached_property
     def exact(self) -> BoolArray:
-        """Whether (pixels,) a shadow ray from the surface reaches the light: the exact shadow."""
+        """True in pixels where a shadow ray from the surface reaches the light, (pixels,)."""
         import mitsuba as mi
 
         ds, _ = self.light_sample
@@ -94,7 +97,7 @@ class LitView:
 
     @cached_property
     def unshadowed(self) -> FloatArray:
-        """The radiance (pixels, 3) of each surface by the light, without its shadow."""
+        """The radiance (pixels, 3) that each surface reflects if no shadows are cast."""
         import mitsuba as mi
 
         ds, light = self.light_sample

@@ -1,4 +1,4 @@
-"""Pictures that explain shadow maps: their texels on the scene, and their depths."""
+"""Pictures that explain shadow maps: the size of their texels on the scene, and their depths."""
 
 import zlib
 from dataclasses import dataclass
@@ -12,10 +12,10 @@ from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.maps.light_shadow import LightShadow, ShadowMap
 from brdfkit.shadows.maps.placement import Placement
 
-CHECKS = 32  # squares of the checkerboard along a side of a map
-SIDE = 256  # pixels along a side of the picture of depths
-OUTSIDE = 255  # the map index of pixels that no map covers
-DARK_SQUARE = 0.45  # the brightness of the dark squares of the checkerboard
+CHECKS = 32  # number of squares of the checkerboard along a side of a shadow map
+SIDE = 256  # side of the picture that shows the depths in all maps [pixels]
+OUTSIDE = 255  # map index of pixels that no map covers
+DARK_SQUARE = 0.45  # brightness of the dark squares of the checkerboard, relative to the others
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,8 @@ class CompressedArray:
     def from_array(cls, array: AnyArray) -> "CompressedArray":
         """Compress an array without loss.
 
-        The first bytes of all values come first, then the second ones and so on, as this compresses
-        better.
+        The bytes are reordered first, as this compresses better: the first byte of every value,
+        then the second byte of every value, and so on.
         """
         bytes_apart = np.ascontiguousarray(array).reshape(-1, 1).view(np.uint8).T
         return cls(array.shape, array.dtype.str, zlib.compress(bytes_apart.tobytes()))
@@ -51,9 +51,11 @@ class CompressedArray:
 
 @dataclass(frozen=True)
 class MapPictures:
-    """Pictures of the shadow maps of one projection and partition.
+    """Pictures of the shadow maps of one projection and partition, kept compressed.
 
-    checker, parts, view : the compressed arrays of the properties `shade`, `part` and `depths`.
+    checker : `shade`, compressed.
+    parts : `part`, compressed.
+    view : `depths`, compressed.
     """
 
     checker: CompressedArray
@@ -62,7 +64,7 @@ class MapPictures:
 
     @classmethod
     def from_view(cls, view: LitView, placement: Placement, **settings: Any) -> "MapPictures":
-        """Return the pictures of a view's shadow maps, by keyword arguments of `LightShadow`."""
+        """Make shadow maps for a view, by the `settings` of `LightShadow`, and draw them."""
         shadow = LightShadow(view.scene, placement, **settings)
         shade, part = draw_texel_checkerboard(shadow, view)
         depths = arrange_squares([scale_depths(each) for each in shadow.maps])
@@ -75,22 +77,23 @@ class MapPictures:
 
     @property
     def part(self) -> IntArray:
-        """The index (height, width) of the map that covers each pixel; `OUTSIDE` without a map."""
+        """The index (height, width) of the map that covers each pixel, or else `OUTSIDE`."""
         return self.parts.array
 
     @property
     def depths(self) -> FloatArray:
-        """The depths (SIDE, SIDE) in the maps, 0 near to 1 far; NaN without a surface.
+        """One picture (SIDE, SIDE) of the depths in all maps: 0 near, 1 far, NaN without a surface.
 
-        Several maps stand in rows, the first at the upper left.
+        Several maps are arranged in rows, the first at the upper left.
         """
         return self.view.array
 
 
 def draw_texel_checkerboard(shadow: LightShadow, view: LitView) -> tuple[IntArray, IntArray]:
-    """Return two pictures: the scene's brightness, 0 to 255, under a checkerboard, and map indices.
+    """Return the scene's brightness under a checkerboard, 0 to 255, and each pixel's map index.
 
-    The checkerboard is projected like a shadow map, so that its squares show the size of texels.
+    The checkerboard is projected onto the scene like a shadow map, so its squares show where texels
+    are large. Both pictures are (height, width); the index is `OUTSIDE` where no map reaches.
     """
     valid = np.array(view.si.is_valid())
     shade = valid * (0.3 + 0.7 * np.abs(np.array(view.si.wi.z)))
@@ -108,7 +111,10 @@ def draw_texel_checkerboard(shadow: LightShadow, view: LitView) -> tuple[IntArra
 
 
 def scale_depths(its_map: ShadowMap) -> FloatArray:
-    """Return the depths of a map, y upwards, from 0 at its nearest to 1 at its farthest surface."""
+    """Return a map's depths for a picture: 0 at the nearest surface, 1 at the farthest.
+
+    The percentiles 1 and 99 count as nearest and farthest. y points up; NaN means no surface.
+    """
     depths: FloatArray = np.array(its_map.depths)[::-1]
     known = depths[np.isfinite(depths)]
     if not known.size:
@@ -119,7 +125,7 @@ def scale_depths(its_map: ShadowMap) -> FloatArray:
 
 
 def arrange_squares(squares: list[FloatArray]) -> FloatArray:
-    """Return square pictures of any size, placed in rows in one square (SIDE, SIDE)."""
+    """Resize square pictures, and arrange them in rows in one square picture (SIDE, SIDE)."""
     columns = ceil(sqrt(len(squares)))
     side = SIDE // columns
     arranged = np.full((SIDE, SIDE), np.nan, np.float16)

@@ -21,13 +21,13 @@ from brdfkit.shadows.comparison.map_pictures import CHECKS, OUTSIDE, MapPictures
 from brdfkit.shadows.comparison.pictures import Pictures
 from brdfkit.shadows.comparison.scores import Scores, format_scores
 
-FLIP = ">FLIP"  # the heading of the column of FLIP errors, aligned to the right
-MAX_WIDTH = 320  # the most pixels across a picture on the page
-QUALITY = 60  # the quality of WebP pictures, from 0 to 100
-ERROR_SCALE = "RdBu_r"  # matplotlib's colours for light that is lost (blue) or gained (red)
-ERROR_STEPS = 8  # steps of colour from no error to all of the light; few make small files
-TINTS = "Set2"  # matplotlib's palette whose colours distinguish the maps
-NO_SURFACE = (0.16, 0.2, 0.3)  # the colour of texels whose light ray meets no surface
+FLIP = ">FLIP"  # heading of the column of FLIP errors; ">" aligns the column to the right
+MAX_WIDTH = 320  # largest width of a picture on the page [pixels]
+QUALITY = 60  # quality of the WebP pictures, from 0 to 100
+ERROR_SCALE = "RdBu_r"  # matplotlib's colour map for errors: blue for lost light, red for gained
+ERROR_STEPS = 8  # number of colours from no error to the largest; few colours make small files
+TINTS = "Set2"  # matplotlib's palette with a colour for each shadow map
+NO_SURFACE = (0.16, 0.2, 0.3)  # linear sRGB of texels whose light ray meets no surface
 
 
 def require_page_path(path: str | Path) -> None:
@@ -82,8 +82,9 @@ def describe_view(
 ) -> dict[str, Any]:
     """Return the page template's values for a view in a light: titles, pictures and captions.
 
+    place : the pictures of the view.
     order : the techniques in their order on the page.
-    scores, flips : the scores and the FLIP error of each of them.
+    scores, flips : the scores and the FLIP errors of the techniques, in this order.
     """
     exact = place.radiance(place.exact)
     white = float(np.percentile(exact[exact > 0], 99)) if exact.any() else 1.0
@@ -113,7 +114,7 @@ def describe_view(
 
 
 def describe_scores(scores: Scores, its_flip: float) -> str:
-    """Return the caption of a technique's picture, with its most important scores."""
+    """Return the caption of a technique's picture: its main scores, and its FLIP error if known."""
     if np.isnan(scores.wrong):
         return "nothing is in the light"
     text = f"PSNR {scores.psnr:.1f} dB, wrong {100 * scores.wrong:.2f} %"
@@ -121,9 +122,9 @@ def describe_scores(scores: Scores, its_flip: float) -> str:
 
 
 def compute_flips(place: Pictures, order: Sequence[str]) -> list[float]:
-    """Return the FLIP error of each technique's picture, shrunk as on the page.
+    """Return the FLIP error of each technique in a view, from pictures of the size on the page.
 
-    It is NaN without the package flip-evaluator, and where nothing faces the light.
+    It is NaN without the package flip-evaluator, and if no surface faces the light.
     """
     exact, mask = (
         shrink_for_page(place.radiance(place.exact)),
@@ -140,9 +141,9 @@ def compute_flips(place: Pictures, order: Sequence[str]) -> list[float]:
 
 
 def add_flip_column(rows: Sequence[tuple[str, ...]], flips: FloatArray) -> list[tuple[str, ...]]:
-    """Return the rows of the table, each with the mean FLIP error of the views where it is known.
+    """Return the rows of the table, each with its mean FLIP error over the views as a new cell.
 
-    flips : FLIP errors (views, rows).
+    flips : FLIP errors (views, rows); a view with an unknown error, NaN, does not count.
     """
     known = flips[np.isfinite(flips).all(axis=1)]
     return [(*row, f"{mean:.4f}") for row, mean in zip(rows, known.mean(axis=0), strict=True)]
@@ -159,20 +160,20 @@ def draw_radiance(picture: FloatArray, white: float) -> Any:
 
 
 def draw_errors(errors: FloatArray) -> Any:
-    """Draw errors (height, width), light gained or (negative) lost, as a data URL."""
+    """Draw errors (height, width), light gained (positive) or lost (negative), as a data URL."""
     shares = np.round(shrink_for_page(errors[..., None])[..., 0] * ERROR_STEPS) / ERROR_STEPS
     return encode_webp(apply_colour_map(ERROR_SCALE, (shares + 1) / 2)[..., :3], lossless=True)
 
 
 def draw_texels(maps: MapPictures) -> Any:
-    """Draw a scene under its shadow maps' checkerboards, one colour per map, as a data URL."""
+    """Draw the scene under the checkerboard of its shadow maps, a colour per map, as a data URL."""
     tints = np.ones((OUTSIDE + 1, 3))
     tints[:OUTSIDE] = apply_colour_map(TINTS, np.arange(OUTSIDE) % 8 / 7.99)[:, :3] ** 2
     return encode_as_data_url(shrink_for_page(maps.shade[..., None] * tints[maps.part]))
 
 
 def draw_depths(depths: FloatArray) -> Any:
-    """Draw depths (side, side), 0 near and bright to 1 far, as a data URL."""
+    """Draw depths (side, side) from 0, near and bright, to 1, far and dark, as a data URL."""
     bright = (1 - 0.9 * depths.astype(float))[..., None] ** 2
     return encode_as_data_url(np.where(np.isnan(bright), NO_SURFACE, bright))
 

@@ -11,13 +11,15 @@ from brdfkit.shadows.comparison.map_pictures import CompressedArray, MapPictures
 
 @dataclass
 class Pictures:
-    """The pictures of one view in one light: exact ones, and those of each technique.
+    """The pictures of one view in one light, by exact shadows and by each technique.
+
+    All of them are kept compressed.
 
     title : name of the view and the light.
     light : radiance (height, width, 3) of the surfaces by this light alone, without shadows.
-    arrives, towards : the compressed arrays of the properties `exact` and `facing`.
-    maps : projection and partition → pictures of their maps.
-    shares : technique → share (height, width) of the light that arrives, in steps of 1/255.
+    arrives, towards : the properties `exact` and `facing`.
+    maps : for each pair of a projection and a partition, by label, the pictures of its maps.
+    shares : for each technique, the share (height, width) of the light that arrives, 0 to 255.
     """
 
     title: str
@@ -30,7 +32,7 @@ class Pictures:
     @classmethod
     def from_view(cls, view: LitView, title: str) -> "Pictures":
         """Return the pictures of a view, to which techniques are added later."""
-        # Half precision suffices for pictures; larger radiance is limited to its largest number
+        # Half precision suffices for pictures; radiance above its largest number would be infinite
         radiance = np.minimum(view.unshadowed, np.finfo(np.float16).max).astype(np.float16)
         exact, facing = view.exact.reshape(view.size), view.facing.reshape(view.size)
         arrays = radiance.reshape(*view.size, 3), exact, facing
@@ -49,25 +51,25 @@ class Pictures:
 
     @property
     def exact(self) -> BoolArray:
-        """Whether (height, width) the light arrives, by shadow rays."""
+        """True in pixels (height, width) where the light arrives, by shadow rays."""
         return self.arrives.array
 
     @property
     def facing(self) -> BoolArray:
-        """Whether (height, width) the light would reach a visible surface without shadows."""
+        """True in pixels (height, width) whose surface is lit if no shadows are cast."""
         return self.towards.array
 
     def add_technique(self, technique: str, lit: FloatArray) -> None:
-        """Add the picture of a technique, by the shares (pixels,) of light that arrive with it."""
+        """Add the picture of a technique, given the share `lit` (pixels,) of light that arrives."""
         shares = np.round(255 * np.clip(lit, 0, 1)).astype(np.uint8)
         self.shares[technique] = CompressedArray.from_array(shares.reshape(self.arrives.shape))
 
     def lit(self, technique: str) -> FloatArray:
-        """Return the share (height, width) of the light that arrives with a technique."""
+        """Return the share (height, width), 0 to 1, of the light that arrives with a technique."""
         return self.shares[technique].array / np.float32(255)
 
     def radiance(self, lit: AnyArray) -> FloatArray:
-        """Return the picture (height, width, 3) with a share (height, width) of the light."""
+        """Return the picture (height, width, 3) if the share `lit` (height, width) arrives."""
         return self.unshadowed * lit[..., None]
 
 
@@ -78,5 +80,5 @@ def make_title(view: int, sensor: MitsubaObject, light: int, emitter: MitsubaObj
 
 
 def _format_object_name(thing: MitsubaObject) -> str:
-    """Return the name of a Mitsuba object in brackets; empty if Mitsuba made it up."""
+    """Return the user's name for a Mitsuba object, in brackets, or "" if it has none."""
     return "" if thing.id().startswith("_") or not thing.id() else f" ({thing.id()})"

@@ -7,16 +7,18 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray
 
-BINS = 64  # bins along each side of a map: small ones, but with enough points in each of them
-WHITE = 255.0  # the highest grey level
+BINS = 64  # bins along a side of a map, so few that each bin has enough points
+WHITE = 255.0  # largest grey level of a picture
 
 
 def share_of_texels_used(maps: Iterable[FloatArray], bins: int = BINS) -> float:
     """Return the share in (0, 1] of the shadow maps' area that visible points use.
 
-    It is Q1 of [Ergun 2008, 3.2], and NaN if no point is on a map.
+    It is the measure Q1 of [Ergun 2008, 3.2], and NaN if no point is on a map.
 
-    maps : for each map, the coordinates (n, 2) of points on it; those outside [0, 1]² do not count.
+    maps : for each map, the coordinates (n, 2) of the visible points on it; those outside [0, 1]²
+        do not count.
+    bins : number of bins along a side of a map in which points are counted.
 
     >>> share_of_texels_used([np.array([[0.2, 0.2], [0.7, 0.2]])], bins=2)
     0.5
@@ -30,12 +32,15 @@ def share_of_texels_used(maps: Iterable[FloatArray], bins: int = BINS) -> float:
 
 
 def aliasing_error(e: Any) -> float:
-    """Return the aliasing of a picture as one number [dB]; larger is better.
+    """Return how small the texels are in a picture, as one number [dB]; larger is better.
 
-    It is Q2 of [Ergun 2008, 3.2]: a picture of the areas `e` of the texels under all visible points
-    [pixels] is compared with a black one by PSNR, 10 log10(255² / mean e²). The thesis does not say
-    how e becomes a grey level. Here e is the level, at most 255, which gives figures as printed (27
-    to 37 dB). The result is NaN without points.
+    It is the measure Q2 of [Ergun 2008, 3.2], 10 log10(255² / mean e²): the PSNR between a black
+    picture and one whose grey levels are the texels' areas e. The thesis does not say how an area
+    becomes a grey level. Here it is the level, at most 255, which gives values like those in the
+    thesis (27 to 37 dB).
+
+    e : area in the picture [pixels] of the texel at each visible point; without points, the result
+        is NaN.
 
     >>> aliasing_error(np.full(9, 25.5))
     20.0
@@ -45,9 +50,10 @@ def aliasing_error(e: Any) -> float:
 
 
 def flicker(lit: Any, true: Any) -> float:
-    """Return the mean absolute change of the error from picture to picture, 0 at best.
+    """Return the mean absolute change of a technique's error between successive pictures.
 
-    lit, true : shares of the light (pictures, points), by the technique and exact.
+    lit, true : share of the light that arrives at each point (pictures, points), by the technique
+        and exactly. The error is their difference.
 
     >>> flicker([[1, 0], [0, 0]], [[1, 1], [1, 1]])
     0.5
@@ -57,12 +63,14 @@ def flicker(lit: Any, true: Any) -> float:
 
 
 def acne(lit: AnyArray, exact: AnyArray, facing: AnyArray, margin: int) -> float:
-    """Return the mean share of light that lit pixels lack, away from shadows [Ergun 2008, 3.1.2].
+    """Return the mean share of light that lit pixels wrongly lack, away from true shadows.
 
-    lit : share (height, width) of the light by the technique.
-    exact : whether the light arrives.
-    facing : whether the surface faces the light.
-    margin : number of pixels around shadows in which a soft border counts as no acne.
+    Surfaces that shadow themselves cause this [Ergun 2008, 3.1.2].
+
+    lit : share (height, width) of the light that arrives by the technique.
+    exact : True in pixels (height, width) where the light arrives exactly.
+    facing : True in pixels (height, width) whose surface faces the light.
+    margin : width [pixels] around shadows that does not count, as soft borders may darken it.
     """
     from scipy.ndimage import binary_dilation
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray
 
-# Attribute of `Scores`, heading, factor from its unit, decimals, and whether more is better
+# Each column of the table: the attribute of `Scores`, the heading, the factor that converts the
+# attribute to the unit in the heading, the number of decimals, and whether larger is better
 COLUMNS = (
     ("psnr", "PSNR [dB]", 1, 1, True),
     ("wrong", "wrong [%]", 100, 2, False),
@@ -30,19 +31,19 @@ class Scores:
     Attributes
     ----------
     psnr : float
-        The PSNR of the picture lit by this light alone, against exact shadows [dB]; Q3 in
-        [Ergun 2008, 3.2].
+        The PSNR between the picture and one with exact shadows, both lit by this light alone [dB];
+        Q3 in [Ergun 2008, 3.2].
     wrong : float
         The mean absolute error of the share of light that arrives, where surfaces face the light.
     acne : float
-        The mean share of light that lit surfaces lack, away from shadows.
+        The mean share of light that lit surfaces wrongly lack, away from true shadows.
     texture_use : float
-        The share of the maps' texels that the picture uses, Q1.
+        The share of the maps' area that the picture uses; Q1 in [Ergun 2008, 3.2].
     aliasing : float
-        A measure of how small the texels are in the picture, Q2; larger is better [dB].
+        A measure of how small the texels are in the picture [dB]; larger is better; Q2 there.
     camera_flicker, light_flicker : float
-        The mean change of the error from picture to picture, while the camera moves and while the
-        light does.
+        The mean change of the error between successive pictures, while the camera moves, and while
+        the light moves.
     build, look_up : float
         Processor time to make the maps, and to look up all pixels in them [s].
     """
@@ -64,16 +65,17 @@ NAMES = tuple(field.name for field in fields(Scores))
 def average_scores(scores: Sequence[Scores]) -> Scores:
     """Return the mean scores over several views and lights.
 
-    dB are averaged themselves, as in [Ergun 2008]. A picture without an error has infinite dB,
-    which count as 99. NaN is left out, as are dB against a black picture, -∞.
+    Means of dB are means of the decibels themselves, as in [Ergun 2008]. A picture without an error
+    has infinite PSNR, which counts as 99 dB. NaN is left out, and so is a PSNR of -∞.
     """
     return _average_columns(_to_table(scores))
 
 
 def average_light_differences(scores: Sequence[Scores]) -> Scores:
-    """Return the mean absolute differences between each view's scores in light 1 and in light 2.
+    """Return the mean over views of |score in light 1 - score in light 2|, for each score.
 
-    scores : scores of all views in which the two lights alternate.
+    scores : the scores of one technique: of the first view in light 1, the first view in light 2,
+        the second view in light 1, and so on.
     """
     table = _to_table(scores)
     first, second = table[::2], table[1::2]
@@ -81,7 +83,12 @@ def average_light_differences(scores: Sequence[Scores]) -> Scores:
 
 
 def format_scores(rows: Mapping[str, Scores]) -> list[tuple[str, ...]]:
-    """Return the scores of techniques as rows of texts; "–" for unknown ones."""
+    """Return the rows of a table, the label and the scores of each technique as texts.
+
+    An unknown score is "–".
+
+    rows : scores by label.
+    """
 
     def format_value(value: float, digits: int) -> str:
         return "–" if math.isnan(value) else f"{value:.{digits}f}"
@@ -96,13 +103,13 @@ def format_scores(rows: Mapping[str, Scores]) -> list[tuple[str, ...]]:
 
 
 def _to_table(scores: Sequence[Scores]) -> FloatArray:
-    """Return scores as an array (scores, names), limited to 99, with NaN in place of -∞."""
+    """Return scores as an array (scores, attributes), at most 99, with NaN in place of -∞."""
     table = np.array([[getattr(one, name) for name in NAMES] for one in scores])
     return np.where(np.isneginf(table), nan, np.minimum(table, 99.0))
 
 
 def _average_columns(table: FloatArray) -> Scores:
-    """Return scores with the means of the columns of an array (scores, names), leaving out NaN."""
+    """Return the `Scores` of column means of an array (scores, attributes), leaving out NaN."""
     known = ~np.isnan(table)
     count = known.sum(axis=0)
     sums = np.where(known, table, 0).sum(axis=0)

@@ -1,4 +1,4 @@
-"""Scores one technique: makes its maps, looks all pixels up, and compares with shadow rays."""
+"""Scores one shadow technique: makes its shadow, and compares each pixel with a shadow ray."""
 
 import time
 from collections.abc import Callable
@@ -19,7 +19,7 @@ from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.resolution import texel_area_in_pixels
 
-MARGIN = 4  # width [pixels] around shadows in which missing light counts as a soft border, not acne
+MARGIN = 4  # width around shadows [pixels] in which missing light is a soft border, not acne
 
 
 def score_technique(
@@ -28,20 +28,20 @@ def score_technique(
     tracked: tuple[TrackedPoints, TrackedPoints],
     technique: Callable[[LitView, Placement], Any],
 ) -> tuple[Scores, FloatArray]:
-    """Return the scores of a technique, and the shares (pixels,) of the light that arrive with it.
+    """Return the scores of a technique, and the share (pixels,) of the light that arrives by it.
 
     placement : placement of the view's camera and light.
-    tracked : points of the view while the camera moves, and while the light does.
+    tracked : points of the view for measuring flicker, as the camera moves and as the light moves.
     technique : function that makes a shadow, an object with `visibility(p, n, active)` such as
         `LightShadow`.
     """
 
-    def look_up(shadow: Any) -> Any:
+    def look_up_pixels(shadow: Any) -> Any:
         return shadow.visibility(view.si.p, view.si.n, view.si.is_valid())
 
     shadow = technique(view, placement)
-    shares, seconds = time_second_run(lambda: look_up(shadow))
-    _, seconds_of_both = time_second_run(lambda: look_up(technique(view, placement)))
+    shares, seconds = time_second_run(lambda: look_up_pixels(shadow))
+    _, seconds_of_both = time_second_run(lambda: look_up_pixels(technique(view, placement)))
     lit = np.array(shares)
     facing, exact = view.facing, view.exact
     lit_picture, exact_picture, facing_picture = (
@@ -65,7 +65,7 @@ def score_technique(
 
 def time_second_run(function: Callable[[], Any]) -> tuple[Any, float]:
     """Return a function's evaluated result, and the processor time [s] of its second run."""
-    for _ in range(2):  # the first run compiles kernels
+    for _ in range(2):  # the first run also compiles kernels, which should not be timed
         start = time.process_time()
         result = function()
         dr.eval(result)
@@ -75,7 +75,7 @@ def time_second_run(function: Callable[[], Any]) -> tuple[Any, float]:
 
 
 def score_texels(shadow: Any, view: LitView, placement: Placement) -> tuple[float, float]:
-    """Return the share of the maps' texels that are used, and the aliasing error [dB].
+    """Return the share of the maps' area that a view uses, and the aliasing error [dB].
 
     These are Q1 and Q2 of [Ergun 2008, 3.2]. Both are NaN for a `shadow` without maps.
     """
@@ -85,7 +85,7 @@ def score_texels(shadow: Any, view: LitView, placement: Placement) -> tuple[floa
         return nan, nan
     camera = Projection.from_matrix(placement.camera.matrix, placement.light).make_opaque()
     film = view.sensor.film()
-    # A film may show a window of the camera's picture: count the pixels of the whole picture
+    # A film may crop the picture, but the camera's projection covers all of it
     pixels = np.array(view.size[::-1]) * np.array(film.size()) / np.array(film.crop_size())
     p, n = view.si.p, view.si.n
     part, facing = shadow.find_part(p), mi.Bool(view.facing)

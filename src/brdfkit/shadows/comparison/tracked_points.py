@@ -1,6 +1,6 @@
-"""Points of a picture that are tracked while the camera, or the light, moves a little.
+"""Tracks surface points while the camera or the light moves a little, to measure flicker.
 
-Such moves, as in a game, make the borders of shadows flicker, which the comparison measures.
+Such moves, as in a game, make the borders of shadows jump from texel to texel.
 """
 
 from collections.abc import Callable
@@ -18,20 +18,20 @@ from brdfkit.shadows.comparison.quality import flicker
 from brdfkit.shadows.maps.placement import Placement
 
 PIXEL_STRIDE = 7  # every seventh pixel is tracked
-STEPS = 4  # the number of pictures, the first of which is the view itself
-CAMERA_TURN = 0.003  # the camera's turn to the right between two pictures [rad]
-CAMERA_STEP = 0.01  # the camera's move between two pictures, over the nearest surface's distance
-LIGHT_TURN = 0.01  # the light's turn between two, seen from the scene's farthest place [rad]
+STEPS = 4  # number of pictures on a path, the first of which is the view itself
+CAMERA_TURN = 0.003  # angle by which the camera turns between two pictures [rad]
+CAMERA_STEP = 0.01  # the camera's move between two pictures, divided by the nearest depth
+LIGHT_TURN = 0.01  # angle by which the light moves between two pictures, from far away [rad]
 
 
 @dataclass(frozen=True)
 class TrackedPoints:
     """Surface points that stay in place while the camera or the light moves along a path.
 
-    view : the first picture.
-    pixels : indices of the pixels of `view` in which the points are.
-    path : placements of camera and light in each picture, from the first one on.
-    true : whether the light arrives, exactly, (pictures, points).
+    view : the view in the first picture.
+    pixels : indices of the pixels of `view` that show the points.
+    path : placement of the camera and the light in each picture.
+    true : whether the light arrives at each point, by shadow rays, (pictures, points).
     """
 
     view: LitView
@@ -41,14 +41,14 @@ class TrackedPoints:
 
     @classmethod
     def by_moving_camera(cls, view: LitView, placement: Placement) -> "TrackedPoints":
-        """Return points that a moving camera sees in all pictures; their light stands still."""
+        """Return points of a view that a camera on a path always sees, in a light at rest."""
         path, pixels = make_camera_path(placement), np.flatnonzero(view.facing)[::PIXEL_STRIDE]
         pixels = pixels[is_visible_to_all_cameras(path, np.array(view.si.p).T[pixels])]
         return cls(view, pixels, path, np.tile(view.exact[pixels], (len(path), 1)))
 
     @classmethod
     def by_moving_light(cls, view: LitView, placement: Placement) -> "TrackedPoints":
-        """Return points that face a moving light in all pictures; their camera stands still."""
+        """Return points of a view that always face a light on a path, with the camera at rest."""
         path, pixels = make_light_path(placement), np.flatnonzero(view.facing)[::PIXEL_STRIDE]
         points, normals = (np.array(vectors).T[pixels] for vectors in (view.si.p, view.si.n))
         pixels = pixels[is_facing_all_lights(path, points, normals)]
@@ -59,7 +59,7 @@ class TrackedPoints:
     def flicker(self, lit: FloatArray, technique: Callable[[LitView, Placement], Any]) -> float:
         """Return the mean change of a technique's error between pictures; NaN without points.
 
-        lit : shares (pixels,) of the light in the first picture, by the technique.
+        lit : share (pixels,) of the light that arrives in the first picture, by the technique.
         technique : function that makes a shadow, an object with `visibility(p, n)` such as
             `LightShadow`.
         """
@@ -71,12 +71,12 @@ class TrackedPoints:
 
 
 def make_camera_path(placement: Placement) -> list[Placement]:
-    """Return placements in which the camera moves and turns to the right, to measure flicker.
+    """Return placements in which the camera moves and turns step by step, to measure flicker.
 
-    A step shifts a picture of 512 pixels by two or three of them.
+    A step shifts a picture that is 512 pixels wide by two or three pixels.
     """
     camera = placement.camera
-    nearest, _ = placement.depths
+    nearest, _ = placement.visible_depths
     path = []
     for step in range(STEPS):
         c, s = np.cos(CAMERA_TURN * step), np.sin(CAMERA_TURN * step)
@@ -87,7 +87,7 @@ def make_camera_path(placement: Placement) -> list[Placement]:
 
 
 def is_visible_to_all_cameras(placements: list[Placement], points: FloatArray) -> BoolArray:
-    """Return whether each of the points (n, 3) is within the pictures of all cameras: (n,)."""
+    """Return whether each of the points (n, 3) is within the picture of every camera, (n,)."""
     matrices = [placement.camera.matrix for placement in placements]
     within = [(np.abs(project_points(m, points)) <= 1).all(axis=1) for m in matrices]
     visible: BoolArray = np.all(within, axis=0)
@@ -95,9 +95,9 @@ def is_visible_to_all_cameras(placements: list[Placement], points: FloatArray) -
 
 
 def make_light_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
-    """Return placements in which the light moves step by step, so that flicker can be measured.
+    """Return placements in which the light moves step by step, to measure flicker.
 
-    The steps are equal, and at right angles to the light's rays.
+    The steps are equal, and at right angles to the light's rays; the first placement is unchanged.
     """
     light = placement.light
     way = light.point[:3] - light.point[3] * placement.visible_body.centroid
@@ -114,9 +114,9 @@ def unit_perpendicular(way: FloatArray) -> FloatArray:
 
 
 def move_light(light: Light, step: FloatArray) -> Light:
-    """Return a light whose position is moved by a `step` (3,).
+    """Return a light whose position is moved by a vector `step` (3,).
 
-    Of a directional light, the unit vector towards it moves.
+    A directional light has no position: the `step` is added to the unit vector towards it.
     """
     place = light.point[:3] + step
     if light.is_directional:
@@ -127,7 +127,10 @@ def move_light(light: Light, step: FloatArray) -> Light:
 def is_facing_all_lights(
     placements: list[Placement], points: FloatArray, normals: FloatArray
 ) -> BoolArray:
-    """Return whether surface points (n, 3) have all lights on one side: (n,)."""
+    """Return whether the lights of all placements are on one side of each surface point, (n,).
+
+    points, normals : the points and their normals (n, 3).
+    """
     to_lights = (each.light.directions_to_light(points) for each in placements)
     cosines = [(normals * to_light).sum(axis=1) for to_light in to_lights]
     facing: BoolArray = (np.min(cosines, axis=0) > 0) | (np.max(cosines, axis=0) < 0)
@@ -135,7 +138,7 @@ def is_facing_all_lights(
 
 
 def is_lit(scene: MitsubaObject, light: Light, p: MitsubaObject, n: MitsubaObject) -> BoolArray:
-    """Return (points,) whether shadow rays from points `p` with normals `n` reach a light."""
+    """Return whether shadow rays from points `p` with normals `n` reach a light, (points,)."""
     import drjit as dr
     import mitsuba as mi
 

@@ -1,4 +1,4 @@
-"""Techniques that make shadow volumes in place of maps, from meshes or from a depth map."""
+"""The techniques in a comparison that make shadow volumes, from meshes or from a depth map."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,9 +14,9 @@ JUMP = 8.0  # least change of depth at a silhouette [texel widths], `hybrid_shad
 
 
 def make_mesh_volumes(view: LitView, placement: Placement, resolution: int) -> LightVolumes:
-    """Make the shadow volumes of all shapes, whose shadows are exact but for their borders.
+    """Make the shadow volumes of all shapes in a view.
 
-    `resolution` has no effect.
+    `resolution` has no effect, but all techniques take it.
     """
     camera = place_camera(view, placement)
     return LightVolumes(view.meshes, placement.light, camera, pixels=max(view.size))
@@ -37,8 +37,9 @@ WITHOUT_MAPS: dict[str, Callable[..., LightVolumes]] = {
 
 
 def place_camera(view: LitView, placement: Placement) -> Camera:
-    """Return the view's camera, placed as the placement's, but with its own near and far planes.
+    """Return the view's camera at the place of the placement's camera, for counting volumes.
 
-    The placement's near plane is moved in to the scene, but walls of volumes before it count, too.
+    It keeps its own near plane: the placement's is moved in to the scene, but the walls of shadow
+    volumes before the scene count, too.
     """
     return replace(make_pinhole_camera(view.sensor), view=placement.camera.view)

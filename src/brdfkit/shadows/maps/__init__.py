@@ -1,1 +1,1 @@
-"""Shadow maps: pictures of the depths that a light sees, in which receivers are looked up."""
+"""Shadow maps: pictures of the depths that a light sees, which tell whether a point is lit."""

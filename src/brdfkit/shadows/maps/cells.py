@@ -1,4 +1,4 @@
-"""Square cells of a shadow map that each get a map of their own, with finer or coarser texels."""
+"""Divides a shadow map into square cells, each with a map of its own, and so its own texel size."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -11,16 +11,16 @@ from brdfkit.core.array_types import IntArray, JitFloat, JitInt, JitMask, JitVec
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.projection import Projection
 
-GUTTER = 4  # a cell's map extends this many texels beyond the cell, as filters read neighbours
+GUTTER = 4  # texels by which a cell's map is wider on each side, as filters read neighbours
 
 
 @dataclass(frozen=True)
 class Cell:
-    """The projection of a shadow map that shows only a square of another projection's map.
+    """The projection of a shadow map that covers only a square, a cell, of a larger map.
 
     whole : the projection of the larger map.
-    x, y : coordinates of the square's centre on the larger map, in [-1, 1].
-    half : half the side of the square; the larger map has the side 2.
+    x, y : coordinates of the cell's centre on the larger map, in [-1, 1].
+    half : half the side of the cell; the larger map has the side 2.
     """
 
     whole: Projection
@@ -32,17 +32,18 @@ class Cell:
     def from_grid(
         cls, whole: Projection, column: int, row: int, cells: int, resolution: int
     ) -> "Cell":
-        """Return one of `cells` × `cells` equal squares of a map, enlarged by `GUTTER` texels.
+        """Return one of `cells` × `cells` equal cells of a map, `GUTTER` texels wider on each side.
 
-        column, row : place of the square in the grid, counted from the corner (-1, -1).
-        resolution : number of texels along a side of the square's own map.
+        whole : the projection of the map.
+        column, row : indices of the cell in the grid, counted from the corner (-1, -1).
+        resolution : number of texels along a side of the cell's own map.
         """
         x, y = ((2 * place + 1) / cells - 1 for place in (column, row))
         return cls(whole, x, y, resolution / (resolution - 2 * GUTTER) / cells)
 
     @property
     def light(self) -> Light:
-        """The light whose shadow map is divided."""
+        """The light that casts the shadows of the map."""
         return self.whole.light
 
     def make_opaque(self) -> "Cell":
@@ -53,7 +54,7 @@ class Cell:
         return replace(self, whole=self.whole.make_opaque(), **numbers)
 
     def project(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
-        """Return the map coordinates and the depth of a point of the world, [-1, 1] on the map."""
+        """Return the coordinates, in [-1, 1] on the cell's map, and the depth of a world point."""
         u, v, depth = self.whole.project(x, y, z)
         return (u - self.x) / self.half, (v - self.y) / self.half, depth
 
@@ -62,10 +63,7 @@ class Cell:
         return self.whole.is_projectable(x, y, z)
 
     def directional_derivative(self, point: JitVector, way: JitVector) -> tuple[JitFloat, ...]:
-        """Return the derivative of map coordinates and depth as a point moves along a vector.
-
-        way : the vector.
-        """
+        """Return the derivatives of map coordinates and depth as a point moves along `way`."""
         u, v, depth = self.whole.directional_derivative(point, way)
         return u / self.half, v / self.half, depth
 
@@ -74,11 +72,11 @@ class Cell:
         return self.whole.direction_to_light(p)
 
     def light_ray(self, x: JitFloat, y: JitFloat) -> tuple[Any, Any]:
-        """Return origin and unit direction of the light ray through map coordinates x and y."""
+        """Return origin and unit direction of the light ray through (x, y) of the cell's map."""
         return self.whole.light_ray(x * self.half + self.x, y * self.half + self.y)
 
     def unproject(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
-        """Return the point of the world with map coordinates x and y and the depth z."""
+        """Return the world point with the coordinates x and y on the cell's map and the depth z."""
         return self.whole.unproject(x * self.half + self.x, y * self.half + self.y, z)
 
 
@@ -86,7 +84,8 @@ def make_cell_finder(whole: Projection, table: IntArray) -> Callable[[JitVector]
     """Return a function that finds the index of the cell in which a point of the world lies.
 
     whole : projection of the map that is divided into cells.
-    table : indices of cells (n, n), for each square of an n × n grid over that map, [row, column].
+    table : a regular grid (n, n) over that map, [row, column], with the index of the cell to which
+        each square of the grid belongs.
     """
     import mitsuba as mi
 

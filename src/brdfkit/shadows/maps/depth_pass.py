@@ -10,11 +10,12 @@ from brdfkit.shadows.maps.projection import AnyProjection
 def render_depths(
     scene: MitsubaObject, projection: AnyProjection, resolution: int
 ) -> MitsubaObject:
-    """Return the depths that a light sees as a `mi.TensorXf` (resolution, resolution).
+    """Render a shadow map: the depths that a light sees, a `mi.TensorXf` (resolution, resolution).
 
-    The first row is at y = -1 of the map. A texel holds the depth of the first surface on its ray
-    of light, and infinity if there is none; the depth is below -1 if the surface lies before the
-    region that the projection encloses. Derivatives by the scene's geometry are kept.
+    The first row is at y = -1 of the map. A texel holds the depth of the first surface on its light
+    ray, or infinity if there is none. The depth is below -1 if the surface is nearer to the light
+    than the region that the projection encloses. The depths keep their derivatives with respect to
+    the scene's geometry.
     """
     opaque = projection.make_opaque()
     si = scene.ray_intersect(make_texel_rays(scene, opaque, resolution))
@@ -26,7 +27,7 @@ def make_texel_rays(scene: MitsubaObject, opaque: AnyProjection, resolution: int
 
     Rays of a directional light start outside the scene.
 
-    opaque : the map's projection, made opaque.
+    opaque : the map's projection, in opaque Dr.Jit numbers (`make_opaque`).
     """
     import mitsuba as mi
 
@@ -46,7 +47,10 @@ def make_texel_rays(scene: MitsubaObject, opaque: AnyProjection, resolution: int
 
 
 def compute_depth(opaque: AnyProjection, p: JitVector) -> JitFloat:
-    """Return the depth of points in a shadow map; infinity where they cannot be projected."""
+    """Return the depth that points `p` have in a map; infinity where they cannot be projected.
+
+    opaque : the map's projection, in opaque Dr.Jit numbers (`make_opaque`).
+    """
     return dr.select(opaque.is_projectable(*p), opaque.project(*p)[2], dr.inf)
 
 

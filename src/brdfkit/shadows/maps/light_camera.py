@@ -1,8 +1,9 @@
 """A camera at a light, fitted to points: perspective, or orthographic for a directional light.
 
-In homogeneous coordinates about the middle of the points p, the light is (q, w): w > 0 for a light
-at a place, 0 for a light far away, and w < 0 if a projection has put it behind the eye. In all
-three cases its rays have the directions w p - q [Ergun 2008, 2.2.2].
+One formula serves all lights: the light is a homogeneous point (q, w), relative to the middle of
+the points p, and its rays have the directions w p - q [Ergun 2008, 2.2.2]. w > 0 for a point or
+spot light, w = 0 for a directional light, and w < 0 if a projection has put the light behind the
+eye.
 """
 
 import numpy as np
@@ -21,18 +22,19 @@ from brdfkit.shadows.maps.projection import Projection
 
 
 def make_enclosing_projection(light: Light, body: Body) -> Projection:
-    """Return the projection of a shadow map that encloses a body as seen from a light.
+    """Return the projection of a light's shadow map that just encloses a body.
 
-    Raises `BrdfkitError` for a point light that the body surrounds.
+    Raises `BrdfkitError` for a point or spot light that the body surrounds.
     """
     view = view_matrix(light.point, body.corners, body.centroid)
     return fit_projection(view, light, body.corners)
 
 
 def fit_projection(matrix: FloatArray, light: Light, corners: FloatArray) -> Projection:
-    """Return the projection by a matrix (4, 4), scaled so that its map just encloses `corners`.
+    """Return the projection by a matrix, scaled so that the map and its depths just enclose points.
 
-    corners : points (n, 3) of the world.
+    matrix : (4, 4), from the world to map coordinates and depth of any scale.
+    corners : the points (n, 3) in the world.
     """
     ends = project_points(matrix, corners)
     to_cube = make_unit_cube_matrix(ends.min(axis=0), ends.max(axis=0))
@@ -42,8 +44,8 @@ def fit_projection(matrix: FloatArray, light: Light, corners: FloatArray) -> Pro
 def view_matrix(light: FloatArray, corners: FloatArray, middle: FloatArray) -> FloatArray:
     """Return the matrix (4, 4) of a camera at a light, from the world to map coordinates and depth.
 
-    The camera looks at `corners`, whose depths become -1 to 1. x and y have the same scale; they
-    are tangents, or lengths for a light at infinity, at right angles to the ray to `middle`.
+    The camera looks at `middle`. Its coordinates x and y have the same scale: they are tangents or,
+    for a light at infinity, lengths. The depths of `corners` become -1 to 1.
 
     light : homogeneous point (4,) of the light.
     corners : points (n, 3) that the camera must see.
@@ -73,13 +75,16 @@ def view_matrix(light: FloatArray, corners: FloatArray, middle: FloatArray) -> F
 
 
 def narrowest_cone_axis(rays: FloatArray) -> FloatArray:
-    """Return the axis (3,) of the narrowest cone around `rays` (n, 3); 0 if no cone holds them."""
+    """Return the axis (3,) of the narrowest cone around `rays` (n, 3), a unit vector.
+
+    It is 0 if no cone encloses the rays, as they lead in all directions.
+    """
     from scipy.optimize import nnls
 
     lengths = np.linalg.norm(rays, axis=1, keepdims=True)
     if lengths.min() < 1e-9 * lengths.max():
         return np.zeros(3)
-    # The axis leads from 0 to the nearest point of the convex hull of the rays' unit vectors
+    # The axis leads from the origin to the nearest point of the convex hull of the unit vectors
     units = rays / lengths
     weights, _ = nnls(np.vstack([units.T, np.ones(len(units))]), np.array([0, 0, 0, 1.0]))
     axis: FloatArray = weights @ units

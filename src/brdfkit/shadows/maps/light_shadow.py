@@ -1,4 +1,4 @@
-"""`LightShadow`: the shadow maps of one light, and its visibility from surface points."""
+"""`LightShadow`: one or more shadow maps of a light, which tell how much light reaches a point."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -19,14 +19,14 @@ DEPTHS = ("projected", "linear")
 
 
 class ShadowMap:
-    """One shadow map: the depths that a light sees, and the visibility of the light that they give.
+    """One shadow map: the depths that a light sees, and a filter that looks receivers up in them.
 
     scene : a `mi.Scene`.
     projection : the map's projection, through the light.
     reach : length of the longest light ray through the scene [unit of length].
-    lookup : the class `Lookup` of a file in `filters/`.
+    lookup : the class `Lookup` of a filter, with its settings bound.
     resolution : number of texels along a side.
-    bias : how receivers are moved towards the light before they are compared.
+    bias : how receivers are moved before they are compared, so that they do not shadow themselves.
     render : the function that renders the map: `render_depths`, or the filter's own `render_map`.
     """
 
@@ -57,13 +57,14 @@ class LightShadow:
 
     scene : a `mi.Scene`.
     placement : the camera and the light in the scene.
-    projection, filter, partition : names of files in the folders of those names.
-    resolution : number of texels along a side of each map; the partition `tiled` divides those of a
-        single map among its tiles.
-    bias : how receivers are moved towards the light before they are compared.
+    projection, filter, partition : names of techniques, that is, of files in `projections/`,
+        `filters/` and `partitions/`.
+    resolution : number of texels along a side of each map; the partition `tiled` divides the texels
+        of one such map among its tiles.
+    bias : how receivers are moved before they are compared, so that they do not shadow themselves.
     depth : "projected" stores the third coordinate of the projection, in which planes stay planes;
         "linear" stores the distance from the light.
-    settings : settings of the three files, by the names in their `SETTINGS`.
+    settings : settings of the three techniques, which the `SETTINGS` of their files declare.
     """
 
     def __init__(
@@ -80,7 +81,7 @@ class LightShadow:
     ) -> None:
         names = {"projection": projection, "filter": filter, "partition": partition}
         technique = make_techniques(names, settings)
-        project = _replace_depth(depth, technique["projection"], placement)
+        project = _apply_depth_kind(depth, technique["projection"], placement)
         divided: Partition = technique["partition"](Setup(scene, placement, project, resolution))
         self.find_part = divided.find_part
         lookup, render = technique["filter"], find_map_renderer(filter)
@@ -97,16 +98,18 @@ class LightShadow:
 
         part = self.find_part(p)
         inside = mi.Bool(active) & (part < len(self.maps))
-        # As all maps are looked up by the same code, the compiled kernel contains it only once
+        # All maps are looked up by the same code, which `dr.switch` compiles only once
         lit = dr.switch(part, [each.visibility for each in self.maps], p, n, inside)
         return dr.select(inside, lit, 1)
 
 
-def _replace_depth(
+def _apply_depth_kind(
     depth: str, project: Callable[[Placement], Projection], whole: Placement
 ) -> Callable[[Placement], Projection]:
-    """Return the function `project` from placements to projections, with the named kind of depth.
+    """Return the function `project`, changed to make projections with the named kind of depth.
 
+    depth : a name in `DEPTHS`.
+    project : function from a placement to the projection of its map.
     whole : placement of the whole scene, which sets the scale of linear depth.
     """
     if depth not in DEPTHS:

@@ -1,13 +1,14 @@
-"""The line of sight on a light's map, along which perspectives enlarge what is near the eye.
+"""The line of sight on a light's map, along which a perspective enlarges what is near the eye.
 
-Three projections have the same form: the light's own projection, then a perspective across the map,
+Three projections (trapezoidal, light-space and logarithmic perspective) first project the scene by
+the light's own camera to (x, y), and then apply a perspective on the map:
 
     x' = x / w,  y' = (y - y_0) / w,  w = 1 + (y - y_0) / n
 
-where y runs along the line of sight, and y_0 is where the visible part begins. The lines of
-constant x' meet in the apex, at the distance n before y_0. The projections differ by n [Lloyd et
-al. 2008]: the smaller it is, the more of the map is spent near the eye; for a large n the map
-becomes uniform.
+y runs along the line of sight, and y_0 is the y where the visible part begins. The lines of
+constant x' meet in the apex, at the distance n before y_0. The three projections choose n
+differently [Lloyd et al. 2008]: a smaller n spends more of the map near the eye, and a large n
+gives a uniform map.
 """
 
 from __future__ import annotations
@@ -39,13 +40,14 @@ APEX = declare_float(
 
 @dataclass(frozen=True)
 class LineOfSight:
-    """The line from the eye through the middle of the visible body, on the map of a light.
+    """The line of sight on the map of a light, from the eye to the middle of the visible scene.
 
-    matrix : (4, 4), from the world to the light's view, turned so that the eye is at (0, 0) and the
-        line is the y axis.
+    matrix : (4, 4), from the world to the map, turned so that the eye is at (0, 0) and the line of
+        sight is the y axis.
     light : the light.
-    corners : points (n, 3) of the body that the map must enclose.
-    eye, middle : two points (3,) of the line: the camera, and the middle of the visible body.
+    corners : corners (n, 3) of the part of the scene that the map must enclose.
+    eye, middle : two points (3,) of the line in the world: the camera's position, and the middle of
+        the visible part of the scene.
     """
 
     matrix: AnyArray
@@ -56,7 +58,7 @@ class LineOfSight:
 
     @property
     def y_range(self) -> tuple[float, float]:
-        """The y of the near end (y_0) and of the far end of the body that the map must enclose."""
+        """The map coordinates y of the near and the far end of the body that the map encloses."""
         y = project_points(self.matrix, self.corners)[:, 1]
         return y.min(), y.max()
 
@@ -69,14 +71,15 @@ class LineOfSight:
 
     @property
     def map_scale(self) -> float:
-        """The length on the map of a unit of length at right angles to the light."""
+        """The ratio of a length on the map to the length in the world, across the light's rays."""
         across = self.sine_to_light * np.linalg.norm(self.middle - self.eye)
         return float(project(self.matrix, *self.middle)[1] / across)
 
     def make_warped_projection(self, n: float) -> Projection:
-        """Return the light's projection, warped by a perspective with its apex `n` before y_0.
+        """Return the light's projection, followed by a perspective on the map along the line.
 
-        n : distance of the apex, in lengths on the map.
+        n : distance of the perspective's apex before the near end of the body, on the map; a small
+            distance enlarges what is near the eye.
         """
         warp, (near, _) = np.eye(4), self.y_range
         warp[1, 3] = -near
@@ -87,8 +90,8 @@ class LineOfSight:
 def find_line_of_sight(placement: Placement) -> LineOfSight | None:
     """Return the line of sight of a placement's camera on its light's map.
 
-    It is None if the eye looks along the light or is behind it, as then no side of the map belongs
-    to what is near the eye.
+    It is None if the eye looks along the light's rays or is behind the light, as then no side of
+    the map is nearer to the eye than another.
     """
     light, corners = placement.light, placement.relevant_body.corners
     eye, middle = placement.camera.position, placement.visible_body.centroid

@@ -1,8 +1,9 @@
-"""Receivers on a shadow map, with the bias that keeps a surface from shadowing itself.
+"""Finds points to shade, receivers, on a shadow map, with a bias against self-shadowing.
 
-The light sees a surface at the centres of texels, the camera between them: without a bias half of a
-slanted surface lies behind the surface that the light saw (acne). Too large a bias detaches shadows
-from the objects that cast them (peter-panning) [Ergun 2008, 3.1.2].
+The map stores the depth of a surface at the centres of texels, but the camera also sees the surface
+between them. On a slanted surface half of these points are farther from the light than the stored
+depth, and would be dark (acne). A bias moves points towards the light before the comparison; if it
+is too large, shadows detach from the objects that cast them (peter-panning) [Ergun 2008, 3.1.2].
 """
 
 from dataclasses import dataclass
@@ -16,14 +17,14 @@ from brdfkit.shadows.maps.projection import AnyProjection
 
 @dataclass(frozen=True)
 class Bias:
-    """Ways to move a receiver before its depth is compared with a shadow map; they add up.
+    """How a receiver is moved before its depth is compared with a shadow map; all moves add up.
 
-    constant : distance towards the light, as a share of the longest light ray through the scene.
-    slope : distance towards the light, in units of how much the depth of the receiver's plane
-        changes from one texel to the next.
-    normal_offset : distance along the surface normal, in texels.
-    plane : whether each texel is compared with the depth of the receiver's plane at its centre; a
-        flat surface then needs no other bias.
+    constant : move towards the light, as a share of the longest light ray through the scene.
+    slope : move towards the light, as a multiple of the change of the surface's depth from one
+        texel to the next.
+    normal_offset : move along the surface normal [widths of a texel].
+    plane : whether a texel is compared with the depth of the receiver's tangent plane at the
+        texel's centre, in place of the receiver's own depth; flat surfaces then need no other bias.
     """
 
     constant: float = 0.0
@@ -39,14 +40,14 @@ AUTOMATIC = Bias(constant=5e-4, plane=True)
 class MapPoint:
     """A receiver's place on a shadow map, and the slope of its surface there.
 
-    u, v : place in texels; whole numbers are the edges of texels.
-    depth : depth in the map, less the bias.
-    slope_u, slope_v : change of depth per texel in the plane of the surface; 0 if `Bias.plane` is
-        off.
-    active : whether the projection maps the point at all.
-    p : the point in the world, moved along its normal if the bias does so.
-    projection : the map's projection, made opaque.
-    half : half the number of texels along a side.
+    u, v : the place [texels]; whole numbers are the edges of texels.
+    depth : the receiver's depth on the map, less the bias.
+    slope_u, slope_v : change of depth per texel along u and v in the receiver's tangent plane; 0 if
+        `Bias.plane` is off.
+    active : whether the projection can map the receiver at all.
+    p : the receiver in the world, moved along its normal if the bias does so.
+    projection : the map's projection, in opaque Dr.Jit numbers (`make_opaque`).
+    half : half the number of texels along a side of the map.
     """
 
     u: Any
@@ -60,20 +61,20 @@ class MapPoint:
     half: Any
 
     def plane_depth(self, u: JitFloat, v: JitFloat) -> JitFloat:
-        """Return the depth of the receiver's plane at the place (u, v) of the map [texels]."""
+        """Return the depth of the receiver's tangent plane at the place (u, v) [texels]."""
         return self.depth + self.slope_u * (u - self.u) + self.slope_v * (v - self.v)
 
     def move_to_depth(self, depth: JitFloat) -> JitVector:
-        """Return the `mi.Point3f` at a `depth` of the map on the light ray through the receiver."""
+        """Return the point on the light ray through the receiver that has a `depth` on the map."""
         import mitsuba as mi
 
         x, y = self.u / self.half - 1, self.v / self.half - 1
         return mi.Point3f(*self.projection.unproject(x, y, depth))
 
     def cross_section_axes(self) -> list[tuple[JitFloat, JitFloat]]:
-        """Return the map's images (u, v) [texels] of two unit vectors at right angles to the light.
+        """Return the vectors (u, v) on the map [texels] of two unit vectors across the light's ray.
 
-        They map a disk that faces the light at the receiver to an ellipse of texels.
+        With them, a disk at the receiver that faces the light becomes an ellipse of texels.
         """
         import mitsuba as mi
 
@@ -93,10 +94,10 @@ def find_map_point(
 ) -> MapPoint:
     """Return where receivers `p` with surface normals `n` lie on a shadow map, after the bias.
 
-    Around it, their plane has the depth d(u, v) = depth + slope_u Δu + slope_v Δv, by the
-    derivatives of the projection along two tangents [Isidoro 2006, receiver plane depth bias].
+    The result also has the slope of the receiver's tangent plane on the map [Isidoro 2006, receiver
+    plane depth bias].
 
-    projection : the map's projection, made opaque.
+    projection : the map's projection, in opaque Dr.Jit numbers (`make_opaque`).
     reach : length of the longest light ray through the scene, of which `bias.constant` is a share.
     """
     import mitsuba as mi
@@ -124,11 +125,12 @@ def find_map_point(
 def plane_slopes(
     projection: AnyProjection, half: JitFloat, p: JitVector, n: JitVector
 ) -> tuple[JitFloat, JitFloat, JitFloat]:
-    """Return the depth slopes of the plane through `p` with normal `n`, and a texel's length on it.
+    """Return the slopes on a map of the plane through `p` with normal `n`, and a texel's width.
 
-    The slopes are changes of depth per texel along u and v; the length is in units of the world.
+    The slopes are the changes of depth per texel along u and v; the width is the mean width that a
+    texel has on the plane [unit of length].
 
-    projection : the map's projection, made opaque.
+    projection : the map's projection, in opaque Dr.Jit numbers (`make_opaque`).
     half : half the number of texels along a side of the map.
     """
     import mitsuba as mi
@@ -137,7 +139,7 @@ def plane_slopes(
     u_s, v_s, d_s = projection.directional_derivative(p, s)
     u_t, v_t, d_t = projection.directional_derivative(p, t)
     area = (u_s * v_t - u_t * v_s) * half
-    inverse = dr.select(area != 0, dr.rcp(area), 0)  # a plane seen edge-on is a line on the map
+    inverse = dr.select(area != 0, dr.rcp(area), 0)  # 0 if the light sees the plane edge-on
     slope_u = (d_s * v_t - d_t * v_s) * inverse
     slope_v = (d_t * u_s - d_s * u_t) * inverse
     return slope_u, slope_v, dr.safe_sqrt(dr.abs(inverse) / half)

@@ -47,7 +47,7 @@ class Partition:
 
     parts : the parts.
     find_part : function from points, a `mi.Point3f`, to the indices of their parts, a `mi.UInt32`.
-        A point without a part has an index beyond the list.
+        For a point that no part contains, the index is beyond the end of `parts`.
     """
 
     parts: list[Part]
@@ -57,9 +57,10 @@ class Partition:
 def make_partition_from_placements(
     setup: Setup, placements: Iterable[Placement], find_placement: Callable[[Any], Any]
 ) -> Partition:
-    """Make the partition with one part for each placement that has anything in it.
+    """Make the partition with a part for each placement; placements without surfaces are left out.
 
-    find_placement : function from points to the indices of their placements.
+    placements : cameras and lights that each cover a part of the scene.
+    find_placement : function from points to the indices of the placements that cover them.
 
     Raises `Empty` if all placements are empty.
     """
@@ -83,7 +84,7 @@ def make_partition_from_placements(
 def _renumber_parts(
     find_placement: Callable[[Any], Any], indices: list[int]
 ) -> Callable[[Any], Any]:
-    """Return `find_placement`, changed to return `indices[i]` where it returned i."""
+    """Return a function that finds the part of a point: `indices[i]` for the placement i."""
     import mitsuba as mi
 
     table = mi.UInt32(np.array(indices, np.uint32))

@@ -1,4 +1,4 @@
-"""`Placement`: where a camera, a light and a scene are, from which every projection is made."""
+"""`Placement`: where the camera, the light and the scene are, for making shadow-map projections."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,9 +18,9 @@ class Placement:
 
     camera : the camera, with near and far planes moved in to the scene.
     light : a point, spot or directional light.
-    low, high : two opposite corners (3,) of the scene's box.
-    nearest : approximate distance of the nearest visible surface, to which projections are tuned;
-        there may be nearer surfaces.
+    low, high : two opposite corners (3,) of the scene's bounding box.
+    nearest : approximate depth of the nearest visible surface, for which projections are tuned;
+        there may be slightly nearer surfaces.
     """
 
     camera: Camera
@@ -44,13 +44,13 @@ class Placement:
 
     @cached_property
     def lit_body(self) -> Body:
-        """S, the part of the scene's box that the light reaches; a spot's pyramid cuts the box."""
+        """The part of the scene's box that the light can reach; a spot's pyramid cuts the box."""
         whole = make_box(self.low, self.high)
         light = self.light
         return whole & light.make_bounding_pyramid(self.reach) if light.is_bounded else whole
 
     @property
-    def size(self) -> float:
+    def scene_diagonal(self) -> float:
         """The diagonal of the scene's box [unit of length]."""
         return float(np.linalg.norm(self.high - self.low))
 
@@ -59,33 +59,35 @@ class Placement:
         """An upper bound on the length of light rays through the scene [unit of length]."""
         corners = make_box(self.low, self.high).corners
         if self.light.is_directional:
-            return self.size
+            return self.scene_diagonal
         return float(np.linalg.norm(corners - self.light.point[:3], axis=1).max())
 
     @cached_property
     def visible_body(self) -> Body:
-        """V ∩ S, the part of the scene's box in the camera's frustum V."""
+        """The part of `lit_body` that is in the camera's frustum."""
         return Body.from_points(self.camera.find_frustum_corners()) & self.lit_body
 
     @cached_property
-    def depths(self) -> tuple[float, float]:
-        """The least and the greatest distance along the view of what the camera may see."""
+    def visible_depths(self) -> tuple[float, float]:
+        """The least and the greatest depth, along the camera's view, of visible surfaces."""
         depths = self.camera.compute_depths(self.visible_body.corners)
         return min(max(depths.min(), self.nearest), depths.max()), depths.max()
 
     @cached_property
     def relevant_body(self) -> Body:
-        """B = ((V ∩ S) + light) ∩ S: all that the camera may see or that may cast shadows on it.
+        """The part of the scene that the camera may see or that may cast a shadow on that part.
 
-        V is the camera's frustum and S the lit part of the scene's box.
+        It is the convex hull of `visible_body` and the light, within `lit_body`.
         """
-        return self.visible_body.extend_to_light(self.light.point, self.size) & self.lit_body
+        return (
+            self.visible_body.extend_to_light(self.light.point, self.scene_diagonal) & self.lit_body
+        )
 
 
 def find_nearest_depth(
     scene: MitsubaObject, sensor: MitsubaObject, camera: Camera, side: int = 64
 ) -> float:
-    """Return the least distance along the view of the surfaces that `side`² camera rays hit.
+    """Return the least depth, along the camera's view, of the surfaces that `side`² rays hit.
 
     It is 0 if all rays miss.
     """

@@ -1,4 +1,4 @@
-"""The projections of shadow maps: from the world to coordinates and depth on the map, and back."""
+"""`Projection`: maps points of the world to coordinates and a depth on a shadow map, and back."""
 
 from __future__ import annotations
 
@@ -12,19 +12,20 @@ from brdfkit.core.projective.homogeneous import normalise, project, transform
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.placement import Placement
 
-AnyProjection: TypeAlias = Any  # a `Projection`, or a `Cell` of one
+AnyProjection: TypeAlias = Any  # a `Projection`, or a `Cell`, which covers only a square of a map
 
 
 @dataclass(frozen=True)
 class LightDepth:
-    """Depth that grows linearly with the distance from the light, whatever the projection.
+    """A depth that grows linearly with the distance from the light, whatever the projection.
 
-    It makes the bounds by moments tighter. But a plane is bent on a warped map of such depths, so
-    that wide filters, which follow the receiver's plane, let the plane shadow itself where texels
-    are large. The default depth, by the projection's matrix, keeps planes planes.
+    It makes the bounds of moment shadow maps tighter. But on a warped map this depth is not linear
+    over a plane, so that wide filters, which extrapolate the receiver's tangent plane, let planes
+    shadow themselves where texels are large. The default depth, by the projection's matrix, is
+    linear over planes.
 
     start : distance from the light at which the depth is -1 [unit of length].
-    length : further distance, after which it is 1.
+    length : distance over which the depth grows from -1 to 1 [unit of length].
     """
 
     start: Any
@@ -32,7 +33,7 @@ class LightDepth:
 
     @classmethod
     def from_placement(cls, placement: Placement) -> LightDepth:
-        """Return the depth that begins where the light enters the scene, or at a point light."""
+        """Return a depth that covers the scene: from a point light, or where light rays enter."""
         light, reach = placement.light, placement.reach
         if not light.is_directional:
             return cls(0.0, reach)
@@ -64,7 +65,7 @@ class Projection:
         grows away from the light.
     inverse : (4, 4), the inverse matrix.
     light : the `Light`; after `make_opaque`, its point is a `mi.Vector4f`.
-    depth : depth to use in place of the matrix's third coordinate, or None.
+    depth : the depth to use in place of the matrix's third coordinate, or None.
     """
 
     matrix: Any
@@ -74,7 +75,7 @@ class Projection:
 
     @classmethod
     def from_matrix(cls, matrix: FloatArray, light: Light) -> Projection:
-        """Return the projection by a `matrix` (4, 4)."""
+        """Return the projection of a light by a `matrix` (4, 4), from the world to the map."""
         return cls(matrix, np.linalg.inv(matrix), light)
 
     def make_opaque(self) -> Projection:
@@ -94,7 +95,7 @@ class Projection:
         return opaque
 
     def project(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
-        """Return the map coordinates and the depth of a point of the world, [-1, 1] on the map."""
+        """Return the map coordinates and the depth of a world point, all in [-1, 1] on the map."""
         u, v, depth = project(self.matrix, x, y, z)
         return u, v, self.depth.to_depth(self.light.path_length(x, y, z)) if self.depth else depth
 
@@ -103,10 +104,7 @@ class Projection:
         return transform(self.matrix, x, y, z)[3] > 0
 
     def directional_derivative(self, point: JitVector, way: JitVector) -> tuple[JitFloat, ...]:
-        """Return the derivative of map coordinates and depth as a point moves along a vector.
-
-        way : the vector.
-        """
+        """Return the derivatives of map coordinates and depth as a point moves along `way`."""
         *place, w = transform(self.matrix, *point)
         *change, change_w = transform(self.matrix, way[0], way[1], way[2], 0.0)
         u, v, depth = ((c - p / w * change_w) / w for p, c in zip(place, change, strict=True))
@@ -116,7 +114,7 @@ class Projection:
         return u, v, depth
 
     def direction_to_light(self, p: JitVector) -> JitVector:
-        """Return the unit vectors from points `p` to the light, after `make_opaque`."""
+        """Return the unit vectors from points `p` to the light; needs Dr.Jit numbers."""
         import mitsuba as mi
 
         return -mi.Vector3f(*self.light.direction(*p))
@@ -128,13 +126,13 @@ class Projection:
         """
         if self.light.is_directional:
             return project(self.inverse, x, y, 0.0), self.light.direction(0.0, 0.0, 0.0)
-        # A combination of two points of the ray with w = 0 lies at infinity: it is the direction
+        # The ray's direction is its point at infinity: the combination, with w = 0, of two points
         *point, w = transform(self.inverse, x, y, 0.0)
         light = [self.light.point[i] for i in range(3)]
         return light, normalise(*(p - w * q for p, q in zip(point, light, strict=True)))
 
     def unproject(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
-        """Return the point of the world with map coordinates x and y and the depth z."""
+        """Return the world point that has the map coordinates x and y and the depth z."""
         if not self.depth:
             return project(self.inverse, x, y, z)
         origin, direction = self.light_ray(x, y)

@@ -1,4 +1,4 @@
-"""The size of shadow-map texels in the picture: √(1/|det J|), J the Jacobian from pixels to texels.
+"""Measures how large the texels of a shadow map are in the camera's picture.
 
 Texels that are larger than pixels are visible [Ergun 2008, 3.1.1].
 """
@@ -15,14 +15,12 @@ from brdfkit.shadows.maps.visible_surfaces import SIDE, VisibleSurfaces
 def texel_area_in_pixels(
     texels: tuple[AnyProjection, int], pixels: tuple[AnyProjection, Any], p: JitVector, n: JitVector
 ) -> JitFloat:
-    """Return the area [pixels] of a shadow map's texel in the picture, at surface points.
+    """Return the area [pixels] that a shadow map's texel has in the picture, at surface points.
 
-    It is 1 / |det J|, with the Jacobian J from pixels to texels. Components are floats, NumPy
-    arrays or, with projections made opaque, Dr.Jit arrays.
-
-    texels : projection and resolution of the shadow map.
-    pixels : projection by the camera's matrix, and (width, height) of the picture.
-    p, n : the points and their normals.
+    texels : the projection of the shadow map, and the number of texels along its side.
+    pixels : the projection by the camera's matrix, and (width, height) of the picture.
+    p, n : the points and their normals; each component is a float, a NumPy array or, with opaque
+        projections (`make_opaque`), a Dr.Jit array.
     """
     projection, resolution = texels
     camera, (width, height) = pixels
@@ -31,7 +29,7 @@ def texel_area_in_pixels(
 
 
 def area_magnification(projection: AnyProjection, p: JitVector, n: JitVector) -> JitFloat:
-    """Return the area on a map per area of the surface at points `p` with normals `n`."""
+    """Return the ratio of an area on a map to the area on a surface, at points `p`, normals `n`."""
     (u_x, v_x, _), (u_y, v_y, _), (u_z, v_z, _) = (
         projection.directional_derivative(p, way)
         for way in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -44,18 +42,18 @@ def area_magnification(projection: AnyProjection, p: JitVector, n: JitVector) ->
 
 
 def locate_on_map(projection: AnyProjection, surfaces: VisibleSurfaces) -> FloatArray:
-    """Return the map coordinates (n, 2), in [-1, 1], of visible points under a projection."""
+    """Return the map coordinates (n, 2), in [-1, 1], of the visible surface points."""
     return np.column_stack(projection.project(*surfaces.points.T)[:2])
 
 
 def texel_footprints(places: FloatArray, surfaces: VisibleSurfaces) -> FloatArray:
-    """Return the width (n,) in the picture of a unit step on the map, at visible surface points.
+    """Return the footprint (n,) at visible points: the width in the picture of a step on the map.
 
-    The unit in the picture is the distance between neighbouring rays, and the width is estimated
-    from the differences between them. At borders of surfaces it is too small; it is 0 where a
-    neighbour hits nothing.
+    The step is 1 in map coordinates, and the unit of the width is the distance between neighbouring
+    camera rays. The footprint is estimated from the map coordinates of neighbouring rays, so it is
+    too small at borders of surfaces, and 0 where a neighbouring ray hits nothing.
 
-    places : coordinates (n, 2) of the points on the map.
+    places : map coordinates (n, 2) of the points.
     """
     grid = np.full((SIDE, SIDE, 2), np.nan)
     grid[surfaces.hit] = places
@@ -63,5 +61,5 @@ def texel_footprints(places: FloatArray, surfaces: VisibleSurfaces) -> FloatArra
         np.moveaxis(np.diff(grid, axis=axis, append=np.nan), -1, 0) for axis in (0, 1)
     )
     area = np.abs(u_row * v_column - u_column * v_row)[surfaces.hit]
-    known = area > 0  # false also for NaN, where a neighbouring ray hits nothing
+    known = area > 0  # False where the area is NaN, as a neighbouring ray hits nothing
     return np.where(known, 1 / np.sqrt(np.where(known, area, 1)), 0)

@@ -1,12 +1,12 @@
 """Planes across the view that divide what a camera sees into slices, each with a shadow map.
 
-For depths from n to f, plane i of m is at
+Between the depths n and f there are m slices. Plane i, from 0 to m, is at the depth
 
-    C_log = n (f/n)^(i/m),   C_uni = n + i (f - n)/m,   C_mean = (C_log + C_uni)/2
+    C_log = n (f/n)^(i/m),   C_uni = n + i (f - n)/m   or   C_mean = (C_log + C_uni)/2
 
-Logarithmic planes make texels equally large in the picture at all depths, but spend most slices
-near the eye. Uniform planes spend most of them far away; the mean is between the two [Zhang et al.
-2006], [Ergun 2008, 2.2.3.4].
+With logarithmic planes, texels are about equally large in the picture at all depths, but most
+slices are near the eye. Uniform planes spend most slices far away; the mean is a compromise [Zhang
+et al. 2006], [Ergun 2008, 2.2.3.4].
 """
 
 from collections.abc import Callable
@@ -27,9 +27,10 @@ SETTINGS = {
 
 
 def compute_split_planes(near: float, far: float, parts: int, spacing: str) -> FloatArray:
-    """Return the depths (parts + 1,) of the planes, from `near` to `far`.
+    """Return the depths of the planes that divide the view into `parts` slices, (parts + 1,).
 
-    spacing : a word of `SPACINGS`.
+    near, far : depths of the first and the last plane.
+    spacing : how the planes are spaced, a word in `SPACINGS`.
 
     >>> compute_split_planes(1, 100, 2, "logarithmic")
     array([  1.,  10., 100.])
@@ -43,8 +44,9 @@ def compute_split_planes(near: float, far: float, parts: int, spacing: str) -> F
 def make_slice_finder(camera: Camera, planes: FloatArray) -> Callable[[JitVector], JitInt]:
     """Return a function that finds the index of the slice of the view in which a point lies.
 
-    planes : depths of the planes between the slices, from the first to the last. Points before or
-        behind all planes belong to the first or last slice.
+    Points before or behind all slices belong to the first or last slice.
+
+    planes : depths of the planes that bound the slices, in ascending order.
     """
     import mitsuba as mi
 

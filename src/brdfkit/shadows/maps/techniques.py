@@ -1,9 +1,9 @@
-"""The projections, filters and partitions of shadow maps by name, with the settings they declare.
+"""Finds the projections, filters and partitions of shadow maps by name, and their settings.
 
-A file of `projections/`, `filters/` or `partitions/` may have `SETTINGS`, name → `Setting` of
-`brdfkit.mitsuba_bridge.properties.declarations`. The file's function or class takes them as keyword
-arguments; they are also keyword arguments of `LightShadow`, and parameters of the integrator
-`shadow_map`. Files in which a name means the same share the `Setting`.
+A technique is a file in `projections/`, `filters/` or `partitions/`. It may declare its settings in
+a dictionary `SETTINGS`, from names to `Setting`s. The file's function or class receives the values
+as keyword arguments. Users give them as keyword arguments of `LightShadow`, or as parameters of the
+integrator `shadow_map`; so techniques in which a name means the same share the `Setting`.
 """
 
 from collections.abc import Callable, Mapping
@@ -17,7 +17,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import Setting, read_setting
 from brdfkit.shadows.maps import filters, partitions, projections
 from brdfkit.shadows.maps.depth_pass import render_depths
 
-# Kind of technique → the folder of its files, and the function or class that each file defines
+# For each kind of technique: the folder of its files, and the function or class in each file
 MAKERS = {
     "projection": (projections, "make_projection"),
     "filter": (filters, "Lookup"),
@@ -33,7 +33,7 @@ FILES = {
 
 
 def find_settings(kind: str, name: str) -> dict[str, Setting]:
-    """Return name → `Setting` of the technique `name` of a kind, such as "filter".
+    """Return the settings of the technique `name`, by their names; `kind` is such as "filter".
 
     Raises `BrdfkitError` if there is no technique of that name.
     """
@@ -43,16 +43,19 @@ def find_settings(kind: str, name: str) -> dict[str, Setting]:
 
 
 def find_map_renderer(filter: str) -> Callable[..., Any]:
-    """Return the function that renders the maps of a filter.
+    """Return the function that renders the maps of a filter, which is given by name.
 
-    It is `render_map` of the filter's file, or `render_depths` if the file has none.
+    It is the function `render_map` in the filter's file, or else `render_depths`.
     """
     renderer: Callable[..., Any] = getattr(FILES["filter"][filter], "render_map", render_depths)
     return renderer
 
 
 def list_settings() -> dict[str, Setting]:
-    """Return name → `Setting` of all techniques; each meaning begins with the techniques' names."""
+    """Return the settings of all techniques, by their names.
+
+    The meaning of each setting begins with the names of the techniques that have it.
+    """
     owners: dict[str, tuple[Setting, list[str]]] = {}
     for kind, files in FILES.items():
         for file in files:
@@ -65,10 +68,10 @@ def list_settings() -> dict[str, Setting]:
 
 
 def make_techniques(names: Mapping[str, str], values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return kind → the function or class of the named technique, with its settings bound.
+    """Return, by kind, the functions or classes of techniques, with their settings bound.
 
-    names : kind → name of a technique, such as "filter" → "variance".
-    values : setting → value, for settings other than their defaults.
+    names : the name of a technique for each kind, such as "filter" → "variance".
+    values : values of settings, by the setting's name; other settings have their defaults.
 
     Raises `BrdfkitError` for unknown names, and for values that a setting does not allow.
     """

@@ -1,7 +1,7 @@
-"""Comparison of receivers with single texels of a shadow map, or with square windows of texels.
+"""Compares receivers with single texels of a shadow map, or with square windows of texels.
 
-Depths are never interpolated: filters compare each texel's depth with the receiver's first, and
-average the results.
+Each texel's depth is compared with the receiver's first, and the results are averaged; the depths
+themselves are never averaged or interpolated.
 """
 
 from collections.abc import Callable
@@ -27,7 +27,7 @@ class Texels:
         self.values = values.array
 
     def read_texel(self, column: JitInt, row: JitInt, active: JitMask = True) -> JitFloat:
-        """Return the depths of texels by `mi.Int32` column and row; infinity beyond the map."""
+        """Return the depth in a texel, or infinity beyond the map; indices are `mi.Int32`."""
         import mitsuba as mi
 
         size = dr.opaque(mi.Int32, self.resolution)
@@ -36,7 +36,7 @@ class Texels:
         return dr.select(within, value, dr.inf)
 
     def read_depths(self, point: MapPoint, u: JitFloat, v: JitFloat) -> tuple[JitFloat, JitFloat]:
-        """Return the depth in the texel at (u, v), and the depth of the receiver's plane there."""
+        """Return the depths of the texel at (u, v) and of the receiver's tangent plane there."""
         import mitsuba as mi
 
         u, v = dr.floor(u), dr.floor(v)
@@ -44,7 +44,7 @@ class Texels:
         return self.read_texel(mi.Int32(u), mi.Int32(v), point.active), plane_depth
 
     def visibility(self, point: MapPoint, u: JitFloat, v: JitFloat) -> JitFloat:
-        """Return 1 where the texel at (u, v) leaves a receiver lit, 0 where it is nearer."""
+        """Return 1 if the texel at (u, v) leaves a receiver lit, or 0 if its depth is nearer."""
         import mitsuba as mi
 
         occluder, depth = self.read_depths(point, u, v)
@@ -65,12 +65,13 @@ class Windows:
         self.values = add_infinite_frame(values, width).array
 
     def visibility(self, point: MapPoint, weights: Callable[[Any], Any]) -> JitFloat:
-        """Return the weighted mean of comparisons with a window's texels: Σ_ij w_i w_j [z ≤ f_ij].
+        """Return the share of light, the weighted mean of comparisons with a window's texels.
 
-        z is the depth of the receiver's plane and f_ij that in a texel.
+        It is Σ_ij w_i w_j [z_ij ≤ f_ij], where f_ij is the depth in a texel, z_ij the depth of the
+        receiver's tangent plane there, and [...] 1 or 0.
 
-        weights : function that returns the weights w of the columns or rows, given where the window
-            begins within its first texel, 0 to 1.
+        weights : function that returns the weights w of the columns (or rows) of the window. Its
+            argument is the place within the first texel where the window begins, 0 to 1.
         """
         import mitsuba as mi
 

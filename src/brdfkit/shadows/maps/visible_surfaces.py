@@ -1,4 +1,4 @@
-"""The surfaces that a camera sees, found by a coarse grid of rays, to tune partitions to them."""
+"""Finds the surfaces that a camera sees, by a coarse grid of rays, to adapt partitions to them."""
 
 from dataclasses import dataclass
 
@@ -12,16 +12,16 @@ from brdfkit.core.projective.homogeneous import project_points
 from brdfkit.core.projective.light import Light
 from brdfkit.mitsuba_bridge.surface_points import spawn_ray
 
-SIDE = 128  # rays along a side of the picture
+SIDE = 128  # number of rays along each side of the picture
 
 
 @dataclass(frozen=True)
 class VisibleSurfaces:
     """Surface points that a coarse grid of camera rays hits.
 
-    points, normals : points and normals (n, 3).
-    distances : distances (n,) along the rays.
-    hit : whether each ray of the grid (SIDE, SIDE) hits a surface.
+    points, normals : the points and their normals (n, 3), for the n rays that hit a surface.
+    distances : distances (n,) of the points along the rays.
+    hit : True for each ray of the grid that hits a surface, (SIDE, SIDE).
     """
 
     points: AnyArray
@@ -50,7 +50,7 @@ def find_visible_surfaces(scene: MitsubaObject, camera: Camera) -> VisibleSurfac
 
 
 def is_lit(scene: MitsubaObject, light: Light, surfaces: VisibleSurfaces) -> BoolArray:
-    """Return whether a light reaches each of the visible points (n,), by shadow rays."""
+    """Return whether a light reaches each visible surface point, by shadow rays, (n,)."""
     import mitsuba as mi
 
     to_light = light.directions_to_light(surfaces.points)

@@ -1,1 +1,1 @@
-"""Shadow volumes: silhouettes are extruded away from the light and enclose all that is dark."""
+"""Shadow volumes: solids that enclose all dark points, silhouettes extruded away from the light."""

@@ -1,18 +1,17 @@
-"""Selects the triangles of a mesh that cast its shadow; they are the front caps of the volume.
+"""Selects the triangles of a mesh that cast its shadow; they become the volume's front caps.
 
-Each function gives every triangle a whole number: 1 where it casts as it is oriented, -1 where it
-casts after it is turned over, so that it faces the light, and 0 where it casts nothing.
+Each function gives every triangle a casting number: 1 if it casts a shadow as it is oriented, -1 if
+it is turned over first, so that it faces the light, and 0 if it casts no shadow.
 
-all           Every triangle casts but those in whose plane the light is. Right for any mesh, open
-              or closed, however its triangles are oriented, and for a light within: as many
-              volumes contain a point as triangles lie between it and the light [Bergeron 1986]. An
-              edge between a triangle that faced the light and one that did not bounds both, and
-              its wall counts twice.
-light_facing  Triangles that face the light cast [Ergun 2008, 2.1.6]: half as many, for closed
-              meshes.
-facing_away   Triangles that do not face the light cast. Behind closed meshes the shadow is the
-              same; the insides of the shapes are lit. As the caps never touch a lit surface, they
-              do not darken one by mistake.
+all           All triangles cast, except those whose plane contains the light. This suits any mesh,
+              open or closed, however its triangles are oriented, even around the light: a point is
+              in as many volumes as triangles lie between it and the light [Bergeron 1986]. At the
+              silhouette two triangles share an edge, whose wall counts twice.
+light_facing  The triangles that face the light cast [Ergun 2008, 2.1.6]. They are half as many, but
+              the mesh must be closed.
+facing_away   The triangles that face away from the light cast. Behind closed meshes the shadow is
+              the same, but the insides of the shapes are lit. The caps never touch a lit surface,
+              so they do not darken one by mistake.
 """
 
 import numpy as np
@@ -24,15 +23,15 @@ from brdfkit.shadows.volumes.mesh import Mesh
 
 
 def select_all_triangles(mesh: Mesh, light: Light) -> IntArray:
-    """Return the casting number (m,) of each triangle if all of them cast a shadow.
+    """Return the casting number (m,) of each triangle of a mesh if all of them cast a shadow.
 
-    It is 1, or -1 for triangles that must be turned over to face the light, or 0 if edge-on.
+    It is 1 for triangles that face the light, -1 if they face away, and 0 if they are edge-on.
     """
     return np.sign(compute_facing(mesh, light)).astype(int)
 
 
 def select_light_facing_triangles(mesh: Mesh, light: Light) -> IntArray:
-    """Return the casting number (m,) of each triangle, 1 if it faces the light, else 0.
+    """Return the casting number (m,) of each triangle of a mesh: 1 if it faces the light, else 0.
 
     Raises `BrdfkitError` unless the mesh is closed and the light outside of it.
     """
@@ -41,7 +40,7 @@ def select_light_facing_triangles(mesh: Mesh, light: Light) -> IntArray:
 
 
 def select_triangles_facing_away(mesh: Mesh, light: Light) -> IntArray:
-    """Return the casting number (m,) of each triangle, 0 if it faces the light, else -1.
+    """Return the casting number (m,) of each triangle of a mesh: 0 if it faces the light, else -1.
 
     Raises `BrdfkitError` unless the mesh is closed and the light outside of it.
     """
@@ -63,9 +62,9 @@ def is_facing_light(mesh: Mesh, light: Light) -> BoolArray:
 
 
 def compute_facing(mesh: Mesh, light: Light) -> FloatArray:
-    """Return the cosine (m,) between triangle normals and light, scaled by positive numbers.
+    """Return a number (m,) per triangle: above 0 if it faces the light, below 0 if it faces away.
 
-    It is 0 where the light is in the triangle's plane.
+    It is proportional to the cosine between the triangle's normal and the direction to the light.
     """
     corner = mesh.points[mesh.triangles[:, 0]]
     to_light = light.point[:3] - light.point[3] * corner
@@ -83,9 +82,10 @@ def require_solid(mesh: Mesh, light: Light) -> None:
 
 
 def winding_number(mesh: Mesh, place: FloatArray) -> float:
-    """Return how often a mesh winds around a point (3,): its triangles' solid angles over 4π.
+    """Return how often a mesh winds around a point (3,): ±1 inside a closed mesh, 0 outside.
 
-    It is ±1 inside of a closed mesh and 0 outside [Van Oosterom & Strackee 1983].
+    It is the sum of the signed solid angles of the triangles, divided by 4π [Van Oosterom &
+    Strackee 1983].
     """
     a, b, c = (mesh.points[mesh.triangles] - place).transpose(1, 0, 2)
     x, y, z = (np.linalg.norm(v, axis=1) for v in (a, b, c))

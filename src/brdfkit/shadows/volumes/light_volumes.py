@@ -1,4 +1,4 @@
-"""`LightVolumes`: all shadow volumes of one light, and its visibility from visible points."""
+"""`LightVolumes`: all shadow volumes of one light, which tell whether a visible point is lit."""
 
 import math
 from collections.abc import Iterable
@@ -20,10 +20,11 @@ from brdfkit.shadows.volumes.volume import Faces, Volume, make_shadow_volume
 
 METHODS = ("depth_fail", "depth_pass")
 FAR_PLANES = ("infinite", "finite")
-TILE_SIDE = 4  # the approximate side of a tile [pixels]
-# The least cosine between a camera ray and a normal, so that no point moves too far along the ray
+TILE_SIDE = 4  # approximate side of the picture's tiles, which have a list of faces each [pixels]
+# Smallest cosine to assume between a camera ray and a normal, as a point that is moved off its
+# surface along a grazing ray would move too far
 LEAST_COSINE = 1e-3
-CAP_DEPTH = 1.0  # 1/z of the near plane in the projection by `project_near_cap`
+CAP_DEPTH = 1.0  # inverse depth of the near plane in the projection that `project_near_cap` makes
 
 
 class LightVolumes:
@@ -31,12 +32,13 @@ class LightVolumes:
 
     meshes : the meshes that cast the shadow.
     light : the light.
-    camera : the camera that sees the points, by its eye and the middle of its picture.
-    method : `depth_pass` counts walls before a point, `depth_fail` walls and caps behind it.
-    far_plane : with `finite`, the faces beyond the camera's far plane are clipped and do not count.
+    camera : the camera that sees the points to shade.
+    method : `depth_pass` counts the walls between the camera and a point, `depth_fail` the walls
+        and caps behind the point.
+    far_plane : `infinite`, or `finite`: faces beyond the camera's far plane do not count.
     pixels : number of pixels along the longer side of the picture; it determines the tiles' size.
-    near_cap : whether `depth_pass` also counts the volumes that contain a place of the near plane,
-        so that the camera may be in a shadow.
+    near_cap : whether `depth_pass` also counts the volumes in which a camera ray begins at the near
+        plane, so that the camera may be in a shadow.
     volume : named arguments of `make_shadow_volume`.
     """
 
@@ -77,9 +79,10 @@ class LightVolumes:
         )
 
     def move_off_surface(self, p: JitVector, n: JitVector) -> JitVector:
-        """Return points `p`, moved along camera rays off their surfaces to the side of the light.
+        """Return points `p`, moved off their surfaces along camera rays to the side of the light.
 
-        They end as far from the surface as shadow rays begin, so that no cap lies on them.
+        So no cap of a volume, which may lie on the surface, passes through the points. The distance
+        from the surface is that at which shadow rays begin.
         """
         import mitsuba as mi
 
@@ -91,7 +94,7 @@ class LightVolumes:
         return p + ray * dr.mulsign(step, dr.dot(n, to_light)) / slope
 
     def count_volumes_around(self, p: JitVector, active: JitMask = True) -> JitInt:
-        """Return the number (`mi.Int32`) of volumes that contain points `p`, by `self.method`."""
+        """Return how many shadow volumes contain each of the points `p`, as `mi.Int32`."""
         import mitsuba as mi
 
         x, y, depth, _ = transform(self.to_picture, *dr.detach(p))
@@ -104,15 +107,15 @@ class LightVolumes:
 
 
 def project_near_cap(volumes: Iterable[Volume], light: Light, camera: Camera) -> ProjectedFaces:
-    """Return the casting triangles as the light projects them through a camera's near plane.
+    """Return the casting triangles, projected by the light onto the camera's near plane.
 
-    Places of the camera's picture stand for places of the near plane. So a ray of the picture meets
-    as many of the triangles as there are volumes that contain its place on the plane.
+    A camera ray starts at a place on the near plane. The triangles over this place, counted like
+    faces in the picture, are as many as the volumes that contain the start of the ray.
     """
     to_picture, n = picture_matrix(camera), camera.near
     *across, l_z, l_w = to_picture @ light.point
     height = l_z - n * l_w
-    # If the light lies in the near plane, no triangle casts a shadow onto the plane
+    # A light in the near plane casts no shadows onto the plane, so then there are no triangles
     fronts = [volume.front for volume in volumes if height]
     beta = np.array([0, 0, 1, -n]) / (height or 1)
     alpha = np.array([0, 0, 0, 1]) - l_w * beta

@@ -7,19 +7,19 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray, IntArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.shadows.volumes.tessellation import tessellate
+from brdfkit.shadows.volumes.tessellation import tessellate_shape
 
 
 @dataclass(frozen=True)
 class Mesh:
     """The triangles of a shape, with welded vertices.
 
-    No two points are at one place, so that triangles on both sides of a seam of texture coordinates
-    share their edges.
+    Mesh files may repeat a vertex, for example along a seam of texture coordinates. Here each place
+    has only one vertex, so that neighbouring triangles share their edges.
 
     name : the shape's name, for error messages.
-    points : vertices (n, 3).
-    triangles : indices (m, 3) of the triangles' corners among the points.
+    points : the vertices (n, 3).
+    triangles : for each triangle the indices of its corners in `points`, (m, 3).
     """
 
     name: str
@@ -28,7 +28,7 @@ class Mesh:
 
     @classmethod
     def weld(cls, name: str, points: AnyArray, triangles: AnyArray) -> "Mesh":
-        """Return a mesh in which all points at one place are one point."""
+        """Return the mesh of points and triangles, with equal points merged to one vertex."""
         points, index = np.unique(points, axis=0, return_inverse=True)
         return cls(name, points, index.ravel()[triangles])
 
@@ -36,7 +36,7 @@ class Mesh:
     def from_shape(cls, shape: MitsubaObject) -> "Mesh":
         """Make a mesh of a Mitsuba shape; raise `BrdfkitError` if it cannot have triangles."""
         if not shape.is_mesh():
-            return cls.weld(shape.id(), *tessellate(shape))
+            return cls.weld(shape.id(), *tessellate_shape(shape))
         points = np.array(shape.vertex_positions_buffer(), float).reshape(-1, 3)
         triangles = np.array(shape.faces_buffer(), int).reshape(-1, 3)
         if not np.isfinite(points[triangles]).all():
@@ -48,17 +48,17 @@ class Mesh:
 
     @cached_property
     def normals(self) -> FloatArray:
-        """The normals (m, 3) of the triangles, as long as twice their areas."""
+        """The normals (m, 3) of the triangles; their lengths are twice the triangles' areas."""
         a, b, c = self.points[self.triangles].transpose(1, 0, 2)
         return np.cross(b - a, c - a)
 
     @cached_property
     def shared_edges(self) -> tuple[IntArray, IntArray, IntArray]:
-        """The edges (k, 2), and the indices (k,) of the triangles that run along them and back.
+        """The edges, and for each edge its two triangles: (k, 2), (k,) and (k,) indices.
 
-        Each edge is given with the smaller index first. Raises `BrdfkitError` unless every edge
-        belongs to exactly one triangle in each direction, that is, for meshes that are open or
-        whose triangles are oriented differently.
+        An edge has its smaller vertex index first; the corners of the first triangle run along the
+        edge in this direction, those of the second run back. Raises `BrdfkitError` for meshes that
+        are open, or whose triangles are not all oriented alike.
         """
         first, last, triangle = list_directed_edges(self.triangles)
         key = np.minimum(first, last) * len(self.points) + np.maximum(first, last)
@@ -78,7 +78,10 @@ class Mesh:
 
 
 def list_directed_edges(triangles: IntArray) -> tuple[IntArray, IntArray, IntArray]:
-    """Return first corner, last corner and triangle (3m,) of each edge of triangles (m, 3)."""
+    """List the three edges of each of the triangles (m, 3).
+
+    Return the indices of each edge's first vertex, last vertex and triangle, (3m,) each.
+    """
     first = triangles.ravel()
     last = triangles[:, [1, 2, 0]].ravel()
     return first, last, np.repeat(np.arange(len(triangles)), 3)

@@ -1,14 +1,17 @@
-"""Faces in a camera's picture, as linear functions over the picture, without any clipping.
+"""Projects faces of shadow volumes into a camera's picture, without any clipping.
 
-A place (x, y) of the picture is the ray d = (x, y, 1). In the camera's space, a corner i of a face
-has the homogeneous coordinates (X, Y, Z, w_i); with the slopes s_x and s_y of the field of view,
-let v_i = (X / s_x, Y / s_y, -Z). The ray meets the face within its edges, and at the depth z:
+A projected face is a set of functions that are linear over the picture. They tell which camera rays
+meet the face, and at which depth. Corners behind the eye and at infinity (w = 0) need no special
+treatment [Olano & Greer 1997].
 
-    E_i(d) = (v_i × v_{i+1}) · d ≥ 0      (all with one sign, which says the side that is visible)
+The ray through a place (x, y) of the picture is d = (x, y, 1). A corner i of a face has the
+homogeneous coordinates (X, Y, Z, w_i) in the camera's space. Let v_i = (X / s_x, Y / s_y, -Z),
+where s_x and s_y are the slopes of the field of view. The ray meets the face if the edge functions
+E_i of all its edges have the same sign, which tells the visible side. The depth z there follows
+from 1/z:
+
+    E_i(d) = (v_i × v_{i+1}) · d
     1/z    = (w_2 v_0 × v_1 + w_0 v_1 × v_2 + w_1 v_2 × v_0) · d / (v_0 · v_1 × v_2)
-
-so that corners behind the eye and at infinity (w = 0) need no special treatment [Olano & Greer
-1997].
 """
 
 from dataclasses import dataclass
@@ -37,11 +40,12 @@ def make_pinhole_camera(sensor: MitsubaObject) -> Camera:
 class ProjectedFaces:
     """Faces of shadow volumes as linear functions of the place (x, y) in a camera's picture.
 
-    edges : (k, 4, 3), the coefficients of x, y and 1 in the edge functions E_i, which are positive
-        within a face; scaled so that the largest coefficient is 1.
-    ties : (k, 4), the least E_i within a face; it settles which of two faces has their common edge.
-    inverse_depth : (k, 3), the coefficients of x, y and 1 in 1/z, z the depth of the face.
-    times : (k,), how often a ray counts that meets the face; negative where it leaves the volume.
+    edges : coefficients of x, y and 1 in the four edge functions of each face, (k, 4, 3). An edge
+        function is positive within the face; its largest coefficient is 1.
+    ties : smallest value of each edge function at which a ray meets the face, (k, 4), so that a
+        common edge of two faces belongs to only one of them.
+    inverse_depth : coefficients of x, y and 1 in 1/z, where z is the depth of the face, (k, 3).
+    times : what a ray that meets the face adds to a count, (k,); below 0 where it leaves a volume.
     """
 
     edges: AnyArray
@@ -53,15 +57,15 @@ class ProjectedFaces:
 def picture_matrix(camera: Camera) -> FloatArray:
     """Return the matrix (4, 4) from the world to the space in which faces are projected.
 
-    A point (X, Y, Z) of the camera's space becomes (X / s_x, Y / s_y, -Z), with the slopes s_x and
-    s_y of the field of view, so that the picture is [-1, 1]² at the depth 1.
+    It is the camera's space, but z is the depth, and x and y are scaled so that the picture is
+    [-1, 1]² at the depth 1.
     """
     matrix: FloatArray = np.diag([1 / camera.slope_x, 1 / camera.slope_y, -1, 1]) @ camera.view
     return matrix
 
 
 def project_faces(faces: Faces, matrix: FloatArray) -> ProjectedFaces:
-    """Return the faces of shadow volumes in a picture, without those that are seen edge-on.
+    """Project faces of shadow volumes into a picture, and leave out faces that are edge-on.
 
     matrix : (4, 4), from the world to the picture's space, such as a camera's `picture_matrix`.
     """
@@ -81,11 +85,14 @@ def project_faces(faces: Faces, matrix: FloatArray) -> ProjectedFaces:
 
 
 def compute_tie_thresholds(edges: FloatArray) -> FloatArray:
-    """Return the least values (k, 4) of the faces' edge functions at which a point is within.
+    """Return the smallest values of edge functions at which a ray meets the face, (k, 4).
 
-    The value is 0, or the least positive number: it is 0 where the first coefficient other than 0
-    is positive. As the same edge has the opposite sign in the neighbouring face, exactly one of the
-    two faces includes the edge, and no ray slips through.
+    They decide which of two neighbouring faces a ray through their common edge meets, so that it
+    meets exactly one. The value is 0 in one face, which includes the edge, and the smallest
+    positive number in the other. The edge function has opposite signs in the two faces; the face in
+    which its first nonzero coefficient is positive has the 0.
+
+    edges : coefficients (k, 4, 3) of the edge functions.
     """
     a, b, c = np.moveaxis(edges, -1, 0)
     leading = np.where(a != 0, a, np.where(b != 0, b, c))

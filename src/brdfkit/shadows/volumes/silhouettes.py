@@ -1,13 +1,13 @@
-"""The silhouettes of a mesh in a light: the edges that bound its casting triangles.
+"""Finds the silhouette of a mesh in a light: the edges that bound the triangles that cast shadows.
 
-Both functions return the same edges (k, 2), and (k,) how often each of them bounds the casting
-triangles, by the whole numbers that `casters.py` gives to triangles. An edge has the direction in
-which the triangles run along it.
+Two ways give the same result: the edges as pairs of vertex indices (k, 2), and how often each of
+them counts (k,). An edge has the direction in which the corners of its casting triangles follow
+each other. A triangle's casting number, from `casters.py`, is 1, -1 (turned over) or 0.
 
-edge_toggling  The edges of all casting triangles are added up; an edge cancels if a second triangle
-               runs back along it. For every mesh.
-shared_edges   An edge belongs to the silhouette if its two triangles differ in their number. The
-               edges are listed once for all lights. For closed meshes.
+edge_toggling  Adds up the directed edges of all casting triangles; an edge cancels if a second
+               triangle runs back along it. This suits every mesh.
+shared_edges   Finds the edges whose two triangles have different casting numbers. The list of edges
+               is the same for all lights, but the mesh must be closed.
 
 [Ergun 2008, 2.1.5]
 """
@@ -20,6 +20,8 @@ from brdfkit.shadows.volumes.mesh import Mesh, list_directed_edges
 
 def find_silhouette_by_toggling(mesh: Mesh, casts: IntArray) -> tuple[IntArray, IntArray]:
     """Return the silhouette of a mesh's casting triangles by adding up their directed edges.
+
+    The result is the edges (k, 2), and how often each of them counts (k,).
 
     casts : the casting number (m,) of each triangle, see `casters.py`.
     """
@@ -34,6 +36,8 @@ def find_silhouette_by_toggling(mesh: Mesh, casts: IntArray) -> tuple[IntArray, 
 
 def find_silhouette_by_neighbours(mesh: Mesh, casts: IntArray) -> tuple[IntArray, IntArray]:
     """Return the silhouette of a mesh's casting triangles by comparing neighbouring triangles.
+
+    The result is the edges (k, 2), and how often each of them counts (k,).
 
     casts : the casting number (m,) of each triangle, see `casters.py`.
 
@@ -50,8 +54,9 @@ SILHOUETTES = {
 
 
 def orient_edges(edges: IntArray, times: IntArray) -> tuple[IntArray, IntArray]:
-    """Return the edges that count other than 0 times, turned over where the count is negative.
+    """Make all counts of edges positive: turn edges with a negative count over, and drop zeros.
 
+    edges : pairs of vertex indices (k, 2).
     times : how often each edge counts, (k,).
     """
     edges, times = edges[times != 0], times[times != 0]

@@ -1,7 +1,8 @@
-"""The stencil buffer: counts the faces of volumes that a camera ray meets before or behind a point.
+"""`Stencil`: counts the faces of shadow volumes that a camera ray meets before or behind a point.
 
-The picture is halved again and again into tiles. Each tile has a list of the faces that may be
-visible in it, so that a ray tests few faces.
+The name is that of the stencil buffer with which graphics hardware counts. The picture is divided
+into tiles, by halving it repeatedly. Each tile has a list of the faces that may be visible in it,
+so that a ray tests few faces.
 """
 
 import drjit as dr
@@ -10,9 +11,11 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, JitFloat, JitInt, JitMask, JitVector
 from brdfkit.shadows.volumes.projected_faces import ProjectedFaces
 
-RECORD = 5  # vectors of four numbers per face: four edges with their ties, depth with `times`
-SLACK = 1e-5  # tiles are widened by this, so that rounded edges do not miss them
-MAX_PAIRS = 2**24  # with more pairs of a face and a tile, tiles are not halved further
+# Number of vectors with four components that store a face: its four edge functions, each with its
+# tie, and the function of inverse depth, with `times` of `ProjectedFaces`
+RECORD = 5
+SLACK = 1e-5  # width by which tiles are enlarged, so that rounding errors do not lose a face
+MAX_PAIRS = 2**24  # number of pairs of a face and a tile above which tiles are not halved again
 
 
 class Stencil:
@@ -34,17 +37,16 @@ class Stencil:
 
     @property
     def pair_count(self) -> int:
-        """The number of pairs of a face and a tile in which it may be visible."""
+        """The number of pairs of a face and a tile in which the face may be visible."""
         return len(self.indices)
 
     def count_faces(
         self, x: JitFloat, y: JitFloat, least: JitFloat, most: JitFloat, active: JitMask = True
     ) -> JitInt:
-        """Return the signed number (`mi.Int32`) of faces that camera rays meet: entries less exits.
-
-        Only faces whose 1/z, z the depth, is above `least` and at most `most` count.
+        """Count the faces that camera rays meet: how many volumes they enter less those they leave.
 
         x, y : the places of the rays in the picture, in [-1, 1].
+        least, most : faces count if their inverse depth 1/z is above `least` and at most `most`.
         """
         import mitsuba as mi
 
@@ -67,7 +69,7 @@ class Stencil:
         return dr.while_loop(state, lambda index, count: index < end, count_next_face)[1]
 
     def find_tile(self, x: JitFloat, y: JitFloat) -> JitInt:
-        """Return the index of the tile at (x, y); places off the picture get the nearest tile."""
+        """Return the index of the tile at (x, y), or of the nearest tile for a place outside."""
         import mitsuba as mi
 
         column, row = (mi.Int32(dr.floor((c + 1) * 0.5 * mi.Float(self.tiles))) for c in (x, y))
@@ -77,13 +79,14 @@ class Stencil:
 
 
 def list_faces_by_tile(edges: FloatArray, halvings: int) -> tuple[JitInt, JitInt, int]:
-    """Return the faces' indices sorted by tile, where each tile's list begins, and tiles per side.
+    """List the faces that may be visible in each tile of the picture [-1, 1]².
 
-    The first two are `mi.UInt32`. The tiles of the picture [-1, 1]² are counted row by row.
+    Return the faces' indices, sorted by tile; the place at which the list of each tile begins; and
+    the number of tiles per side. Tiles are counted row by row.
 
-    edges : (k, 4, 3), of `ProjectedFaces`.
-    halvings : how often the picture is halved in both directions, unless the pairs of a face and a
-        tile become too many.
+    edges : coefficients of the edge functions (k, 4, 3), of `ProjectedFaces`.
+    halvings : how often the picture is halved in both directions, unless there are too many pairs
+        of a face and a tile.
     """
     import mitsuba as mi
 
@@ -111,10 +114,12 @@ def list_faces_by_tile(edges: FloatArray, halvings: int) -> tuple[JitInt, JitInt
 def may_touch_tile(
     factors: list[JitVector], face: JitInt, column: JitInt, row: JitInt, half: JitFloat
 ) -> JitMask:
-    """Return whether each face may touch its tile: no edge has all of the tile on its outer side.
+    """Return for pairs of a face and a tile whether the face may be visible in the tile.
+
+    It may be unless the tile is all on the outer side of one of the face's edges.
 
     factors : coefficients of x, y and 1 in the four edge functions, for all faces.
-    face, column, row : the index of each face, and the place of its tile.
+    face, column, row : for each pair, the index of the face, and the column and row of the tile.
     half : half the width of a tile.
     """
     import mitsuba as mi

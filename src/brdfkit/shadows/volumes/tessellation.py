@@ -1,7 +1,7 @@
-"""Triangles of Mitsuba's round shapes, for shadow volumes; their corners lie on the shapes.
+"""Replaces Mitsuba's round shapes by triangles, with corners on the shapes, for shadow volumes.
 
-The shadow of a tessellated ball is smaller by 1 - cos(π/128), 0.03 % of its radius. A convex shape
-is not shadowed by its own triangles, as they lie within it.
+The shadow of a ball becomes smaller by 0.03 % of its radius, 1 - cos(π/128). The triangles lie
+within convex shapes, so that such shapes do not shadow themselves.
 """
 
 from collections.abc import Sequence
@@ -11,24 +11,24 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
 
-AROUND, UPWARDS = 128, 64  # the numbers of steps about the axis, and from pole to pole
+AROUND, UPWARDS = 128, 64  # numbers of triangles' edges around the axis, and from pole to pole
 
 
-def tessellate(shape: MitsubaObject) -> tuple[FloatArray, IntArray]:
-    """Return the points (n, 3) and triangles (m, 3) of a Mitsuba sphere, cylinder or disk.
+def tessellate_shape(shape: MitsubaObject) -> tuple[FloatArray, IntArray]:
+    """Return the vertices (n, 3) and triangles (m, 3) of a Mitsuba sphere, cylinder or disk.
 
-    Raises `BrdfkitError` for other shapes.
+    The triangles are indices of their corners. Raises `BrdfkitError` for other shapes.
     """
     import mitsuba as mi
 
     kind = shape.class_name()
     if kind == "Sphere":
         theta = np.linspace(0, np.pi, UPWARDS + 1)
-        points, triangles = revolve(np.sin(theta), np.cos(theta), poles=(0, UPWARDS))
+        points, triangles = revolve_profile(np.sin(theta), np.cos(theta), poles=(0, UPWARDS))
     elif kind == "Cylinder":
-        points, triangles = revolve(np.ones(2), np.arange(2.0))
+        points, triangles = revolve_profile(np.ones(2), np.arange(2.0))
     elif kind == "Disk":
-        points, triangles = revolve(np.arange(2.0), np.zeros(2), poles=(0,))
+        points, triangles = revolve_profile(np.arange(2.0), np.zeros(2), poles=(0,))
     else:
         raise BrdfkitError(
             f"{shape.id()}: shadow volumes need triangles, and this shape ({kind}) has none; "
@@ -38,12 +38,14 @@ def tessellate(shape: MitsubaObject) -> tuple[FloatArray, IntArray]:
     return points @ to_world[:3, :3].T + to_world[:3, 3], triangles
 
 
-def revolve(
+def revolve_profile(
     radius: FloatArray, height: FloatArray, poles: Sequence[int] = ()
 ) -> tuple[FloatArray, IntArray]:
-    """Return points (n, 3) and triangles (m, 3) of a surface of revolution about the z axis.
+    """Return the vertices and triangles of a surface of revolution about the z axis.
 
-    radius, height : radius and height (k,) of the points of its profile.
+    Vertices are (n, 3); triangles are (m, 3), indices of their corners.
+
+    radius, height : radius and height (k,) of the points of the surface's profile.
     poles : the indices of the profile's points that lie on the axis.
     """
     phi = np.arange(AROUND) * 2 * np.pi / AROUND

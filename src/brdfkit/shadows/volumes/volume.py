@@ -1,7 +1,7 @@
-"""The shadow volume of a mesh in a light: walls from its silhouette, and caps that close it.
+"""Makes the shadow volume of a mesh in a light: walls from its silhouette, and caps at both ends.
 
-A face has four homogeneous corners in order; a triangle repeats its last corner. Seen from outside,
-the corners of all faces run the same way round.
+A face has four homogeneous corners; a triangle repeats its last corner. Seen from outside the
+volume, the corners of all faces run the same way round.
 """
 
 from collections.abc import Iterable
@@ -23,8 +23,8 @@ BACK_CAPS = ("triangles", "fan")
 class Faces:
     """Faces of a shadow volume.
 
-    corners : homogeneous corners (k, 4, 4).
-    times : how often each face counts, (k,), as walls of several triangles may coincide.
+    corners : the four homogeneous corners of each face, (k, 4, 4).
+    times : how often each face counts, (k,): walls of several triangles may coincide.
     """
 
     corners: AnyArray
@@ -32,7 +32,7 @@ class Faces:
 
     @classmethod
     def join(cls, parts: Iterable["Faces"]) -> "Faces":
-        """Return the faces of several collections as one."""
+        """Return the faces of several collections as one collection."""
         parts = list(parts)
         return cls(
             np.concatenate([np.empty((0, 4, 4)), *(part.corners for part in parts)]),
@@ -42,7 +42,7 @@ class Faces:
 
 @dataclass(frozen=True)
 class Volume:
-    """A shadow volume: its walls, and the caps at the object (front) and at the far end (back)."""
+    """A shadow volume: its walls, the caps at the mesh (front), and those at the far end (back)."""
 
     walls: Faces
     front: Faces
@@ -59,13 +59,13 @@ def make_shadow_volume(
 ) -> Volume:
     """Make the shadow volume of a mesh in a light.
 
-    casters : which triangles cast, a name in `CASTERS`.
-    silhouettes : the way to find their silhouette, a name in `SILHOUETTES`.
+    casters : which triangles cast the shadow, a name in `CASTERS`.
+    silhouettes : how the silhouette of these triangles is found, a name in `SILHOUETTES`.
     length : length of the walls [unit of length]; 0 makes them infinite.
     back_cap : how the far end is closed: by "triangles", the casting triangles moved there, or by a
         "fan" of triangles over the extruded silhouette.
 
-    Raises `BrdfkitError` for a mesh that the casters or silhouettes do not allow.
+    Raises `BrdfkitError` for a mesh that `casters`, `silhouettes` or `back_cap` does not support.
     """
     casts = CASTERS[casters](mesh, light)
     edges, times = SILHOUETTES[silhouettes](mesh, casts)
@@ -75,7 +75,7 @@ def make_shadow_volume(
     cap = mesh.triangles[casts != 0]
     front = Faces(make_triangular_faces(near[cap]), casts[casts != 0])
     if light.is_directional and not length:
-        back = Faces.join([])  # the cap is a single point at infinity
+        back = Faces.join([])  # all walls meet in one point at infinity, so nothing is open
     elif back_cap == "fan":
         require_triangles_on_one_side(mesh, light, cap)
         back = Faces(make_fan_faces(far[first], far[last]), times)
@@ -107,7 +107,7 @@ def make_triangular_faces(corners: FloatArray) -> FloatArray:
 
 
 def make_fan_faces(first: FloatArray, last: FloatArray) -> FloatArray:
-    """Return triangular faces (k, 4, 4) from the middle of a silhouette to each of its edges.
+    """Return triangles from the middle of a silhouette to each of its edges, as faces (k, 4, 4).
 
     first, last : homogeneous ends (k, 4) of the edges.
     """
@@ -118,7 +118,10 @@ def make_fan_faces(first: FloatArray, last: FloatArray) -> FloatArray:
 
 
 def require_triangles_on_one_side(mesh: Mesh, light: Light, cap: IntArray) -> None:
-    """Raise `BrdfkitError` if the triangles `cap` (k, 3) surround a point or spot light."""
+    """Raise `BrdfkitError` if the triangles `cap` of a mesh surround a point or spot light.
+
+    cap : indices (k, 3) of the triangles' corners.
+    """
     away = mesh.points[np.unique(cap)] - light.point[:3]
     if not light.is_directional and np.any(away @ away.mean(axis=0) <= 0):
         raise BrdfkitError(

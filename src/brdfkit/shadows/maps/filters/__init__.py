@@ -1,8 +1,8 @@
 """Filters: the ways to read the visibility of a light from a shadow map; one file each.
 
-Each file has a class `Lookup(depths, ...)`. `depths` (resolution, resolution) are those that the
-light sees. Its method `visibility(point)` returns the share of the light, in [0, 1], that reaches a
-`MapPoint`. Its further arguments are declared in `SETTINGS`, see `techniques.py`. A filter whose
-map holds something else than depths has its own function `render_map(scene, projection,
-resolution)` in place of `render_depths`.
+Each file has a class `Lookup(depths, ...)`, where `depths` (resolution, resolution) is the map that
+`render_depths` makes. The method `visibility(point)` returns the share of the light, in [0, 1],
+that reaches a `MapPoint`. The further arguments of `Lookup` are declared in `SETTINGS`, see
+`techniques.py`. A filter that needs another map than these depths has a function
+`render_map(scene, projection, resolution)`, which replaces `render_depths`.
 """

@@ -2,10 +2,13 @@
 
     lit = Σ_ij w_i w_j [z ≤ f_ij],   w = (1 - s, 1 ... 1, s) / (n - 1)
 
-z is the depth of the point, f_ij the depth in a texel of the n × n window, and s, from 0 to 1,
-where the window begins within its first texel. With n = 3 texels, w = ((1 - s)/2, 1/2, s/2): the
-mean of the four bilinear interpolations of [Ergun 2008, 2.2.1.3], which graphics hardware makes of
-the comparisons of 2 × 2 texels. The borders of shadows are n - 1 texels wide, and smooth.
+lit is the share of the light that arrives, z the depth of the point and f_ij the depth in a texel
+of the n × n window. [...] is 1 where the comparison holds, else 0. The weights w of the columns and
+rows depend on s, from 0 to 1: the place within the first texel where the window begins. So the
+borders of shadows are smooth, and n - 1 texels wide.
+
+With n = 3, w = ((1 - s)/2, 1/2, s/2). This is the mean of the four bilinear interpolations of
+[Ergun 2008, 2.2.1.3], each of which graphics hardware makes of comparisons with 2 × 2 texels.
 
 [Reeves et al. 1987], [Ergun 2008, 2.2.1.3]
 """
@@ -31,9 +34,9 @@ class Lookup:
         return self.windows.visibility(point, self.window_weights)
 
     def window_weights(self, begin: JitFloat) -> list[JitFloat]:
-        """Return the weights of a window's columns or rows, which add up to 1.
+        """Return the weights of a window's columns (or rows), which add up to 1.
 
-        begin : where the window begins within its first texel, 0 to 1.
+        begin : the place within the first texel where the window begins, from 0 to 1.
         """
         if self.width == 1:
             return [1.0]

@@ -1,9 +1,9 @@
-"""One look-up: a point is dark where the map holds a depth nearer to the light.
+"""The simplest filter: a point is dark if its texel holds a depth nearer to the light.
 
     lit = [z ≤ f(u, v)]
 
-z is the depth of the point and f the depth in the texel (u, v) that it falls on. The border of a
-shadow runs in steps, along the edges of texels.
+z is the depth of the point and f the depth in the texel (u, v) that it falls on; lit is 1 where the
+comparison holds, else 0. The border of a shadow runs in steps, along the edges of texels.
 
 [Williams 1978], [Ergun 2008, 2.2.1.2]
 """

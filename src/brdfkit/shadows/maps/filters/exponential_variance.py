@@ -2,12 +2,15 @@
 
     z⁺ = exp(c⁺ z),  z⁻ = -exp(-c⁻ z);   lit = min(p_max(z⁺), p_max(z⁻))
 
-z is the depth and c⁺ and c⁻ are the exponents. p_max is the upper bound on the light that the mean
-and the variance of a warped depth give. The exponential makes gaps between far occluders negligible
-beside the gap to the nearest one, so that hardly any light bleeds into a second shadow far behind
-it. Light does leak where the receiver is close behind the second occluder; there the bound of z⁻ is
-the lower one. A c⁻ of 0 leaves out that bound, which halves the memory. Larger exponents would
-exceed 3e38, the range of single precision.
+z is the depth, and c⁺ and c⁻ are the settings `exponent` and `negative_exponent`. p_max is the
+upper bound on the share of light that the mean and the variance of a warped depth allow, as in a
+variance shadow map.
+
+The problem of a variance shadow map is light that leaks into a shadow where two occluders are
+behind each other. The warp z⁺ stretches the far depths most, so hardly any light leaks, unless the
+receiver is close behind the second occluder; there the bound by z⁻ is lower. A c⁻ of 0 leaves out
+that bound, which halves the memory. Exponents above 40 would exceed 3e38, the range of single
+precision.
 
 [Lauritzen & McCool 2008]
 """
@@ -28,7 +31,7 @@ SETTINGS = {
     "negative_exponent": declare_float(5.0, (0.0, 40.0), "c⁻; 0 leaves this bound out"),
 }
 render_map = moving_depths.render_map
-# The least standard deviation of depths in [-1, 1]: below it, rounding errors exceed the variance
+# Smallest standard deviation of depths in [-1, 1]; rounding errors exceed the variance below it
 LEAST_DEVIATION = 1e-3
 
 
@@ -43,14 +46,14 @@ class Lookup:
         exponent: float,
         negative_exponent: float,
     ) -> None:
-        # Each warp is paired with the ratio of its slope to its value
+        # Pairs of a warp of depth z and its relative slope |warp'(z) / warp(z)|, the exponent
         self.warps = [(lambda z: dr.exp(exponent * z), exponent)]
         if negative_exponent:
             self.warps.append((lambda z: -dr.exp(-negative_exponent * z), negative_exponent))
         self.moments = MomentMap(self.compute_warped_powers, depths, blur, bleeding)
 
     def compute_warped_powers(self, depths: MitsubaObject) -> list[MitsubaObject]:
-        """Return the warped depths and their squares, as a list with one pair per warp."""
+        """Return the warped depths and their squares, one after the other, for each warp."""
         return [x for warp, _ in self.warps for x in (warp(depths), dr.square(warp(depths)))]
 
     def visibility(self, point: MapPoint) -> JitFloat:

@@ -2,15 +2,17 @@
 
     lit = max { P(X ≥ z) : E(X) = b₁ ... E(X⁴) = b₄ }
 
-X is the depth of an occluder near the point, z the depth of the point, and b₁ to b₄ are the moments
-of X. The maximum solves a Hamburger moment problem. With two occluding planes above a third it is
-the exact share, where a variance shadow map leaks. If the moments nearly belong to fewer depths,
-rounding errors matter: the moments are then mixed with fixed ones by the share `rounding`, which
-lets some light through.
+X is the random depth of the texels near the point, z the depth of the point, and b₁ to b₄ are the
+means of X, X², X³ and X⁴, which the map stores. Among all distributions of X with these moments,
+lit is the largest share of depths that are not nearer than z (a Hamburger moment problem). It is
+exact for two occluding planes above a third plane, where a variance shadow map leaks light.
 
-The bound is so sharp that on a slanted surface it notices that half of the window is nearer to the
-light than the point. So where the bias follows planes, the point gets the least depth that its
-plane has within half a texel.
+Where X has only one or two different depths, rounding errors of the moments matter. So a small
+share, the setting `rounding`, of fixed moments is mixed in, which lets some light through.
+
+The bound is so sharp that it would darken slanted surfaces, as half of the texels around a point on
+them are nearer to the light. So with a bias that follows the surface's plane (`Bias.plane`), z is
+the least depth that this plane has within half a texel of the point.
 
 [Peters & Klein 2015]
 """

@@ -2,10 +2,11 @@
 
     lit = 1/n² Σ_ij [z ≤ f_ij]
 
-z is the depth of the point and f_ij the depth in a texel of the window around it. Depths are
-compared before they are averaged, as an average of depths is no depth of a surface. The borders of
-shadows are n texels wide and have n² steps, however far apart the objects are. Between the steps,
-the derivative of the light by the objects' places is 0.
+lit is the share of the light that arrives, z the depth of the point and f_ij the depth in a texel
+of the window around it. The comparisons [z ≤ f_ij], 1 or 0, are averaged instead of the depths, as
+an average of depths is no depth of a surface. The borders of shadows are n texels wide and have n²
+steps, however far the occluder is from the receiver. Between the steps the light is constant, so
+its derivative with respect to the scene is 0.
 
 [Reeves et al. 1987], [Ergun 2008, 2.2.1.3]
 """

@@ -2,15 +2,17 @@
 
     w = w_light (d_r - d_b) / d_b
 
-w is the width of the penumbra, w_light that of the light, d_r the receiver's distance from the
-light, and d_b the mean distance of the occluders, which are taken for a plane parallel to the
-light. A search over the cone from the receiver to the light, as far as the map's near side, finds
-the occluders. The search and the filter both read taps on a spiral within a disk that is round in
-the world, whatever the projection does to it. `light_size` gives the scene's point light a size;
-for a light far away it is the tangent of its diameter, 0.0093 for the sun.
+w is the width of the penumbra, w_light the width of the light, d_r the receiver's distance from the
+light, and d_b the mean distance of the occluders, which are treated as a plane parallel to the
+light. The setting `light_size` is w_light, which a point light of Mitsuba does not have; for a
+directional light it is the tangent of its angular diameter, 0.0093 for the sun.
 
-The map lacks occluders behind others, and the mean of several depths is none of them: overlapping
-penumbrae are wrong, and contacts a little too light.
+First a search finds the occluders: it reads texels within the cone from the receiver to the light.
+Then the filter averages depth comparisons over a disk of the width w. Both read texels (taps) at
+the points of a spiral that fills a disk in the world, at right angles to the light.
+
+The map does not contain occluders behind others, and several occluders are replaced by one at their
+mean depth. So overlapping penumbrae are wrong, and contact shadows a little too light.
 
 [Fernando 2005]
 """
@@ -34,12 +36,13 @@ SETTINGS = {
 class Lookup:
     """A shadow map that averages depth comparisons over a disk as wide as the penumbra.
 
-    light_size : diameter of the light [unit of length], or the tangent of a directional light's.
-    taps : number of look-ups for the search of occluders, and again for the average.
+    light_size : diameter of the light [unit of length]; for a directional light, the tangent of its
+        angular diameter.
+    taps : number of texels that the search for occluders reads, and again the average.
     """
 
     def __init__(self, depths: MitsubaObject, light_size: float, taps: int) -> None:
-        self.texels, self.light_size, self.taps = Texels(depths), light_size, make_spiral(taps)
+        self.texels, self.light_size, self.taps = Texels(depths), light_size, make_tap_spiral(taps)
 
     def visibility(self, point: MapPoint) -> JitFloat:
         """Return the share of the light that arrives at a point."""
@@ -50,7 +53,7 @@ class Lookup:
         return lit / len(self.taps)
 
     def mean_occluder_depth(self, point: MapPoint) -> JitFloat:
-        """Return the mean depth of the occluders in the map; the point's own depth without any."""
+        """Return the mean depth on the map of a point's occluders, or its own depth without any."""
         import mitsuba as mi
 
         total, count = mi.Float(0), mi.Float(0)
@@ -61,7 +64,7 @@ class Lookup:
         return dr.select(count > 0, total / count, point.depth)
 
     def penumbra_width(self, point: MapPoint, depth: JitFloat) -> JitFloat:
-        """Return the width w of the penumbra [unit of length] by an occluder at a map's `depth`."""
+        """Return the width of the penumbra [unit of length] if the occluder has this `depth`."""
         occluder, light = point.move_to_depth(depth), point.projection.light
         gap = dr.norm(occluder - point.p)
         if not light.is_directional:
@@ -71,9 +74,9 @@ class Lookup:
     def iterate_tap_places(
         self, point: MapPoint, width: JitFloat
     ) -> Iterator[tuple[JitFloat, JitFloat]]:
-        """Yield the taps (u, v) [texels] of a disk around a point, at right angles to the light.
+        """Yield the places (u, v) [texels] to read in a disk around a point that faces the light.
 
-        width : diameter of the disk [unit of length].
+        width : diameter of the disk in the world [unit of length].
         """
         (u_s, v_s), (u_t, v_t) = point.cross_section_axes()
         for s, t in self.taps:
@@ -81,7 +84,7 @@ class Lookup:
             yield point.u + x * u_s + y * u_t, point.v + x * v_s + y * v_t
 
 
-def make_spiral(n: int) -> list[tuple[float, float]]:
+def make_tap_spiral(n: int) -> list[tuple[float, float]]:
     """Return n points of the unit disk, spread evenly over its area on a golden-angle spiral."""
     golden = math.pi * (3 - math.sqrt(5))
     return [

@@ -1,11 +1,12 @@
-"""Poisson-disk filter: percentage-closer over 12 random taps in a disk, none too close to another.
+"""Poisson-disk filter: averages depth comparisons at 12 random places (taps) in a disk.
 
     lit = 1/12 Σ_k [z ≤ f(u + r x_k, v + r y_k)]
 
-z is the depth of the point, f(u, v) the depth in the texel at (u, v), and (x_k, y_k) are the taps
-in the unit disk. A disk of any radius r costs the same. The setting `taper` lets the radius shrink
-towards the upper end of the map, where shadows then become sharper. The same 12 taps serve every
-point, so that wide borders show 12 copies of the edge.
+lit is the share of the light that arrives. z is the depth of the point, (u, v) its place on the map
+and f the depth in the texel at a place; a comparison [...] is 1 or 0. The taps (x_k, y_k) are
+points of the unit disk, none too close to another. A disk of any radius r costs the same. The
+setting `taper` makes the radius shrink towards the upper end of the map, and so shadows sharper.
+The same 12 taps serve every point, so wide borders show 12 copies of the edge.
 
 [Mitchell 2004], [Ergun 2008, 2.2.1.3]
 """
@@ -20,7 +21,7 @@ from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.texels import Texels
 
 TAPS = 12
-LEAST_DISTANCE = 0.5  # the least distance between two taps, in radii of the disk
+LEAST_DISTANCE = 0.5  # smallest distance between two taps, as a multiple of the disk's radius
 
 SETTINGS = {
     "radius": declare_float(2.0, (0.0, 256.0), "of the disk [texels]"),
@@ -31,8 +32,8 @@ SETTINGS = {
 class Lookup:
     """A shadow map that averages depth comparisons at 12 taps around a point.
 
-    radius : radius of the disk of taps at the lower end of the map [texels].
-    taper : share by which the radius shrinks up to the upper end of the map.
+    radius : radius of the disk of taps at the lower end of the map (v = 0) [texels].
+    taper : share of the radius by which it shrinks from the lower to the upper end of the map.
     """
 
     def __init__(self, depths: MitsubaObject, radius: float, taper: float) -> None:

@@ -2,12 +2,13 @@
 
     lit = p_max = σ² / (σ² + (z - μ)²) where z > μ, else 1;   lit' = (lit - ε)₊ / (1 - ε)
 
-z is the depth of the point. The mean μ = E(f) and the variance σ² = E(f²) - μ² of the map's depths
-f come from two moments that are blurred and interpolated as a picture is, once for all points. For
-one plane above another, the bound equals the share that a percentage-closer filter finds. Where two
-occluders are behind each other the variance is large, and light bleeds into the shadow of the
-farther one. Shares below ε (`bleeding`) therefore count as 0, which narrows true borders, too. The
-borders are soft and have derivatives.
+z is the depth of the point, and f are the depths in the texels around it, with the mean μ = E(f)
+and the variance σ² = E(f²) - μ². The map stores E(f) and E(f²), which can be blurred once for all
+points, and interpolated like a picture. The borders are soft and have derivatives.
+
+For one plane above another, lit equals the share that a percentage-closer filter finds. Where two
+occluders are behind each other, the variance is large, and light leaks into the shadow of the
+farther one. So shares below ε, the setting `bleeding`, become 0, which also narrows true borders.
 
 [Donnelly & Lauritzen 2006], [Ergun 2008, 2.2.1.4]
 """

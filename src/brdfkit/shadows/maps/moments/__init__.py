@@ -1,1 +1,1 @@
-"""Moments of the depths near a place of a shadow map, and the bounds they set on its visibility."""
+"""Shadow maps of moments, mean powers of depth, which bound the light that reaches a point."""

@@ -1,12 +1,17 @@
 """Upper bounds on the light at a depth t, from two or four moments of the occluders' depth X.
 
-Two moments, by Chebyshev's one-sided inequality [Donnelly & Lauritzen 2006], [Ergun 2008, 2.2.1.4]:
+The depths X in the texels near a point are random, and the light that arrives is the probability
+P(X ≥ t) that an occluder is not nearer than the point. A map stores only moments: means of powers
+of X.
+
+Two moments give a bound by Chebyshev's one-sided inequality [Donnelly & Lauritzen 2006], [Ergun
+2008, 2.2.1.4]:
 
     P(X ≥ t) ≤ σ² / (σ² + (t - μ)²) for t > μ, else 1;   μ = E(X), σ² = E(X²) - μ²
 
-Four moments, by the Hamburger moment problem [Peters & Klein 2015]: among all distributions with
-the moments b₁ ... b₄, the one with the least mass in front of t has three depths, t, z₂ and z₃,
-where z₂ and z₃ are the roots of c₁ + c₂ z + c₃ z² and
+Four moments b₁ = E(X) ... b₄ = E(X⁴) give a sharper one [Peters & Klein 2015]. Among all
+distributions with these moments, the one with the most light has only three depths: t, z₂ and z₃.
+z₂ and z₃ are the roots of c₁ + c₂ z + c₃ z² with
 
     | 1  b₁ b₂ |       | 1  |
     | b₁ b₂ b₃ | · c = | t  |
@@ -19,21 +24,22 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat
 
-# Valid moments of depths in [-1, 1], far from the limits of validity [Münstermann et al. 2018]
+# Moments E(X) ... E(X⁴) of depths in [-1, 1] that stay valid if all four change a little: mixed in,
+# they make moments with rounding errors valid again [Münstermann et al. 2018]
 MIDDLE_MOMENTS = 0.0, 0.375, 0.0, 0.375
-# A root beyond 1 / LEAST_ROOT counts as infinite; X then has only two depths, one of them t
+# Smallest c₃ / c₂ of the quadratic c₁ + c₂ z + c₃ z²; below it, a root would overflow
 LEAST_ROOT = 1e-7
 
 
 def bound_by_two_moments(
     mean: JitFloat, mean_square: JitFloat, t: JitFloat, least_variance: JitFloat = 0.0
 ) -> JitFloat:
-    """Return the greatest probability P(X ≥ t), the lit share at depth t, that two moments allow.
+    """Return the largest share of light at depth t, P(X ≥ t), that two moments of depth X allow.
 
-    It is exact if the occluders' depth X has two values, one of them t.
+    It is exact if the depth X of the occluders has two values, one of them t.
 
     mean, mean_square : the moments E(X) and E(X²).
-    least_variance : the least σ², against rounding, and for the slant of a surface in a texel.
+    least_variance : smallest variance of X to assume, as rounding may make it too small.
     """
     variance = dr.maximum(mean_square - mean * mean, least_variance)
     behind = t - mean
@@ -41,20 +47,21 @@ def bound_by_two_moments(
 
 
 def bound_by_four_moments(b: Sequence[JitFloat], t: JitFloat, rounding: float = 0.0) -> JitFloat:
-    """Return the greatest probability P(X ≥ t), the lit share at depth t, that four moments allow.
+    """Return the largest share of light at depth t, P(X ≥ t), that four moments of depth X allow.
 
-    It is exact if the occluders' depth X has two values, or three with t among them.
+    It is exact if the depth X of the occluders has two values, or three with t among them.
 
     b : the moments E(X), E(X²), E(X³) and E(X⁴).
-    rounding : share, 0 to 1, by which the moments are mixed with `MIDDLE_MOMENTS`, as rounded
-        moments may belong to no distribution.
+    rounding : share, 0 to 1, of `MIDDLE_MOMENTS` that is mixed in, as moments with rounding errors
+        may belong to no distribution.
     """
     b1, b2, b3, b4 = (
         (1 - rounding) * own + rounding * middle
         for own, middle in zip(b, MIDDLE_MOMENTS, strict=True)
     )
 
-    # B = L D Lᵀ, L with the columns (1, b1, b2), (1, l32), (1); then L y = (1, t, t²), D Lᵀ c = y
+    # Solve B c = (1, t, t²), with the matrix B of moments in the file's docstring, by the factors
+    # B = L D Lᵀ: D is diagonal with 1, d2, d3, and L lower triangular with 1 on the diagonal
     d2 = b2 - b1 * b1
     l32 = (b3 - b1 * b2) / d2
     d3 = b4 - b2 * b2 - l32 * l32 * d2

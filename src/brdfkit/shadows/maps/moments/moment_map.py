@@ -1,6 +1,7 @@
-"""Shadow maps of moments: mean powers of depth, which may be blurred and interpolated as pictures.
+"""Shadow maps of moments, mean powers of depth, which can be blurred and interpolated as pictures.
 
-Depths are clamped to [-1, 1]: 1 where the light sees nothing, -1 for surfaces before the map.
+Depths are clamped to [-1, 1]: 1 where the light sees no surface, -1 where the surface is nearer to
+the light than the map's near plane.
 """
 
 from collections.abc import Callable
@@ -20,11 +21,11 @@ BLEEDING = declare_float(0.2, (0.0, 0.99), "share of the light below which a poi
 class MomentMap:
     """A shadow map that stores moments of depth, averaged over a square of texels.
 
-    moments : function from the tensor of depths to the list of tensors whose means are the moments.
+    moments : function from the tensor of depths to a list of tensors, powers of the depths; their
+        means over the square are the moments.
     depths : the depths that the light sees.
-    blur : number of texels on each side of a texel over which its moments are averaged; between
-        texels they are interpolated.
-    bleeding : shares of light up to this one count as leaks, and become 0.
+    blur : number of texels on each side of a texel over which its moments are averaged.
+    bleeding : largest share of light that counts as a leak, and becomes 0.
     """
 
     def __init__(
@@ -39,20 +40,20 @@ class MomentMap:
             side = 2 * blur + 1
             values = dr.convolve(values, [1 / side] * side, axis=(0, 1), boundary="nearest")
         self.resolution, self.bleeding = values.shape[0], bleeding
-        texture: Any = mi.Texture2f  # `Any`, as mypy takes it for an object that cannot be called
+        texture: Any = mi.Texture2f  # `Any`, because mypy thinks that it cannot be called
         self.texture = texture(values, False, False, wrap_mode=dr.WrapMode.Clamp)
 
     def interpolate_moments(self, point: MapPoint) -> list[JitFloat]:
-        """Return the moments of the depths around a receiver."""
+        """Return the moments of the depths around a receiver, interpolated between texels."""
         import mitsuba as mi
 
         scale: JitFloat = dr.opaque(mi.Float, 1 / self.resolution)
         return self.texture.eval(mi.Point2f(point.u, point.v) * scale, point.active)
 
     def reduce_light_bleeding(self, point: MapPoint, bound: JitFloat) -> JitFloat:
-        """Return an upper bound on a receiver's light, less the light that leaks; 1 beyond the map.
+        """Return an upper `bound` on a receiver's light, less the light that leaks; 1 off the map.
 
-        A leak of up to ε = `bleeding` is removed by (bound - ε)₊ / (1 - ε).
+        Bounds up to the setting `bleeding` become 0, and larger ones are stretched to end at 1.
         """
         size: JitFloat = dr.opaque(type(point.u), self.resolution)
         inside = (point.u >= 0) & (point.u <= size) & (point.v >= 0) & (point.v <= size)

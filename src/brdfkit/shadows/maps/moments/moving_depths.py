@@ -1,17 +1,20 @@
-"""Depths that also know how silhouettes move, so that their blurred means have right derivatives.
+"""Makes blurred shadow maps differentiable: depths that also know how silhouettes move.
 
-A texel holds the depth that one ray meets. Its derivative says how the surface moves along that
-ray, but nothing about a silhouette that passes, where the depth jumps. The mean of any function f
-of depth, though, changes steadily as a silhouette moves with the velocity v over the map:
+Moment shadow maps store means of a function f of depth over many texels. Such a mean changes
+smoothly as a shape moves, even where the depth jumps, at the silhouette of the shape. But a texel
+holds the depth on a single ray, whose derivative does not notice a silhouette that passes.
+
+The derivative of the integral of f over the map, with respect to a parameter θ of the scene, is
 
     ∂/∂θ ∫ f dA = ∫ ∂f/∂θ dA - ∮ [f] v·n ds
 
-θ is the parameter, n the silhouette's normal and s the length along it. [f] is the jump of f across
-it, and v the velocity of the point on the nearer surface, which moves with its shape.
+The first term is the derivative of the texels. The second one, which is added here, is an integral
+over the silhouettes: [f] is the jump of f across the silhouette, n its normal on the map, s the
+length along it, and v the velocity of the nearer surface on the map, its change with θ.
 
-Along rows of texels, each pair of neighbours on either side of the silhouette stands for n_u ds =
-±1, along columns for n_v ds = ±1. So the sum of these steps times v is the second integral,
-whatever the silhouette's course between the texels. Each of the two texels gets half of it.
+The integral becomes a sum over pairs of neighbouring texels that a silhouette separates. A pair in
+a row stands for n_u ds = ±1, and a pair in a column for n_v ds = ±1, however the silhouette runs
+between texels; u and v are the map's axes. Each texel of a pair gets half of the pair's term.
 """
 
 from dataclasses import dataclass
@@ -24,16 +27,16 @@ from brdfkit.shadows.maps.depth_pass import compute_depth, make_texel_rays, resh
 from brdfkit.shadows.maps.map_point import plane_slopes
 from brdfkit.shadows.maps.projection import AnyProjection
 
-CONTINUOUS_STEP = 1e-3  # steps of depth between texels below this one are no silhouettes
+CONTINUOUS_STEP = 1e-3  # largest change of depth between texels that is no silhouette
 
 
 @dataclass(frozen=True)
 class TexelMotion:
     """The motion and the slope of the surfaces that a map's texels show, along one axis of the map.
 
-    place : coordinates of the surface points [texels], with the derivatives of points that move
-        with their shapes.
-    slope : change of depth in the planes of the surfaces, per texel.
+    place : the coordinate of each texel's surface point on this axis [texels]. Its derivatives are
+        those of a point that moves with its shape.
+    slope : the change of depth per texel on this axis, in the surface's tangent plane.
     """
 
     place: Any
@@ -52,23 +55,27 @@ class MovingDepths:
     motions: tuple[TexelMotion, TexelMotion] | None = None
 
     def attach_edge_derivatives(self, f: MitsubaObject) -> MitsubaObject:
-        """Return the tensor `f`, a function of the depths, with the derivatives due to silhouettes.
+        """Return the tensor `f`, a function of the depths, with added derivatives by silhouettes.
 
-        Blurred means of the result change as they should when shapes move.
+        They make the derivatives of blurred means right when shapes move; the values do not change.
         """
         if self.motions is None:
             return f
-        return f + sum(self._edge_derivatives(f, i, each) for i, each in enumerate(self.motions))
+        return f + sum(
+            self._compute_edge_derivatives(f, i, each) for i, each in enumerate(self.motions)
+        )
 
-    def _edge_derivatives(self, f: MitsubaObject, axis: int, motion: TexelMotion) -> MitsubaObject:
-        """Return zeros that carry the derivatives of `f` by silhouettes across an axis.
+    def _compute_edge_derivatives(
+        self, f: MitsubaObject, axis: int, motion: TexelMotion
+    ) -> MitsubaObject:
+        """Return zeros whose derivatives are those of `f` by silhouettes between texels on an axis.
 
         motion : motion of the surfaces along the axis.
         """
         with dr.suspend_grad():
             z, z_next = pair_neighbours(self.values, axis)
             slope, slope_next = pair_neighbours(motion.slope, axis)
-            # Depths that continue in either texel's plane are an edge between faces, no silhouette
+            # A change of depth that the tangent plane of either texel explains is no silhouette
             deepest = dr.maximum(dr.maximum(slope, slope_next), 0) + CONTINUOUS_STEP
             highest = dr.minimum(dr.minimum(slope, slope_next), 0) - CONTINUOUS_STEP
             here_nearer, next_nearer = z_next - z > deepest, z_next - z < highest
@@ -82,12 +89,12 @@ class MovingDepths:
 
 
 def pair_neighbours(values: MitsubaObject, axis: int) -> tuple[MitsubaObject, MitsubaObject]:
-    """Return a tensor without its last values on an axis, and without its first ones."""
+    """Return each value but the last along an axis of a tensor, and its next neighbour."""
     return (values[:-1], values[1:]) if axis == 0 else (values[:, :-1], values[:, 1:])
 
 
 def render_map(scene: MitsubaObject, projection: AnyProjection, resolution: int) -> MovingDepths:
-    """Render the depths that a light sees, as `render_depths` does, with the surfaces' motions."""
+    """Render the depths that a light sees, and the motions of the surfaces if any has gradients."""
     import mitsuba as mi
 
     opaque, half = projection.make_opaque(), dr.opaque(mi.Float, resolution / 2)

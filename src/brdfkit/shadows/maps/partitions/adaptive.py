@@ -1,18 +1,19 @@
-"""A tree of squares on the light's map, finest where the camera sees borders of shadows (ASM).
+"""Adaptive shadow maps: a quadtree of maps, finest where the camera sees borders of shadows (ASM).
 
-The map is a square. Again and again, the square with the most wrong pixels to expect is divided
-into four, each with a map as large as the square's own was, until the `budget` of maps is spent.
-The number of wrong pixels to expect in a square is
+At first the light's map is a single square. Again and again, the square with the largest expected
+number of wrong pixels is divided into four, each with a map of the full resolution, until there are
+as many maps as the setting `budget` allows. The expected number of wrong pixels in a square is
 
-    Σ footprint × side,   over the points in the square that lie at the border of a shadow
+    Σ footprint × side
 
-where the footprint is the width √(1/|det J|) of a texel in the picture, see `resolution.py`. The
-points are those that 128² camera rays meet; a point lies at a border if its shadow ray is unlike
-that of a neighbour. [Fernando et al. 2001] find borders on the map instead, and also consider the
-gain per texel.
+The sum is over the visible points in the square that lie at the border of a shadow. The side is the
+square's, and the footprint is the width in the picture of a step on the map, see `resolution.py`.
+The points are the hits of 128² camera rays. A point lies at a border if it is lit and a neighbour
+is not, or the reverse. [Fernando et al. 2001] find borders on the map instead, and also consider
+the gain per texel.
 
-The partition is best where few borders are visible. It costs a pass for each square, and shadow
-rays before; too slow for games, as [Ergun 2008, 2.2.3.1] says.
+The partition is best where few borders are visible. It costs a rendering of the map for each
+square, and first shadow rays: too slow for games, as [Ergun 2008, 2.2.3.1] says.
 """
 
 import heapq
@@ -28,12 +29,12 @@ from brdfkit.shadows.maps.resolution import locate_on_map, texel_footprints
 from brdfkit.shadows.maps.visible_surfaces import VisibleSurfaces, find_visible_surfaces, is_lit
 
 SETTINGS = {"budget": declare_int(16, (1, 256), "maps at most, of the full resolution each")}
-MAX_LEVEL = 7  # the most divisions that lead from the whole map to a square
+MAX_LEVEL = 7  # largest level of a square: how often the whole map is divided to reach it
 Leaf: TypeAlias = tuple[int, int, int]  # level, row and column of a square
 
 
 def make_partition(setup: Setup, budget: int) -> Partition:
-    """Make a partition of at most `budget` squares of the map of the whole scene."""
+    """Make a partition that divides the map of the whole scene into at most `budget` squares."""
     scene, light, resolution = setup.scene, setup.placement.light, setup.resolution
     whole = setup.project(setup.placement)
     surfaces = find_visible_surfaces(scene, setup.placement.camera)
@@ -48,9 +49,11 @@ def make_partition(setup: Setup, budget: int) -> Partition:
 
 
 def is_at_shadow_border(surfaces: VisibleSurfaces, lit: BoolArray) -> BoolArray:
-    """Return (n,) whether each visible point is lit unlike the point in the next row or column.
+    """Return whether a border of a shadow runs between each visible point and a neighbour, (n,).
 
-    lit : whether the light reaches each of the n points.
+    The neighbours are the points of the next row and column of camera rays.
+
+    lit : whether the light reaches each visible point, (n,).
     """
     grid = np.full(surfaces.hit.shape, np.nan)
     grid[surfaces.hit] = lit
@@ -60,12 +63,12 @@ def is_at_shadow_border(surfaces: VisibleSurfaces, lit: BoolArray) -> BoolArray:
 
 
 def grow_quadtree(places: FloatArray, weights: FloatArray, budget: int) -> list[Leaf]:
-    """Return the leaves of a quadtree over [-1, 1]² that divides its heaviest leaf again and again.
+    """Return the leaves of a quadtree over [-1, 1]² whose heaviest leaf is divided repeatedly.
 
-    A leaf weighs the sum of the `weights` of the points in it, times its side.
+    The weight of a leaf is the sum of the `weights` of the points in it, times its side.
 
     places, weights : coordinates (n, 2) and weights (n,) of the points.
-    budget : the greatest number of leaves.
+    budget : largest number of leaves.
     """
     index = np.clip((places + 1) / 2 * 2**MAX_LEVEL, 0, 2**MAX_LEVEL - 1).astype(int)
     columns, rows = index.T
@@ -85,9 +88,9 @@ def grow_quadtree(places: FloatArray, weights: FloatArray, budget: int) -> list[
 
 
 def make_leaf_table(leaves: list[Leaf]) -> IntArray:
-    """Return a table (n, n), [row, column], with the index of the leaf that covers each square.
+    """Return which leaf covers each square of a regular grid: its index, (n, n), [row, column].
 
-    The table's squares are as small as the smallest leaf.
+    The squares of the grid are as small as the smallest leaf.
     """
     finest = max(level for level, _, _ in leaves)
     table = np.empty((2**finest, 2**finest), int)

@@ -1,9 +1,9 @@
-"""A cube of maps around a point light, for a light among the objects that it shadows.
+"""A cube of six shadow maps around a point light, for a light among the objects that cast shadows.
 
-Each face is a square spot light of 90°, along an axis of the world, and has a map of its own, of
-any projection. Faces in which the camera sees nothing have no map. With the projection `uniform`, a
-texel in a corner of a face covers a fifth, cos³θ, of the solid angle of one in the middle, where
-the map is coarsest.
+Each face of the cube is treated as a spot light of 90° along an axis of the world, with a map of
+its own, of any projection. Faces in which the camera sees nothing have no map. With the projection
+`uniform`, texels are not equally fine: one in a corner of a face covers only a fifth (cos³θ, θ the
+angle from the axis) of the solid angle of one in the middle.
 """
 
 from collections.abc import Callable
@@ -17,11 +17,14 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.maps.partition import Partition, Setup, make_partition_from_placements
 
-FACES = np.vstack([np.eye(3), -np.eye(3)])  # the faces' axes: +x, +y, +z, -x, -y, -z
+FACES = np.vstack([np.eye(3), -np.eye(3)])  # normals of the faces: +x, +y, +z, -x, -y, -z
 
 
 def make_partition(setup: Setup) -> Partition:
-    """Make a partition of the six faces; raise `BrdfkitError` for a directional light."""
+    """Make a partition with a map for each of six faces around a point or spot light.
+
+    Raises `BrdfkitError` for a directional light.
+    """
     light = setup.placement.light
     if light.is_directional:
         raise BrdfkitError(

@@ -1,17 +1,18 @@
-"""A map for each slice of the camera's view, between planes across the view (PSSM).
+"""Parallel-split shadow maps (PSSM): a map for each slice of the camera's view, by depth.
 
-The planes are those of `split_planes`, which has three spacings. Near slices are small, and so are
-their texels: with m slices and logarithmic planes from n to f, texels shrink to about m (n/f)^(1 -
-1/m) of those of one map [Zhang et al. 2006]. Each slice has a projection of its own. All
-projections but `uniform` gain by it; with `uniform` all maps would be the same.
+`split_planes.py` places the planes between the slices. Near slices are small, and so their maps
+have finer texels: with m slices and logarithmic planes from the depth n to f, texels shrink to
+about m (n/f)^(1 - 1/m) of the size on a single map [Zhang et al. 2006]. Each slice has a projection
+of its own. With the projection `uniform` all maps would be the same; all others gain.
 
-n and f are the depths of the nearest and farthest `surfaces` that the camera sees (sample
-distribution shadow maps, [Lauritzen et al. 2011]), or of the `camera`'s own planes, moved in to the
-box of the scene. That box often begins at the eye: then n is Mitsuba's near plane, 0.01, and parts
-are wasted on the air before the first surface.
+The setting `ends` determines the depths n and f. By default they are those of the nearest and the
+farthest surface that the camera sees (sample distribution shadow maps, [Lauritzen et al. 2011]).
+With `camera` they are the camera's near and far plane, moved in to the box of the scene. That box
+often begins at the eye: then n is Mitsuba's near plane, 0.01, and slices are wasted on the air
+before the first surface.
 
-The partition is good for wide scenes. Slices change as the camera turns, and with them their
-texels: borders of shadows crawl (those of `stable_cascades` do not).
+The partition is good for wide scenes. As the camera turns, slices and texels change, so the borders
+of shadows crawl; `stable_cascades` avoids this.
 """
 
 from dataclasses import replace
@@ -26,7 +27,7 @@ SETTINGS = {
     **split_planes.SETTINGS,
     "ends": declare_choice(("surfaces", "camera"), "what the first and last plane are set to"),
 }
-MARGIN = 0.05  # share of the depths; surfaces between the rays may be nearer or farther by it
+MARGIN = 0.05  # share of a depth by which surfaces between camera rays may be nearer or farther
 
 
 def make_partition(setup: Setup, parts: int, spacing: str, ends: str) -> Partition:

@@ -1,23 +1,26 @@
-"""Slices of the view whose texels stay in place as the camera moves and turns (stable cascades).
+"""Stable cascades: slices of the view whose texels stay in place as the camera moves and turns.
 
-The map of a slice encloses the ball around it, whose radius does not depend on how the camera is
-turned. It looks along the light, with axes that only the light determines, and moves by whole
-texels. So a border of a shadow is made of the same texels from picture to picture, and does not
-crawl [Valient 2008]. The ball is wider than the slice, and nothing is fitted to the scene. Three
-things make up for most of that:
+The view is divided by depth into slices with a map each. The map of a slice encloses the smallest
+ball around the slice, whose radius does not depend on how the camera is turned. The map's axes
+depend on the light alone, and the map moves by whole texels. So a border of a shadow is made of the
+same texels from picture to picture, and does not crawl [Valient 2008].
+
+The price is coarser texels, as the ball is wider than the slice, and nothing is fitted to the
+scene. Three things make up for most of this:
 
 - A point uses the finest map that contains it, not that of its slice.
-- Slices begin and end where the visible surfaces do, but only at 1, 2, 4, 8 ... times a fraction of
-  the scene's diagonal: radii stay the same until an end jumps to the next step.
+- Slices begin and end where the visible surfaces do, rounded to the scene's diagonal times a power
+  of 2: the radii stay the same until an end jumps to the next power.
 - A map that would be wider than the scene is as wide as the scene, and a map near the scene's
   border does not reach beyond it.
 
-Of the light in the scenes foliage, objects_on_a_ground and street, 3.9, 0.36 and 0.27 % is wrong
-with four maps of 512². With `parallel_split` it is 3.6, 0.31 and 0.35 %, with one focused map of
-1024² 4.0, 0.33 and 1.3 %. As the camera moves, the error changes 100 times less than with either.
+In the scenes foliage, objects_on_a_ground and street, 3.9, 0.36 and 0.27 % of the light is wrong
+with four maps of 512². With `parallel_split` it is 3.6, 0.31 and 0.35 %, and with a single focused
+map of 1024² it is 4.0, 0.33 and 1.3 %. As the camera moves, the error changes 100 times less than
+with either.
 
-The partition is for directional lights. The maps are orthographic whatever the `projection`: one
-that bends texels could not keep them in place.
+The partition is for directional lights. The maps are orthographic whatever the `projection`, as a
+warped map could not keep texels in place.
 """
 
 from collections.abc import Callable
@@ -43,12 +46,12 @@ from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.visible_surfaces import find_visible_surfaces
 
 SETTINGS = split_planes.SETTINGS
-MARGIN = 0.05  # share of the depths; surfaces between the rays may be nearer or farther by it
-ROUNDING_ERROR = 1e-5  # the rounding error of coordinates on a map, which has the width 2
+MARGIN = 0.05  # share of a depth by which surfaces between camera rays may be nearer or farther
+ROUNDING_ERROR = 1e-5  # rounding error of map coordinates, which are from -1 to 1
 
 
 def make_partition(setup: Setup, parts: int, spacing: str) -> Partition:
-    """Make a partition of `parts` stable slices of the camera's view.
+    """Make a partition of the camera's view into `parts` slices, each with a stable map.
 
     Raises `BrdfkitError` unless the light is directional.
     """
@@ -65,21 +68,20 @@ def make_partition(setup: Setup, parts: int, spacing: str) -> Partition:
 
 
 def find_stable_depths(scene: MitsubaObject, placement: Placement) -> tuple[float, float]:
-    """Return a depth before and a depth behind all surfaces that the camera sees.
+    """Return a depth before all surfaces that the camera sees, and a depth behind them.
 
-    Both are the scene's diagonal times a power of 2, so that they seldom change as the camera
-    moves.
+    Each is the scene's diagonal times a power of 2, so that it seldom changes as the camera moves.
     """
     depths = placement.camera.compute_depths(find_visible_surfaces(scene, placement.camera).points)
     near, far = (1 - MARGIN) * depths.min(), (1 + MARGIN) * depths.max()
-    size = placement.size
+    size = placement.scene_diagonal
     return size * 2 ** np.floor(np.log2(near / size)), size * 2 ** np.ceil(np.log2(far / size))
 
 
 def snap_projection(placement: Placement, near: float, far: float, resolution: int) -> Projection:
-    """Return the projection along the light around a slice's ball, moved to whole texels.
+    """Return the projection of a slice's map, moved to whole texels so that they stay in place.
 
-    near, far : depths of the slice along the camera's view.
+    near, far : depths along the camera's view between which the slice lies.
     """
     light, camera = placement.light, placement.camera
     view = make_rigid_matrix(make_axes(-light.point[:3]), np.zeros(3))
@@ -97,24 +99,27 @@ def snap_projection(placement: Placement, near: float, far: float, resolution: i
 def snap_map_range(
     place: float, radius: float, side: FloatArray, resolution: int
 ) -> tuple[float, float]:
-    """Return both ends of a map along one axis across the light, snapped to whole texels.
+    """Return both ends of a slice's map on one of its axes, snapped to whole texels.
 
-    The map encloses the ball of a slice, but is not wider than the scene.
+    The map encloses the ball around the slice, but is not wider than the scene.
 
-    place : coordinate of the ball's centre.
+    place : coordinate of the ball's centre on the axis.
     radius : radius of the ball.
-    side : coordinates (8,) of the scene's corners.
+    side : coordinates (8,) of the corners of the scene's box on the axis.
     """
     radius = min(radius, float(np.ptp(side)) / 2)
     place = np.clip(place, side.min() + radius, side.max() - radius)
-    # The ball leaves half a texel on each side for snapping, and the gutter that filters read
+    # On each side of the ball remain half a texel for snapping, and the texels that filters read
     texel = 2 * radius / max(resolution - 2 * GUTTER - 1, 1)
     middle = np.round(place / texel) * texel
     return middle - texel * resolution / 2, middle + texel * resolution / 2
 
 
 def bounding_ball(camera: Camera, near: float, far: float) -> tuple[float, float]:
-    """Return the smallest ball around a slice of the view: its centre's depth and its radius."""
+    """Return the smallest ball around a slice of the view: the depth of its centre, and its radius.
+
+    near, far : depths along the camera's view between which the slice lies.
+    """
     t2 = camera.slope_x**2 + camera.slope_y**2
     centre = min(far, (near + far) * (1 + t2) / 2)
     return centre, max(np.hypot(depth - centre, depth * t2**0.5) for depth in (near, far))
@@ -123,7 +128,7 @@ def bounding_ball(camera: Camera, near: float, far: float) -> tuple[float, float
 def make_map_finder(maps: list[Projection], resolution: int) -> Callable[[JitVector], JitInt]:
     """Return a function that finds the index of the first map that contains a point.
 
-    Points near the edge of a map do not count as inside, so that filters do not read beyond it.
+    Points near the edge of a map count as outside, so that filters do not read beyond the edge.
     """
     import mitsuba as mi
 

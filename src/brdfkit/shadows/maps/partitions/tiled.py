@@ -1,15 +1,15 @@
-"""A grid of tiles on the light's map that share the texels of one map by need (tiled shadow maps).
+"""Tiled shadow maps: a grid of tiles on the light's map, which share the texels of one map by need.
 
-[Arvo 2004] leaves the tiles' weights open; here they minimise the expected number of wrong pixels.
-A tile of r × r texels has wrong pixels along borders of shadows, as many as its texels are wide in
-the picture: the sum of footprint / r over its points. The least sum over all tiles, with Σ r² =
-resolution², has
+[Arvo 2004] does not say how many texels each tile gets; here the expected number of wrong pixels is
+minimised. Pixels are wrong along borders of shadows, and the wider the texels are in the picture.
+So a tile of r × r texels has wrong pixels in proportion to Σ footprint / r, a sum over the visible
+points in the tile. The footprint of a point is the width in the picture of a step on the map, by
+128² camera rays. With a fixed number of texels in all tiles, Σ r² = resolution², the minimum is at
 
-    r ∝ (Σ footprints)^(1/3)
+    r ∝ (Σ footprint)^(1/3)
 
-The footprint of a point is the width in the picture of a step on the map, by 128² camera rays. The
-partition is good where few tiles are near the eye. It costs a pass for each tile, with the same
-number of texels in all.
+The partition is good where few tiles are near the eye. It costs a rendering of depths for each
+tile, but with as many texels in all as one map.
 """
 
 import numpy as np
@@ -22,11 +22,11 @@ from brdfkit.shadows.maps.resolution import locate_on_map, texel_footprints
 from brdfkit.shadows.maps.visible_surfaces import find_visible_surfaces
 
 SETTINGS = {"tiles": declare_int(4, (1, 16), "tiles along a side of the map")}
-LEAST_TEXELS = 4 * GUTTER  # texels along a side of the smallest tile; room for its two gutters
+LEAST_TEXELS = 4 * GUTTER  # side of the smallest tile [texels], twice the width of its gutters
 
 
 def make_partition(setup: Setup, tiles: int) -> Partition:
-    """Make a partition of `tiles` × `tiles` squares of the map of the whole scene."""
+    """Make a partition that divides the map of the whole scene into `tiles` × `tiles` squares."""
     whole = setup.project(setup.placement)
     surfaces = find_visible_surfaces(setup.scene, setup.placement.camera)
     places = locate_on_map(whole, surfaces)
@@ -42,10 +42,9 @@ def make_partition(setup: Setup, tiles: int) -> Partition:
 
 
 def distribute_texels(weights: FloatArray, resolution: int) -> IntArray:
-    """Return the number of texels along a side of each tile, by the cube roots of their `weights`.
+    """Return the side [texels] of each tile, in proportion to the cube root of its weight.
 
-    Together the tiles have about `resolution`² texels, but no tile has fewer than `LEAST_TEXELS`
-    along a side.
+    Together the tiles have about `resolution`² texels, but no side is below `LEAST_TEXELS`.
     """
     need = np.cbrt(weights)
     share = need / max(float(np.linalg.norm(need)), 1e-30)

@@ -1,7 +1,8 @@
-"""The uniform projection, fitted to the visible part of the scene and all that may shadow it.
+"""The focused projection: a camera at the light, fitted to all that the view needs.
 
-[Ergun 2008, 2.2.2.1], with the body of Ogre's focused set-up: ((V ∩ S) + light) ∩ S, for the
-camera's frustum V and the scene's box S.
+The map encloses the visible part of the scene and all that may cast shadows on it, and nothing else
+[Ergun 2008, 2.2.2.1]. Texels are spread uniformly. The enclosed body, `Placement.relevant_body`, is
+the one of the focused camera set-up in the engine Ogre.
 """
 
 from brdfkit.shadows.maps.light_camera import make_enclosing_projection
@@ -10,5 +11,5 @@ from brdfkit.shadows.maps.projection import Projection
 
 
 def make_projection(placement: Placement) -> Projection:
-    """Make the projection that encloses the placement's body."""
+    """Make the projection that encloses what the camera sees, and what may cast shadows on it."""
     return make_enclosing_projection(placement.light, placement.relevant_body)

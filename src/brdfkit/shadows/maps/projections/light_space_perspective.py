@@ -1,14 +1,18 @@
-"""A perspective across the map along the line of sight, of the best strength on average (LiSPSM).
+"""Light-space perspective shadow maps (LiSPSM): a perspective that makes texels finer near the eye.
 
-    n = (z_n + √(z_n z_f)) / sin γ, times `apex`
+The light's own camera projects the scene first, orthographically or, for a point or spot light, by
+a perspective. Then a second perspective warps the map along the line of sight. Its apex is before
+the visible part at the distance
 
-n is the distance of the perspective's apex, γ the angle between view and light [Ergun 2008,
-2.2.2.3]; z_n and z_f are the depths between which the camera sees something. With this n the worst
-error near the eye equals the worst far from it [Wimmer et al. 2004]. The directions of light and
-depth do not change. As γ → 0 the map becomes the focused one, which is also used where the eye is
-behind the light. If the light is a point or spot, its own perspective comes first. The projection
-is good for wide views at right angles to the light; at other angles, texels change when the eye
-turns.
+    n = (z_n + √(z_n z_f)) / sin γ
+
+times the setting `apex`. γ is the angle between view and light [Ergun 2008, 2.2.2.3], and z_n and
+z_f are the depths between which the camera sees something. With this n the largest aliasing error
+near the eye equals the largest one far from it [Wimmer et al. 2004]. As γ → 0, n grows and the map
+becomes the focused one, which is also used where the eye is behind the light.
+
+The projection is good for wide views at right angles to the light. At other angles, texels change
+when the eye turns.
 """
 
 import numpy as np
@@ -22,10 +26,13 @@ SETTINGS = {"apex": APEX}
 
 
 def make_projection(placement: Placement, apex: float) -> Projection:
-    """Make the light-space perspective projection; the focused one if there is no line of sight."""
+    """Make the light-space perspective projection; the focused one if the map has no line of sight.
+
+    apex : factor of the distance of the perspective's apex; below 1, it favours what is near.
+    """
     sight = find_line_of_sight(placement)
     if sight is None:
         return focused.make_projection(placement)
-    z_n, z_f = placement.depths
+    z_n, z_f = placement.visible_depths
     n = (z_n + np.sqrt(z_n * z_f)) / sight.sine_to_light
     return sight.make_warped_projection(apex * n * sight.map_scale)

@@ -1,14 +1,19 @@
-"""A perspective across the map, then a logarithm along it: all depths are equally fine (LogPSM).
+"""Logarithmic perspective shadow maps (LogPSM): texels equally large in the picture at all depths.
+
+A perspective warps the light's map along the line of sight, as in `line_of_sight.py`. Then a
+logarithm replaces the coordinate along this line:
 
     v = 2 ln(y / n) / ln(y_f / n) - 1
 
-y, from n to y_f, is the distance from the apex of the perspective. At right angles to the light the
-apex is the eye, and a texel has the same size in the picture, across and along, wherever it is. At
-the angle γ between view and light, n is z_n / sin γ here, times `apex`, with the nearest visible
-depth z_n. No matrix can do this, and so no hardware that draws triangles, but rays can [Lloyd et
-al. 2008]. The projection is the focused one where the eye looks along the light or is behind it.
+y is the distance from the apex of the perspective, from n at the near end to y_f at the far end of
+the map. If view and light are at right angles, the apex is the eye, and a texel has the same size
+in the picture wherever it is. In general n = z_n / sin γ, times the setting `apex`; γ is the angle
+between view and light, and z_n the nearest visible depth. The projection is the focused one where
+the eye looks along the light or is behind it.
 
-It is best for far views over a ground. Planes are bent on its map, though little within a texel.
+A logarithm needs rays, as here: hardware that draws triangles can only apply a matrix [Lloyd et al.
+2008]. The projection is best for far views over a ground. Planes are bent on its map, though little
+within a texel.
 """
 
 from dataclasses import dataclass, replace
@@ -27,14 +32,17 @@ SETTINGS = {"apex": APEX}
 
 
 def make_projection(placement: Placement, apex: float) -> Projection:
-    """Make the logarithmic perspective projection; the focused one without a line of sight."""
+    """Make the logarithmic perspective projection; the focused one without a line of sight.
+
+    apex : factor of the distance of the perspective's apex; below 1, it favours what is near.
+    """
     sight = find_line_of_sight(placement)
     if sight is None:
         return focused.make_projection(placement)
     near, far = sight.y_range
-    n = apex * placement.depths[0] / sight.sine_to_light * sight.map_scale
+    n = apex * placement.visible_depths[0] / sight.sine_to_light * sight.map_scale
     warped = sight.make_warped_projection(n)
-    # A ratio of 1 has no logarithmic map, but the map of this ratio is nearly linear
+    # The logarithm is 0/0 at a ratio of 1, its linear limit; slightly above, it is nearly linear
     ratio = max(1 + (far - near) / n, 1 + 1e-4)
     return Logarithmic(warped.matrix, warped.inverse, warped.light, ratio=ratio)
 
@@ -43,7 +51,8 @@ def make_projection(placement: Placement, apex: float) -> Projection:
 class Logarithmic(Projection):
     """A perspective by a matrix, followed by a logarithm along the second axis of the map.
 
-    ratio : the ratio of the distances of the map's far and near end from the apex, > 1.
+    ratio : distance of the map's far end from the perspective's apex, divided by that of its near
+        end; above 1.
     """
 
     ratio: Any = np.e
@@ -75,14 +84,15 @@ class Logarithmic(Projection):
         return super().unproject(x, self.undo_logarithm(y), z)
 
     def nearness(self, v: JitFloat) -> JitFloat:
-        """Return n / y, the ratio of the distances of the near end and of a point from the apex.
+        """Return the near end's distance from the perspective's apex, divided by a point's.
 
-        v : second map coordinate of the point before the logarithm, in which the ratio is linear.
+        v : second map coordinate of the point after the perspective, before the logarithm; the
+            result is linear in it.
         """
         return 1 - (v + 1) / 2 * (1 - 1 / self.ratio)
 
     def undo_logarithm(self, v: JitFloat) -> JitFloat:
-        """Return the second map coordinate before the logarithm, for the one after it, v."""
+        """Return the second map coordinate before the logarithm, given `v` after it."""
         exp, log = find_array_module(v).exp, find_array_module(v).log
         return 2 * (1 - exp(-(v + 1) / 2 * log(self.ratio))) / (1 - 1 / self.ratio) - 1
 

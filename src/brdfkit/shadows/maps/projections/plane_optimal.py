@@ -1,15 +1,15 @@
-"""A map of the shadows on one plane, as the camera sees them: it is best there (POSM).
+"""Plane-optimal shadow maps (POSM): a texel is a pixel for the shadows on one plane.
 
-A light l takes a point p to the plane π at (π·l) p - (π·p) l, and the camera takes that to the map,
-so that a texel is a pixel. It is the projection by five pairs of points: the light, at infinity on
-the map, and four of the plane, one of them lifted towards the light [Chong & Gortler 2004], [Ergun
-2008, 2.2.2.5]. Depth is the height over the plane, divided by w.
+A point p is projected twice. The light l projects it onto the plane π, to the homogeneous point
+(π·l) p - (π·p) l. Then the camera projects this point onto the map, as if onto its picture. The
+depth of p is its height over the plane, divided by the homogeneous w. [Chong & Gortler 2004],
+[Ergun 2008, 2.2.2.5]
 
-The camera is moved back until all shadows fall before it, and the map is stretched to enclose the
-body. The plane is the setting `plane`, or else that face of the scene's box which catches most
-light, often the ground. The projection is best on its plane and bad on surfaces at right angles to
-it, such as walls. It is the focused one where no face of the scene's box can be the plane, or the
-eye is in the plane.
+The plane is the setting `plane` or, by default, the face of the scene's box that receives most
+light, often the ground. The camera is moved back until all shadows fall before it, and the map is
+stretched to enclose all that casts or receives shadows. The projection is best on its plane, and
+bad on surfaces at right angles to it, such as walls. It is the focused one if no face of the box is
+fit to be the plane, or if the eye is in the plane.
 """
 
 from typing import Any
@@ -27,7 +27,10 @@ from brdfkit.shadows.maps.projections import focused
 
 
 def parse_plane(value: Any) -> FloatArray | None:
-    """Return four numbers, or a text of them, as the plane (4,); None for None or an empty text."""
+    """Convert the setting `plane`, four numbers or a text of them, to an array (4,).
+
+    Return None for None or an empty text. Raises `ValueError` for anything else.
+    """
     if value is None:
         return None
     numbers = value.split() if isinstance(value, str) else value
@@ -45,7 +48,12 @@ SETTINGS = {"plane": Setting("", None, PLANE, parse_plane)}
 
 
 def make_projection(placement: Placement, plane: FloatArray | None) -> Projection:
-    """Make the projection for a `plane` (4,), or for a face of the scene's box if it is None."""
+    """Make the projection that is best on a plane; by default on a face of the scene's box.
+
+    plane : coefficients a, b, c and d of the plane a x + b y + c z + d = 0, or None.
+
+    Raises `BrdfkitError` for a given plane on which the camera cannot see shadows.
+    """
     if plane is None:
         faces = [face for face in rank_faces_by_light(placement) if takes_shadows(face, placement)]
         if not faces:
@@ -62,15 +70,15 @@ def make_projection(placement: Placement, plane: FloatArray | None) -> Projectio
 
 
 def project_onto_plane(placement: Placement, plane: AnyArray) -> Projection:
-    """Return the projection that is best for shadows on a `plane` (4,) that takes them.
+    """Return the projection that is best for shadows on a `plane` (4,); see `takes_shadows`.
 
-    The focused one replaces it if the eye is in the plane.
+    If the eye is in the plane, it is the focused projection.
     """
     light, corners = placement.light, placement.relevant_body.corners
     flat = (plane @ light.point) * np.eye(4) - np.outer(light.point, plane)
-    camera = placement.camera.replace_near_and_far(*placement.depths)
+    camera = placement.camera.replace_near_and_far(*placement.visible_depths)
     camera = camera.move_behind(project_points(flat, corners))
-    if abs(height_over_plane(plane, camera.position)) < 1e-3 * placement.size:
+    if abs(height_over_plane(plane, camera.position)) < 1e-3 * placement.scene_diagonal:
         return focused.make_projection(placement)
     matrix = camera.matrix @ flat
     matrix[2] = -plane
@@ -78,9 +86,13 @@ def project_onto_plane(placement: Placement, plane: AnyArray) -> Projection:
 
 
 def takes_shadows(plane: AnyArray, placement: Placement) -> bool:
-    """Return whether a plane cuts the camera's view and is behind all that casts shadows."""
+    """Return whether the camera can see shadows on a plane (4,).
+
+    The plane must cut the visible part of the scene, and nothing may be farther from the plane than
+    the light is.
+    """
     heights = height_over_plane(plane, placement.visible_body.corners)
-    tolerance = 1e-6 * placement.size
+    tolerance = 1e-6 * placement.scene_diagonal
     below_light = plane @ placement.light.point
     if not placement.light.is_directional:
         below_light -= height_over_plane(plane, placement.relevant_body.corners).max()
@@ -89,9 +101,9 @@ def takes_shadows(plane: AnyArray, placement: Placement) -> bool:
 
 
 def rank_faces_by_light(placement: Placement) -> list[FloatArray]:
-    """Return the planes (4,) of the six faces of the scene's box, the one with most light first.
+    """Return the planes (4,) of the six faces of the scene's box, sorted by the light they receive.
 
-    Their normals point inwards.
+    The face with most light comes first; normals point inwards.
     """
     sizes = placement.high - placement.low
     middle = (placement.low + placement.high) / 2
@@ -105,5 +117,5 @@ def rank_faces_by_light(placement: Placement) -> list[FloatArray]:
 
 
 def height_over_plane(plane: AnyArray, points: AnyArray) -> Any:
-    """Return the heights (n,) of points (n, 3) over a plane (4,)."""
+    """Return the heights (n,) of points (n, 3) over a plane (4,) whose normal has length 1."""
     return points @ plane[:3] + plane[3]

@@ -1,17 +1,19 @@
-"""The trapezoid around the visible body becomes the map, mostly for what is near the eye (TSM).
+"""Trapezoidal shadow maps (TSM): a trapezoid around the visible part becomes the square map.
 
-Two sides of the trapezoid are at right angles to the line of sight, at the near and the far end of
-the visible body, λ apart. The two others touch the body, and meet η before the near side:
+The trapezoid lies on the light's own map. Two of its sides are at right angles to the line of
+sight, at the near and the far end of the visible part, λ apart. The two others touch this part, and
+meet in an apex at the distance η before the near side. A perspective makes the trapezoid a square:
+the matrix N_T of [Ergun 2008, 2.2.2.4], which `LineOfSight.make_warped_projection` makes.
 
-    η = λ δ (1 + ξ) / (λ - 2 δ - λ ξ),  ξ = -0.6
+The apex is chosen so that a focus, the first δ behind the near side, gets 80 % of the map, up to
+the coordinate ξ = -0.6 [Martin & Tan 2004, sections 5 and 6]:
 
-so that the first δ behind the near side, the focus, gets 80 % of the map [Martin & Tan 2004,
-sections 5 and 6]. The matrix N_T of the trapezoid [Ergun 2008, 2.2.2.4] is the perspective that
-`LineOfSight.make_warped_projection` makes. The projection is the focused one where the near end is
-above the far one, as when the eye looks along the light.
+    η = λ δ (1 + ξ) / (λ - 2 δ - λ ξ)
 
-It is good where the focus is known. Depth is divided by the width of the trapezoid, and coarse at
-its far end. Where the projection changes to the focused one, shadows change at once.
+The setting `focus` is δ / λ. The projection is the focused one where the eye looks along the light.
+
+It is good if the user knows which depths matter. Depth is divided by the width of the trapezoid,
+and so it is coarse at the far end. Where the projection changes to the focused one, shadows jump.
 """
 
 from brdfkit.mitsuba_bridge.properties.declarations import declare_float
@@ -20,7 +22,7 @@ from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.maps.projection import Projection
 from brdfkit.shadows.maps.projections import focused
 
-XI = -0.6  # the focus ends here on the map, which runs from 1 at its near side to -1 at its far one
+XI = -0.6  # map coordinate, 1 at the near side and -1 at the far one, at which the focus ends
 SETTINGS = {
     "focus": declare_float(
         0.3, (0.01, 0.79), "of trapezoidal: the share of what is seen that has 80 % of a map"
@@ -29,7 +31,10 @@ SETTINGS = {
 
 
 def make_projection(placement: Placement, focus: float) -> Projection:
-    """Make the trapezoidal projection; the focused one if the eye looks along the light."""
+    """Make the trapezoidal projection; the focused one if the eye looks along the light.
+
+    focus : share of the visible part's length, from its near end, that gets 80 % of the map.
+    """
     sight = find_line_of_sight(placement)
     if sight is None or sight.y_range[0] < 0:
         return focused.make_projection(placement)

@@ -1,6 +1,6 @@
-"""A usual camera at the light that sees the whole scene, wherever the eye is [Ergun 2008, 2.2.2.1].
+"""The uniform projection: a camera at the light that sees the whole scene [Ergun 2008, 2.2.2.1].
 
-Points far from the light but near the eye get few texels.
+The map does not depend on where the eye is, so things near the eye may get few texels.
 """
 
 from brdfkit.shadows.maps.light_camera import make_enclosing_projection
@@ -9,5 +9,5 @@ from brdfkit.shadows.maps.projection import Projection
 
 
 def make_projection(placement: Placement) -> Projection:
-    """Make the projection that encloses the whole scene."""
+    """Make the projection that encloses all of the scene that the light can reach."""
     return make_enclosing_projection(placement.light, placement.lit_body)

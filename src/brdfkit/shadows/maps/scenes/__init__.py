@@ -1,9 +1,10 @@
 """Scenes on which shadow techniques are compared, made from fixed random seeds; one file each.
 
 A file NAME.py has the function `NAME(view="V1", light=1, size=(512, 512))`, which returns the
-scene's dictionary for `mitsuba.load_dict`. There are four views, V1 to V4, and two suns that are
-close together, 1 and 2, as in [Ergun 2008, 4.2]; all scenes share them, see `_stage.py`. The sun is
-the only light, as shadow maps need it; for pretty pictures add a "sky" to the dictionary.
+scene's dictionary for `mitsuba.load_dict`. `view` is one of four views, V1 to V4, and `light` one
+of two suns that are close together, 1 and 2, as in [Ergun 2008, 4.2]. All scenes share the views
+and suns, see `_stage.py`. The sun is the only light, as shadow maps need it; for pretty pictures
+add a "sky" to the dictionary.
 """
 
 from collections.abc import Callable

@@ -1,7 +1,7 @@
-"""The common parts of the scenes: their views, two suns, the camera, and shapes to build with.
+"""The common parts of the scenes: four views, two suns, the camera, and shapes to build with.
 
-The views are named as in [Ergun 2008, 4.2], by their angle to the light. Light comes down nearly
-along y. The azimuth of a view is counted from the y axis.
+Each view has another angle to the light, as in [Ergun 2008, 4.2]. z points up. Azimuths are
+horizontal directions, counted from the y axis towards x. The sunlight comes down nearly along y.
 """
 
 from collections.abc import Callable, Iterable
@@ -12,18 +12,19 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import no_such_error
 
+# Azimuth in which the camera of each view looks [degrees]; sunlight travels in the azimuth 14 or 17
 VIEWS = {
     "V1": 90,  # looks at right angles to the light
-    "V2": 180,  # looks into the light, known as duelling frusta
-    "V3": 155,  # between V1 and V2
-    "V4": 0,  # looks along the light, as if it came from a miner's lamp
+    "V2": 180,  # looks into the light, the worst case of warped maps (duelling frusta)
+    "V3": 155,  # looks between V1 and V2
+    "V4": 0,  # looks along the light, as if the light came from a miner's lamp
 }
-LIGHTS = {1: 14, 2: 17}  # azimuths [degrees]; the second sun is a small step from the first
-ELEVATION = 48  # the suns' height above the horizon [degrees]
+LIGHTS = {1: 14, 2: 17}  # azimuth in which the light of each of the two suns travels [degrees]
+ELEVATION = 48  # height of the suns above the horizon [degrees]
 
-Place: TypeAlias = Iterable[float]  # three coordinates of a point, or three sizes of a box
-Colour: TypeAlias = Iterable[float]  # red, green, blue
-Shape: TypeAlias = dict[str, Any]  # for `mitsuba.load_dict`
+Place: TypeAlias = Iterable[float]  # three coordinates of a point, or three side lengths of a box
+Colour: TypeAlias = Iterable[float]  # reflectance in red, green and blue
+Shape: TypeAlias = dict[str, Any]  # a shape's dictionary for `mitsuba.load_dict`
 
 
 def make_camera_and_sun(
@@ -34,11 +35,11 @@ def make_camera_and_sun(
     down: float,
     fov: float,
 ) -> dict[str, Any]:
-    """Return the dictionary of a scene with its camera and its sun, but without shapes.
+    """Return the dictionary of a scene with a camera and a sun, but without shapes.
 
     view, light : keys of `VIEWS` and `LIGHTS`.
     size : width and height of the picture [pixels].
-    place_eye : function from the azimuth of the view [radians] to the camera's place (3,).
+    eye : function from the azimuth of the view [radians] to the camera's position (3,).
     down : angle by which the camera looks down [degrees].
     fov : field of view of the camera [degrees].
     """
@@ -67,7 +68,7 @@ def make_camera_and_sun(
 
 
 def unit_vector(azimuth: float, elevation: float) -> FloatArray:
-    """Return the unit vector (3,) of an azimuth, from y towards x, and an elevation [radians]."""
+    """Return the unit vector (3,) with an azimuth, from y towards x, and an elevation [radians]."""
     level = np.cos(elevation)
     return np.array([level * np.sin(azimuth), level * np.cos(azimuth), np.sin(elevation)])
 
@@ -79,10 +80,11 @@ def make_matte(colour: Colour) -> dict[str, Any]:
 
 
 def make_box(centre: Place, size: Place, colour: Colour, turn: float = 0) -> Shape:
-    """Return the dictionary of an upright cuboid.
+    """Return the dictionary of an upright box.
 
-    centre : the centre of its bottom.
-    turn : angle by which it is turned about the vertical [degrees].
+    centre : the centre of the box's bottom.
+    size : the box's extents in x, y and z.
+    turn : angle by which the box is turned about the vertical [degrees].
     """
     import mitsuba as mi
 

@@ -13,13 +13,13 @@ from brdfkit.shadows.maps.scenes._stage import (
     name_shapes_by_number,
 )
 
-LEAVES = 3000  # the number of leaves of a tree
-BLADES = 6000  # the number of blades of grass
+LEAVES = 3000  # number of leaves of each tree
+BLADES = 6000  # number of blades of grass in the meadow
 TREES = [(0, 0), (3.6, 1.2), (-3.2, 2.4), (1.2, -3.8), (-2.8, -2.6), (4.4, -3.2), (-0.6, 4.6)]
 
 
 def foliage(view: str = "V1", light: int = 1, size: tuple[int, int] = (512, 512)) -> dict[str, Any]:
-    """Return the scene's dictionary; see `brdfkit.shadows.maps.scenes`.
+    """Return the dictionary of the scene, in one of its views and suns, for `mitsuba.load_dict`.
 
     >>> foliage()["stem_0"]["type"]
     'cylinder'
@@ -46,7 +46,10 @@ def foliage(view: str = "V1", light: int = 1, size: tuple[int, int] = (512, 512)
 
 
 def make_crown(random: np.random.Generator, centre: list[float], radii: list[float]) -> FloatArray:
-    """Return random leaves near the surface of an ellipsoid, a crown, as triangles (2 n, 3, 3)."""
+    """Return the leaves of a tree's crown as triangles (2 n, 3, 3), two for each of n leaves.
+
+    The leaves are at random near the surface of an ellipsoid with this centre and these radii.
+    """
     outwards = random.normal(size=(LEAVES, 3))
     outwards /= np.linalg.norm(outwards, axis=1, keepdims=True)
     middles = np.array(centre) + radii * outwards * random.uniform(0.55, 1, (LEAVES, 1)) ** 0.5
@@ -58,7 +61,7 @@ def make_crown(random: np.random.Generator, centre: list[float], radii: list[flo
 
 
 def make_grass(random: np.random.Generator) -> FloatArray:
-    """Return the random blades of a meadow as triangles (n, 3, 3)."""
+    """Return random blades of grass, a triangle each, (n, 3, 3)."""
     feet = np.column_stack([random.uniform(-8, 8, (BLADES, 2)), np.zeros(BLADES)])
     aside = np.column_stack([0.03 * random.normal(size=(BLADES, 2)), np.zeros(BLADES)])
     bend, height = 0.07 * random.normal(size=(BLADES, 2)), random.uniform(0.1, 0.3, BLADES)
@@ -67,7 +70,7 @@ def make_grass(random: np.random.Generator) -> FloatArray:
 
 
 def make_mesh(corners: FloatArray, colour: tuple[float, float, float]) -> MitsubaObject:
-    """Return the `mitsuba.Mesh` of triangles (n, 3, 3) that share no corners."""
+    """Return a matte `mitsuba.Mesh` of triangles (n, 3, 3), given by their corners."""
     import mitsuba as mi
 
     properties = mi.Properties()

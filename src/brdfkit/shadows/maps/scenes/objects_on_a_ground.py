@@ -23,7 +23,7 @@ COLOURS = np.array(
 def objects_on_a_ground(
     view: str = "V1", light: int = 1, size: tuple[int, int] = (512, 512)
 ) -> dict[str, Any]:
-    """Return the scene's dictionary; see `brdfkit.shadows.maps.scenes`.
+    """Return the dictionary of the scene, in one of its views and suns, for `mitsuba.load_dict`.
 
     >>> objects_on_a_ground()["floor"]["type"]
     'rectangle'
