@@ -26,7 +26,7 @@ def find_material(name: str, settings: Iterable[str] = ()) -> Any:
     """Return the material of a name or file; `settings`, PARAMETER=VALUE, are for a model."""
     if not settings:
         return resolve.to_material(name)
-    label = labels.load_files(name)
+    label = labels.load_files_in_label(name)
     if not labels.is_label(label):
         raise BrdfkitError(f"{name} is no model: --set works for models only.")
     values = parse_settings(settings, "--set", "VALUE", "R,G,B")

@@ -140,7 +140,7 @@ def fit(
     """
     began = time.perf_counter()
     require_material_first("fit(material, model)", material)
-    model_class, data = labels.model(labels.load_files(model)), to_measured(material)
+    model_class, data = labels.model(labels.load_files_in_label(model)), to_measured(material)
     settings = FitSettings(
         loss=loss,
         robust=robust,

@@ -97,7 +97,7 @@ def _find_material(name: str) -> Material:
 
     Where a label is also the name of a file, the file is meant.
     """
-    label = labels.load_files(name)
+    label = labels.load_files_in_label(name)
     if labels.is_label(label) and (label != name or not os.path.isfile(name)):
         return labels.model(label)()
     try:

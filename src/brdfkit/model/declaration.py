@@ -23,7 +23,7 @@ class Declaration:
             setattr(cls, name, option.default)
         cls.options = {**cls.options, **options}
         parameters = {name: p for name, p in own.items() if isinstance(p, Parameter)}
-        for name in parameters:  # since the attribute of each object holds its value
+        for name in parameters:  # the attributes of objects will hold the values
             delattr(cls, name)
         cls._declared = {**cls._declared, **parameters}
         every = {**cls._declared, **cls.more_parameters()}
@@ -31,7 +31,7 @@ class Declaration:
 
     @classmethod
     def more_parameters(cls) -> dict[str, Parameter | None]:
-        """Return the parameters that only some values of the options have, by name.
+        """Return the parameters that the model has with the present values of its options, by name.
 
         A model overrides this, and reads its options as attributes of `cls`. None removes a
         parameter that the class declares.
@@ -67,7 +67,7 @@ class Declaration:
 
     @classmethod
     def make_known(cls) -> None:
-        """Register a class of a notebook or a user's module, so that its name finds it."""
+        """Register a class of a notebook or a user's module, so that it is found by its name."""
         model, name = cls.without_options(), cls.type_name()
         known = plugin_files.find_plugins(plugin_files.MODELS).get(name)
         if not cls.is_in_plugin_file() and known is not model:
@@ -94,7 +94,7 @@ class Declaration:
 
     @classmethod
     def made_of(cls) -> tuple[Any, ...]:
-        """Return the classes that a pickle must store: the model's own, then those of its sum."""
+        """Return the classes that a pickle stores: the model's own, then those that it sums up."""
         return (cls.without_options(),)
 
     @classmethod

@@ -24,7 +24,7 @@ def evaluate_model(model: Any, wi: ArrayLike, wo: ArrayLike) -> AnyArray:
 
 
 def mix_lobes(model: Any, weights: AnyArray, wi: AnyArray, wo: AnyArray) -> AnyArray:
-    """Compute the BRDF (n, channels) in sr⁻¹ with `weights` (lobes, channels) of the caller.
+    """Compute the BRDF (n, channels) in sr⁻¹ with other `weights` (lobes, channels) than its own.
 
     The direction pairs `wi` and `wo` (n, 3) have to be above the surface.
     """
@@ -65,7 +65,7 @@ def make_model(
 def to_shape_scalars(model: Any) -> dict[str, JitFloat]:
     """Convert a model's shape parameters to Dr.Jit scalars in double precision, by name.
 
-    Opaque scalars are inputs of a kernel, so that one kernel serves all values.
+    They are opaque to Dr.Jit, that is, inputs of a kernel, so that one kernel serves all values.
     """
     linear = model.weights()
     values = model.free_values.items()

@@ -1,9 +1,10 @@
 """The base class of microfacet models with Schlick's Fresnel reflectance, grey or coloured.
 
-F = F₀ + (F₉₀ - F₀) (1 - V·H)⁵ [Schlick 1994], where V·H is the cosine of the angle of incidence on
-the facet, is linear in the reflectances F₀ at normal and F₉₀ at grazing incidence. So with the
-option `fresnel=coloured`, k_s F₀ and k_s F₉₀ are weights, one for each colour channel. By default
-only the strength k_s is a weight, F₀ is a shape parameter, and F₉₀ is 1.
+A facet has the reflectance F = F₀ + (F₉₀ - F₀) (1 - V·H)⁵ [Schlick 1994], where V·H is the cosine
+of the angle of incidence, and F₀ and F₉₀ are the values at normal and at grazing incidence. The
+microfacet term is F times the strength k_s. By default k_s is a weight, F₀ a shape parameter, and
+F₉₀ is 1. With the option `fresnel=coloured`, k_s F₀ and k_s F₉₀ are weights, with one number for
+each colour channel, because F is linear in F₀ and F₉₀.
 """
 
 from collections.abc import Callable
@@ -19,7 +20,8 @@ from brdfkit.model.parameters import Parameter, option, weight
 class FresnelModel(Model):
     """A microfacet model with the parameters `specular_reflectance` (k_s) and `f0` (F₀).
 
-    The option `fresnel` makes weights of both ends of the Fresnel reflectance.
+    With the option `fresnel=coloured`, the strengths at normal and at grazing incidence are weights
+    in place of these two.
     """
 
     fresnel = option(
@@ -50,8 +52,9 @@ class FresnelModel(Model):
     ) -> tuple[Lobe, ...]:
         """Return the lobes of the microfacet term k_s F · `D(h)` · `geometry(wi, wo)` [sr⁻¹].
 
-        There is one lobe by default, and two with `fresnel=coloured`. `sampling` draws their
-        directions; `albedo` is the approximate albedo of `D(h)` · `geometry(wi, wo)`.
+        F is Schlick's reflectance. There is one lobe by default, and there are two with
+        `fresnel=coloured`. `sampling` draws their directions; `albedo` is the approximate albedo of
+        `D(h)` · `geometry(wi, wo)`.
         """
 
         def make_lobe(F: Callable[[JitFloat], JitFloat]) -> Lobe:

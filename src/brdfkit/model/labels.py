@@ -3,7 +3,7 @@
     ward    koenderink:order=8    ggx+ggx    oren_nayar:form=full+ward
 
 In a label that a user types, the path of a Python file may stand for the model that it defines;
-`load_files` loads the file. Labels that are read from saved files never go through `load_files`,
+`load_files_in_label` loads the file. Labels that are read from saved files never go through it,
 because opening a file must not run code.
 """
 
@@ -88,12 +88,12 @@ def is_label(word: str) -> bool:
     return all(part.partition(":")[0] in models() for part in word.split("+"))
 
 
-def load_files(label: Any) -> Any:
+def load_files_in_label(label: Any) -> Any:
     """Load the Python files that a label names, and return the label with their models' names.
 
     A label that is neither a string nor a `Path` is returned unchanged.
 
-    >>> load_files("my_models/felt.py+ggx")    # doctest: +SKIP
+    >>> load_files_in_label("my_models/felt.py+ggx")    # doctest: +SKIP
     'felt+ggx'
     """
     if not isinstance(label, str | Path):

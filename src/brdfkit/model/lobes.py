@@ -58,9 +58,9 @@ def make_factored_lobe(
 ) -> Lobe:
     """Make the lobe `facets(h, cos_d)` · `geometry(wi, wo)` from its two factors.
 
-    h is the half vector and cos_d = wi·h. If the shape parameters occur in `facets` alone, which a
-    fit finds out by itself, sums over the cells of a table with the same h and cos_d are computed
-    only once, and the fit is faster. `sampling` and `energy` are those of `Lobe`.
+    h is the half vector and cos_d = wi·h. `sampling` and `energy` are those of `Lobe`. The factors
+    make fits to tables faster: if only `facets` depends on the shape parameters, a fit sums the
+    other factor just once over the cells with the same h and cos_d.
     """
 
     def lobe_value(wi: JitVector, wo: JitVector) -> JitFloat:

@@ -19,7 +19,7 @@ from brdfkit.model.numerics import cosine_power, expm1
 def schlick(f0: JitFloat, cos_theta: JitFloat) -> JitFloat:
     """Return the Fresnel reflectance of a facet, which is `f0` at normal incidence.
 
-    [Schlick 1994]; [Kurt 2007, eq. 3.16]
+    `cos_theta` is the cosine of the angle of incidence. [Schlick 1994]; [Kurt 2007, eq. 3.16]
     """
     return f0 + (1 - f0) * fifth_power(1 - cos_theta)
 
@@ -40,8 +40,9 @@ def v_groove(wi: JitVector, wo: JitVector, h: JitVector) -> JitFloat:
 
 
 def _scaled_slope_squared(h: JitVector, alpha_u: JitFloat, alpha_v: JitFloat) -> JitFloat:
-    """Return tan²θ_h (cos²φ_h/α_u² + sin²φ_h/α_v²), the squared slope of h in widths α.
+    """Return the squared slope of a facet with the normal h, tan²θ_h (cos²φ_h/α_u² + sin²φ_h/α_v²).
 
+    The slopes along x and y are divided by the widths α_u and α_v of their distribution.
     θ_h and φ_h are the angle of h to the surface normal and its azimuth.
     """
     x, y = h.x / alpha_u, h.y / alpha_v
@@ -49,7 +50,7 @@ def _scaled_slope_squared(h: JitVector, alpha_u: JitFloat, alpha_v: JitFloat) ->
 
 
 def cos_squared(h: JitVector) -> JitFloat:
-    """Return the squared cosine of h to the normal, at least 1e-6, by which D stays finite."""
+    """Return the squared cosine of h to the normal, at least 1e-6, so that 1 / cos² is finite."""
     return dr.maximum(h.z * h.z, 1e-6)
 
 
@@ -111,17 +112,17 @@ class TrowbridgeReitz:
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
         """Draw a normal among those visible from wi, by spherical caps [Dupuy & Benyoub 2023]."""
-        # Stretch wi so that the visible normals become those of a hemisphere
+        # Stretch the surface so that its visible normals become those of a hemisphere
         x, y = self.alpha_u * wi.x, self.alpha_v * wi.y
         inverse = dr.rsqrt(x * x + y * y + wi.z * wi.z)
         x, y, z = x * inverse, y * inverse, wi.z * inverse
-        # The mirror direction is uniform in a spherical cap; the sum of wi and the mirror direction
-        # is along the normal
+        # The direction into which the normal reflects wi is uniform in a spherical cap. The sum of
+        # wi and this direction is along the normal
         cos_theta = (1 - u.y) * (1 + z) - z
         sin_theta = dr.sqrt(dr.maximum(1 - cos_theta * cos_theta, 0))
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.x)
         x, y, z = x + sin_theta * cos_phi, y + sin_theta * sin_phi, z + cos_theta
-        # Stretch the normal back
+        # Undo the stretching, for the normal
         x, y, z = self.alpha_u * x, self.alpha_v * y, dr.maximum(z, 1e-7)
         inverse = dr.rsqrt(x * x + y * y + z * z)
         return type(wi)(x * inverse, y * inverse, z * inverse)

@@ -128,9 +128,9 @@ class Model(Shown, Declaration):
 
     @classmethod
     def determine_parameters(cls, samples: Any) -> dict[str, float]:
-        """Return the shape parameters, by name, that a fit computes from the measured directions.
+        """Return the shape parameters, by name, that follow from the directions of the `samples`.
 
-        A model overrides this if some of its parameters need no search.
+        A model overrides this if a fit need not search for some of its parameters.
         """
         return {}
 
@@ -138,7 +138,8 @@ class Model(Shown, Declaration):
     def bind(cls, values: dict[str, Any]) -> Any:
         """Return the model with values of any type, such as Dr.Jit arrays, without checks.
 
-        `values` are the values of all parameters by name; followers may be missing.
+        `values` are the values of all parameters by name; a parameter that follows another one may
+        be missing.
         """
         bound = object.__new__(cls)
         bound.__dict__.update(values)

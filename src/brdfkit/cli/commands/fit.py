@@ -88,7 +88,7 @@ def fit(
     if not rendered:
         _refuse_picture_options(pictures)
     _refuse_models(files)
-    models = list(dict.fromkeys(map(labels.load_files, names or labels.models())))
+    models = list(dict.fromkeys(map(labels.load_files_in_label, names or labels.models())))
     for name in models:
         if name != BEST:
             labels.model(name)

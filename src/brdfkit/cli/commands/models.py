@@ -25,7 +25,7 @@ def models(name: str | None, console: Console) -> None:
     if name is None:
         _print_models(labels.models(), console)
     else:
-        print_model(labels.model(labels.load_files(name)), console)
+        print_model(labels.model(labels.load_files_in_label(name)), console)
 
 
 def _print_models(models: Mapping[str, Any], console: Console) -> None:

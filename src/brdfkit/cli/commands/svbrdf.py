@@ -78,7 +78,7 @@ def svbrdf(
     values, output = parse_settings(fixed, "--fixed"), output or folder / "maps"
     interrupted = False
     with use_results_folder(output), console.progress("fit maps") as progress:
-        make_output_folder(labels.model(labels.load_files(model)), output)
+        make_output_folder(labels.model(labels.load_files_in_label(model)), output)
         try:
             maps = fit_maps(
                 folder,

@@ -137,7 +137,9 @@ def _find_model_classes(models: Any) -> dict[str, type[Model]]:
     if models is None:
         models = list_default_models()
     several = isinstance(models, Iterable) and not isinstance(models, str)
-    classes = [labels.model(labels.load_files(m)) for m in (models if several else [models])]
+    classes = [
+        labels.model(labels.load_files_in_label(m)) for m in (models if several else [models])
+    ]
     if not classes:
         raise BrdfkitError("There is no model to rank; name at least one.")
     return {model.label(): model for model in classes}

@@ -27,7 +27,7 @@ def plan_tasks(files: Any, models: Any, settings: FitSettings) -> list[Task]:
     an unreadable file contains the reason. Raises `BrdfkitError` if a model is unknown, or if there
     is no file or no model.
     """
-    classes = [labels.model(labels.load_files(m)) for m in _require_list(models, "model")]
+    classes = [labels.model(labels.load_files_in_label(m)) for m in _require_list(models, "model")]
     defined = {c.label(): _compute_checksums(c) for c in classes}
     tasks: dict[str, Task] = {}
     for file in _require_list(files, "file"):

@@ -12,15 +12,15 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, ArrayLike
 from brdfkit.core.geometry.directions import half_azimuth, to_half_difference
 
-# Scales of the three coordinates. A highlight is narrow along θ_h and changes slowly with θ_d;
+# Factors of the three coordinates. A highlight is narrow along θ_h and changes slowly with θ_d;
 # retroreflection, at θ_d = 0, is narrow along both
 HIGHLIGHT, RETROREFLECTION = (8.0, 1.0, 1.0), (4.0, 4.0, 4.0)
 
 
 def to_isotropic_points(wi: AnyArray, wo: AnyArray, scales: ArrayLike = HIGHLIGHT) -> AnyArray:
-    """Map direction pairs (n, 3) on an isotropic material to points (n, 3), scaled by `scales`."""
+    """Map direction pairs (n, 3) on an isotropic material to points (n, 3), times `scales`."""
     theta_h, theta_d, _ = to_half_difference(wi, wo)
-    # This equals 2 sinθ_h sinθ_d |cos φ_d|; φ_d itself is undefined at the mirror direction
+    # It equals 2 sinθ_h sinθ_d |cos φ_d|, without the angle φ_d, which is undefined where θ_h = 0
     cosine_difference = np.abs(wi[:, 2] - wo[:, 2])
     return np.stack([theta_h, np.sin(theta_d), cosine_difference], axis=-1) * scales
 

@@ -1,17 +1,17 @@
 """Measures on the space of direction pairs, which weight the samples in a loss.
 
 A loss is an integral over all pairs of directions, estimated from the samples of a file. The
-integral needs a measure, and two are natural for a BRDF. With the half and difference angles of
-[Rusinkiewicz 1998] they are
+integral needs a measure. Two are natural for a BRDF, in the half and difference angles of
+[Rusinkiewicz 1998]:
 
-    angles        dθ_h dθ_d dφ_d,             in which a highlight is large, and
-    solid angle   dω_i dω_o = s dθ_h dθ_d dφ_d · 4 dφ_h,   s = sinθ_h sinθ_d cosθ_d,
+    angles        dθ_h dθ_d dφ_d                            highlights are a large part of it
+    solid angle   dω_i dω_o = s dθ_h dθ_d dφ_d · 4 dφ_h     highlights are a small part of it
 
-in which it is small. ``"balanced"`` is the geometric mean of the two measures, with the density √s
-in the angles. The *extents* of a sample are the two amounts of angles and of solid angle that the
-sample represents.
+Here s = sinθ_h sinθ_d cosθ_d is the density of solid angle in the angles. A third measure,
+``"balanced"``, is the geometric mean of the two, with the density √s. The *extents* of a sample are
+two numbers, the amounts of angles and of solid angle that it represents.
 
-Formats and tables with a known grid state the extents of their samples. Those of scattered samples
+Formats and tables with a known grid state the extents of their samples. For scattered samples they
 are estimated: points are spread over all pairs of directions, and the volume of each point is added
 to the extents of the nearest sample, if one is near.
 """
@@ -25,22 +25,23 @@ from brdfkit.core.geometry.directions import from_half_difference, to_half_diffe
 from brdfkit.model.samples.cells import minimum_cosine
 from brdfkit.model.samples.coordinates import compute_coordinates, compute_sample_coordinates
 
-# Name → power of s that is the measure's density in the angles; with None each sample counts 1
+# The density of each measure in the angles, as a power of `solid_angle_density`; with None each
+# sample counts 1
 MEASURES: dict[str, float | None] = {
     "samples": None,
     "angles": 0.0,
     "balanced": 0.5,
     "solid_angle": 1.0,
 }
-# The largest distance of a point to the sample that it belongs to, in the coordinates of
-# `coordinates.py`: 3.6° in theta_h, or 0.5 in sin theta_d
+# The largest distance between a spread point and the sample that represents it, in the coordinates
+# of `coordinates.py`: 3.6° in theta_h, or 0.5 in sin theta_d
 REACH = 0.5
-# The number of points per sample, and the smallest and largest total number
+# The number of spread points per sample, and their smallest and largest total number
 POINTS, FEWEST_POINTS, LARGEST_NUMBER = 16, 2**13, 2**18
-# The smallest extent in the angles, relative to the mean extent
+# The extent, in the angles, of a sample that represents no point, as a share of the mean extent
 LEAST_EXTENT = 0.01
 # The number of bins of theta_h, equal in its square root. Half of the points are spread evenly over
-# the bins, half of them like the samples
+# theta_h, half of them like the samples
 BINS = 90
 # Numbers of cells along theta_h, theta_d and phi_d, enough to integrate a measure to 1e-3
 GRID = 180, 90, 90
@@ -49,8 +50,8 @@ GRID = 180, 90, 90
 def compute_measure(extents: FloatArray | None, measure: str) -> FloatArray | float:
     """Return the amount (n,) of a measure, given by name, that each sample represents.
 
-    `extents` (n, 2) are the amounts of the two measures; if they are unknown (None), the result
-    is 1.
+    `extents` (n, 2) are the amounts of angles and of solid angle; if they are unknown (None), the
+    result is 1.
     """
     power = MEASURES[measure]
     if power is None or extents is None:
@@ -62,7 +63,7 @@ def compute_measure(extents: FloatArray | None, measure: str) -> FloatArray | fl
 
 
 def solid_angle_density(theta_h: FloatArray, theta_d: FloatArray) -> FloatArray:
-    """Return s = sinθ_h sinθ_d cosθ_d, the density of solid angle in these angles [rad]."""
+    """Return sinθ_h sinθ_d cosθ_d, the density of solid angle in the half and difference angles."""
     return np.sin(theta_h) * np.sin(theta_d) * np.cos(theta_d)
 
 
@@ -100,11 +101,11 @@ def estimate_extents(
     sums = np.stack(
         [np.bincount(nearest[near], volume[near], len(points)) for volume in volumes.T], axis=1
     )
-    # Samples at the same point share its extents
+    # Samples at the same point have equal shares of its extents
     shares = (sums / np.bincount(same)[:, None])[same]
     # A sample of an anisotropic material has two points: its pair in both orders
     extents = shares.reshape(-1, len(wi), 2).sum(axis=0)
-    # A sample to which no point belongs, since other samples are very near, gets a small extent
+    # A sample that represents no point, since other samples are very near, gets a small extent
     missed = extents[:, 0] == 0
     theta_h, theta_d, _ = to_half_difference(wi[missed], wo[missed])
     extents[missed, 0] = LEAST_EXTENT * extents[:, 0].mean()

@@ -24,8 +24,8 @@ class Samples:
     `weight`: factor (n,) of each sample in every loss, such as a user's weight.
     `extents`: amounts (n, 2) of angles and of solid angle that each sample represents, by the two
     measures of `measures.py`, or None if unknown.
-    `cells`: for samples of a table, two arrays (n,), in increasing order: the index of the half
-    vector's cell, and the index of its pair with theta_d; otherwise None.
+    `cells`: for samples of a table, two arrays (n,) of indices, in increasing order: of the cell of
+    the half vector, and of the cell of half vector and theta_d; otherwise None.
     `errors`: standard errors (n, channels) of the values, or None if a fit should not use any.
     """
 

@@ -80,7 +80,7 @@ class Table:
             for edges in ((np.arange(n_h + 1) / n_h) ** 2, np.arange(n_d + 1) / n_d)
         )
         angles = np.outer(np.diff(theta_h), np.diff(theta_d))
-        # ∫ sinθ_h dθ_h, and ∫ sinθ_d cosθ_d dθ_d
+        # The solid angle: ∫ sinθ_h dθ_h times ∫ sinθ_d cosθ_d dθ_d between a cell's edges
         solid = np.outer(-np.diff(np.cos(theta_h)), np.diff(np.sin(theta_d) ** 2) / 2)
         return np.stack([angles, solid], axis=-1) * 2 * np.pi / azimuths
 
@@ -178,4 +178,4 @@ class Table:
         above = (wi[..., 2] > 0) & (wo[..., 2] > 0)
         return np.where(above[..., None], result, 0.0)
 
-    __call__ = eval  # so that a table can be the function of a `Measured`
+    __call__ = eval  # so that a table can be called as the function of a `Measured`
