@@ -135,7 +135,7 @@ def _track_gradients(bsdf: MitsubaObject, names: Sequence[str]) -> Iterator[list
 
 
 def _is_weight_spectrum(mi: MitsubaModule, model: Model, name: str) -> bool:
-    """Return whether Mitsuba stores a weight as coefficients of a spectrum: a colour."""
+    """Return whether Mitsuba stores a weight, a colour, as the coefficients of a spectrum."""
     return mi.is_spectral and len(np.unique(getattr(model, name))) > 1
 
 

@@ -58,9 +58,10 @@ def print_fits(
 
 
 def _find_shared_notes(fits: Sequence[Fit], findings: Sequence[str]) -> list[str]:
-    """Return the notes on the data, its `findings`, and those that all of several fits have.
+    """Return the notes of the first fit that are `findings` on the data, or that all fits have.
 
-    Warnings of the first fit are not shared: they are about this fit's own reflected light.
+    A single fit shares no notes. Warnings are left out, since they are about one fit's own
+    reflected light.
     """
     first, *others = fits
     notes = [note for note in first.notes if note not in first.warnings]

@@ -247,7 +247,7 @@ def _choose_picture_path(request: Request, name: str) -> Path:
 
 
 def _warn_of_energy_gain(models: Sequence[Any]) -> None:
-    """Print a warning for each model that reflects more light than arrives, by its parameters."""
+    """Print a warning for each model that reflects more light than arrives."""
     from brdfkit.regression.albedo import LARGEST_ALBEDO, format_light_share, make_albedo_pixels
 
     for model in models:

@@ -19,7 +19,7 @@ FLOOR = 0.02  # smallest density of a direction, relative to the mean density
 
 
 def court_radiance(w: AnyArray) -> AnyArray:
-    """Return the radiance (n,) of a court from directions `w` (n, 3): bright sky, walls, ground."""
+    """Return the radiance (n,) of a courtyard from directions `w` (n, 3): sky, walls, ground."""
     walls = np.where(w[:, 2] < 0, 0.3, 0.5 - 0.25 * w[:, 2])
     return walls + 6 * (w[:, 2] > 0.75)
 

@@ -17,8 +17,8 @@ def draw_normals(
 ) -> tuple[AnyArray, AnyArray]:
     """Draw normals of points of the ball, half of them in highlights.
 
-    Returns the normals (count, 3), and their weights (count,), with which they count like points
-    that are spread evenly over the ball's disc. Half of the normals are spread evenly; the others
+    Returns the normals (count, 3), and their weights (count,), by which a weighted mean over them
+    is a mean over the ball's disc. Half of the normals are spread evenly; the others
     are drawn by the material's distribution of half vectors, about the half vectors of camera and
     light. So even the narrow highlight of a small lamp gets some normals.
     """
@@ -29,7 +29,7 @@ def draw_normals(
     centres = normalize(VIEW + light.sample(qmc.Halton(3, rng=rng).random(SOURCES)))
     about = make_frames(centres[(source * SOURCES).astype(int)])
     normals = (half_vectors.draw_half_vectors(points)[:, None] @ about)[:, 0]
-    # Normals that face away from the camera are replaced by evenly spread ones
+    # Half of the normals, and those that face away from the camera, become evenly spread ones
     spread = (choice < 0.5) | (normals @ VIEW < 1e-3)
     normals = np.where(spread[:, None], _spread_normals(points), normals)
     # Densities per solid angle of the evenly spread normals and of those in highlights

@@ -66,7 +66,7 @@ class Metric:
 def _make_percentile_metric(
     differences: Callable[[AnyArray, AnyArray], AnyArray], share: float
 ) -> Callable[[AnyArray, AnyArray, BoolArray], float]:
-    """Return a metric: the percentile `share` of the `differences` of two pictures' pixels."""
+    """Return a metric: the percentile `share` [%] of the `differences` of two pictures' pixels."""
 
     def compute_percentile(reference: AnyArray, picture: AnyArray, mask: BoolArray) -> float:
         return float(np.percentile(differences(reference[mask], picture[mask]), share))

@@ -27,7 +27,7 @@ PixelCoordinates = tuple[FloatArray, FloatArray, IntArray]  # x, y, and number o
 
 @dataclass(frozen=True)
 class LatitudeLongitude:
-    """The layout by latitude and longitude: azimuth across, polar angle down, ahead in the middle.
+    """The layout by latitude and longitude: azimuth across, polar angle down, middle pixel ahead.
 
     `at_poles` says whether the first and the last row of pixels lie at the poles, as in Mitsuba.
     Otherwise they lie half a row away from the poles.
@@ -57,9 +57,9 @@ class LatitudeLongitude:
 
 @dataclass(frozen=True)
 class Angular:
-    """The layout of P. Debevec's light probes: a disc with ahead in its middle, behind at its rim.
+    """The layout of P. Debevec's light probes: a disc whose middle is ahead, its rim behind.
 
-    The distance from the middle is proportional to the angle from the direction ahead.
+    The distance from the middle is proportional to the angle to the direction ahead.
     """
 
     aspect: float = 1.0

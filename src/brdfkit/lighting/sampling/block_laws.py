@@ -31,8 +31,8 @@ EDGES = 64  # number of ranks at which a step may begin, spaced by equal ratios
 class Hyperbolic:
     """A law for `n` blocks whose probabilities fall hyperbolically, as 1 / (u + x) at the rank x.
 
-    Sorted shares of power rarely follow it; otherwise samples are noisier than by the exact shares.
-    The parameter is `u` > 0. [Ergun 2015, eqs. 6.3-6.5]
+    Sorted shares of power rarely fall like this; where they do not, samples are noisier than by the
+    exact shares. The parameter is `u` > 0. [Ergun 2015, eqs. 6.3-6.5]
     """
 
     n: int

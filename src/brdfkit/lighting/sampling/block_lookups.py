@@ -183,7 +183,7 @@ class TreeWalk:
         return node.x * line_density(s, node.y) * line_density(t, node.w)
 
     def _get_root_node(self, active: JitMask) -> tuple[JitVector, JitVector]:
-        """Return the tree's root, the whole map, and its bounds (x0, x1, y0, y1)."""
+        """Return the tree's root node, which is the whole map, and its bounds (x0, x1, y0, y1)."""
         import mitsuba as mi
 
         return self.nodes.at(mi.UInt32(0), mi.Vector4f, active), mi.Vector4f(self.root_box)

@@ -16,8 +16,8 @@ STEEPEST = 1.8  # largest slope, at which the darker end of a block has a tenth 
 def fit_slopes(sums: Sums, pixels: FloatArray, boxes: IntArray) -> FloatArray:
     """Fit the slopes (n, 2), across and down, of the densities in the blocks `boxes` (n, 4).
 
-    `sums` are sums over the power of a map's cells; `pixels` (rows, columns) is the power at its
-    pixels.
+    `sums` gives sums of the power of a map's cells over boxes; `pixels` (rows, columns) is the
+    power at the map's pixels.
     """
     x0, x1, y0, y1 = boxes.T
     closed = np.append(pixels, pixels[:, :1], axis=1)

@@ -22,9 +22,10 @@ LOOKUPS: dict[str, type[TextureLookup | TreeWalk | GridLookup]] = {
 class Blocks:
     """A sampler of points of an environment map, which is cut into at most `count` blocks.
 
-    `criterion` names the error in `tree.CRITERIA` by which the next block to cut is chosen,
-    `distribution` the way in DISTRIBUTIONS to draw blocks, and `lookup` the way in LOOKUPS to find
-    the block of a point. The distribution "exact" draws blocks by their shares of the power.
+    The three names choose among methods: `criterion` is the error in `tree.CRITERIA` by which the
+    next block to cut is found, `distribution` the way in DISTRIBUTIONS to draw a block, and
+    `lookup` the way in LOOKUPS to find the block of a point. The distribution "exact" draws blocks
+    by their shares of the power.
     """
 
     def __init__(

@@ -46,7 +46,7 @@ class OneView:
 
     @property
     def energy(self) -> FloatArray:
-        """The glossy part's share of reflected light in each direction (n, channels)."""
+        """The glossy part times each direction's solid angle (n, channels): its share of light."""
         return self.glossy * self.solid_angle[:, None]
 
     @property

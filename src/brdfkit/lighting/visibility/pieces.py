@@ -47,7 +47,7 @@ def _orient_outwards(points: FloatArray, faces: IntArray) -> tuple[IntArray, Int
     """Turn the triangles of each connected piece of a mesh outwards.
 
     Returns the faces (m, 3), and the number of each face's piece (m,). A piece is turned if it
-    encloses a negative volume; its holes count as closed from the mean of its corners.
+    encloses a negative volume; holes count as closed by triangles to the middle of the piece.
     """
     try:
         import igl

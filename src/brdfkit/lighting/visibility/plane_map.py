@@ -1,7 +1,8 @@
 """Plane maps store, for each direction from the centre of a convex part, the plane of the face.
 
-A part lies behind each of its planes n·x = d. A ray from the origin of its unit frame, with the
-direction D, leaves the part through the face with the largest n·D / d. [Ergun 2015, section 7.1]
+Coordinates are those of the part's unit frame, in which the unit sphere encloses it. The part lies
+behind each of its planes n·x = d. A ray from the origin with the direction D leaves it through the
+face with the largest n·D / d. [Ergun 2015, section 7.1]
 """
 
 from typing import Protocol
@@ -23,7 +24,7 @@ class PlaneMap(Protocol):
     def look_up_plane(
         self, part: JitInt, direction: JitVector, active: JitMask = True
     ) -> tuple[JitVector, JitFloat]:
-        """Return the normal and the distance of a part's plane in a unit `direction`."""
+        """Return the normal and distance of the face that a part has in a unit `direction`."""
 
 
 class RasterisedPlaneMap:
@@ -46,7 +47,7 @@ class RasterisedPlaneMap:
     def look_up_plane(
         self, part: JitInt, direction: JitVector, active: JitMask = True
     ) -> tuple[JitVector, JitFloat]:
-        """Return the normal and the distance of a part's plane in a unit `direction`."""
+        """Return the normal and distance of the face that a part has in a unit `direction`."""
         import drjit as dr
         import mitsuba as mi
 
@@ -59,7 +60,7 @@ class RasterisedPlaneMap:
 
 
 def rasterise_planes(hull: Hull, side: int) -> FloatArray:
-    """Return the plane map (2, side, side, 4) of a hull, for the hemispheres z ≥ 0 and z < 0."""
+    """Return the plane map (2, side, side, 4) of a hull: (n, d), for z ≥ 0, then for z < 0."""
     centres = (np.arange(side) + 0.5) * 2 / side - 1
     t, s = np.meshgrid(centres, centres, indexing="ij")
     both = [np.stack(dual_paraboloid.from_disc(s, t, sign), axis=-1) for sign in (1, -1)]
