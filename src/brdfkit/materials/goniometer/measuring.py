@@ -28,17 +28,18 @@ from brdfkit.materials.goniometer.specimen import Specimen
 from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Table
 
-# Default cells of the table along [phi_h,] theta_h, theta_d and phi_d
+# Default numbers of cells of the table along [phi_h,] theta_h, theta_d and phi_d
 ISOTROPIC = (30, 30, 60)
 ANISOTROPIC = (16, 20, 12, 24)
 PILOT_SAMPLES = 64  # number of samples per cell in the pilot run
-FEWEST_SAMPLES = 256  # samples per cell; with fewer, the standard error is too uncertain
-# The samples are drawn in this many passes over all cells: if Ctrl-C ends the measurement, each
-# cell has the same share of its samples
+# Smallest number of samples per cell; with fewer, the standard error is too uncertain
+FEWEST_SAMPLES = 256
+# Number of passes over all cells in which the samples are drawn: if Ctrl-C ends the measurement,
+# all cells have about the same share of their samples
 PASSES = 8
 BATCH = 2**20  # number of paths that are traced at once, which bounds the memory
-MOST_CELLS = 2**22  # bounds the memory to 1 GB; three times the cells of a MERL table
-MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # limits of the arguments; with these, a cell takes weeks
+MOST_CELLS = 2**22  # largest number of cells of a table, which bounds the memory to 1 GB
+MOST_SPP, LEAST_ERROR = 10**9, 1e-5  # limits of `spp` and `error`, at which a cell takes weeks
 
 
 class Tally:
@@ -148,19 +149,19 @@ def measure(
         raise wrong_value_error("surface", surface, "a HeightField, such as gaussian()")
     if isinstance(facets, str):
         raise wrong_value_error("facets", facets, "the dictionary of a BSDF")
-    shape = _check_shape(shape, surface.isotropic)
+    shape = _check_table_shape(shape, surface.isotropic)
     error = to_number("error", error, LEAST_ERROR, 1)
     spp, seed = to_whole_number("spp", spp, 2, MOST_SPP), to_whole_number("seed", seed, 0)
     specimen = Specimen(surface, facets, max_bounces)
-    above, light, eye = _place_light_and_eye(shape)
+    above, light, eye = _choose_directions(shape)
     rng = np.random.default_rng(seed)
 
     # Estimate from a pilot run how many samples each cell gets in one pass
     pilot = Tally(len(light))
     _add_samples(specimen, light, eye, np.full(len(light), PILOT_SAMPLES), rng, pilot)
-    share = -(-_plan_samples(pilot, above, error, spp) // PASSES)
+    share = -(-_plan_sample_counts(pilot, above, error, spp) // PASSES)
 
-    # Measure; after Ctrl-C, keep what there is if every cell has the samples of at least one pass
+    # Measure. After Ctrl-C, continue with the samples so far if every cell has those of one pass
     tally, total = Tally(len(light)), PASSES * int(share.sum())
     try:
         for _ in range(PASSES):
@@ -176,7 +177,7 @@ def measure(
     return Measured.from_table(values, name=name, info=notes, standard_error=errors)
 
 
-def _place_light_and_eye(shape: tuple[int, ...]) -> tuple[BoolArray, FloatArray, FloatArray]:
+def _choose_directions(shape: tuple[int, ...]) -> tuple[BoolArray, FloatArray, FloatArray]:
     """Return which cells of a table can be measured, and the directions to light and eye for each.
 
     The first result is a mask of the table's `shape`, False where a direction lies below the
@@ -189,7 +190,7 @@ def _place_light_and_eye(shape: tuple[int, ...]) -> tuple[BoolArray, FloatArray,
     return above, np.where(steeper, wi, wo), np.where(steeper, wo, wi)
 
 
-def _plan_samples(pilot: Tally, above: BoolArray, error: float, spp: int) -> IntArray:
+def _plan_sample_counts(pilot: Tally, above: BoolArray, error: float, spp: int) -> IntArray:
     """Return the number of samples (m,) that each cell needs for the relative standard `error`.
 
     The estimate pools each cell with its neighbours: where few samples are large, the pilot's
@@ -203,13 +204,14 @@ def _plan_samples(pilot: Tally, above: BoolArray, error: float, spp: int) -> Int
         grid[above] = values
         return uniform_filter(grid, 3)[above]
 
-    # The squared relative error of the pilot in the pooled cells, of which a `share` is measured
+    # Compute the pilot's squared relative error in each cell pooled with its neighbours, of which
+    # only a `share` is measured
     share, mean = average_neighbours(1.0), average_neighbours(pilot.mean.sum(axis=1))
     variance = share * average_neighbours(pilot.standard_error.sum(axis=1) ** 2)
     around = np.divide(variance, mean**2, out=np.ones_like(mean), where=mean > 0)
 
-    # The squared error falls as 1 / number of samples: take the larger of the pooled one and the
-    # cell's own
+    # Find the number of samples, to which the squared error is inversely proportional, from the
+    # larger one of two errors: in the pooled cells, and in the cell alone
     squares = np.maximum(around, np.minimum(pilot.relative_error, 1) ** 2)
     samples = PILOT_SAMPLES * squares / error**2
     return np.ceil(np.clip(samples, min(FEWEST_SAMPLES, spp), spp)).astype(int)
@@ -252,7 +254,7 @@ def _describe_measurement(tally: Tally, total: int) -> dict[str, str]:
     return notes
 
 
-def _check_shape(shape: Sequence[int] | None, isotropic: bool) -> tuple[int, ...]:
+def _check_table_shape(shape: Sequence[int] | None, isotropic: bool) -> tuple[int, ...]:
     """Return the table's numbers of cells, by default for the kind of surface; check the limits."""
     shape = tuple(shape or (ISOTROPIC if isotropic else ANISOTROPIC))
     dimensions = 3 if isotropic else 4

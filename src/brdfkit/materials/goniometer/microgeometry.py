@@ -68,7 +68,7 @@ def gaussian(slope: float = 0.3, seed: int = 0) -> HeightField:
     >>> gaussian(slope=0.2).isotropic
     True
     """
-    return HeightField(_make_gaussian(slope, 8, 8, seed))
+    return HeightField(_make_gaussian_heights(slope, 8, 8, seed))
 
 
 def brushed(slope: float = 0.3, stretch: float = 8, seed: int = 0) -> HeightField:
@@ -81,7 +81,7 @@ def brushed(slope: float = 0.3, stretch: float = 8, seed: int = 0) -> HeightFiel
     False
     """
     to_number("stretch", stretch, 1, 32)
-    return HeightField(_make_gaussian(slope, 5 * stretch, 5, seed), isotropic=False)
+    return HeightField(_make_gaussian_heights(slope, 5 * stretch, 5, seed), isotropic=False)
 
 
 def woven(slope: float = 0.3, thickness: float = 0.5, seed: int = 0) -> HeightField:
@@ -100,12 +100,12 @@ def woven(slope: float = 0.3, thickness: float = 0.5, seed: int = 0) -> HeightFi
     half = thickness * width / 2
     # Positions of the grid points in units of a yarn's width, equal along x and y
     s = (np.arange(SIZE) + 0.5) / width
-    # The round upper side of a yarn, and its way over and under the yarns that it crosses
+    # Compute heights: of a yarn's round upper side, and of its path over and under other yarns
     crown = half * np.sqrt(1 - (2 * (s % 1) - 1) ** 2)
     over_under = half * np.outer((-1) ** s.astype(int), np.cos(np.pi * (s - 0.5)))
-    # The higher yarn is visible at each point; fibres along their length roughen all yarns
-    warp = crown[:, None] + over_under + _make_gaussian(slope, 4, 24, seed)
-    weft = crown[None, :] - over_under.T + _make_gaussian(slope, 24, 4, seed + 1)
+    # Add the roughness of fibres along each yarn, and take the higher yarn at each point
+    warp = crown[:, None] + over_under + _make_gaussian_heights(slope, 4, 24, seed)
+    weft = crown[None, :] - over_under.T + _make_gaussian_heights(slope, 24, 4, seed + 1)
     heights = np.maximum(warp, weft)
     return HeightField(heights - heights.mean(), False, ("warp", "weft"), (weft > warp).astype(int))
 
@@ -131,7 +131,7 @@ def make_height_field(name: str, **parameters: float) -> HeightField:
     return geometry(**parameters)
 
 
-def _make_gaussian(slope: float, length_x: float, length_y: float, seed: int) -> FloatArray:
+def _make_gaussian_heights(slope: float, length_x: float, length_y: float, seed: int) -> FloatArray:
     """Make the heights (n, n) of a periodic Gaussian surface.
 
     Their autocorrelation is exp(-(x/length_x)² - (y/length_y)²). The triangles have exactly the
@@ -139,14 +139,15 @@ def _make_gaussian(slope: float, length_x: float, length_y: float, seed: int) ->
     """
     to_number("slope", slope, above=0, most=2)
     to_whole_number("seed", seed, 0)
-    # Filter white noise in the frequency domain
+    # Filter white noise in the frequency domain, which gives it this autocorrelation
     noise = np.fft.fft2(np.random.default_rng(seed).standard_normal((SIZE, SIZE)))
     k = 2 * np.pi * np.fft.fftfreq(SIZE)
     x, y = np.meshgrid(length_x * k, length_y * k, indexing="ij")
     heights = np.fft.ifft2(noise * np.exp(-(x * x + y * y) / 8)).real
     heights -= heights.mean()
 
-    # Measure the mean squared slope along each axis, in units of the slope along the shorter length
+    # Measure the mean squared slope along each axis, converted to the axis of the shorter length,
+    # and scale the heights to the slope that is wanted
     shorter = min(length_x, length_y)
     squares = [
         np.mean((length / shorter * (np.roll(heights, -1, axis) - heights)) ** 2)

@@ -75,8 +75,8 @@ class Specimen:
         }
         self.scene = mi.load_dict({"type": "scene", **meshes}, parallel=False)
         self.isotropic = surface.isotropic
-        # Opaque to Dr.Jit: numbers that are literals in the code would make it compile a new kernel
-        # for every specimen
+        # Hide the values of these numbers from Dr.Jit's compiler: it would compile a new kernel for
+        # every specimen if they were literals
         self.side = dr.opaque(mi.Float, len(surface.heights))
         self.bottom = dr.opaque(mi.Float, surface.heights.min())
         self.top = dr.opaque(mi.Float, surface.heights.max())
@@ -153,19 +153,19 @@ class Specimen:
         while active:
             hit = self.scene.ray_intersect_preliminary(ray, active=active)
 
-            # Find where the ray leaves the tile sideways; at once if it starts outside
+            # Find the point where the ray leaves the tile sideways: its origin if it starts outside
             side_x, side_y = dr.copysign(self.side, ray.d.x), dr.copysign(self.side, ray.d.y)
             to_x = (side_x / 2 - ray.o.x) / ray.d.x
             to_y = (side_y / 2 - ray.o.y) / ray.d.y
             wall = ray(dr.maximum(dr.minimum(to_x, to_y), 0))
 
-            # The ray ends where it hits the surface, or leaves the range of the surface's heights
+            # End rays that hit the surface, or that leave the range of the surface's heights
             above = (wall.z > self.top) & (ray.d.z > 0)
             below = (wall.z < self.bottom) & (ray.d.z < 0)
             tiles += 1
             active &= ~hit.is_valid() & ~above & ~below & (tiles < MOST_TILES)
 
-            # Every other ray enters the tile again on the opposite side
+            # Let all other rays enter the tile again on the opposite side
             wall.x -= dr.select(to_x <= to_y, side_x, 0)
             wall.y -= dr.select(to_y < to_x, side_y, 0)
             ray.o = dr.select(active, wall, ray.o)

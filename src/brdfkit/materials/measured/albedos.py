@@ -21,15 +21,15 @@ from brdfkit.regression.albedo import (
     LARGEST_MEASURED_ALBEDO,
 )
 
-# Angles of incidence [degrees] at which the albedos of fits and measurements are compared. At the
-# grazing one no measurement is trusted, but it is tested whether a fit reflects too much light
+# Angles of incidence [degrees]: at ANGLES the albedos of fits and measurements are compared; at
+# GRAZING measurements are not trusted, but fits are tested for reflecting too much light
 ANGLES, GRAZING = (5.0, 45.0, 75.0), 85.0
 # Numbers of polar angles and azimuths of half vectors in the quadrature
 N_THETA, N_PHI = 60, 24
 # An albedo counts as measured if at least this share of the light leaves near measured directions
 LEAST_KNOWN_SHARE = 0.75
-# If more than this share of the samples is not positive, their albedo is not trusted: logarithms
-# are interpolated, so that noise around 0 makes it too low
+# If a larger share of the samples is 0 or negative, their albedo is not trusted: the interpolation
+# takes logarithms, so that noise around 0 makes the albedo too low
 LARGEST_NEGATIVE_SHARE = 0.02
 
 
@@ -61,9 +61,9 @@ class MeasuredAlbedo:
 def compute_directional_albedo(data: Any, wi: FloatArray) -> FloatArray:
     """Return the directional albedo (channels,) of a `Measured` for light from `wi` (3,).
 
-    The integral is over half vectors h, where dωo = 4 (wi·h) dωh. A coarse quadrature suffices for
-    measured data, whereas `brdfkit.albedo` refines one for seconds. The sum is divided by the sum
-    for f = 1/π, so that a Lambertian surface gets exactly its reflectance.
+    It is integrated over half vectors h, where dωo = 4 (wi·h) dωh, by a coarse quadrature. This
+    suffices for measured data, whereas `brdfkit.albedo` refines its quadrature for seconds. The
+    result is scaled so that a Lambertian surface gets exactly its reflectance.
     """
     wo, weight = make_outgoing_quadrature(wi)
     values = data.eval(np.broadcast_to(wi, wo.shape), wo)
@@ -82,7 +82,7 @@ def make_outgoing_quadrature(wi: FloatArray) -> tuple[FloatArray, FloatArray]:
     h = from_angles(*np.meshgrid(theta, phi, indexing="ij")).reshape(-1, 3)
     d_omega = np.repeat(x * np.sin(theta), N_PHI)
 
-    # Reflect `wi` about them
+    # Reflect `wi` about the half vectors
     cosine = h @ wi
     wo = 2 * cosine[:, None] * h - wi
     above = (cosine > 0) & (wo[:, 2] > 0)

@@ -8,12 +8,12 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.measured.validation import Origin
 
-# Words for the units. The last one of DEGREES is ° in a file that is not encoded as UTF-8
+# Words for the units. "\ufffd" is what remains of ° in a file that is not encoded in UTF-8
 DEGREES = ("degrees", "degree", "deg", "°", "\ufffd")
 RADIANS = ("radians", "radian", "rad")
 # Largest absolute values [rad], by the first word of the angle's name
 LARGEST_ANGLES = {"theta": np.pi / 2, "phi": 2 * np.pi, "delta": 2 * np.pi}
-TOLERANCE = 1e-3  # excess [rad] over these limits that is accepted: files round 90° to 1.5708
+TOLERANCE = 1e-3  # rad; angles may exceed these limits by this much: files round 90° to 1.5708
 
 
 def require_known_unit(unit: str | None) -> None:
@@ -49,7 +49,7 @@ def _refuse_ambiguous_units(
     thetas = {name: angle for name, angle in largest.items() if name.startswith("theta")}
     # Large azimuths, surely in degrees, do not prove that the thetas are in degrees, too
     largest = thetas if any(thetas.values()) else largest
-    small = all(angle <= _find_largest_angle(name) for name, angle in largest.items())
+    small = all(angle <= _find_angle_limit(name) for name, angle in largest.items())
     if small and any(largest.values()):
         raise origin.error(
             f"no {'theta' if largest is thetas else 'angle'} is above {max(largest.values()):.4g}, "
@@ -61,7 +61,7 @@ def _convert_angle(name: str, numbers: FloatArray, unit: str | None, origin: Ori
     """Return one angle's `numbers` (n,) in radians; raise `BrdfkitError` for those out of range."""
     in_radians = unit in RADIANS
     angles = numbers if in_radians else np.radians(numbers)
-    for row in np.flatnonzero(np.abs(angles) > _find_largest_angle(name))[:1]:
+    for row in np.flatnonzero(np.abs(angles) > _find_angle_limit(name))[:1]:
         what = (
             f"{name} is {numbers[row]:g}{' rad' if in_radians else '°'} in {origin.locate_row(row)}"
         )
@@ -76,6 +76,6 @@ def _convert_angle(name: str, numbers: FloatArray, unit: str | None, origin: Ori
     return angles
 
 
-def _find_largest_angle(name: str) -> float:
+def _find_angle_limit(name: str) -> float:
     """Return the largest absolute value [rad] that is accepted for the angle with this name."""
     return LARGEST_ANGLES[name.partition("_")[0]] + TOLERANCE

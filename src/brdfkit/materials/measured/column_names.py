@@ -22,9 +22,10 @@ VALUE = re.compile(
     r"(?P<error>(standard)?error)?"
 )
 PER_STERADIAN = ("1/sr", "sr-1", "sr^-1", "sr⁻¹")
-# Columns that state the wavelength or the channel of the value in each row, by their other names
+# Names of columns that state the wavelength or the channel of the value in each row, and which of
+# the two they state
 KEYS_OF_ROWS = {"wavelength": "wavelength", "lambda": "wavelength", "channel": "channel"}
-EXAMPLES = ("BRDF", *RGB, "550nm", "BRDF_error", "R_error")  # proposed in errors on unknown names
+EXAMPLES = ("BRDF", *RGB, "550nm", "BRDF_error", "R_error")  # names that error messages propose
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ def parse_layout(names: Sequence[str], origin: Origin) -> Layout:
             coordinates[coordinate], units[coordinate] = number, unit
         elif value and unit in (None, *PER_STERADIAN):
             values[value] = number
-            cosines |= _match_cosine(text, is_error=value[1])
+            cosines |= _match_cosine_convention(text, is_error=value[1])
         elif key and unit in ((None, "nm") if key == "wavelength" else (None,)):
             keys[key] = number
         else:
@@ -108,9 +109,10 @@ def match_channel_column(name: str) -> str | None:
 
 
 def _describe_unknown_column(name: str, unit: str | None, coordinates: Iterable[str]) -> str:
-    """Return the text of an error on a column whose `unit`, or if that is None, name is unknown.
+    """Return the text of an error on a column with an unknown `unit`, or with an unknown name.
 
-    A similar name is proposed, but none of `coordinates`, which the table has already.
+    The name is meant where `unit` is None. The text proposes a similar name, but none of
+    `coordinates`, which the table has already.
     """
     if unit is not None:
         return (
@@ -214,11 +216,11 @@ def _match_value(text: str) -> tuple[str, bool] | None:
     return channel, bool(match["error"])
 
 
-def _match_cosine(text: str, is_error: bool) -> set[bool]:
-    """Return a set with True if a column of this name contains the BRDF times cos theta_o.
+def _match_cosine_convention(text: str, is_error: bool) -> set[bool]:
+    """Return {True} if a column of this name contains the BRDF times cos theta_o, else {False}.
 
-    The set has False if it contains the BRDF itself, and is empty for a column of errors that does
-    not say, because errors follow the convention of their values.
+    The result is empty for a column of errors whose name does not say, because errors follow the
+    convention of their values.
     """
     simple = _simplify_name(text)
     if is_error and not re.match("(cc)?b[rs]df", simple):

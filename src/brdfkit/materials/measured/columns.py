@@ -13,7 +13,7 @@ from brdfkit.materials.measured.coordinates import is_surface_turned, to_directi
 from brdfkit.materials.measured.long_form import parse_colour_name, to_wide_table
 from brdfkit.materials.measured.validation import Origin
 
-NO_NUMBERS = "mMc"  # NumPy's kinds of time spans, dates and complex numbers
+NO_NUMBERS = "mMc"  # NumPy's codes for data that are refused: time spans, dates, complex numbers
 
 
 def to_sample_arguments(
@@ -78,7 +78,7 @@ def extract_columns(frame: Any, origin: Origin) -> tuple[list[str], list[FloatAr
     for columns of different lengths and for text.
     """
     names = getattr(frame, "columns", frame if isinstance(frame, Mapping) else ())
-    names = list(getattr(frame, "column_names", names))  # the attribute of a pyarrow table
+    names = list(getattr(frame, "column_names", names))  # where a pyarrow table has its names
     if not names:
         raise origin.error(
             f"a {type(frame).__name__} was given; give a DataFrame, or a dictionary, with columns "

@@ -14,7 +14,7 @@ from brdfkit.materials.measured.measured_data import Data, MeasuredData
 from brdfkit.model.samples.samples import require_valid
 
 LEAST_COSINE = 1e-3  # values are not divided by a smaller cosine: the quotient would be noise
-# The notes that record a conversion, and the arguments of `mend` that cause them
+# The notes that record each of the two conversions; OPTIONS has them by the argument of `mend`
 DIVIDED = {"cosine": "the values were BRDF × cos theta_o and are divided by it"}
 TURNED = {"azimuth": "phi_o was counted from the mirror's side and is 180° more"}
 OPTIONS = {"mirror_azimuth": TURNED, "divide_by_cos": DIVIDED}
@@ -42,10 +42,10 @@ def can_mend(data: MeasuredData, option: str) -> bool:
 
 
 def compute_view_cosines(wo: FloatArray) -> tuple[FloatArray, BoolArray]:
-    """Return the cosines (n, 1) of the directions `wo` (n, 3) by which to divide their values.
+    """Return the cosines to the normal (n, 1) of the views `wo` (n, 3), to divide their values by.
 
-    The second result is a mask (n,) of the directions whose cosine is too small to divide by; for
-    these the first result is 1.
+    The second result is a mask (n,) of the views whose cosine is too small to divide by; for these
+    the first result is 1.
     """
     low = wo[:, 2] < LEAST_COSINE
     return np.where(low, 1.0, wo[:, 2])[:, None], low

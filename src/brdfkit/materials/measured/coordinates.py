@@ -33,8 +33,8 @@ def to_directions(
     """Return the directions wi and wo (n, 3) for `coordinates`, arrays (n,) by name.
 
     The names are one line of `COORDINATES`. `units` has a word for the unit of each angle, or None.
-    Raises `BrdfkitError` for impossible coordinates, and for directions below the horizon. Only
-    half and difference angles may give such directions, which the caller must mask.
+    Raises `BrdfkitError` for impossible coordinates, and for directions below the horizon. Half and
+    difference angles are an exception: directions below the horizon are returned, to be masked.
     """
     if "wi_x" in coordinates:
         return _to_unit_vectors("wi", coordinates, origin), _to_unit_vectors(
@@ -53,9 +53,9 @@ def is_surface_turned(
 ) -> bool:
     """Return whether the surface was turned about its normal between the samples.
 
-    It was if the azimuth of wi, or of the half vector, varies by more than `ROUNDING`; directions
-    along the normal have none. A negative theta is no turn. `coordinates` are arrays (n,) by name,
-    and `units` has a word for the unit of each angle, or None.
+    It was if the azimuth of wi, or of the half vector, varies by more than `ROUNDING`. Directions
+    along the normal, which have no azimuth, are ignored, and a negative theta is no turn.
+    `coordinates` are arrays (n,) by name, and `units` has a word for each angle's unit, or None.
     """
     if "wi_x" in coordinates:
         x, y = coordinates["wi_x"], coordinates["wi_y"]

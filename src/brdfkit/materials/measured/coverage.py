@@ -10,7 +10,7 @@ from brdfkit.materials.measured.measured import Measured
 from brdfkit.model.samples import Samples, Table
 
 NEAR_ANGLE = np.radians(5)  # a pair of directions this near to a sample counts as measured
-PAIRS = 20_000  # number of random pairs, by which the shares are accurate to 0.4 %
+PAIRS = 20_000  # number of random pairs of directions; it makes shares accurate to 0.4 %
 
 
 @dataclass(frozen=True)
@@ -40,20 +40,20 @@ def compute_coverage(data: Measured, max_angle: float = 90.0) -> Coverage:
         return compute_coverage_at(data, wi, wo)
     low, high = _sort_cosines(data.samples.wi, data.samples.wo)
     weight = _compute_solid_angles(data.table) * (low > max(least, 0))
-    return _compute_shares(data, low, high, weight, data.samples.valid)
+    return _compute_coverage_shares(data, low, high, weight, data.samples.valid)
 
 
 def compute_coverage_at(data: Measured, wi: FloatArray, wo: FloatArray) -> Coverage:
     """Return the `Coverage` of the given pairs of directions, (n, 3) each, by scattered samples."""
     low, high = _sort_cosines(wi, wo)
-    return _compute_shares(data, low, high, np.ones(len(wi)), is_near_sample(data, wi, wo))
+    return _compute_coverage_shares(data, low, high, np.ones(len(wi)), is_near_sample(data, wi, wo))
 
 
 def find_largest_angles(data: Measured) -> tuple[float, float]:
     """Return how far from the normal pairs of directions were measured, as two angles [degrees].
 
     A pair has a smaller and a larger angle to the normal. The results are the maximum over all
-    pairs of the smaller angle, and that of the larger angle.
+    pairs of the smaller angle, and the maximum of the larger angle.
     """
     valid = data.samples.valid
     low, high = _sort_cosines(data.samples.wi[valid], data.samples.wo[valid])
@@ -64,7 +64,8 @@ def find_largest_angles(data: Measured) -> tuple[float, float]:
 def is_in_plane(samples: Samples) -> bool:
     """Return whether all valid `Samples` lie in the plane of incidence, to within 5°."""
     wi, wo = samples.wi[samples.valid], samples.wo[samples.valid]
-    across = np.abs(wi[:, 0] * wo[:, 1] - wi[:, 1] * wo[:, 0])  # sin θi sin θo |sin Δφ|
+    # Compute sin θi sin θo |sin Δφ|, where Δφ is the azimuth between light and view
+    across = np.abs(wi[:, 0] * wo[:, 1] - wi[:, 1] * wo[:, 0])
     return bool((across <= np.sin(NEAR_ANGLE) * np.sqrt(1 - wi[:, 2] ** 2)).all())
 
 
@@ -76,18 +77,23 @@ def is_near_sample(data: Measured, wi: FloatArray, wo: FloatArray) -> BoolArray:
     from scipy.spatial import cKDTree
 
     valid = data.samples.at(data.samples.valid)
-    both_ways = [_symmetrize(data, valid.wi, valid.wo), _symmetrize(data, valid.wo, valid.wi)]
+    both_ways = [
+        _map_to_symmetric_points(data, valid.wi, valid.wo),
+        _map_to_symmetric_points(data, valid.wo, valid.wi),
+    ]
     tree = cKDTree(np.concatenate(both_ways))
-    return np.isfinite(tree.query(_symmetrize(data, wi, wo), distance_upper_bound=NEAR_ANGLE)[0])
+    return np.isfinite(
+        tree.query(_map_to_symmetric_points(data, wi, wo), distance_upper_bound=NEAR_ANGLE)[0]
+    )
 
 
 def map_pairs_to_points(wi: FloatArray, wo: FloatArray, anisotropic: bool = False) -> FloatArray:
     """Map pairs of directions, (n, 3) each, to points whose distance measures how far pairs differ.
 
     The points are (n, 4), or (n, 6) for an anisotropic material. Their distance is 1/√2 to 3/2 of
-    the angle [rad] between the pairs. On an isotropic material pairs may be turned about the
-    normal: if their azimuths between wi and wo differ by δ, the least angle is
-    δ sin θi sin θo / √(sin² θi + sin² θo).
+    the angle [rad] between the pairs. On an isotropic material it is the least angle after turning
+    one of the pairs about the normal. For pairs with the same θi and θo, but azimuths between wi
+    and wo that differ by δ, this is δ sin θi sin θo / √(sin² θi + sin² θo).
     """
     if anisotropic:
         return np.concatenate([wi, wo], axis=-1)
@@ -98,11 +104,12 @@ def map_pairs_to_points(wi: FloatArray, wo: FloatArray, anisotropic: bool = Fals
     return np.stack([theta_i, theta_o, azimuth.real, azimuth.imag], axis=-1)
 
 
-def _symmetrize(data: Measured, wi: FloatArray, wo: FloatArray) -> FloatArray:
+def _map_to_symmetric_points(data: Measured, wi: FloatArray, wo: FloatArray) -> FloatArray:
     """Map pairs of directions to points; those that an isotropic material mirrors coincide."""
     points = map_pairs_to_points(wi, wo, data.anisotropic)
     if not data.anisotropic:
-        points[:, 3] = np.abs(points[:, 3])  # its sign says on which side of the plane wo lies
+        # Drop the sign, which says on which side of the plane of incidence wo lies
+        points[:, 3] = np.abs(points[:, 3])
     return points
 
 
@@ -111,7 +118,7 @@ def _sort_cosines(wi: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArra
     return np.minimum(wi[:, 2], wo[:, 2]), np.maximum(wi[:, 2], wo[:, 2])
 
 
-def _compute_shares(
+def _compute_coverage_shares(
     data: Measured, low: FloatArray, high: FloatArray, weight: FloatArray, reached: BoolArray
 ) -> Coverage:
     """Return the `Coverage` of pairs of directions, given whether each was measured.
@@ -120,8 +127,8 @@ def _compute_shares(
     `weight` (n,) are their solid angles, and the mask `reached` (n,) tells which were measured.
     """
     measured = _sort_cosines(*(w[data.samples.valid] for w in (data.samples.wi, data.samples.wo)))
-    # A pair lies within the measured angles if its larger and its smaller angle are both at most
-    # the largest one of their kind that was measured
+    # A pair lies within the measured angles if its larger angle to the normal is at most the
+    # maximum of the samples' larger angles, and likewise its smaller angle
     within = (low >= measured[0].min()) & (high >= measured[1].min())
     shares = (reached, ~reached & within, ~reached & ~within)
     return Coverage(*(float(weight @ share / weight.sum()) for share in shares))

@@ -39,15 +39,16 @@ from brdfkit.regression import losses, regress
 
 NEIGHBOURS = 12  # number of nearest samples that are averaged
 GUIDE_DISTANCE = 0.4  # the guide weighs as much in the mean as a sample at this distance
-# The logarithm of the ratio fades to 1/e at this angle beyond the measured angles
+# The logarithm of the ratio of samples to guide fades to 1/e at this angle beyond the measured ones
 FADING_ANGLE = np.radians(20)
 # The model of the guide; with fewer samples than this, the guide is a constant
 GUIDE, FEWEST_SAMPLES = "ggx", 30
 MAX_ANGLE = 90  # degrees; the guide is fitted to all samples but those at the horizon
-# A bright diffuse term leaves the highlight no energy at the horizon; it may nevertheless reflect
-# this share of the light there
+# Share of the light that the highlight may reflect at the horizon even where a bright diffuse term
+# leaves less
 LEAST_HIGHLIGHT = 0.05
-# Samples with theta_d below the first and theta_h above the second angle show retroreflection
+# Samples with theta_d below the first angle and theta_h above the second show whether the material
+# is retroreflective
 RETRO_THETA_D, RETRO_THETA_H = np.radians(5), np.radians(20)
 
 
@@ -60,7 +61,7 @@ class Interpolant:
         self.floor = 1e-3 * np.median(positive) if positive.size else 1e-12
         self.guide = _fit_guide(samples, anisotropic)
         wi, wo = samples.wi, samples.wo
-        # Largest measured angles: one of the directions nearer to the normal, one of the others
+        # Each sample has a smaller and a larger angle to the normal; find the maximum of both kinds
         self.largest_angles = _sort_angles(wi, wo).max(axis=0)
         ratios = self._take_bounded_logarithm(samples.values) - self._take_bounded_logarithm(
             self.guide(wi, wo)
@@ -106,8 +107,8 @@ class _InverseDistanceMean:
 
         A further value, 0 at the distance `distance_of_zero`, enters the mean.
         """
-        # The weights reach 0 at the distance of one more neighbour, so that the mean is continuous;
-        # where there are too few points, that neighbour is infinitely far away
+        # Find one neighbour more than are averaged. The weights reach 0 at its distance, so that
+        # the mean is continuous. If there are too few points, it is infinitely far away
         distance, index = self.tree.query(points, k=np.arange(1, NEIGHBOURS + 2))
         closeness = 1 / np.maximum(distance, 1e-6)
         weight = (closeness - closeness[:, -1:]) ** 2
@@ -128,7 +129,7 @@ def _choose_coordinate_scales(
     """
     theta_h, theta_d, _ = to_half_difference(wi, wo)
     back = (theta_d < RETRO_THETA_D) & (theta_h > RETRO_THETA_H)
-    # The guide has no retroreflection, so ratios above 2 towards the light reveal it
+    # The guide has no retroreflection, so ratios of samples to guide above 2 reveal it
     retroreflective = back.any() and np.median(ratios[back]) > np.log(2)
     return RETROREFLECTION if retroreflective else HIGHLIGHT
 
@@ -146,8 +147,8 @@ def _fit_guide(samples: Samples, anisotropic: bool) -> Lookup:
     The result is a BRDF function; it is constant where there are few samples.
     """
     if len(samples.wi) < FEWEST_SAMPLES or samples.values.max() <= 0:
-        return functools.partial(_evaluate_constant, np.median(samples.values, axis=0))
-    # The shape parameters come from a fit to the mean of the channels
+        return functools.partial(_evaluate_constant_brdf, np.median(samples.values, axis=0))
+    # Find the guide's shape parameters by a fit to the mean of the channels
     grey = samples.values.mean(axis=1, keepdims=True)
     grey_samples = Samples.from_arrays(samples.wi, samples.wo, grey, None, ("Y",), "grey")
     inside = grey_samples.at(grey_samples.within(MAX_ANGLE))
@@ -155,13 +156,14 @@ def _fit_guide(samples: Samples, anisotropic: bool) -> Lookup:
     fit_guide = functools.partial(regress, model, loss=losses.named["log"], anisotropic=anisotropic)
     solution = fit_guide(inside, starts=1)
     (diffuse, specular), f0 = solution.weights[0], solution.shapes["f0"]
-    too_bright = specular > _compute_light_left(diffuse)
+    too_bright = specular > _compute_share_left_by_diffuse(diffuse)
     if too_bright:
         # The samples do not show how the Fresnel term rises towards grazing angles, and the fit
-        # overestimates it: fit again with an f0 by which no more than all light is reflected there
-        f0 = min(f0 * specular / _compute_light_left(diffuse), 1.0)
+        # overestimates it. Fit again with a fixed reflectance at normal incidence, f0, with which
+        # at most all light is reflected at grazing angles
+        f0 = min(f0 * specular / _compute_share_left_by_diffuse(diffuse), 1.0)
         solution = fit_guide(inside, starts=1, fixed={"f0": f0})
-    # The weights come from a fit to each channel, with the same shape parameters
+    # Find the weights of diffuse term and highlight by a fit to each channel, with these shapes
     diffuse, specular = fit_guide(samples, fixed=solution.shapes).weights.T
     rise = np.inf if too_bright else (1 - f0) * specular
     return _limit_fresnel_rise(model, solution.shapes, diffuse, f0 * specular, rise)
@@ -176,25 +178,26 @@ def _limit_fresnel_rise(
 ) -> Lookup:
     """Return the guide, limited so that no channel reflects more light at the horizon than arrives.
 
-    Schlick's Fresnel term is split into constant + rise (1 - cosθ_d)⁵. `diffuse`, `constant` and
-    `rise` are weights (channels,). An infinite `rise` becomes the share that the others leave.
+    `model` and `shapes` are the guide's model and shape parameters. The highlight's Fresnel term is
+    Schlick's, constant + rise (1 - cosθ_d)⁵. `diffuse`, `constant` and `rise` are weights
+    (channels,). An infinite `rise` becomes the share of the light that the other two leave.
     """
-    constant = np.minimum(constant, _compute_light_left(diffuse))
-    rise = np.minimum(rise, _compute_light_left(diffuse) - constant)
+    constant = np.minimum(constant, _compute_share_left_by_diffuse(diffuse))
+    rise = np.minimum(rise, _compute_share_left_by_diffuse(diffuse) - constant)
     none = np.zeros_like(rise)
     terms = (
         (model(**shapes | {"f0": 1.0}), [diffuse, constant]),
         (model(**shapes | {"f0": 0.0}), [none, rise]),
     )
-    return functools.partial(_evaluate_sum, terms)
+    return functools.partial(_evaluate_model_sum, terms)
 
 
-def _compute_light_left(diffuse: FloatArray) -> FloatArray:
+def _compute_share_left_by_diffuse(diffuse: FloatArray) -> FloatArray:
     """Return the share of the light (channels,) that the diffuse term leaves to the highlight."""
     return np.maximum(1 - diffuse, LEAST_HIGHLIGHT)
 
 
-def _evaluate_sum(
+def _evaluate_model_sum(
     terms: Iterable[tuple[Any, list[FloatArray]]], wi: FloatArray, wo: FloatArray
 ) -> FloatArray:
     """Return the sum (n, channels) of two models' BRDFs for directions (n, 3).
@@ -207,6 +210,6 @@ def _evaluate_sum(
     return first + second
 
 
-def _evaluate_constant(values: FloatArray, wi: FloatArray, wo: FloatArray) -> FloatArray:
+def _evaluate_constant_brdf(values: FloatArray, wi: FloatArray, wo: FloatArray) -> FloatArray:
     """Return a constant BRDF: the same `values` (channels,) for all n pairs, as (n, channels)."""
     return np.broadcast_to(values, (len(wi), len(values)))

@@ -8,7 +8,7 @@ from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.colours import RGB
 from brdfkit.materials.measured.validation import Origin
 
-DIGITS = 4  # rows whose unit vectors agree to this many decimals, 0.006°, belong together
+DIGITS = 4  # number of decimals, or 0.006°, to which unit vectors of the same sample agree
 NANOMETRES = (100, 100_000)  # smallest and largest wavelength that is accepted [nm]
 CHANNEL_NUMBERS = {"r": 0, "red": 0, "g": 1, "green": 1, "b": 2, "blue": 2}
 
@@ -63,13 +63,13 @@ def to_wide_table(
     order = np.argsort(rows)  # keep the order in which the pairs first appear
     cells = np.argsort(order)[row], column
     shape = len(rows), len(channels)
-    wide = _fill_table(values, cells, shape)
+    wide = _fill_table_cells(values, cells, shape)
     if not np.isfinite(wide).all(axis=1).any():
         raise origin.error(
             f"no pair of directions has values in all of its {len(channels)} channels, "
             f"{channels[0]} to {channels[-1]}; leave out those that few pairs have"
         )
-    wide_errors = None if errors is None else _fill_table(errors, cells, shape)
+    wide_errors = None if errors is None else _fill_table_cells(errors, cells, shape)
     return WideTable(rows[order], wide, wide_errors, channels)
 
 
@@ -110,7 +110,7 @@ def _count_earlier_repeats(cell: IntArray) -> IntArray:
     return counts
 
 
-def _fill_table(
+def _fill_table_cells(
     values: FloatArray, cells: tuple[IntArray, IntArray], shape: tuple[int, int]
 ) -> FloatArray:
     """Return an array of this `shape` with `values` (n, 1) at the indices `cells`, else NaN."""

@@ -126,8 +126,8 @@ class Measured(Shown, FromAngles):
     @property
     def rgb(self) -> Measured:
         """The material in linear sRGB, or the same object where it is RGB or achromatic already."""
-        # Only a conversion is cached: an object that caches itself is freed late, being a reference
-        # cycle
+        # Cache a converted object only: one that caches itself is a cycle of references, which
+        # Python frees late
         return self if self.channels == RGB or len(self.channels) == 1 else self._in_rgb
 
     @cached_property

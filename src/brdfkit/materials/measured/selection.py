@@ -40,7 +40,8 @@ def select_samples(
     factors: Any = None
     if weights is not None:
         factors = _check_weights(weights, data)
-        factors = factors / (factors.max(initial=0) or 1)  # lest the square of a large one overflow
+        # Scale the weights to at most 1, because the square of a large one might overflow
+        factors = factors / (factors.max(initial=0) or 1)
     standard_error = data.standard_error if errors else None
     if data.is_table:
         samples = Samples.from_cells(data.table, max_angle, factors, standard_error)
@@ -68,9 +69,9 @@ def _find_sample_extents(
 ) -> FloatArray:
     """Return the extents (n, 2) of the `samples`: how much of all directions each one stands for.
 
-    Fits weight samples by extents in two measures (`model/samples/measures.py`). `samples` are the
-    `rows`, a mask, of `data`. A format with a grid of its own knows their extents; others are
-    estimated, once for each `max_angle`.
+    Fits weight samples by extents in two measures (`model/samples/measures.py`). The mask `rows`
+    selects the `samples` from `data`. A file format with a grid of its own knows their extents;
+    otherwise they are estimated, once for each `max_angle`.
     """
     if max_angle not in data.extents_by_angle:
         lookup: Any = data._lookup

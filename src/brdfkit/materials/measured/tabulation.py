@@ -7,12 +7,13 @@ from brdfkit.core.geometry.directions import from_angles, normalize
 from brdfkit.materials.measured.measured_data import Lookup
 from brdfkit.model.samples import Table
 
-# Default numbers of cells ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)
+# Default numbers of cells of a table ([n_phi_h,] n_theta_h, n_theta_d, n_phi_d)
 ISOTROPIC = (90, 45, 90)
 ANISOTROPIC = (36, 45, 23, 36)
-LEAST_COSINE = 0.03  # cosine to the normal about 2° above the horizon
-# Incidences within this angle of the normal, one and a half cells of theta_d, are averaged over
-# these azimuths
+# Directions with a smaller cosine to the normal are lifted to this one, about 2° above the horizon
+LEAST_COSINE = 0.03
+# Values for light within this angle [rad] of the normal, one and a half cells of theta_d, are
+# averaged over AZIMUTHS
 NEAR_NORMAL = np.radians(3)
 AZIMUTHS = np.arange(16) / 16 * 2 * np.pi
 
@@ -97,7 +98,7 @@ def _average_at_normal(brdf: Lookup) -> Lookup:
         values = brdf(wi, wo)
         theta_i = np.arccos(np.minimum(wi[:, 2], 1))
         near = theta_i < NEAR_NORMAL
-        # The mean over the azimuth of wo, with wi at the normal and the same theta_h
+        # Average over the azimuth of wo, with wi along the normal and the same half angle theta_h
         theta_h = np.arccos(normalize(wi[near] + wo[near])[:, 2])
         normal = np.broadcast_to([0.0, 0.0, 1.0], (len(theta_h), 3))
         mean = np.mean([brdf(normal, from_angles(2 * theta_h, phi)) for phi in AZIMUTHS], axis=0)

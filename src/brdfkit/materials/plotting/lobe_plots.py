@@ -69,7 +69,7 @@ def plot(
     angles = choose_angles(drawn) if theta_i is None else np.atleast_1d(theta_i).astype(float)
     if angles.ndim != 1 or not angles.size or not np.all((angles >= 0) & (angles < 90)):
         raise BrdfkitError(f"plot: theta_i = {theta_i} should be angles from 0 to below 90°.")
-    rows, columns = _count_panels(angles)
+    rows, columns = _choose_panel_grid(angles)
     figure = Plot(figsize=(max(4.2 * columns, 6), 2.75 * rows + 0.35), layout="constrained")
     layout: Any = figure.get_layout_engine()
     layout.set(h_pad=0.08)
@@ -77,7 +77,7 @@ def plot(
     return figure
 
 
-def _count_panels(angles: FloatArray) -> tuple[int, int]:
+def _choose_panel_grid(angles: FloatArray) -> tuple[int, int]:
     """Return how many rows and columns of panels are needed for one panel per angle."""
     rows = math.ceil(len(angles) / MOST_COLUMNS)
     return rows, math.ceil(len(angles) / rows)
@@ -88,7 +88,7 @@ def draw_lobe_panels(figure: Any, things: list[Any], angles: FloatArray) -> None
 
     `things` are the materials, achromatic or RGB, and `angles` the angles of incidence [degrees].
     """
-    rows, columns = _count_panels(angles)
+    rows, columns = _choose_panel_grid(angles)
     styles = _choose_styles(things)
     for place, theta_i in enumerate(angles, 1):
         _draw_panel(figure.add_subplot(rows, columns, place), theta_i, things, styles)
@@ -106,7 +106,7 @@ def _choose_styles(things: list[Any]) -> list[dict[str, Any]]:
     for thing in things:
         style: dict[str, Any] = {"color": BLACK, "linestyle": "-"}
         style = {**(style if thing is black else next(palette)), "linewidth": 1.4}
-        if isinstance(thing, Measured):  # a thick line, over which the models' thin lines show
+        if isinstance(thing, Measured):  # draw a thick line, on which models' thin lines show
             style |= {"linewidth": 2.4, "zorder": 1.9}
         if is_scattered(thing):
             style |= {"linestyle": "", "marker": "o", "markersize": 3}
@@ -145,7 +145,8 @@ def _draw_half_disc(axes: Any, radius: Radius) -> None:
     for theta in range(-90, 91, 30):
         axes.plot(*_polar_to_xy(theta, np.array([0, 1])), **grid)
         text = f"{theta}°".replace("-", "−")
-        va = "bottom" if abs(theta) == 90 else "center"  # keep clear of the numbers of the radius
+        # Raise the labels of ±90°, because those of the radius are just below them
+        va = "bottom" if abs(theta) == 90 else "center"
         axes.text(*_polar_to_xy(theta, 1.1), text, ha="center", va=va, **SMALL_TEXT)
     for tick in radius.ticks():
         axes.plot(*_polar_to_xy(half, radius(tick)), **grid)
@@ -156,6 +157,8 @@ def _draw_half_disc(axes: Any, radius: Radius) -> None:
 
 
 def _polar_to_xy(theta: Any, radius: Any) -> tuple[Any, Any]:
-    """Convert polar coordinates to x, y; `theta` is the angle to the normal [degrees], from which
-    positive angles turn to the right."""
+    """Convert polar coordinates of a plot to x and y.
+
+    `theta` is the angle to the normal [degrees], which points up; positive angles are on the right.
+    """
     return radius * np.sin(np.radians(theta)), radius * np.cos(np.radians(theta))

@@ -12,7 +12,8 @@ from brdfkit.materials.measured import Measured
 from brdfkit.model.samples import Samples, Table
 
 ANGLE_STEP = 0.1  # step of the angle of view along a drawn line [degrees]
-# Scattered samples are drawn if theta_i and the azimuth are within these angles [degrees]
+# Scattered samples are drawn if they lie within NEAR_THETA of the angle of incidence that is drawn,
+# and within NEAR_PHI of the plane of incidence [degrees]
 NEAR_THETA, NEAR_PHI = 3, 5
 DEFAULT_ANGLES = np.array([15.0, 45.0, 75.0])
 

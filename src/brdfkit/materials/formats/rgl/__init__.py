@@ -1,8 +1,8 @@
 """The format of the RGL material database, `.bsdf`, which Mitsuba's plugin `measured` renders.
 
 The BRDFs are stored in the adaptive parameterisation of [Dupuy & Jakob 2018]. The files are at
-https://rgl.epfl.ch/materials. The plugin renders files with the field `rgb` in RGB variants, and
-files with `spectra` in spectral variants.
+https://rgl.epfl.ch/materials. The plugin renders files with the field `rgb` in Mitsuba's RGB
+variants, and files with the field `spectra` in spectral variants.
 
 Negative values are colours out of gamut, and are kept. A point whose luminance is 0 was not
 measured. The field `valid` is not read, because its bits mean the opposite in some of the files.
@@ -34,7 +34,7 @@ LONGEST_DESCRIPTION = 1000  # number of bytes of the field `description` that ar
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a file that begins with `head` is a tensor file, the container of RGL's."""
+    """Return whether a file that begins with `head` is a tensor file, as all RGL files are."""
     return head.startswith(tensor_file.MAGIC)
 
 
@@ -51,7 +51,7 @@ def read(source: Source) -> Measured:
     # Make the BRDF function that the fields define
     parameterisation = Parameterisation(*(checked[f.name] for f in fields(Parameterisation)))
     values = np.moveaxis(checked["spectra" if spectral else "rgb"], 2, -1)
-    density = _to_density(checked["luminance"])
+    density = _convert_luminance_to_density(checked["luminance"])
     brdf = AdaptiveTable(parameterisation, values, density, bool(checked["jacobian"]))
     channels = tuple(map(_name_wavelength, checked["wavelengths"])) if spectral else RGB
     text = bytes(arrays.get("description", b""))[:LONGEST_DESCRIPTION]
@@ -132,7 +132,7 @@ def _describe_material(obj: Any) -> str:
     return f"{what}; written by brdfkit {__version__}"
 
 
-def _to_density(luminance: FloatArray) -> FloatArray:
+def _convert_luminance_to_density(luminance: FloatArray) -> FloatArray:
     """Convert the field `luminance` (a, b, y, x) to a density from which directions can be drawn.
 
     Negative values become 0. At an incidence [a, b] where all are 0, the density is uniform.

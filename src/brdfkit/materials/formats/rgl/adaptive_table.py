@@ -21,17 +21,18 @@ UP = np.array([0.0, 0.0, 1.0])
 LATTICE = np.stack(
     [(np.arange(256) + 0.5) / 256, np.arange(256) * (np.sqrt(5) - 1) / 2 % 1], axis=1
 )
-LEAST_COSINE = 1e-3  # stored points with a smaller cosine to the normal get no BRDF
+LEAST_COSINE = 1e-3  # where a stored direction has a smaller cosine, the BRDF counts as unknown
 
 
 @dataclass(frozen=True, eq=False)
 class AdaptiveTable:
     """A BRDF function that interpolates values tabulated in the adaptive parameterisation.
 
-    `parameterisation`: directions of the table, with a azimuths and b polar angles of incidence;
-    `values`: stored values over the grid of points u, (a, b, y, x, channels); `density`: density
-    over u, up to a factor, from which Mitsuba draws directions, (a, b, y, x); `divided`: whether
-    the values are f cosθ_o divided by `compute_facet_factor`, or else f cosθ_o.
+    `parameterisation`: directions of the table, with a azimuths and b polar angles of incidence,
+    and for each incidence a grid of points u of the unit square, which stand for views; `values`:
+    stored values at these points, (a, b, y, x, channels); `density`: density over u, up to a
+    factor, from which Mitsuba draws directions, (a, b, y, x); `divided`: whether the values are
+    f cosθ_o, where f is the BRDF, divided by `compute_facet_factor`, or else f cosθ_o itself.
     """
 
     parameterisation: Parameterisation
@@ -61,18 +62,19 @@ class AdaptiveTable:
 
         Importance sampling with 256 directions estimates it; the renderer needs it.
         """
-        # Draw directions by the density over u
+        # Draw points u by their density, and find the directions that they stand for
         a, b, n, _ = self.density.shape
         warp = Warp(self.density.reshape(-1, n, n))
         u = np.stack([warp.sample(at, LATTICE) for at in range(a * b)])
         wi, wo, m, factor = self.parameterisation.reflect_light(u)
-        # Evaluate f cosθ_o for them
+        # Evaluate f cosθ_o, where f is the BRDF, for these directions
         u, slices = u.reshape(-1, 2), [(np.arange(a * b).repeat(len(LATTICE)), 1.0)]
         f_cos = interpolate(self.values.reshape(-1, n, n, self.values.shape[-1]), u, slices)
         if self.divided:
             f_cos *= factor[:, None]
-        # Divide by their density: that of both warps, converted from the square to solid angle dω_o
-        pdf = warp.pdf(u, slices) * self.parameterisation.normals.pdf(m, slices)
+        # Divide by the density of the directions per solid angle dω_o: the product of the densities
+        # of both warps, converted from an area of the square of directions
+        pdf = warp.pdf(u, slices) * self.parameterisation.warp_to_normals.pdf(m, slices)
         area = solid_angle_per_area(m) * 2 * np.linalg.norm(wi + wo, axis=1)
         lit = (wo[:, 2] > 0) & (pdf > 0)
         weight = np.divide(area, pdf, out=np.zeros_like(pdf), where=lit)
@@ -100,19 +102,22 @@ class AdaptiveTable:
         the normal below `max_angle` [degrees] count, and only points where the mask `usable` (n,)
         is True, in the order of `compute_stored_samples`.
 
-        Each cell of the grid over u is split among its usable corners. At its middle m, dω_h = dm
-        and dω_d = dω_i, so that dθ_h dθ_d dφ_d = dθ_m dφ_m · sinθ_i dθ_i / sinθ_d.
+        Each cell of the grid of stored points is split among its usable corners. The normal m at
+        its middle is the half vector, so that dω_h = dm and dω_d = dω_i. In angles this is
+        dθ_h dθ_d dφ_d = dθ_m dφ_m · sinθ_i dθ_i / sinθ_d.
         """
         grid, n = self.parameterisation, self.values.shape[2]
         a, b = grid.vndf.shape[:2]
         middles = (make_even_grid(n - 1) * (n - 2) + 0.5) / (n - 1)
         wi, wo, m, _ = grid.reflect_light(np.broadcast_to(middles, (a * b, *middles.shape)))
         slices = [(np.arange(a * b).repeat(len(middles)), 1.0)]
-        pdf = grid.normals.pdf(m, slices) * (n - 1) ** 2
-        # The cells' areas dθ_m dφ_m = 2π² x dx dy on the square of directions
+        pdf = grid.warp_to_normals.pdf(m, slices) * (n - 1) ** 2
+        # Compute the areas dθ_m dφ_m of the cells, which are 2π² x dx dy for the normals' points
+        # (x, y) on the square of directions
         area = np.divide(2 * np.pi**2 * m[:, 0], pdf, out=np.zeros_like(pdf), where=pdf > 0)
         area[wo[:, 2] <= np.cos(np.radians(max_angle))] = 0
-        # Each incidence stands for a band of θ_i, and for a share of the azimuths
+        # Multiply by the band of polar angles θ_i, and the share of azimuths, that each incidence
+        # stands for
         edges = np.concatenate([[0.0], (grid.theta_i[1:] + grid.theta_i[:-1]) / 2])
         edges = np.append(edges, 2 * grid.theta_i[-1] - edges[-1]).clip(0, np.radians(max_angle))
         shares = np.ones(a) if a < 3 else np.pad(np.ones(a - 2), 1, constant_values=0.5)
@@ -120,7 +125,8 @@ class AdaptiveTable:
         area *= bands.repeat(len(middles))
         cos_d = np.linalg.norm(wi + wo, axis=1) / 2
         sin_d = np.sqrt(np.maximum(1 - cos_d**2, 0))
-        # Avoid a division by 0 at the retro-reflection, sinθ_d = 0: bound sinθ_d by the cell's size
+        # Give sinθ_d, by which areas are divided, a lower bound of the cell's size: at the
+        # retro-reflection it is 0
         least = np.tile(np.diff(edges), a).repeat(len(middles)) / 4
         theta_m, _ = map_from_square(m)
         cells = np.stack([area / np.maximum(sin_d, least), area * np.sin(theta_m) * cos_d], axis=1)
@@ -137,7 +143,8 @@ class AdaptiveTable:
     def compute_stored_samples(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return the directions wi, wo (n, 3) of the stored points, and the BRDF [sr⁻¹] there.
 
-        The BRDF (n, channels) is NaN below the surface, at the horizon, and where D is 0.
+        The BRDF (n, channels) is NaN below the surface, at the horizon, and where the distribution
+        of normals is 0.
         """
         wi, wo, _, factor = self.parameterisation.reflect_light_on_grid(self.values.shape[2])
         known = (np.minimum(wi, wo)[..., 2] > LEAST_COSINE) & (factor > 0)

@@ -21,15 +21,19 @@ from brdfkit.materials.formats.rgl.parameterisation import (
 from brdfkit.materials.formats.rgl.warp import interpolate, make_even_grid
 from brdfkit.materials.measured.measured_data import Lookup
 
-GRAZING = np.radians(89.5)  # largest incidence of a table: at 90° no surface is visible
-# This share of the distribution of normals is uniform, so that no stored value is divided by 0
-# where the BRDF has no retro-reflection
+# Largest angle of incidence in a table [rad]: at 90° the surface is seen edge-on
+GRAZING = np.radians(89.5)
+# Share of a uniform distribution in the distribution of normals, so that stored values are not
+# divided by 0 where the BRDF has no retro-reflection
 EVEN_SHARE = 0.01
-INNERMOST = 0.003  # solid angle per area of the square of directions [sr] at 0.2° from the normal
-# Added to wi·m in the density of the nodes: otherwise few nodes lie near wi·m = 0, where a BRDF is
-# steepest
+# Added to the solid angle per area of the square of directions [sr], a divisor that is 0 at the
+# normal; it has this value at 0.2° from the normal
+INNERMOST = 0.003
+# Added to the cosine between light and facet's normal, to which the density of a table's nodes is
+# proportional: otherwise few nodes would lie near the cosine 0, where a BRDF is steepest
 GRAZING_DENSITY = 0.2
-# The density of nodes that reflect light below the surface falls to a minimum at this -cosθ_o
+# Nodes that reflect light below the surface are the rarer, the deeper the reflected direction. They
+# are rarest where its cosine to the normal is minus this number, or less
 LARGEST_DEPTH = 0.2
 
 
@@ -49,7 +53,8 @@ class Resolution:
     grid: int
 
 
-# These make files of 16 and 45 MB. With fewer nodes, the noise of a measured table would be lost
+# Resolutions of written files, which then have 16 and 45 MB. With fewer nodes, the noise of a
+# measured table would be lost
 ISOTROPIC = Resolution(phi_i=0, theta_i=64, phi_m=1, theta_m=256, grid=112)
 ANISOTROPIC = Resolution(phi_i=12, theta_i=20, phi_m=64, theta_m=128, grid=48)
 
@@ -64,14 +69,15 @@ def encode_brdf(f: Lookup) -> AdaptiveTable:
     grid = build_parameterisation(f, quarters, ANISOTROPIC if quarters else ISOTROPIC)
     n = grid.vndf.shape[-1]
     wi, wo, m, factor = grid.reflect_light_on_grid(n)
-    # Compute the stored values M there
+    # Compute the values M that the file stores for these directions
     above = wo[..., 2] > 0
     f_cos = _evaluate_finite(f, wi[above], wo[above]) * wo[above][:, 2:]
     M = np.zeros((*above.shape, f_cos.shape[1]))
     M[above] = f_cos / factor[above][:, None]
 
-    # Directions are drawn by a density over the grid's points u, which are then warped to normals.
-    # The warp's own density is D wi·m times two factors, by which the density over u is divided
+    # Compute the density over points u by which Mitsuba draws directions. The normals m should be
+    # drawn with the density M D wi·m. The warp from u to m already draws them with D wi·m times
+    # two factors, so the density over u is M divided by these factors
     m = m.reshape(-1, 2)
     D = interpolate(grid.ndf[None], m)
     cosines = np.linalg.norm(wi + wo, axis=-1) / 2
@@ -86,15 +92,15 @@ def encode_brdf(f: Lookup) -> AdaptiveTable:
 def build_parameterisation(f: Lookup, quarters: int, size: Resolution) -> Parameterisation:
     """Choose the directions at which the BRDF f is tabulated, as a `Parameterisation`.
 
-    f repeats after this number of `quarters` of the circle, as `detect_symmetry` finds. `size` is
-    the number of directions.
+    f repeats after this number of `quarters` of the circle, as `detect_symmetry` finds. `size` has
+    the numbers of directions.
     """
-    # Place the incidences
+    # Choose the directions of incidence
     phi_i = np.linspace(0, quarters * np.pi / 2, quarters * size.phi_i + 1)
     if quarters:
         phi_i -= np.pi
     theta_i = GRAZING * (1 - np.linspace(1, 0, size.theta_i) ** 1.5)  # dense near grazing angles
-    # Place the normals by their distribution D, to which a density is added
+    # Choose the density of facets' normals: their distribution D plus a nearly uniform density
     ndf, sigma = _compute_microfacets(f, size)
     m = make_even_grid(size.grid)
     density = (interpolate(ndf[None], m) + _compute_even_density(m)) * solid_angle_per_area(m)
@@ -102,7 +108,7 @@ def build_parameterisation(f: Lookup, quarters: int, size: Resolution) -> Parame
     # that reflect light below the surface
     wi, normals = from_angles(theta_i, phi_i[:, None]), from_angles(*map_from_square(m))
     cosines = wi @ normals.T
-    height = 2 * cosines * normals[:, 2] - wi[..., 2:]  # the cosine of wo to the normal
+    height = 2 * cosines * normals[:, 2] - wi[..., 2:]  # cosine of the reflected direction wo
     visible = np.where(cosines > 0, cosines + GRAZING_DENSITY, 0)
     visible *= np.clip(1 + height / LARGEST_DEPTH, 0.02, 1)
     vndf = (visible * density).reshape(*cosines.shape[:2], size.grid, size.grid)
@@ -126,7 +132,8 @@ def detect_symmetry(f: Lookup) -> int:
 
     def is_symmetric(matrix: FloatArray) -> bool:
         turned = _evaluate_finite(f, wi @ matrix, wo @ matrix)
-        # 90 % suffice: of scattered samples at equal distances, rounding decides which is nearest
+        # 90 % of equal values suffice: where f interpolates scattered samples, rounding decides
+        # which one of two samples at equal distances is the nearest
         return bool(np.isclose(turned, values, rtol=1e-4).all(axis=1).mean() > 0.9)
 
     if is_symmetric(np.array([[0.8, 0.6, 0], [-0.6, 0.8, 0], [0, 0, 1]])):
@@ -137,7 +144,10 @@ def detect_symmetry(f: Lookup) -> int:
 
 
 def _compute_microfacets(f: Lookup, size: Resolution) -> list[FloatArray]:
-    """Compute the distribution of normals and their projected area, (y, x) each, from f(w, w)."""
+    """Compute the distribution of facets' normals, and the facets' projected area, (y, x) each.
+
+    They follow from the retro-reflection f(w, w) of the BRDF f.
+    """
     theta = np.linspace(0, 1, size.theta_m) ** 2 * np.pi / 2
     hemisphere = Hemisphere(theta, size.phi_m)
     w = Hemisphere(np.minimum(theta, GRAZING), size.phi_m).directions.reshape(-1, 3)

@@ -22,7 +22,7 @@ LAYOUT = {
 }
 COLOURS = {"rgb": "abcNN"}
 SPECTRA = {"wavelengths": "c", "spectra": "abcNN"}
-RIGHT_ANGLE = np.pi / 2 + 1e-3  # rad; a little more than 90°, which files round
+RIGHT_ANGLE = np.pi / 2 + 1e-3  # rad; a little more than 90°, because files round angles
 # Conditions on the values of a field, in words for errors and as a function
 RULES: dict[str, tuple[str, Callable[[FloatArray], Any]]] = {
     "phi_i": (
@@ -84,7 +84,7 @@ def _check_field(
             f"field {name!r} is {format_shape(array.shape)}, where {format_shape(belong)} "
             f"belong; {REMEDY}"
         )
-    finite = np.isfinite(array)  # tested first, because NumPy warns on converting signalling NaN
+    finite = np.isfinite(array)  # tested before the conversion, which warns of signalling NaN
     if not finite.all():
         raise source.error(
             f"field {name!r} has {(~finite).sum():,} values that are not finite; {REMEDY}"

@@ -57,13 +57,13 @@ class Hemisphere:
 
         It is the facets' area projected along w; D (n_phi, n_theta) is the distribution of normals.
         """
-        # The integral over the azimuth is a convolution, a product of Fourier coefficients
+        # The integral over the azimuth is a convolution, so multiply the Fourier coefficients
         coefficients = np.fft.rfft(D * self.solid_angles, axis=0)
-        projected = np.einsum("ijk,kj->ki", self._kernel, coefficients)
+        projected = np.einsum("ijk,kj->ki", self._projection_kernel, coefficients)
         return np.fft.irfft(projected, self.n_phi, axis=0)
 
     @cached_property
-    def _kernel(self) -> FloatArray:
+    def _projection_kernel(self) -> FloatArray:
         """The Fourier coefficients (n_theta, n_theta', k) of max(0, w·m), for `projected_area`.
 
         For polar angles θ of w, θ' of m and an azimuth Δφ between them, w·m = a + b cosΔφ with

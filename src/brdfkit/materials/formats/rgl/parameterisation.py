@@ -60,7 +60,7 @@ class Parameterisation:
         return 1 if self.isotropic else round(2 * np.pi / (self.phi_i[-1] - self.phi_i[0]))
 
     @cached_property
-    def normals(self) -> Warp:
+    def warp_to_normals(self) -> Warp:
         """The warp of points u of the unit square to the visible normals m, for each incidence."""
         return Warp(self.vndf.reshape(-1, *self.vndf.shape[2:]))
 
@@ -90,12 +90,16 @@ class Parameterisation:
         m = map_to_square(theta_m, phi_m - phi_i if self.isotropic else phi_m)
         m[:, 1] %= 1
         slices = find_slices((self.phi_i, self.theta_i), (phi_i, theta_i))
-        return self.normals.invert(m, slices), slices, self.compute_facet_factor(theta_i, phi_i, m)
+        return (
+            self.warp_to_normals.invert(m, slices),
+            slices,
+            self.compute_facet_factor(theta_i, phi_i, m),
+        )
 
     def reflect_light_on_grid(self, n: int) -> list[FloatArray]:
         """Return the results of `reflect_light` for all incidences, at a grid of n × n points u.
 
-        The arrays have the shape (a, b, n, n, ...).
+        The arrays have the shape (a, b, n, n, ...), for a azimuths and b polar angles of incidence.
         """
         a, b = self.vndf.shape[:2]
         arrays = self.reflect_light(np.broadcast_to(make_even_grid(n), (a * b, n * n, 2)))
@@ -104,13 +108,13 @@ class Parameterisation:
     def reflect_light(self, u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Reflect the light of each incidence about the normals to which points `u` are warped.
 
-        `u` (a b, k, 2) has k points for each incidence; n is a b k. The results are wi and wo
+        `u` (incidences, k, 2) has k points for each incidence, n in all. The results are wi and wo
         (n, 3), the normals' points on the square of directions (n, 2), and the factors of
         `compute_facet_factor` (n,). wo may lie below the surface.
         """
         incidences = np.meshgrid(self.phi_i, self.theta_i, indexing="ij")
         phi_i, theta_i = (angle.ravel().repeat(u.shape[1]) for angle in incidences)
-        m = np.concatenate([self.normals.sample(at, points) for at, points in enumerate(u)])
+        m = np.concatenate([self.warp_to_normals.sample(at, points) for at, points in enumerate(u)])
 
         theta_m, phi_m = map_from_square(m)
         normal = from_angles(theta_m, phi_m + phi_i if self.isotropic else phi_m)

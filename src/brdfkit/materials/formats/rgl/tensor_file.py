@@ -20,7 +20,7 @@ MAGIC = b"tensor_file\0"
 VERSION = 1, 0
 ALIGNMENT = 8
 MOST_DIMENSIONS = 8
-# The types of arrays in the order of their numbers in a file, which begin with 1
+# The types that an array may have: a file states them by their place in this list, counted from 1
 TYPES = [np.dtype(f"<{kind}{size}") for size in (1, 2, 4, 8) for kind in "ui"]
 TYPES += [np.dtype(f"<f{size}") for size in (2, 4, 8)]
 REMEDY = "fetch the file again"

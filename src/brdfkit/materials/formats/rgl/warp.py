@@ -20,8 +20,8 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.multilinear import find_bracket, list_corners, to_flat_index
 
-# The slices of a table to interpolate between, with their weights: pairs of arrays (n,) for n
-# points, or of single numbers for all points
+# Pairs: the number of a table's slice, and its weight in the interpolation between slices. Both are
+# arrays (n,) for n points, or single numbers for all points
 Slices = Sequence[tuple[Any, Any]]
 
 
@@ -85,8 +85,8 @@ class Warp:
 
         All are scaled so that the last one ends with 1, if cells of the grid have unit area.
         """
-        along = _cumulate(self.density)
-        rows = _cumulate(along[..., -1])
+        along = _integrate_up_to_nodes(self.density)
+        rows = _integrate_up_to_nodes(along[..., -1])
         total = rows[:, -1]
         return (
             self.density / total[:, None, None],
@@ -97,11 +97,11 @@ class Warp:
     def sample(self, at: int, u: FloatArray) -> FloatArray:
         """Map uniform points (x, y), `u` (n, 2), to points with the density of the slice `at`."""
         density, along, rows = (table[at] for table in self._cumulative_tables)
-        # Find y by the marginal distribution
+        # Find y by inverting the marginal distribution of y
         y = np.clip(np.searchsorted(rows, u[:, 1]) - 1, 0, len(rows) - 2)
         ty = _invert_line_integral(u[:, 1] - rows[y], along[y, -1], along[y + 1, -1])
 
-        # Find x by the distribution along the row at this y
+        # Find x by inverting the distribution along the row at this y
         row = _lerp(along[y], along[y + 1], ty[:, None])
         share = u[:, 0] * row[:, -1]
         x = np.clip((row < share[:, None]).sum(axis=1) - 1, 0, row.shape[1] - 2)
@@ -133,7 +133,7 @@ class Warp:
             """Interpolate between the slices of a table, at one `index` within each slice."""
             return sum(weight * table[(slice_, *index)] for slice_, weight in slices)
 
-        # Integrate along the row at y, up to x
+        # Integrate the density along the row at y, from 0 to x
         left = _lerp(mix_slices(density, y, x), mix_slices(density, y + 1, x), ty)
         right = _lerp(mix_slices(density, y, x + 1), mix_slices(density, y + 1, x + 1), ty)
         before = _lerp(mix_slices(along, y, x), mix_slices(along, y + 1, x), ty)
@@ -141,7 +141,7 @@ class Warp:
         row = _lerp(lower, upper, ty)
         share = before + _integrate_line(left, right, tx)
         x = np.divide(share, row, out=np.zeros_like(share), where=row > 0)
-        # Integrate the marginal distribution up to y
+        # Integrate the marginal distribution of y, from 0 to y
         return np.stack([x, mix_slices(rows, y) + _integrate_line(lower, upper, ty)], axis=1)
 
 
@@ -154,7 +154,7 @@ def _find_grid_bracket(u: FloatArray, n: int) -> Any:
     return find_bracket(u * (n - 1), n)
 
 
-def _cumulate(values: FloatArray) -> FloatArray:
+def _integrate_up_to_nodes(values: FloatArray) -> FloatArray:
     """Integrate `values`, linearly interpolated, along the last axis, up to each node."""
     steps = (values[..., 1:] + values[..., :-1]) / 2
     return np.concatenate([np.zeros_like(values[..., :1]), np.cumsum(steps, axis=-1)], axis=-1)
