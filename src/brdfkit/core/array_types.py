@@ -15,12 +15,12 @@ IntArray: TypeAlias = NDArray[np.integer[Any]]
 BoolArray: TypeAlias = NDArray[np.bool_]
 AnyArray: TypeAlias = NDArray[Any]
 
-# Arrays of Dr.Jit, of the type in Mitsuba's variant or of `core/jit`, or plain Python numbers
+# Arrays of Dr.Jit, in double precision or in that of Mitsuba's variant; or plain Python numbers
 JitFloat: TypeAlias = Any
 JitInt: TypeAlias = Any
 JitMask: TypeAlias = Any
 JitVector: TypeAlias = Any  # a vector of two or three components, each a JitFloat
-JitColour: TypeAlias = Any  # a colour in the channels of Mitsuba's variant
+JitColour: TypeAlias = Any  # a component for each colour channel of Mitsuba's variant
 
-MitsubaModule: TypeAlias = Any  # the module `mitsuba`, for which a variant is chosen
+MitsubaModule: TypeAlias = Any  # the module `mitsuba`, after the choice of a variant
 MitsubaObject: TypeAlias = Any  # an object of Mitsuba: a scene, a BSDF, an emitter ...

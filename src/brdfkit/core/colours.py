@@ -76,7 +76,7 @@ def compute_rgb_weights(wavelengths: ArrayLike, name: str) -> FloatArray:
         colour.SDS_ILLUMINANTS[ILLUMINANT].wavelengths,
         colour.SDS_ILLUMINANTS[ILLUMINANT].values,
     )
-    # One hat function per wavelength, 1 there and 0 at the others, as reflectance is linear between
+    # A hat function for each wavelength, 1 there, 0 at the others, and linear between them
     order = np.argsort(wavelengths)
     hats = np.stack(
         [np.interp(observer.wavelengths, wavelengths[order], row) for row in np.eye(len(order))]

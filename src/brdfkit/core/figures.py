@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 
 from brdfkit.core.array_types import AnyArray
 
-# The grey, from 0 to 1, that replaces black: its contrast is 4 to white, 4.5 to dark notebooks
+# The grey, from 0 to 1, that replaces black: its contrast ratio is 4 to white and 4.5 to the
+# background of dark notebooks
 INK_LEVEL = 0.49
 OPACITY_GAIN = 1.6  # a grey g, 0 to 1, gets the opacity 1.6 (1 - g): light greys fade
 GREY_TOLERANCE = 0.02  # a colour whose channels differ by less counts as grey

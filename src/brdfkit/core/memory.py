@@ -4,9 +4,9 @@ import psutil
 
 from brdfkit.core.errors import BrdfkitError
 
-# The most memory that a rendering takes [bytes per pixel], measured at 2 to 9 million pixels: of
-# one picture BYTES_OF_ONE; of n pictures, most of it for their colour differences,
-# BYTES_OF_SEVERAL + n BYTES_OF_EACH
+# The most memory that a rendering takes [bytes per pixel], measured at 2 to 9 million pixels:
+# BYTES_OF_ONE for one picture, and BYTES_OF_SEVERAL + n BYTES_OF_EACH for n pictures, most of it to
+# compare their colours
 BYTES_OF_ONE = 220
 BYTES_OF_SEVERAL, BYTES_OF_EACH = 330, 75
 

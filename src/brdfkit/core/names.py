@@ -3,7 +3,8 @@
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}  # of ASCII and of ISO 6429
+# The control characters of ASCII and ISO 6429
+CONTROL = {chr(c) for c in (*range(32), *range(127, 160))}
 RESERVED = '/\\:*?"<>|'  # characters that some systems refuse in file names
 LONGEST_STEM = 100  # bytes of a stem; file systems allow 255 with the suffix
 

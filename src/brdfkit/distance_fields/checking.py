@@ -13,7 +13,7 @@ from brdfkit.distance_fields.boxes import Box, format_point, join_boxes
 from brdfkit.distance_fields.functions import evaluate
 
 ROUNDING_ERROR = 1e-9  # the rounding error of the difference of two values of a field
-BALL_SHARE = 0.999  # the longest step, as a share of the radius of the empty ball
+BALL_SHARE = 0.999  # the longest step of a walk, as a share of the radius without surfaces
 
 
 def check(

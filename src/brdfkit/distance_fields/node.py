@@ -31,7 +31,7 @@ class Node(Operators, Conversions):
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        if "distance" in vars(cls):  # a class without this method is the base of several kinds
+        if "distance" in vars(cls):  # else it is only a base class of several kinds
             kinds.register_node_class(cls)
 
     def __post_init__(self) -> None:

@@ -48,7 +48,7 @@ KINDS = {
     "volumes": ("Volume", "register_texture"),  # Mitsuba 3.9 has no register_volume
 }
 MODELS = "bsdfs"  # the kind of every BRDF model
-OWN, USERS = "brdfkit.plugins", "brdfkit.user_plugins"  # the packages of plugins
+OWN, USERS = "brdfkit.plugins", "brdfkit.user_plugins"  # packages of our and users' plugins
 PACKAGES_OF_MODELS = f"{OWN}.{MODELS}", USERS
 
 _users: dict[str, tuple[str, Path | type]] = {}

@@ -6,7 +6,7 @@ from brdfkit.core.names import to_printable
 
 INDENT, GAP = "  ", "  "
 BAD_MARK = "! "
-LONGEST_NAME = 32  # characters; a longer name gets a line of its own
+LONGEST_NAME = 32  # characters; a row with a longer name takes two lines
 
 
 def to_text(document: Document) -> str:

@@ -43,7 +43,7 @@ def to_half_difference(wi: ArrayLike, wo: ArrayLike) -> tuple[FloatArray, FloatA
     wi, wo = np.asarray(wi, float), np.asarray(wo, float)
     h = normalize(wi + wo)
     theta_h, phi_h = to_angles(h)
-    # Turn wi with the half vector until that is the normal: by -phi_h about z, -theta_h about y
+    # Turn wi as the half vector is turned to the normal: by -phi_h about z, then -theta_h about y
     d = _rotate_y(rotate_z(wi, -phi_h), -theta_h)
     theta_d, phi_d = to_angles(d)
     return theta_h, theta_d, np.mod(phi_d, 2 * np.pi)

@@ -91,5 +91,5 @@ def make_cosine_directions(n: int) -> FloatArray:
     The mean of π f over them is the albedo of a BRDF f.
     """
     square = (np.arange(n) + 0.5) / n
-    golden = (np.sqrt(5) - 1) / 2  # turns from point to point, which fill the circle evenly
+    golden = (np.sqrt(5) - 1) / 2  # turns from one point to the next, to fill the circle evenly
     return from_angles(np.arcsin(np.sqrt(square)), 2 * np.pi * golden * np.arange(n))

@@ -25,7 +25,7 @@ VARIABLE = "DRJIT_LIBLLVM_PATH"
 OLDEST = 17
 SYSTEM_FOLDERS = ("/usr/lib/*-linux-gnu*", "/usr/lib64", "/usr/lib", "/usr/local/lib")
 VARIANTS = ("cuda_ad_rgb", "llvm_ad_rgb", "scalar_rgb")
-# No library has this path, by which Dr.Jit's LLVM backend is turned off
+# A path at which there is no library, so that Dr.Jit turns its LLVM backend off
 NO_LIBRARY = "no-LLVM-17-or-newer-found"
 
 
@@ -83,7 +83,7 @@ def read_llvm_version(path: str | Path) -> int:
 def describe_llvm_remedy() -> str:
     """Return what to do where Dr.Jit has no usable LLVM, as the end of a sentence.
 
-    If the machine has a usable LLVM, it was not chosen or not installed when Dr.Jit was imported.
+    If the machine has a usable LLVM after all, Dr.Jit was imported too early to take it.
     """
     if find_llvm_library():
         return "start Python anew and import brdfkit before mitsuba and drjit"

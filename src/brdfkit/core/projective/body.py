@@ -56,7 +56,7 @@ class Body:
         """Return the intersection of two bodies; raise `Empty` where it has no volume."""
         from scipy.spatial import HalfspaceIntersection
 
-        # The planes are moved and scaled to a body of size 1, which suits the solvers' tolerances
+        # The planes are scaled to those of a body of size 1, which suits the solvers' tolerances
         middle, size = self.corners.mean(axis=0), np.ptp(self.corners, axis=0).max()
         planes = np.vstack([self.planes, other.planes])
         planes[:, 3] = (planes[:, :3] @ middle + planes[:, 3]) / size
@@ -73,7 +73,7 @@ class Body:
         """
         to_light = light[:3] - light[3] * self.corners
         share = 2 * length / max(np.linalg.norm(to_light, axis=1).min(), 1e-30)
-        # It ends at the light, or before a distant one: convex hulls of long needles are inexact
+        # The body ends at the light or before it, as convex hulls of long needles are inexact
         share = share if light[3] == 0 else min(share, 1)
         return Body.from_points(np.vstack([self.corners, self.corners + share * to_light]))
 

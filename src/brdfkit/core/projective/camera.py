@@ -123,7 +123,7 @@ class Camera:
         view = self.view.copy()
         view[2, 3] -= max(0, self.near - self.compute_depths(points).min())
         x, y, z, _ = transform(view, *np.asarray(points, float).T)
-        far = max(-z.min(), -1.001 * z.max())  # not in the near plane, even if all points are
+        far = max(-z.min(), -1.001 * z.max())  # beyond the near plane, even if all points lie in it
         return Camera(view, np.abs(x / z).max(), np.abs(y / z).max(), -z.max(), far)
 
     def fit_near_and_far(self, points: ArrayLike) -> Camera:

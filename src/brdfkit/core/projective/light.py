@@ -12,7 +12,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.projective.body import Body
 from brdfkit.core.projective.homogeneous import make_axes, normalise
 
-NEAREST = 1e-3  # the distance at which a spot's bounding pyramid begins, over that of its end
+NEAREST = 1e-3  # where a spot's bounding pyramid begins, as a share of its reach
 WIDEST_CUTOFF = math.radians(80)  # half the angle of a spot; no pyramid bounds a wider one
 
 

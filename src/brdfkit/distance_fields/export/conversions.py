@@ -37,7 +37,7 @@ class Conversions:
             raise BrdfkitError(f"name = {name!r} should be a word of letters and digits, for GLSL.")
         program = Program()
         p = Point(*(Symbol(program, f"p.{axis}") for axis in "xyz"))
-        result = self.distance(p)  # type: ignore[attr-defined]  # `Node` defines it
+        result = self.distance(p)  # type: ignore[attr-defined]  # its subclass `Node` has it
         textures = [
             TEXTURE.format(number=n, shape="×".join(map(str, grid.counts)))
             for n, grid in enumerate(program.grids)

@@ -114,7 +114,7 @@ def _node_to_data(value: Any) -> Any:
         return {"kind": value.kind} | own
     if isinstance(value, tuple):
         return [_node_to_data(v) for v in value]
-    if value is None:  # the parameter `copies` of an infinite repetition
+    if value is None:  # so the parameter `copies` says that a repetition is infinite
         return None
     if dr.is_tensor_v(value) or isinstance(value, np.ndarray):
         return np.asarray(dr.detach(value), float).tolist()

@@ -159,7 +159,7 @@ class DirectLight:
                 there.wavelengths, there.wi = si.wavelengths, -si.to_world(drawn.wo)
                 ds = dr.zeros(mi.DirectionSample3f, dr.width(si.p))
                 ds.d = -there.wi
-                ds.dist = dr.inf  # type: ignore[assignment]  # Mitsuba converts it
+                ds.dist = dr.inf  # type: ignore[assignment]  # Mitsuba takes a number, too
                 mirror = mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Delta)
                 other = dr.select(mirror, 0, sky.pdf_direction(si, ds, active))
                 visible = (drawn.pdf > 0) & self._is_unoccluded(seen, ds)

@@ -73,7 +73,8 @@ def find_near_miss(
     radius, tangent = compute_ray_cone(ray)
 
     def compute_cone_radius(t: JitFloat) -> JitFloat:
-        return radius + 1.25 * precision + t * tangent  # at which `find_visible_point` stops
+        # The radius at which the cones of `find_visible_point` stop
+        return radius + 1.25 * precision + t * tangent
 
     def compute_gap(t: JitFloat) -> JitFloat:
         return field.distance(ray(t)) / field.lipschitz - compute_cone_radius(t)

@@ -21,7 +21,8 @@ import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitVector
 
-LARGEST_SINE = 0.999  # the limit of sin α: balls that lie within each other have no cone
+# The limit of the sine of a cone's half angle, as balls that lie within each other have no cone
+LARGEST_SINE = 0.999
 POINT_RADIUS = 1e-6  # the least radius of a section, as a share of the cone's length
 # The radius, as a share of the widest one, at which the cone counts as ended in a tip
 TIP_RADIUS = 1e-3
@@ -68,7 +69,7 @@ class LightCone:
         return self.point(t) + (a * x + b * y) * self.radius(t)
 
     def project_to_disc(self, point: JitVector) -> tuple[JitFloat, JitFloat]:
-        """Return the coordinates (x, y) on the unit disc of a `point`, projected from the apex."""
+        """Return the coordinates (x, y) on the unit disc of a `point` seen from the cone's apex."""
         a, b = self.basis
         offset = point - self.start
         radius = self.radius(dr.dot(offset, self.axis))

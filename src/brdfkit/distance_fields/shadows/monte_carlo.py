@@ -75,5 +75,6 @@ def halton_points_in_disc(n: int) -> tuple[FloatArray, FloatArray]:
     """Return x (n,) and y (n,) of the first Halton points, uniform over the unit disc."""
     from scipy.stats.qmc import Halton
 
-    u, phi = Halton(2, scramble=False).random(n + 1)[1:].T  # the first, (0, 0), is left out
+    # The first of Halton's points is left out, as it is the corner (0, 0)
+    u, phi = Halton(2, scramble=False).random(n + 1)[1:].T
     return np.sqrt(u) * np.cos(2 * np.pi * phi), np.sqrt(u) * np.sin(2 * np.pi * phi)

@@ -26,9 +26,10 @@ from brdfkit.distance_fields.shadows.tau import lit_disc_share
 DIRECTIONS = "A", "B"  # A marches from the surface to the light, B from the light to the surface
 GOLDEN_RATIO = (5**0.5 - 1) / 2
 # The golden-section search for the exact minimum near the smallest ratio that a march found: its
-# reach to each side, in units of ε ρ (about two steps of the march), and its number of iterations
+# reach to each side, in units of `epsilon` times the cone's radius, and its number of iterations.
+# The reach is about two steps of the march.
 SEARCH_WIDTH, SEARCH_STEPS = 4.0, 20
-SIDE_STEP = 1e-3  # from a minimum to the points on both sides, in radii of the cone
+SIDE_STEP = 1e-3  # the distance from a minimum to the points beside it, in radii of the cone
 
 
 @dataclass(frozen=True)
@@ -96,8 +97,8 @@ def trace_shadow(
     visible = dr.select(dr.isnan(r), r, lit_disc_share(r))
     minimum = attach_ratio_derivatives(r, field, cone, t, epsilon)
     if dr.grad_enabled(minimum):
-        # Derivatives are those at the minimum; the march's own ratio is up to ε above, where the
-        # slope of `lit_disc_share` is another
+        # The derivatives are taken at the exact minimum: the march's own ratio r is a little above
+        # it, where the slope of `lit_disc_share` is another
         attach: Any = dr.replace_grad  # Dr.Jit's own annotation says that it returns None
         visible, r = attach(visible, lit_disc_share(minimum)), attach(r, minimum)
     return Shadow(visible, r, t, walk.evaluations)

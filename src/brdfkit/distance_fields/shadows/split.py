@@ -28,7 +28,7 @@ FURTHEST_EDGE = 1e3  # the largest distance of an edge from its disc's centre, i
 def compute_split_shadow(
     field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A", rings: int = 1
 ) -> Shadow:
-    """Return the mean shadow of 1 + 3 rings (rings + 1) narrower cones, 7 with one ring.
+    """Return the mean shadow of 1 + 3 n (n + 1) narrower cones, with n `rings`: 7 for one ring.
 
     `r` and `t` of the result belong to the whole cone.
     """

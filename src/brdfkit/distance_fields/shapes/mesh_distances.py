@@ -14,7 +14,7 @@ from brdfkit.distance_fields.export.mesh import NOT_INSTALLED
 from brdfkit.distance_fields.export.sampling import make_grid_axes
 from brdfkit.distance_fields.shapes.grids import grid
 
-MARGIN = 0.05  # width of the margin around the mesh, over the longest edge of its box
+MARGIN = 0.05  # width of the margin around a mesh, as a share of its box's longest edge
 
 
 def from_mesh(
@@ -79,7 +79,8 @@ def _weld_closed_mesh(vertices: AnyArray, faces: AnyArray) -> tuple[AnyArray, An
     """Return the mesh with equal vertices merged; raise `BrdfkitError` unless it is closed."""
     vertices, first = np.unique(vertices, axis=0, return_inverse=True)
     faces = first.ravel()[faces.astype(np.int64)]
-    faces = faces[(faces != faces[:, [1, 2, 0]]).all(axis=1)]  # merging may make faces degenerate
+    # Leave out triangles in which merging made two corners one
+    faces = faces[(faces != faces[:, [1, 2, 0]]).all(axis=1)]
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     forth, times = np.unique(edges, axis=0, return_counts=True)
     back = np.unique(edges[:, ::-1], axis=0)

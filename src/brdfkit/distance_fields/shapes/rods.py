@@ -137,7 +137,7 @@ class capped_cone(Rod):
         # The distances to the disc at the nearer end, across and along the axis
         end_x = maximum(select(t < 0.5, x - self.radius_a, x - self.radius_b), 0.0)
         end_y = (absolute(t - 0.5) - 0.5) * height
-        # The distances to the nearest point of the side, which is at a share of the way from a to b
+        # The nearest point of the side, as a share of the way from a to b, and the distances to it
         share = (widening * (x - self.radius_a) + t * squared) / (widening * widening + squared)
         share = clip(share, 0.0, 1.0)
         side_x = x - self.radius_a - share * widening
