@@ -4,7 +4,7 @@ import numpy as np
 from brdfkit.theses.kurt2007.neural import decode_network
 
 import brdfkit as bk
-from brdfkit.regression.search.levenberg_marquardt import _add_correction
+from brdfkit.regression.search.levenberg_marquardt import _add_hessian_correction
 
 
 def test_an_end_is_found_to_which_one_start_in_seventeen_leads(measured_data):
@@ -30,5 +30,6 @@ def test_a_parameter_that_does_nothing_has_no_add_correctionion():
     hessian = np.array([[[2.0, 0.0], [0.0, 0.0]], [[2.0, 0.0], [0.0, 1.0]]])
     correction = np.array([[[1e-3, 1e180], [1e180, 1e200]], [[1.0, 0.0], [0.0, 1.0]]])
     np.testing.assert_array_equal(
-        _add_correction(hessian, correction), hessian + np.stack([np.zeros((2, 2)), np.eye(2)])
+        _add_hessian_correction(hessian, correction),
+        hessian + np.stack([np.zeros((2, 2)), np.eye(2)]),
     )

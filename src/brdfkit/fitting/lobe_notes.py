@@ -25,7 +25,7 @@ from brdfkit.model.samples import Samples
 from brdfkit.regression.albedo import make_albedo_pixels
 
 INCIDENCES = 5, 45, 75  # angles of incidence at which the albedo of a lobe is computed [degrees]
-GAIN = 1.05  # a lobe with a larger albedo reflects more light than arrives
+GAIN = 1.05  # a lobe with a larger albedo reflects more than arrives: 1, with a tolerance of 5 %
 LARGEST_IOR = 5.0  # no surface has a larger index of refraction
 # A highlight whose albedo at 5° is below METALLIC belongs to a non-metal. Fresnel reflection should
 # then raise its albedo at least by the factor RISE from 5° to 75°

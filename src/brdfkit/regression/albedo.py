@@ -34,7 +34,8 @@ OTHER_ANGLES = 60.0, 80.0, 89.0
 LARGEST_ALBEDO = 1.001
 # A measurement with a larger albedo has another unit than 1/sr, so its albedo means nothing
 LARGEST_MEASURED_ALBEDO = 2.0
-# Albedos are sums over outgoing directions on rings: number of points on a ring, half that of rings
+# Number of outgoing directions on each of the rings over which an albedo is summed; there are twice
+# as many rings
 POINTS = 32
 # Azimuths of incidence [rad] over which the albedo of a model is averaged
 ISOTROPIC_AZIMUTHS, ANISOTROPIC_AZIMUTHS = (0.0,), tuple(np.arange(4) * np.pi / 2)

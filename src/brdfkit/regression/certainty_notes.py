@@ -11,11 +11,11 @@ import numpy as np
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.names import join_words
 
-# Least entry of a parameter in an eigenvector of length 1 that counts as a change of the parameter
+# Along an eigenvector of length 1, parameters with a smaller entry count as constant
 ABSENT = 1e-3
-# Two parameters are mentioned if their correlation is larger than this
+# Notes mention two parameters whose correlation is larger than this
 HIGH_CORRELATION = 0.99
-# Several parameters are mentioned if the matrix of their correlations has a smaller eigenvalue
+# Notes mention parameters whose matrix of correlations has an eigenvalue below this
 SMALL_EIGENVALUE = 1e-5
 
 

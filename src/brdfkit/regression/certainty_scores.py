@@ -28,7 +28,7 @@ def find_undetermined_at_bounds(
     """
     is_open = np.zeros(len(free), bool)
     moving = free.copy()
-    # Shape parameters of a lobe with weight 0 have no effect (derivatives of 0); leave them out
+    # Add only shape parameters with an effect: those of a lobe of weight 0 have derivatives of 0
     moving[:shapes] |= np.any([jacobian[:shapes].any(axis=1) for jacobian in jacobians], axis=0)
     if (moving != free).any():
         hessian, _, _, _ = _sum_hessian(jacobians, moving, shapes)
@@ -76,8 +76,8 @@ def _sum_hessian(
 ) -> tuple[FloatArray, FloatArray, list[Any], list[FloatArray]]:
     """Return the scaled Hessian (n, n) of the squared loss by the n `free` parameters.
 
-    Its units (n,), which make its diagonal 1, are returned as well, and for each channel the
-    indices of the free parameters that it depends on and the derivatives of its residuals by them.
+    Three more results follow: its units (n,), which make its diagonal 1; for each channel, the
+    indices of the free parameters that it depends on; and the derivatives of its residuals by them.
     `jacobians`: derivatives (shapes + lobes, samples) for each channel; `shapes`: number of shape
     parameters.
     """

@@ -14,7 +14,7 @@ from brdfkit.regression.refitting import Refit
 REACH = 3.0
 # Largest number of times that a profile's range is doubled for the loss to reach the wanted level
 WIDENINGS = 6
-# Distance from the fitted value, in standard errors, over which E² is nearly a parabola
+# Number of standard errors from the fitted value within which the squared loss is nearly a parabola
 PARABOLA_STEP = 0.3
 
 

@@ -41,7 +41,7 @@ from brdfkit.regression.search.multistart import (
 from brdfkit.regression.solvers import SLSQP, LevenbergMarquardt, Objective
 from brdfkit.regression.solvers.constraints import Constraints
 
-# Number of start points of the search that corrects an albedo, besides the solution itself
+# Number of start points of the search that corrects an albedo, besides the wrong solution
 CORRECTION_STARTS = 8
 
 

@@ -24,8 +24,8 @@ Brdf = Callable[[Array, Array], Array]  # maps wi, wo (n, 3) to values (n, chann
 
 ANGLES = 15.0, 30.0, 45.0, 60.0, 75.0  # incidences [degrees] that give the material's own colours
 GRAZING = 85.0  # angle of incidence [degrees] at which the colour of a fit is judged
-# Number of directions of light in each pixel that are drawn by the light, and as many by the
-# material. More directions do not distinguish models better
+# Number of incident directions in each pixel that are drawn in proportion to the light; as many are
+# drawn in proportion to the BRDF. More directions do not distinguish models better
 DIRECTIONS = 16
 # Largest difference ΔE2000 of a plausible colour from all mixtures of the material's colours with
 # grey: fits that look right have at most 3.9, and fits with a coloured rim 5.8 to 18
@@ -71,7 +71,7 @@ class Appearance:
         return ""
 
     def _find_colour_difference(self, colour: Array) -> float:
-        """Return ΔE2000 between a colour (3,) and the nearest mixture of the material with grey."""
+        """Return ΔE2000 of a colour (3,) from the nearest mixture of the material's own with grey."""
         luminance = colour @ LUMINANCE
         own = np.maximum(self.albedos, 0)
         own = own / np.maximum(own @ LUMINANCE, 1e-9)[:, None]

@@ -25,7 +25,7 @@ STARTS = 2
 class Validated:
     """The result of cross-validating a model: its held-out errors, and its fit to all samples.
 
-    `errors`: squared errors (blocks,) of the blocks of directions, held out of the fit; sum E².
+    `errors`: squared errors (blocks,) of held-out blocks of directions; their sum is E².
     `albedo`, `picture`, `doubt`: properties of the fit to all samples, as in `Ranked`.
     `parameters`: number of searched parameters.
     `bic`: Bayesian information criterion of the fit to all samples.

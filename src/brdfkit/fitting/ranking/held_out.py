@@ -197,6 +197,9 @@ def _number_groups(*keys: FloatArray) -> IntArray:
 
 
 def _find_sector(share: FloatArray, count: float | FloatArray) -> FloatArray:
-    """Return which of `count` sectors of a circle contains the point at a `share` of its turn."""
+    """Return the index of that of `count` equal sectors which contains an angle.
+
+    `share`: the angle, as a share of the range that the sectors divide.
+    """
     sector: FloatArray = np.floor(share * count)
     return sector

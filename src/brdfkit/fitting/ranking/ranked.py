@@ -98,7 +98,7 @@ def rank_results(results: Mapping[str, Any], shares: FloatArray) -> tuple[Ranked
     rows = []
     for label, one in fitted.items():
         error, behind, uncertainty = compare_with_best(one.errors, best.errors, shares)
-        pareto = not any(_beats(other, one, shares) for other in fitted.values())
+        pareto = not any(_is_clearly_better(other, one, shares) for other in fitted.values())
         looks = one.albedo, one.picture, pareto, one.doubt
         fit = one.parameters, one.bic, one.seconds
         rows.append(Ranked(label, error, behind, uncertainty, *looks, *fit))
@@ -110,7 +110,7 @@ def rank_results(results: Mapping[str, Any], shares: FloatArray) -> tuple[Ranked
     return (*sorted(rows, key=lambda row: (row.error, row.parameters)), *failed)
 
 
-def _beats(one: Validated, other: Validated, shares: FloatArray) -> bool:
+def _is_clearly_better(one: Validated, other: Validated, shares: FloatArray) -> bool:
     """Return whether `one` has a better picture than `other` and a smaller error, beyond the noise.
 
     `shares` (blocks,) are the weights of the blocks of directions.

@@ -100,7 +100,7 @@ class Ranking(Shown):
     def table(self) -> list[tuple[str, ...]]:
         """Return the texts of the table, under the heads `COLUMNS`, without models that failed."""
         own = self._choice.row
-        return [_format_row(row, row is own) for row in self.rows if not row.message]
+        return [_format_ranking_row(row, row is own) for row in self.rows if not row.message]
 
     def document(self) -> Document:
         """Return the table of the models, with the recommended one in bold, and sentences."""
@@ -114,7 +114,7 @@ class Ranking(Shown):
         return Document(title, (Table(tuple(rows), COLUMNS), *said, *failed))
 
 
-def _format_row(row: Ranked, recommended: bool) -> tuple[str, ...]:
+def _format_ranking_row(row: Ranked, recommended: bool) -> tuple[str, ...]:
     """Return the texts of a row, with the verdict "take" if it is the `recommended` one."""
     behind = "-"
     if row.behind:

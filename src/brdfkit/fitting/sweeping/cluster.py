@@ -6,7 +6,7 @@ from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import set_thread_count
-from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, make_failure
+from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, make_failed_outcome
 
 
 def count_cluster_slots(client: Any) -> int:
@@ -60,9 +60,9 @@ def _wait_for_outcomes(future: Any, task: Task) -> list[Outcome]:
         return future.result()
     except KilledWorker:
         why = "ended every worker that tried it; see the workers' logs."
-        return [make_failure(task, label, f"{label} {why}") for label in task.models]
+        return [make_failed_outcome(task, label, f"{label} {why}") for label in task.models]
     except Exception as error:  # the cluster has shut down or dropped the task
-        return [make_failure(task, label, error) for label in task.models]
+        return [make_failed_outcome(task, label, error) for label in task.models]
 
 
 def fit_on_worker(task: Task) -> list[Outcome]:

@@ -35,7 +35,7 @@ class Judge:
             with suppress(BrdfkitError):  # raised for fewer blocks of directions than folds
                 self.held_out = HeldOut.divide(samples, loss, data.anisotropic, FOLDS, rng)
 
-    def judge(self, fit: Fit) -> dict[str, float]:
+    def judge_fit(self, fit: Fit) -> dict[str, float]:
         """Return the held-out error and the PSNR of a fit, by their names in `Row`."""
         return {
             "held_out": self.compute_held_out_error(fit),

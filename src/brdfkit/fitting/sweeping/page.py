@@ -68,10 +68,10 @@ def _make_table_of_quantity(
     rows = []
     for (material, by_model), row in zip(materials.items(), texts, strict=True):
         best = quantity.find_best_row(by_model.values())
-        cells = [_make_cell(by_model.get(model), best, quantity, folder) for model in models]
+        cells = [_make_fit_cell(by_model.get(model), best, quantity, folder) for model in models]
         file = next(iter(by_model.values())).file
         rows.append({"material": material, "file": file, "cells": cells, "best": row[-1]})
-    explanation = EXPLANATIONS.get(quantity.name) or _explain_errors(sweep)
+    explanation = EXPLANATIONS.get(quantity.name) or _explain_table_of_errors(sweep)
     return {
         "title": quantity.title,
         "explanation": explanation,
@@ -81,7 +81,7 @@ def _make_table_of_quantity(
     }
 
 
-def _explain_errors(sweep: Any) -> str:
+def _explain_table_of_errors(sweep: Any) -> str:
     """Return sentences on the loss, on the marks in the table of errors, and on its limits."""
     loss = losses.named[sweep.rows[0].loss]
     judge = (
@@ -100,7 +100,7 @@ def _explain_errors(sweep: Any) -> str:
     )
 
 
-def _make_cell(row: Any, best: Any, quantity: Any, folder: Path) -> dict[str, str]:
+def _make_fit_cell(row: Any, best: Any, quantity: Any, folder: Path) -> dict[str, str]:
     """Return the text, style, hint and link of the cell of one fit, for the page's template.
 
     `best` is the best fit to the same material; the link is relative to `folder`.
@@ -112,7 +112,7 @@ def _make_cell(row: Any, best: Any, quantity: Any, folder: Path) -> dict[str, st
     number = quantity.read_number(row)
     if math.isnan(number):
         return EMPTY_CELL | {"text": "–"}
-    ratio = math.log(quantity.compute_ratio(row, best)) / math.log(COLOURLESS_RATIO)
+    ratio = math.log(quantity.compute_error_ratio(row, best)) / math.log(COLOURLESS_RATIO)
     kind = f"near near-{round(TINT_STEPS * max(0.0, 1 - ratio))}"
     kind += " best" if number == quantity.read_number(best) else ""
     link = quote(Path(os.path.relpath(row.saved, folder)).as_posix()) if row.saved else ""
@@ -147,7 +147,7 @@ def _make_table_of_fits(sweep: Any) -> dict[str, Any] | None:
                 ],
                 "numbers": [row.parameters, f"{row.samples:,}", f"{row.seconds:.2f}"],
                 "remarks": "; ".join([*bounds, *row.fit.notes, row.message]),
-                "values": {name: _format_value(v) for name, v in row.fit.values.items()},
+                "values": {name: _format_parameter_value(v) for name, v in row.fit.values.items()},
             }
         )
     heads = ["error", *(quantity.head for quantity in quantities[1:])]
@@ -156,7 +156,7 @@ def _make_table_of_fits(sweep: Any) -> dict[str, Any] | None:
     return {"columns": columns, "rows": rows}
 
 
-def _format_value(value: float | tuple[float, ...]) -> str:
+def _format_parameter_value(value: float | tuple[float, ...]) -> str:
     """Return the value of a parameter, one number or several, as text."""
     return "  ".join(f"{v:.5g}" for v in (value if isinstance(value, tuple) else [value]))
 

@@ -28,10 +28,10 @@ def plan_tasks(files: Any, models: Any, settings: FitSettings) -> list[Task]:
     is no file or no model.
     """
     classes = [labels.model(labels.load_files_in_label(m)) for m in _require_list(models, "model")]
-    defined = {c.label(): _compute_checksums(c) for c in classes}
+    defined = {c.label(): _compute_model_checksums(c) for c in classes}
     tasks: dict[str, Task] = {}
     for file in _require_list(files, "file"):
-        task = _plan_file(file, defined, settings)
+        task = _plan_task_for_file(file, defined, settings)
         if task.path not in tasks:
             taken = {t.material for t in tasks.values()}
             tasks[task.path] = replace(task, material=make_unique(task.material, taken))
@@ -52,7 +52,9 @@ def _split_task(task: Task, parts: int) -> Iterator[Task]:
         yield replace(task, models=dict(models[start : start + size]))
 
 
-def _plan_file(file: Any, models: dict[str, dict[str, str]], settings: FitSettings) -> Task:
+def _plan_task_for_file(
+    file: Any, models: dict[str, dict[str, str]], settings: FitSettings
+) -> Task:
     """Return the task for one file, or for one material that is known by name."""
     if not isinstance(file, str | Path):
         raise BrdfkitError(
@@ -79,7 +81,7 @@ def _name_material(path: Path, suffix: str = "") -> str:
     return to_file_stem(Source(path, None, b"").name + suffix)
 
 
-def _compute_checksums(model: type[Model]) -> dict[str, str]:
+def _compute_model_checksums(model: type[Model]) -> dict[str, str]:
     """Return the SHA-256 of each user's file that defines a model, by path."""
     checksums = {}
     for part in model.made_of():

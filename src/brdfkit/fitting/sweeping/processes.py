@@ -24,7 +24,7 @@ import psutil
 
 from brdfkit.core.interrupts import delay_signals
 from brdfkit.core.jit.threads import set_thread_count
-from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, make_failure
+from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, make_failed_outcome
 
 MEMORY = 10**9  # memory of a process [bytes]; fitting a MERL table takes 0.55 GB
 LIVES = 2  # a fit counts as failed when it has killed this number of processes
@@ -117,7 +117,7 @@ def _replace_dead_worker(
     deaths[task.material, label] += 1
     if deaths[task.material, label] == LIVES:
         how = signal.Signals(-code).name if code < 0 else f"exit status {code}"
-        yield make_failure(
+        yield make_failed_outcome(
             task,
             label,
             f"{label} ended its process {LIVES} times ({how}); give fewer workers if memory is "

@@ -19,7 +19,7 @@ from brdfkit.fitting.sweeping.cluster import count_cluster_slots, run_on_cluster
 from brdfkit.fitting.sweeping.planning import plan_tasks, split_tasks
 from brdfkit.fitting.sweeping.processes import choose_worker_count, run_in_processes
 from brdfkit.fitting.sweeping.result import Row, Sweep
-from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, make_failure
+from brdfkit.fitting.sweeping.tasks import Outcome, Task, fit_models, make_failed_outcome
 from brdfkit.regression import Fit
 from brdfkit.regression.solvers.settings import require_plain_data
 
@@ -85,7 +85,7 @@ def sweep(
     began = time.perf_counter()
     checked = FitSettings.from_dictionary(to_dictionary("settings", settings))
     require_plain_data(checked.solver, checked.constraints)
-    slots = _count_slots(workers, client)
+    slots = _count_task_slots(workers, client)
     tasks = [replace(task, judge=bool(judge)) for task in plan_tasks(materials, models, checked)]
     require_material_first("sweep(materials, models)", materials)
     folder = None if folder is None else Path(folder)
@@ -124,7 +124,7 @@ def sweep(
     return done
 
 
-def _count_slots(workers: int | None, client: Any) -> int:
+def _count_task_slots(workers: int | None, client: Any) -> int:
     """Return how many tasks run at a time, on this machine or on the cluster of a `client`."""
     if client is None:
         return choose_worker_count() if workers is None else to_whole_number("workers", workers, 1)
@@ -161,7 +161,7 @@ def _save_outcome(task: Task, outcome: Outcome, folder: Path | None) -> Row:
     try:
         fit = None if outcome.failure else saved_fits.parse_fit(outcome)
     except BrdfkitError as error:
-        outcome, fit = make_failure(task, outcome.model, error), None
+        outcome, fit = make_failed_outcome(task, outcome.model, error), None
     if fit is None:
         loss = task.settings.loss
         return Row(task.material, task.file, outcome.model, loss, message=outcome.failure)

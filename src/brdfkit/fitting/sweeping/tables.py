@@ -45,7 +45,7 @@ class Quantity:
         numbers = [row for row in rows if not math.isnan(self.read_number(row))]
         return (max if self.decibels else min)(numbers, key=self.read_number, default=None)
 
-    def compute_ratio(self, row: Any, best: Any) -> float:
+    def compute_error_ratio(self, row: Any, best: Any) -> float:
         """Return the error of a `row` divided by the error of the `best` row.
 
         A number in decibels is converted to an error first.
@@ -91,14 +91,18 @@ def compare_models(
     body = [
         (
             material,
-            *(_format_cell(by_model.get(model), quantity) for model in models),
+            *(_format_quantity_cell(by_model.get(model), quantity) for model in models),
             names[material],
         )
         for material, by_model in rows.items()
     ]
     wins = Counter(names.values())
     foot: list[tuple[str, ...]] = [
-        ("median", *(quantity.format(m) for m in _compute_medians(sweep, models, quantity)), ""),
+        (
+            "median",
+            *(quantity.format(m) for m in _compute_medians_by_model(sweep, models, quantity)),
+            "",
+        ),
         (f"times best, by {quantity.by}", *(str(wins[model]) for model in models), ""),
     ]
     if sweep.warned:
@@ -116,7 +120,9 @@ def group_by_material(sweep: Any) -> dict[str, dict[str, Any]]:
     return rows
 
 
-def _compute_medians(sweep: Any, models: Sequence[str], quantity: Quantity) -> Iterator[float]:
+def _compute_medians_by_model(
+    sweep: Any, models: Sequence[str], quantity: Quantity
+) -> Iterator[float]:
     """Yield the median of a quantity over all materials for each model; nan without fits."""
     for model in models:
         numbers = [quantity.read_number(row) for row in sweep.rows if row.model == model]
@@ -126,7 +132,7 @@ def _compute_medians(sweep: Any, models: Sequence[str], quantity: Quantity) -> I
 
 def write_csv(sweep: Any, path: str | Path) -> None:
     """Write all rows as comma-separated values; characters that are invalid in UTF-8 become "?"."""
-    columns = _make_columns(sweep)
+    columns = _make_table_columns(sweep)
     with (
         write_safely(path) as beside,
         beside.open("w", encoding="utf-8", errors="replace", newline="") as stream,
@@ -147,16 +153,16 @@ def write_parquet(sweep: Any, path: str | Path) -> None:
             "or write a .csv."
         ) from None
     with write_safely(path) as beside:
-        parquet.write_table(pyarrow.table(_make_columns(sweep)), beside)
+        parquet.write_table(pyarrow.table(_make_table_columns(sweep)), beside)
 
 
-def _make_columns(sweep: Any) -> dict[str, list[Any]]:
+def _make_table_columns(sweep: Any) -> dict[str, list[Any]]:
     """Return the values of each column by its name; None stands for nan."""
-    records = [_make_record(row) for row in sweep.rows]
+    records = [_make_table_record(row) for row in sweep.rows]
     return {name: [record[name] for record in records] for name in records[0]}
 
 
-def _make_record(row: Any) -> dict[str, Any]:
+def _make_table_record(row: Any) -> dict[str, Any]:
     """Return the values of one row by the names of their columns; None stands for nan."""
     record = {f.name: getattr(row, f.name) for f in fields(row) if f.name not in ("fit", "saved")}
     record["at_bounds"] = " ".join(row.at_bounds)
@@ -168,7 +174,7 @@ def _make_record(row: Any) -> dict[str, Any]:
     return {name: None if value != value else value for name, value in record.items()}
 
 
-def _format_cell(row: Any, quantity: Quantity) -> str:
+def _format_quantity_cell(row: Any, quantity: Quantity) -> str:
     """Return the number of a `Row` as text, marked if its albedo is wrong; "" without a row."""
     if row is None:
         return ""

@@ -69,23 +69,23 @@ def fit_models(task: Task) -> Iterator[Outcome]:
         data = _read_measurement(task)
         judge = Judge(data, task.settings) if task.judge else None
     except Exception as error:
-        yield from (make_failure(task, label, error) for label in task.models)
+        yield from (make_failed_outcome(task, label, error) for label in task.models)
         return
     for label, files in task.models.items():
         try:
-            _require_unchanged(files)
+            _require_unchanged_files(files)
             for path in files:
                 labels.load_model_file(path)
             stream = io.BytesIO()
             result = fit(data, label, **vars(task.settings))
             fit_json.write(result, stream)
-            judged = judge.judge(result) if judge else {}
+            judged = judge.judge_fit(result) if judge else {}
             yield Outcome(task.material, label, text=stream.getvalue().decode(), judged=judged)
         except Exception as error:
-            yield make_failure(task, label, error)
+            yield make_failed_outcome(task, label, error)
 
 
-def make_failure(task: Task, label: str, error: Exception | str) -> Outcome:
+def make_failed_outcome(task: Task, label: str, error: Exception | str) -> Outcome:
     """Return the `Outcome` of a fit that ended with an error; its message names the file."""
     if isinstance(error, Exception) and not isinstance(error, BrdfkitError):
         error = f"{label} fails with {type(error).__name__} ({error})."
@@ -104,11 +104,11 @@ def _read_measurement(task: Task) -> Measured:
         raise BrdfkitError(
             f"the worker has brdfkit {__version__} and the sweep {task.version}; install the same."
         )
-    _require_unchanged(task.checksums)
+    _require_unchanged_files(task.checksums)
     return to_measured(load(task.path))
 
 
-def _require_unchanged(checksums: dict[str, str]) -> None:
+def _require_unchanged_files(checksums: dict[str, str]) -> None:
     """Raise `BrdfkitError` if a file has changed; `checksums` are the expected SHA-256 by path."""
     for path, checksum in checksums.items():
         if compute_sha256(path) != checksum:

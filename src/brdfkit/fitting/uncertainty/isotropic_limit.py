@@ -57,8 +57,7 @@ def _compute_isotropic_limit(data: Measured, samples: Samples, loss: Loss) -> fl
 
     An isotropic model has one value for all azimuths of a direction pair. Its best value is found
     by one Gauss-Newton step from the mean. The step is exact if the loss's difference is linear in
-    the model's value, or if it is the difference of one function of the model's and of the measured
-    value.
+    the model's value, or if it is h(model) - h(measured) for some function h.
     """
     angles = np.arange(TURNS) * 2 * np.pi / TURNS
     measured = np.stack(

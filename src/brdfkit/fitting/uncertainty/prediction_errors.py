@@ -99,10 +99,11 @@ def prediction_error(
     """
     samples = select_fitted_samples(fit, material)
     _require_linear_fit(fit, samples)
-    # A fit does not keep the weights of its samples, so fits with such weights are rejected
+    # Reject fits with weights of samples, which a fit does not keep, and with a corrected albedo
     Refit(fit, samples).require_uncorrected_albedo()
     Z = compute_lobe_values(fit.model, samples.wi, samples.wo)[0]
-    # `solve` is (Z'WZ)⁻¹ Z'W with the weights W of the loss: it maps values to weights of the lobes
+    # `solve` is (Z'WZ)⁻¹ Z'W, with the lobes' values Z and the loss's weights W. It maps measured
+    # values to weights of the lobes
     root = _compute_root_weights(to_loss(fit.loss_name), samples)
     solve = np.linalg.pinv(root[:, None] * Z) * root
     values = samples.values if truth is None else to_material(truth).eval(samples.wi, samples.wo)

@@ -85,7 +85,7 @@ class Loss:
         known = np.array([-3.0, -1e-4, 0.0, 1e-5, 0.02, 0.5, 4.0, 3e3])
         model, measured = (pairs.ravel() for pairs in np.meshgrid(known, known))
         difference, kappa = (
-            _evaluate_at_oblique_angles(self, m, r)
+            _evaluate_trial_differences(self, m, r)
             for m, r in ((model, measured), (1 + 0 * model, 0))
         )
         if not np.isfinite(difference).all():
@@ -95,12 +95,12 @@ class Loss:
 
     def importance(self, samples: Any) -> FloatArray:
         """Return the weights w (n,) of samples in the squared loss E² = Σ w d²."""
-        weights = self._evaluate_weights(samples.wi[:, 2]) * samples.weight
+        weights = self._evaluate_user_weights(samples.wi[:, 2]) * samples.weight
         weights = weights * compute_measure(samples.extents, self.measure)
         total = weights.sum() * (samples.values.shape[1] if self.channel_mean else 1)
         return weights / total if total else weights
 
-    def _evaluate_weights(self, cos_i: FloatArray) -> FloatArray:
+    def _evaluate_user_weights(self, cos_i: FloatArray) -> FloatArray:
         """Return the user's factors (n,) of the samples' weights, at cosines (n,) of incidence.
 
         Raises `BrdfkitError` if the user's function fails or returns unsuitable numbers.
@@ -155,7 +155,7 @@ def require_working_loss(loss: Loss) -> None:
     """
     model = np.array([0.1, 0.5, 1.0, 3.0])
     try:
-        difference = _evaluate_at_oblique_angles(loss, model, 0.4)
+        difference = _evaluate_trial_differences(loss, model, 0.4)
     except Exception as error:
         raise BrdfkitError(
             f"The loss {loss.name} fails with {type(error).__name__} ({error}); it is called with "
@@ -176,7 +176,7 @@ def require_working_loss(loss: Loss) -> None:
         )
 
 
-def _evaluate_at_oblique_angles(
+def _evaluate_trial_differences(
     loss: Loss, model: FloatArray, measured: FloatArray | float
 ) -> FloatArray:
     """Return the differences (n,) of a loss at trial values, to check its formula.

@@ -5,7 +5,7 @@
 I_p is a pixel of a picture of the model, and J_p the same pixel for the measured material. Each
 picture shows a ball under direct light from one environment, exposed so that its brightest
 hundredth is white. t is the tone curve of sRGB [IEC 1999]. E_log is the log loss, which fits the
-directions that no picture shows.
+directions that no picture shows, and `share` is its factor.
 """
 
 from dataclasses import dataclass

@@ -19,9 +19,9 @@ def minimise_in_box(
     """Return the minima z (b, n) of b functions ½ zᵀ H z + gᵀ z with `low` ≤ z ≤ `high`.
 
     `hessian`: the positive semidefinite matrices H (b, n, n); `gradient`: the vectors g (b, n);
-    `low`, `high`: bounds that broadcast to (b, n). Variables move onto a bound and off it by the
-    signs of the solution and of its multipliers: all at once in the first rounds [Hintermüller et
-    al. 2002], later only the one with the smallest index [Murty 1974].
+    `low`, `high`: bounds that broadcast to (b, n). A variable moves onto a bound that it
+    violates, and off a bound if the function falls towards the inside: all at once in the first
+    rounds [Hintermüller et al. 2002], later only the one with the smallest index [Murty 1974].
 
     >>> minimise_in_box(np.eye(2)[None], np.array([[-1.0, 1.0]]), 0.0, np.inf)
     array([[1., 0.]])

@@ -77,7 +77,7 @@ class Expansion:
             hessian[:, own, :shapes] = products[:, c, shapes:, :shapes]
         return hessian
 
-    def predict_weights(self, u: FloatArray, least: FloatArray) -> FloatArray:
+    def predict_best_weights(self, u: FloatArray, least: FloatArray) -> FloatArray:
         """Return the best weights (points, channels, lobes) for other coordinates of the shapes.
 
         A search needs them because a lobe's weight and its Fresnel reflectance can make up for each

@@ -99,7 +99,7 @@ class FoldedProblem:
             inside = starts[(starts > block.rows.start) & (starts < block.rows.stop)]
             first = int(np.searchsorted(starts, block.rows.start, "right")) - 1
             edges = np.concatenate([[block.rows.start], inside]) - block.rows.start
-            sums[first : first + len(edges)] += _sum_products(
+            sums[first : first + len(edges)] += _sum_products_by_node(
                 self._evaluate_constants(block), edges
             )
         by_node = sums.transpose(1, 2, 0)
@@ -129,14 +129,14 @@ class FoldedProblem:
 
     def estimate_weights(self, u: FloatArray) -> FloatArray:
         """Return the weights (points, channels, lobes) with the least loss at coordinates `u`."""
-        return solve_weights(self.columns, self._sum_nodes(u), self.least)
+        return solve_weights(self.columns, self._sum_over_nodes(u), self.least)
 
     def expand_loss(self, u: FloatArray, weights: FloatArray, curvature: bool = True) -> Expansion:
         """Return the `Expansion` about coordinates `u` and the weights that are best for them.
 
         `weights` and `curvature` have no effect; `Problem.expand_loss` needs them.
         """
-        sums = self._sum_nodes(u)
+        sums = self._sum_over_nodes(u)
         weights = solve_weights(self.columns, sums, self.least)
         sums = move_sums_to_weights(self.columns, sums, weights)
         return Expansion.from_sums(self.columns, self.space, sums, u, weights)
@@ -148,10 +148,10 @@ class FoldedProblem:
 
         `curvature` has no effect; `Problem.expand_at_weights` needs it.
         """
-        sums = move_sums_to_weights(self.columns, self._sum_nodes(u), weights)
+        sums = move_sums_to_weights(self.columns, self._sum_over_nodes(u), weights)
         return Expansion.from_sums(self.columns, self.space, sums, u, weights)
 
-    def _sum_nodes(self, u: FloatArray) -> Sums:
+    def _sum_over_nodes(self, u: FloatArray) -> Sums:
         """Return the `Sums` over all samples at coordinates `u` (points, shapes), weights 0."""
         points, nodes = len(u), len(self.wi.x)
         table = self.space.to_parameters(u)
@@ -161,7 +161,7 @@ class FoldedProblem:
             for w in (self.wi, self.wo)
         )
         columns = self.columns.evaluate(
-            shapes, wi, wo, factor=lambda lobe: _eval_factor(lobe, wi, wo)
+            shapes, wi, wo, factor=lambda lobe: _evaluate_shape_factor(lobe, wi, wo)
         )
         dr.eval(columns)
         T = np.stack([np.asarray(column).reshape(points, nodes) for column in columns], axis=1)
@@ -172,7 +172,7 @@ class FoldedProblem:
         return Sums(error, moment, gram)
 
 
-def _eval_factor(lobe: Lobe, wi: Vector, wo: Vector) -> JitFloat:
+def _evaluate_shape_factor(lobe: Lobe, wi: Vector, wo: Vector) -> JitFloat:
     """Return the factor S of a lobe, which contains its shape parameters, at directions (n,).
 
     A lobe that is no product has no shape parameters here; its factor is 1.
@@ -180,7 +180,7 @@ def _eval_factor(lobe: Lobe, wi: Vector, wo: Vector) -> JitFloat:
     return lobe.factors[0](half_vector(wi, wo), cos_theta_d(wi, wo)) if lobe.factors else 1.0
 
 
-def _sum_products(rows: FloatArray, edges: IntArray) -> FloatArray:
+def _sum_products_by_node(rows: FloatArray, edges: IntArray) -> FloatArray:
     """Return the products of all pairs of `rows` (k, n), summed over the samples of each node.
 
     `edges` (nodes,): index of the first sample of each node. The result is (nodes, k, k).

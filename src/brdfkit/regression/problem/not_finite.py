@@ -43,7 +43,7 @@ def require_finite_columns(
                 columns.model,
                 lobe,
                 value[~np.isfinite(value)][0],
-                describe_pair(*block.get_sample_directions(), row),
+                describe_direction_pair(*block.get_sample_directions(), row),
             )
     for point in np.flatnonzero(
         [not np.isfinite([v[k] for v in values]).all() for k in range(len(u))]
@@ -74,8 +74,9 @@ def require_finite_loss(
     verb = "is" if not np.isfinite(differences[row]) else "has the derivative"
     value = slopes[row] if np.isfinite(differences[row]) else differences[row]
     raise BrdfkitError(
-        f"The loss {loss.name} {verb} {value:g} at {describe_pair(block.wi, block.wo, row)}, where "
-        f"the measured value is {np.array(measured)[row]:.4g} and the model's "
+        f"The loss {loss.name} {verb} {value:g} at "
+        f"{describe_direction_pair(block.wi, block.wo, row)}, where the measured value is "
+        f"{np.array(measured)[row]:.4g} and the model's "
         f"{np.array(model)[row]:.4g}; keep it finite for all of these, as by dr.maximum."
     )
 
@@ -85,7 +86,7 @@ def require_finite_lobes(model: Any, columns: FloatArray, wi: Vector, wo: Vector
     if np.isfinite(columns.sum(axis=1)).all():  # quicker than a check of each
         return
     lobe, row = np.argwhere(~np.isfinite(columns))[0]
-    _raise_for_lobe(model, lobe, columns[lobe, row], describe_pair(wi, wo, row))
+    _raise_for_lobe(model, lobe, columns[lobe, row], describe_direction_pair(wi, wo, row))
 
 
 def _raise_for_lobe(model: Any, lobe: int, value: float, pair: str) -> NoReturn:
@@ -124,11 +125,11 @@ def require_finite_slopes(
                 row = int(np.argmin(np.isfinite(slope)))
                 raise BrdfkitError(
                     f"{model.type_name()}: the derivative by {name} of the lobe of {weight} is "
-                    f"{slope[row]:g} at {describe_pair(wi, wo, row)}; {REMEDY}."
+                    f"{slope[row]:g} at {describe_direction_pair(wi, wo, row)}; {REMEDY}."
                 )
 
 
-def describe_pair(wi: Vector, wo: Vector, row: int) -> str:
+def describe_direction_pair(wi: Vector, wo: Vector, row: int) -> str:
     """Return one of the pairs of directions `wi`, `wo` as text, for an error message.
 
     `row`: index of the pair.

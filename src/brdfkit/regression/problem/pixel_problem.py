@@ -57,7 +57,10 @@ class PixelBlock(Block):
         lobes, each = len(columns.lobes), len(self.pairs.wi.x) // len(self.wi.x)
         arrays = self.pairs.evaluate_columns(columns, table)
         slopes = [dr.select(dr.isfinite(slope), slope, 0) for slope in arrays[lobes:]]
-        return [_sum_groups(self.pairs.importance * c, each) for c in (*arrays[:lobes], *slopes)]
+        return [
+            _sum_consecutive_groups(self.pairs.importance * c, each)
+            for c in (*arrays[:lobes], *slopes)
+        ]
 
 
 class PixelBlocks:
@@ -99,7 +102,7 @@ class PixelBlocks:
             yield block
 
 
-def _sum_groups(array: JitFloat, each: int) -> JitFloat:
+def _sum_consecutive_groups(array: JitFloat, each: int) -> JitFloat:
     """Return the sums over groups of `each` consecutive numbers of a Dr.Jit array."""
     if double_precision.has_derivatives():
         return dr.block_sum(array, each)

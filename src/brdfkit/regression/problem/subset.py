@@ -48,7 +48,7 @@ def _sort_by_theta_h(samples: Samples) -> IntArray | None:
 
     Return None if they are already sorted, like the samples of a table.
     """
-    if samples.cells is not None:  # a table has many samples for each half vector
+    if samples.cells is not None:  # one sample for each half vector of a table shows the order
         first = np.flatnonzero(np.diff(samples.cells[0], prepend=-1))
         if _is_decreasing(cos_theta_h(samples.wi[first], samples.wo[first])):
             return None

@@ -22,9 +22,9 @@ from brdfkit.regression.robust.reweighting import (
     require_more_samples_than_parameters,
 )
 
-# The derivative of the median residual is estimated from the samples next to it, one in this many
+# The derivative of the median residual is estimated from the samples next to it: one in this many
 MEDIAN_SHARE = 200
-# Step of the scaled residual r in the central difference for the derivative of its weight
+# Step of a scaled residual in the central difference that differentiates its weighted value
 DIFFERENCE_STEP = 1e-5
 
 

@@ -49,7 +49,8 @@ def _make_piecewise_function(
     return evaluate_piecewise
 
 
-# By name of a weight function: ω(r) itself, its constant `tune`, and ρ(r), the integral of ω(r) r
+# By name of a weight function: ω(r), the constant `tune` by which r is divided, and the integral
+# ρ(r) of ω(r) r
 WEIGHTS = {
     "andrews": (
         _compute_andrews_weight,

@@ -24,7 +24,7 @@ from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import draw_subset
 from brdfkit.regression.robust.problem import Point, RobustProblem
 
-# Least curvature in a Newton step, as a share of the ordinary step's, so that it is not too long
+# Least curvature for a Newton step, as a share of that for an ordinary step; it limits the length
 SMALLEST_CURVATURE = 0.02
 # Largest number of passes
 PASSES = 150
@@ -33,15 +33,15 @@ MANY_SAMPLES = 80_000
 # Passes have converged if the next would change the fitted values by less than this share of their
 # standard deviation
 SETTLED = 3e-7
-# Passes on few samples only end at this smaller share of the standard deviation
+# Passes on few samples go on until the next would change the fitted values by less than this share
 EXACT = 1e-11
-# Passes on a part of the samples end at this larger share, because their solution is only a start
+# Passes on a part of the samples, which only give a start, end at this share already
 LOOSE = 1e-5
 # Newton steps solve for the fixed point once an ordinary pass would change the fitted values by
 # less than this share of their standard deviation
 NEAR_END = 1e-3
-# If a Newton step to the fixed point leaves more than this share of the change to be made, Hessians
-# are computed from all samples from then on
+# If a Newton step to the fixed point leaves more than this share of the way, later Hessians are
+# computed from all samples
 SLOW = 0.5
 # Number of first passes on few samples that are ordinary ones, so that the solution is MATLAB's
 ORDINARY_PASSES = 60

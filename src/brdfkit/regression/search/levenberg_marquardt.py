@@ -86,7 +86,7 @@ def levenberg_marquardt(
             if not len(rows):
                 break
             here = now.select_points(rows)
-            H, g = _add_correction(here.hessian, correction[rows]), here.gradient
+            H, g = _add_hessian_correction(here.hessian, correction[rows]), here.gradient
             diagonal = H.diagonal(axis1=1, axis2=2)
             floor = 1e-12 * diagonal.max(axis=1, keepdims=True) + 1e-300
             damped = (
@@ -111,7 +111,7 @@ def levenberg_marquardt(
                 break
             u = np.clip(here.u + step[:, :shapes], 0, 1)
             if (here.columns.powers == 1).all():
-                weights = here.predict_weights(u, least)
+                weights = here.predict_best_weights(u, least)
             else:
                 moved = here.weights.reshape(len(rows), -1) + step[:, shapes:]
                 weights = np.maximum(moved.reshape(here.weights.shape), least)
@@ -126,7 +126,7 @@ def levenberg_marquardt(
             good, bad = rows[better], rows[~better]
             here, trial = here.select_points(better), trial.select_points(better)
             correction[bad] = 0
-            correction[good] = _update_correction(
+            correction[good] = _update_hessian_correction(
                 correction[good],
                 join_point(trial.u, trial.weights) - join_point(here.u, here.weights),
                 trial.gradient - here.gradient,
@@ -140,7 +140,7 @@ def levenberg_marquardt(
     return Search(now, converged, evaluations)
 
 
-def _update_correction(
+def _update_hessian_correction(
     correction: FloatArray, step: FloatArray, change: FloatArray, hessian: FloatArray
 ) -> FloatArray:
     """Return better estimates (b, n, n) of the terms that Gauss-Newton Hessians leave out.
@@ -156,7 +156,7 @@ def _update_correction(
     return correction + factor[:, None, None] * missing[:, :, None] * missing[:, None, :]
 
 
-def _add_correction(hessian: FloatArray, correction: FloatArray) -> FloatArray:
+def _add_hessian_correction(hessian: FloatArray, correction: FloatArray) -> FloatArray:
     """Return the Hessians (b, n, n), each plus its correction if it stays positive definite."""
     if not correction.any():
         return hessian

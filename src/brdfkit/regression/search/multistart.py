@@ -18,13 +18,13 @@ from brdfkit.regression.problem.subset import draw_subset
 from brdfkit.regression.search.levenberg_marquardt import Search, levenberg_marquardt
 from brdfkit.regression.search.zero_weights import revive_zero_weights
 
-# Numbers of samples in the parts of many samples, the largest first. A part is used if it is less
-# than half of the next larger one
+# Numbers of samples in the parts on which a search starts, the largest first. A part is used if it
+# is less than half of the next larger one
 PARTS = 40_000, 3_000
 # Models with more shape parameters, such as sums of models, need more steps from more starts
 FEW_SHAPES = 3
-# Rounds of a search, each a pair: number of starts that continue, number of steps before they are
-# chosen
+# Rounds of a search, each a pair: number of starts that continue, and number of steps before
+# they are chosen
 FEW_SHAPES_ROUNDS, MANY_SHAPES_ROUNDS = ((24, 4), (8, 6)), ((32, 20), (8, 30))
 # Ends on a part go on to more samples if their squared loss is within this share of the least one
 CLOSE = 0.02
@@ -34,9 +34,9 @@ FINALISTS = 3
 LARGEST_STEPS, FEW_STEPS = 200, 10
 # A search converges if the next step would lower the squared loss by less than this share
 EXACT = 1e-11
-# Factor by which this share is larger in a search on many samples
+# Factor of this share, `EXACT`, in a search on many samples
 MANY_SAMPLES_FACTOR = 100
-# Least such share in a search on a part of the samples, whose end is only a start for all
+# The share in a search on a part of the samples, whose end is only a start for all of them
 LOOSE = 1e-6
 
 

@@ -16,7 +16,7 @@ from brdfkit.regression.solvers.objective import End, Objective
 
 # Largest number of steps towards the best weights of a point; a linear loss needs none
 WEIGHT_STEPS = 4
-# These steps end if the last one lowered E² by less than this share at all points
+# Steps towards the best weights end if the last lowered E² by less than this share at all points
 SETTLED = 1e-3
 
 

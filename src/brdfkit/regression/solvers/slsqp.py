@@ -16,7 +16,8 @@ from brdfkit.regression.solvers.several_starts import find_best_starts, search_i
 
 # Largest number of SciPy's searches: each may end too early, so it is repeated in new units
 REPETITIONS = 8
-# SciPy minimises E² over its value at the start, or over this share of a black model's, if larger
+# SciPy minimises E² divided by its value at the start, or by this share of a black model's E² if
+# that is larger
 SMALLEST_UNIT = 1e-6
 
 
@@ -73,12 +74,12 @@ class SLSQP:
             here = objective.expand(z)
             if not (scale := max(here.error[0], least)):
                 return End(z, 0.0)
-            z, error = self._search_once(objective, z, here.hessian[0] / scale, scale)
+            z, error = self._run_scipy_search(objective, z, here.hessian[0] / scale, scale)
             if abs(here.error[0] - error) <= self.tolerance * scale:
                 return End(z, error)
         return End(z, error, f"stopped after {REPETITIONS} searches")
 
-    def _search_once(
+    def _run_scipy_search(
         self, objective: Objective, start: FloatArray, hessian: FloatArray, scale: float
     ) -> tuple[FloatArray, float]:
         """Return the end (z, squared loss E²) of one search by SciPy from the point `start` (n,).

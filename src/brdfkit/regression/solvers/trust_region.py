@@ -1,7 +1,7 @@
 """Defines `TrustRegion`, a solver with Gauss-Newton steps within a trust region.
 
 SciPy's `least_squares` with its method "trf" [Branch et al. 1999] takes residuals and their
-Jacobian, which would be a gigabyte for a full table. But it uses only their products. So it
+Jacobian, which would be a gigabyte for a full table. But SciPy uses only their products. So it
 receives few residuals r and a small Jacobian J with the same products: the squared loss E² = rᵀr,
 half its gradient, g = Jᵀr, and half its Hessian, H = JᵀJ. SciPy's "trust-constr" with the same
 Hessian reaches the same end after three to seven times as many evaluations.
