@@ -71,7 +71,10 @@ class Appearance:
         return ""
 
     def _find_colour_difference(self, colour: Array) -> float:
-        """Return ΔE2000 of a colour (3,) from the nearest mixture of the material's own with grey."""
+        """Return ΔE2000 between a colour (3,) and the nearest of the mixtures with grey.
+
+        The mixtures are those of the material's own colours.
+        """
         luminance = colour @ LUMINANCE
         own = np.maximum(self.albedos, 0)
         own = own / np.maximum(own @ LUMINANCE, 1e-9)[:, None]

@@ -8,7 +8,8 @@ samples, or the material has retro-reflection. The second search minimises
 
 where E is the loss and E₀ its value after the first search, a is the model's directional albedo at
 the angle of incidence θ_i, a* the albedo of the data, and ā* the mean of a* over the channels. The
-factor `share` is raised until the albedo is right, or the loss grows too much. A fit with correct albedos is not changed.
+factor `share` is raised until the albedo is right, or the loss grows too much. A fit with correct
+albedos is not changed.
 """
 
 from __future__ import annotations
