@@ -133,7 +133,7 @@ def check_weights(subject: Subject) -> tuple[bool, str]:
         value, pdf = subject.bsdf.eval_pdf(mi.BSDFContext(), si, drawn.wo)
         value_2 = subject.bsdf.eval(mi.BSDFContext(), si, drawn.wo)
         pdf_2 = subject.bsdf.pdf(mi.BSDFContext(), si, drawn.wo)
-        dr.eval(drawn, weight, value, pdf, value_2, pdf_2)  # one kernel computes all
+        dr.eval(drawn, weight, value, pdf, value_2, pdf_2)  # compiles one kernel, not six
 
         # Samples below the surface have a density of 0
         valid = np.array(drawn.pdf) > 0

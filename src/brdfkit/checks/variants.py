@@ -29,7 +29,7 @@ def convert_to_variant_channels(values: FloatArray, material: Measured) -> Float
 
     if values.shape[1] == 1:
         return np.broadcast_to(values, (len(values), len(WAVELENGTHS) if mi.is_spectral else 1))
-    if material.channels != RGB:  # wavelengths, only in a spectral variant
+    if material.channels != RGB:  # it has wavelengths, in a spectral variant
         nm = wavelengths(material)
         order = np.argsort(nm)
         return np.stack([np.interp(WAVELENGTHS, nm[order], row) for row in values[:, order]])

@@ -146,6 +146,6 @@ def _list_texts(value: Any) -> Iterator[str]:
 
 def _resolve_existing(path: Path) -> Path | None:
     """Return the path without links of an existing file or folder, and None otherwise."""
-    with suppress(OSError, ValueError):  # a text that is no file name: too long, or with a null
+    with suppress(OSError, ValueError):  # a text that is no file name, such as a too long one
         return path.resolve() if path.is_file() or path.is_dir() else None
     return None

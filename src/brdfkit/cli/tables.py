@@ -31,7 +31,7 @@ def make_table(
     rows = [row for section in sections for row in section]
     cells = [[h, *texts] for h, *texts in zip(headers, *rows, strict=True)]
     whole = [k == 0 or column.startswith(">") for k, column in enumerate(columns)]
-    widths = _compute_widths(cells, whole, width - 3 * len(columns) + 1)  # gaps take the rest
+    widths = _compute_widths(cells, whole, width - 3 * len(columns) + 1)  # minus gaps
     if widths is None:
         return None
 

@@ -67,7 +67,7 @@ class Radius:
         self.decades = 1.03 * (highest - self.lowest)
 
     def __call__(self, values: ArrayLike) -> Any:
-        floor = 10.0**self.lowest  # unlike values below it, NaN stays NaN
+        floor = 10.0**self.lowest  # raises low values, while NaN, an unknown value, stays NaN
         return (np.log10(np.maximum(values, floor)) - self.lowest) / self.decades
 
     def ticks(self) -> AnyArray:

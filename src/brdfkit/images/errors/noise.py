@@ -103,7 +103,7 @@ class Accumulated:
         """The standard error of every pixel and channel; None for one pass, and rough for a few.
 
         If σ² is the variance of a sample, Σ w (x - mean)² over k passes is (k - 1) σ² on average,
-        and the mean has the variance σ² / Σ w.
+        and the mean has the variance σ² / Σ w, where a pass x has w samples per pixel.
         """
         if self.passes < 2:
             return None

@@ -63,7 +63,7 @@ def draw_map(axes: "Axes", audit: EnvironmentAudit, rgb: FloatArray, blocks: Int
     brightness = luminance(rgb)
     lit = brightness[brightness > 0]
     exposure = MIDDLE_GREY / np.exp(np.log(lit).mean()) if lit.size else 1
-    half = 0.5 / (audit.height - 1)  # half the height of a row of pixels, where the map's is 1
+    half = 0.5 / (audit.height - 1)  # half a row of pixels; the map from pole to pole has height 1
     extent = 0, 1, -half, 1 + half
     step = 1 + audit.height // DRAWN_ROWS
     axes.imshow(

@@ -52,7 +52,7 @@ class FilteredLight:
 
     def __init__(self, kind: type[LobeMaps | Mips], side: int) -> None:
         self.kind, self.side = kind, side
-        self.source: tuple[MitsubaObject, bytes] | None = None  # emitter, digest of its parameters
+        self.source: tuple[MitsubaObject, bytes] | None = None  # with digest of parameters
         self.directions: LightDirections | None = None
 
     def filter_if_changed(self, emitter: MitsubaObject) -> FilteredLight:

@@ -12,7 +12,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.geometry.latitude_rows import solid_angles
 
-NEGLIGIBLE = 1e-7  # weights of frequencies below this share of the largest one are left out
+NEGLIGIBLE = 1e-7  # frequencies weighted below this share of the largest weight are left out
 
 
 def row_polar_angles(height: int) -> FloatArray:
@@ -50,9 +50,9 @@ def convolve_on_sphere(
     height, width = picture.shape[:2]
     theta, rows = row_polar_angles(height), int(np.ceil(reach / np.pi * height))
     sin, cos = np.sin(theta)[:, None], np.cos(theta)[:, None]
-    turn = np.cos(np.arange(width // 2 + 1) * 2 * np.pi / width)  # half a turn suffices by symmetry
+    turn = np.cos(np.arange(width // 2 + 1) * 2 * np.pi / width)  # for half a turn, by symmetry
     light = rfft(picture * solid_angles(height, width, at_poles=False)[:, None, None], axis=1)
-    light = light.view(float)  # real and imaginary parts as columns, since weights are real
+    light = light.view(float)  # real and imaginary parts, which real weights multiply alike
     convolved = np.zeros_like(light)
     for i in range((height + 1) // 2):
         near = slice(max(i - rows, 0), i + rows + 1)

@@ -25,7 +25,8 @@ from brdfkit.lighting.filtering.scene_bsdfs import has_separate_diffuse_part, is
 from brdfkit.mitsuba_bridge.arrays import Rows, find_cell
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
-ISOTROPIC, ANISOTROPIC = (256, 1), (96, 64)  # numbers of polar angles and azimuths of views
+# Numbers of polar angles and azimuths of the views that are stored for a BSDF
+ISOTROPIC, ANISOTROPIC = (256, 1), (96, 64)
 ADJACENT = 5  # number of adjacent polar angles over which outliers of weights are removed
 
 
@@ -47,9 +48,9 @@ class ViewDirections:
         c, types, constant = split_off_constant(bsdf, si, True, has_separate_diffuse_part(bsdf))
         index = dr.arange(mi.UInt32, dr.width(si)) % directions.count
         wo, kappa, weight = directions.draw_direction(index, bsdf, si, types, constant)
-        self.constants = Rows(_stack_rows(c, 0, len(index))[:: directions.count])
-        self.lobes = Rows(_stack_rows(dr.normalize(si.wi + wo), kappa, len(index)))
-        self.weights = Rows(self._remove_weight_outliers(_stack_rows(weight, 0, len(index))))
+        self.constants = Rows(_append_number(c, 0, len(index))[:: directions.count])
+        self.lobes = Rows(_append_number(dr.normalize(si.wi + wo), kappa, len(index)))
+        self.weights = Rows(self._remove_weight_outliers(_append_number(weight, 0, len(index))))
 
     def _remove_weight_outliers(self, weights: FloatArray) -> FloatArray:
         """Replace `weights` (views · directions, 4) by each direction's median in adjacent views.
@@ -121,7 +122,7 @@ def _make_surface_points(views: FloatArray) -> MitsubaObject:
     return si
 
 
-def _stack_rows(vector: JitVector, number: AnyArray | float, count: int) -> FloatArray:
-    """Combine a vector or colour (grey in mono variants) and a number to an array (count, 4)."""
+def _append_number(vector: JitVector, number: AnyArray | float, count: int) -> FloatArray:
+    """Append a number to a vector or colour (grey in mono variants): an array (count, 4)."""
     three = np.broadcast_to(np.array(vector), (3, count))
     return np.column_stack([*three, np.broadcast_to(np.array(number), count)])

@@ -134,7 +134,8 @@ class Steps:
 
     def probability(self, i: JitFloat) -> JitFloat:
         """Return the probability P̂(i) of the block with the rank `i`."""
-        clip = self.maths.clip  # both factors below are 1 in the step, and one is 0 outside it
+        clip = self.maths.clip
+        # Both clipped factors are 1 for the ranks in a step, and one of them is 0 outside it
         return sum(
             share / n * clip(i + 1 - first, 0, 1) * clip(first + n - i, 0, 1)
             for first, n, _, share in self._list_steps()

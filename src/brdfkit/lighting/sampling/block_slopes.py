@@ -39,7 +39,7 @@ def _fit_slope(
     whole = sums.sum_values(boxes)
     start, end = boxes[:, axis], boxes[:, axis + 1]
     half = np.zeros(len(boxes))
-    # The first half; of an odd number of cells, the middle one counts half
+    # Sum the first half of each block; of an odd number of cells, the middle one counts half
     for middle in ((start + end) // 2, (start + end + 1) // 2):
         part = boxes.copy()
         part[:, axis + 1] = middle

@@ -34,7 +34,7 @@ METHODS = {
     "kde": fit_kde_lobes,
     "warped": fit_warped_lobes,
 }
-LARGEST_THETA_O = np.radians(88)  # largest angle of a view; few pixels of a ball exceed it
+LARGEST_THETA_O = np.radians(88)  # largest angle of a view [rad]; few pixels of a ball exceed it
 
 
 @dataclass(frozen=True)
@@ -46,12 +46,12 @@ class LobeTable:
     to be turned about z by the azimuth of the view, so that neighbouring views have similar axes.
     """
 
-    theta_o: FloatArray = field(repr=False)  #: (nθ,) [rad], evenly from 0, below π/2
-    phi_o: FloatArray = field(repr=False)  #: (nφ,) [rad], evenly from 0 around the circle
+    theta_o: FloatArray = field(repr=False)  #: (nθ,) polar angles of views [rad], from 0
+    phi_o: FloatArray = field(repr=False)  #: (nφ,) azimuths of views [rad], from 0
     diffuse: FloatArray = field(repr=False)  #: (views, channels) albedo of the diffuse part
     weights: FloatArray = field(repr=False)  #: (views, lobes, channels) integral of each lobe
-    axes: FloatArray = field(repr=False)  #: (views, lobes, 3) unit vectors, z along the normal
-    kappa: FloatArray = field(repr=False)  #: (views, lobes) concentrations
+    axes: FloatArray = field(repr=False)  #: (views, lobes, 3) unit vectors; z: normal
+    kappa: FloatArray = field(repr=False)  #: (views, lobes) concentration of each lobe
 
     def interpolate_lobes(
         self, wo: FloatArray
@@ -126,7 +126,7 @@ def fit_lobe_table(
     phi_o = np.arange(to_whole_number("azimuths", azimuths, least=1)) * 2 * np.pi / azimuths
     grid = [[sample_view(brdf, theta, phi) for theta in theta_o] for phi in phi_o]
     by_azimuth = METHODS[method](grid, lobes)
-    # From [azimuth][theta] of four arrays to four arrays (views, ...), the azimuth fastest
+    # `by_azimuth` has four arrays per view; stack them over all views, with the azimuth fastest
     return LobeTable(
         theta_o,
         phi_o,

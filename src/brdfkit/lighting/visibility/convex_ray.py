@@ -39,7 +39,7 @@ def find_ray_entry(
     # Distances t count from the ray's point nearest to the centre, which is accurate for a far `o`
     middle = -dr.dot(o, d)
     nearest = o + middle * d
-    half = dr.safe_sqrt(1 + EPSILON - dr.squared_norm(nearest))  # half the ray's length in it
+    half = dr.safe_sqrt(1 + EPSILON - dr.squared_norm(nearest))  # t is ±half on the unit sphere
     start = dr.select(active & (half > 0), mi.UInt32(GOING), mi.UInt32(MISSED))
 
     def step_to_plane(t: JitFloat, state: JitInt, count: JitInt) -> tuple[JitFloat, JitInt, JitInt]:

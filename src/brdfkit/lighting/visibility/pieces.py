@@ -11,7 +11,7 @@ from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
 
 WIDE_HOLE = 0.3  # a hole wider than this share of the mesh's longest side may be an opening
-COVERED = 0.75  # smallest winding number in the middle of a hole that the mesh surrounds
+COVERED = 0.75  # smallest winding number in the middle of a hole that other pieces cover
 
 
 def split_solids(

@@ -83,7 +83,7 @@ def visible_share(
     def add_ray(
         i: JitInt, seen: JitColour, total: JitColour
     ) -> tuple[JitInt, JitColour, JitColour]:
-        # The inverse of the lobe's distribution of cosθ, at the middles of equal probabilities
+        # The rays have the cosines that divide the lobe into rings of equal probability
         x = (mi.Float(i) + 0.5) / rays
         cos = 1 + dr.log(x + (1 - x) * dr.exp(-2 * kappa)) / kappa
         sin = dr.safe_sqrt(1 - cos * cos)
