@@ -85,7 +85,8 @@ class SmoothSpectrum:
     """A function (rgb, si) → spectrum of a linear sRGB colour in a spectral variant.
 
     It is the sum of three basis spectra, times R, G and B. Since it is linear, a mean of colours
-    has the mean of their spectra; under D65 it is exact. [Mallett & Yuksel 2019]
+    has the mean of their spectra. Under D65 the spectrum has the colour exactly.
+    [Mallett & Yuksel 2019]
     """
 
     def __init__(self) -> None:

@@ -31,7 +31,7 @@ class Declaration:
 
     @classmethod
     def more_parameters(cls) -> dict[str, Parameter | None]:
-        """Return the parameters that the model has with the present values of its options, by name.
+        """Return the additional parameters, by name, that the present values of the options bring.
 
         A model overrides this, and reads its options as attributes of `cls`. None removes a
         parameter that the class declares.

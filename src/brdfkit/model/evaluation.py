@@ -24,9 +24,10 @@ def evaluate_model(model: Any, wi: ArrayLike, wo: ArrayLike) -> AnyArray:
 
 
 def mix_lobes(model: Any, weights: AnyArray, wi: AnyArray, wo: AnyArray) -> AnyArray:
-    """Compute the BRDF (n, channels) in sr⁻¹ with other `weights` (lobes, channels) than its own.
+    """Compute the BRDF (n, channels) in sr⁻¹ with `weights` (lobes, channels) of the caller.
 
-    The direction pairs `wi` and `wo` (n, 3) have to be above the surface.
+    They take the place of the model's own weights. The direction pairs `wi` and `wo` (n, 3) have to
+    be above the surface.
     """
     plain, squared = compute_lobe_values(model, wi, wo)
     values = plain @ weights + squared @ weights**2

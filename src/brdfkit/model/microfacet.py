@@ -67,7 +67,10 @@ class Beckmann:
     alpha_v: Any
 
     def gauss(self, h: JitVector) -> JitFloat:
-        """Return the factor exp(-tan²θ_h/α²) of D, which Ward's models use without the others."""
+        """Return the Gaussian factor of D, exp(-tan²θ_h/α²) with the angle θ_h of h to the normal.
+
+        Ward's models use it without the other factors of D.
+        """
         return dr.exp(-_scaled_slope_squared(h, self.alpha_u, self.alpha_v))
 
     def D(self, h: JitVector) -> JitFloat:

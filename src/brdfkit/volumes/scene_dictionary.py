@@ -10,7 +10,7 @@ from brdfkit.core.jit.llvm import use_variant
 from brdfkit.volumes.transfer.transfer_function import TransferFunction, TransferLike
 from brdfkit.volumes.transfer.windows import scale_transfer_to_values
 
-Volume = Any  # the class in `volume.py`, which imports this file
+Volume = Any  # the class in `volume.py`; its import would be circular
 
 
 def make_scene_dict(volume: Volume, transfer: TransferLike | None) -> dict[str, Any]:

@@ -27,7 +27,7 @@ class BsdfMaterial:
 
     @classmethod
     def from_dictionary(cls, entries: dict[str, Any]) -> BsdfMaterial:
-        """Return the material of a dictionary; its name is the entry "name" or else "type".
+        """Make the material from Mitsuba's dictionary; its name is the entry "name" or else "type".
 
         Raises `BrdfkitError` for a dictionary without "type".
         """

@@ -67,7 +67,7 @@ class HalfVectorTable:
         incidence = self._choose_incidence(wi, u.z)
         row, x = _draw_cell(self.rows, incidence * n_h, n_h, u.x)
         column, y = _draw_cell(self.columns, (incidence * n_h + row) * n_p, n_p, u.y)
-        # Computed with 1 - cosθ_h, which keeps its digits near the normal
+        # The polar angle is drawn as 1 - cosθ_h, which keeps its digits near the normal
         versine = dr.lerp(self.edges.at(row), self.edges.at(row + 1), x)
         sine = dr.safe_sqrt(versine * (2 - versine))
         sin_phi, cos_phi = dr.sincos(azimuth(wi) + (column + y) / n_p * (2 * dr.pi))

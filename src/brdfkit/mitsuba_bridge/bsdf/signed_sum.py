@@ -25,7 +25,7 @@ WAVELENGTHS = (450.0, 520.0, 590.0, 650.0)
 def tabulate_lobe_sum(model: Model, weights: AnyArray, lobes: list[int]) -> HalfVectorTable:
     """Return a table of the sum of some lobes of a model, clamped at 0, to draw directions from.
 
-    `model` has its shape parameters; `weights` (lobes of the model, channels) has a row for every
+    `model` gives the shape parameters. `weights` (lobes of the model, channels) has a row for every
     lobe of the model, and `lobes` are the indices of the lobes in the sum.
     """
     weights = weights[lobes]

@@ -20,7 +20,7 @@ HIGHLIGHT, RETROREFLECTION = (8.0, 1.0, 1.0), (4.0, 4.0, 4.0)
 def to_isotropic_points(wi: AnyArray, wo: AnyArray, scales: ArrayLike = HIGHLIGHT) -> AnyArray:
     """Map direction pairs (n, 3) on an isotropic material to points (n, 3), times `scales`."""
     theta_h, theta_d, _ = to_half_difference(wi, wo)
-    # It equals 2 sinθ_h sinθ_d |cos φ_d|, without the angle φ_d, which is undefined where θ_h = 0
+    # The difference equals 2 sinθ_h sinθ_d |cos φ_d|, but needs no φ_d, undefined where θ_h = 0
     cosine_difference = np.abs(wi[:, 2] - wo[:, 2])
     return np.stack([theta_h, np.sin(theta_d), cosine_difference], axis=-1) * scales
 

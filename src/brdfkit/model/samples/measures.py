@@ -12,8 +12,8 @@ Here s = sinθ_h sinθ_d cosθ_d is the density of solid angle in the angles. A 
 two numbers, the amounts of angles and of solid angle that it represents.
 
 Formats and tables with a known grid state the extents of their samples. For scattered samples they
-are estimated: points are spread over all pairs of directions, and the volume of each point is added
-to the extents of the nearest sample, if one is near.
+are estimated: points are spread over all pairs of directions, and the amounts that a point
+represents are added to the extents of the nearest sample, if one is near.
 """
 
 from functools import cache

@@ -56,7 +56,7 @@ def read_header(file: VolumeFile) -> StoredVolume:
 
 
 def _parse_dtype(file: VolumeFile, given: Any) -> DType:
-    """Convert the type `given` by the user to NumPy's; raise `BrdfkitError` unless it is real."""
+    """Convert the user's dtype, `given`, to NumPy's; raise `BrdfkitError` if it has no numbers."""
     try:
         dtype: DType = np.dtype(given)
     except TypeError:

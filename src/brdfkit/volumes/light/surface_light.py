@@ -44,7 +44,7 @@ def _sample_emitters(
     is_free: IsFree,
     active: JitMask,
 ) -> JitColour:
-    """Return the reflected light from a direction that the scene's emitters draw, weighted."""
+    """Return the weighted light that is reflected from a direction drawn by the emitters."""
     import mitsuba as mi
 
     active = active & mi.has_flag(bsdf.flags(), mi.BSDFFlags.Smooth)
@@ -65,7 +65,7 @@ def _sample_bsdf(
     is_free: IsFree,
     active: JitMask,
 ) -> JitColour:
-    """Return the reflected light from a direction that the BSDF draws, weighted."""
+    """Return the weighted light that is reflected from a direction drawn by the BSDF."""
     import mitsuba as mi
 
     context = mi.BSDFContext()

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from brdfkit.core.array_types import AnyArray, ArrayLike, BoolArray, FloatArray
 from brdfkit.core.geometry.multilinear import find_bracket, list_corners
 
-Volume = Any  # the class in `volume.py`, which imports this file
+Volume = Any  # the class in `volume.py`; its import would be circular
 
 LAYERS = 16  # number of layers whose gradients are computed at a time, to save memory
 

@@ -81,8 +81,8 @@ def attach_crossing_derivatives(
 ) -> JitFloat:
     """Return the distance `t` at which f crosses 0 with its derivatives: dt = -df / slope.
 
-    `slope` is df/dt at the crossing, without derivatives. Where it is 0 or less, the ray grazes the
-    surface f = 0, and t gets no derivatives.
+    df is the change of f at a constant t. `slope` is df/dt at the crossing, without derivatives.
+    Where it is 0 or less, the ray grazes the surface f = 0, and t gets no derivatives.
     """
     here = f(dr.detach(t))
     change = (here - dr.detach(here)) / dr.select(slope > 0, slope, 1)

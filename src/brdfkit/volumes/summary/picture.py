@@ -12,7 +12,7 @@ from brdfkit.volumes.summary.histograms import PARTS
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 from brdfkit.volumes.transfer.windows import scale_transfer_to_values
 
-VolumeSummary = Any  # the class in `summary.py`, which imports this file
+VolumeSummary = Any  # the class in `summary.py`; its import would be circular
 Reach = tuple[float, float, float, float]  # first and last value, first and last gradient
 
 SIZE = 10.4, 7.2  # inches

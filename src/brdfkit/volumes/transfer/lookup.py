@@ -44,7 +44,7 @@ class TransferLookup:
         self.table = mi.TensorXf(function.table(n))
         self.extinction = mi.Float(function.extinction)
         ranges: list[Any] = [function.range, function.gradient_range]
-        sizes = self.table.shape[-2::-1]  # n, and m if the function depends on gradients
+        sizes = self.table.shape[-2::-1]  # numbers of values, and of gradients if any
         # The ends of the range are the centres of the first and last texel
         self.axes = [
             (mi.Float(low), mi.Float((size - 1) / size / (high - low)), 0.5 / size)

@@ -39,7 +39,7 @@ class Preintegration:
         import mitsuba as mi
 
         flat, place = table.array, dr.arange(mi.UInt32, len(table.array))
-        alpha = dr.gather(mi.Float, flat, place | 3)  # A in the row of each number
+        alpha = dr.gather(mi.Float, flat, place | 3)  # A of the row of each number
         self.steps = table.shape[0] - 1
         self.rows = dr.select((place & 3) == 3, alpha, flat * alpha)
         first = dr.gather(mi.Float, self.rows, place & 3)
@@ -65,10 +65,11 @@ class Preintegration:
         return x, row, before + share * (low + row) / 2
 
     def mean_between(self, front: Any, back: Any) -> JitVector:
-        """Return the means (4) of A·RGB and A between two values, results of `integrate_up_to`.
+        """Return the means of A·R, A·G, A·B and A between two values.
 
-        If the values are less than a step apart, it is the mean of both rows, since the difference
-        of the integrals would be lost in rounding.
+        `front` and `back` are the results of `integrate_up_to` at both values. If these are less
+        than a step apart, the result is the mean of both rows, since the difference of the
+        integrals would be lost in rounding.
         """
         (x0, row0, s0), (x1, row1, s1) = front, back
         within0, within1 = (dr.clip(x, 0, self.steps) for x in (x0, x1))
@@ -108,7 +109,7 @@ def has_narrow_peaks(table: AnyArray, reach: float) -> bool:
     """Return whether a `table` (n, 4) of RGBA has peaks or jumps that samples would miss.
 
     `reach` is the distance of samples in steps of the table. The table has peaks if it deviates
-    from its moving mean over the reach by more than THIN of its largest value.
+    from its moving mean over the reach by more than the share THIN of its largest value.
 
     >>> peak = np.ones((100, 4)) * (np.arange(100) == 50)[:, None]
     >>> has_narrow_peaks(peak, 4.0), has_narrow_peaks(np.linspace(0, 1, 400).reshape(100, 4), 4.0)

@@ -135,7 +135,7 @@ class TransferFunction(Conversions):
         return (1 - s) * lower + s * upper
 
     def table(self, n: int = 1024, m: int = 64) -> NDArray[np.float32]:
-        """Tabulate RGBA at `n` evenly spaced values, and at `m` gradient magnitudes if it has them.
+        """Tabulate RGBA at `n` even steps of values, and at `m` of gradient magnitudes if any.
 
         The shape is (n, 4) or (m, n, 4). The table includes both ends of the ranges, which are thus
         the centres of a texture's first and last texel. Details narrower than a step are lost.
