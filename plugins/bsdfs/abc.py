@@ -4,12 +4,12 @@
 
 N, L, V and H are the normal, the directions of light and view, and the half vector. This is the
 microfacet ABC model [Löw et al. 2012, eq. 15], with the factor 1/π of the fits that its authors
-published. Its weight `specular_reflectance` is A. The distribution D is not normalised: the albedo
-is roughly proportional to A/B. F is the Fresnel reflectance of a dielectric in unpolarised light,
-as in the paper, and G the shadowing of V-grooves, both in the form of [Cook & Torrance 1982]. With
-C = 2 the peak is close to a GGX peak of width α = √(2/B). It suits polished metals, paints and
-plastics, whose highlights may have longer or shorter tails than with GGX. It has no anisotropy and
-no retro-reflection.
+published. Its weight `specular_reflectance` is A. B sets the sharpness of the highlight, C the
+steepness of its tails. The distribution D is not normalised: the albedo is roughly proportional to
+A/B. F is the Fresnel reflectance of a dielectric in unpolarised light, as in the paper, and G the
+shadowing of V-grooves, both in the form of [Cook & Torrance 1982]. With C = 2 the peak is close to
+a GGX peak of width α = √(2/B). It suits polished metals, paints and plastics, whose highlights may
+have longer or shorter tails than with GGX. It has no anisotropy and no retro-reflection.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class PowerDistribution:
         return dr.exp(-self.C * self._log_denominator(h))
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
-        # x = log(1 + B (1 - cosθ_h)) has a density proportional to exp(q x)
+        # Draws x = log(1 + B (1 - cosθ_h)) with a density proportional to exp(q x); cosθ_h follows
         q = self._integral_exponent()
         x = log1p(u.x * expm1(q * log1p(self.B))) / q
         complement = dr.minimum(expm1(x) / self.B, 1)

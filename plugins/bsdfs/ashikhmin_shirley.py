@@ -7,10 +7,11 @@
     diffuse=coupled   f_d = 28 k_d / 23π (1 - F₀) (1 - (1 - N·L/2)⁵) (1 - (1 - N·V/2)⁵)
 
 N, L, V and H are the normal, the directions of light and view, and the half vector, φ_h its
-azimuth. [Ashikhmin & Shirley 2000]; [Kurt 2007, eqs. 3.13-3.17]. The paper has the coupled f_d,
-which becomes darker where the highlight becomes brighter, and no k_s. With fresnel=coloured, k_d
-includes the factor 1 - F₀ of f_d. It suits metals, brushed or not, and varnished surfaces, and has
-no retro-reflection. Where F₀ is about 1, measurements determine only the product k_s F₀.
+azimuth. n_u and n_v are the exponents along x and y, F₀ is the reflectance at normal incidence.
+[Ashikhmin & Shirley 2000]; [Kurt 2007, eqs. 3.13-3.17]. The paper has the coupled f_d, which
+becomes darker where the highlight becomes brighter, and no k_s. With fresnel=coloured, k_d includes
+the factor 1 - F₀ of f_d. It suits metals, brushed or not, and varnished surfaces, and has no
+retro-reflection. Where F₀ is about 1, measurements determine only the product k_s F₀.
 """
 
 import drjit as dr

@@ -32,7 +32,7 @@ class Burley(Model):
     roughness = shape(0.5, (0.0, 1.0), "r: roughness")
 
     def diffuse_brdf(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        rise = 2 * self.roughness * dr.square(cos_theta_d(wi, wo)) - 0.5  # F₉₀ - 1
+        rise = 2 * self.roughness * dr.square(cos_theta_d(wi, wo)) - 0.5  # F₉₀ - 1 of the formula
         entering, leaving = 1 + rise * fifth_power(1 - wi.z), 1 + rise * fifth_power(1 - wo.z)
         return entering * leaving / dr.pi
 

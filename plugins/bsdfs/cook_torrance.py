@@ -3,10 +3,10 @@
     f = k_d / π + k_s / π · D G F / ((N·L)(N·V)),   D = exp[-(tanθ_h / m)²] / (m² cos⁴θ_h)
 
 N, L and V are the normal and the directions of light and view, θ_h is the angle between N and the
-half vector, G the shadowing of V-grooves. [Cook & Torrance 1982]; [Kurt 2007, eqs. 3.28, 3.29],
-with Schlick's Fresnel reflectance F (eq. 3.16). The printed second term is four times D G F /
-4(N·L)(N·V), the form in use today: energy is conserved only for about k_d + 4 k_s ≤ 1. It suits
-metals and plastics of one roughness, and has no anisotropy.
+half vector, m the rms slope of the facets, G the shadowing of V-grooves. [Cook & Torrance 1982];
+[Kurt 2007, eqs. 3.28, 3.29], with Schlick's Fresnel reflectance F (eq. 3.16). The printed second
+term is four times D G F / 4(N·L)(N·V), the form in use today: energy is conserved only for about
+k_d + 4 k_s ≤ 1. It suits metals and plastics of one roughness, and has no anisotropy.
 """
 
 from brdfkit.core.array_types import JitFloat, JitVector
@@ -37,7 +37,7 @@ class CookTorrance(FresnelModel):
     def lobes(self) -> tuple[Lobe, ...]:
         slopes = Beckmann(
             self.alpha, self.alpha
-        )  # the D of this class includes the 1/π of eq. 3.28
+        )  # this distribution D includes the factor 1/π of eq. 3.28
         sampling = HalfVector(Visible(slopes))
         return lambertian(), *self.make_fresnel_lobes(
             slopes.D, self.geometry_factor, sampling, albedo=4

@@ -6,14 +6,16 @@
     G = sinθ (θ - sinθ cosθ) + 2/3 (tanθ (1 - sin³θ) - sinθ),   μ = cosθ
 
 with c₁ = 1/2 - 2/3π, c₂ = 2/3 - 28/15π. N, L and V are the normal and the directions of light and
-view, θ is the angle of either to N. E is the albedo of the first term at ρ = 1, Ē the mean of E.
+view, θ is the angle of either to N. ρ is the albedo of a facet, r the roughness. The first term is
+the light that facets scatter once; E is its albedo at ρ = 1, Ē the mean of E. The second term is
+the light that they scatter twice or more often.
 
-[Portsmouth et al. 2025]; the first term is due to [Fujii 2013]. The second term is the light that
-is scattered twice or more often. In the paper it has the factor ρ² Ē / (1 - ρ (1 - Ē)); here it has
-ρ², the same at ρ = 1, since weights enter a model only by their first and second power. So white
-surfaces reflect all light at every angle, as in the paper. The albedo of other surfaces is larger
-than in the paper, by at most 0.007 or 1.2 % (at r = 1). At r = 0 the model is Lambert's. It suits
-clay, plaster, cloth and the base layer of paints: flat, with retro-reflection, without gloss.
+[Portsmouth et al. 2025]; the first term is due to [Fujii 2013]. In the paper the second term has
+the factor ρ² Ē / (1 - ρ (1 - Ē)); here it has ρ², the same at ρ = 1, since weights enter a model
+only by their first and second power. So white surfaces reflect all light at every angle, as in the
+paper. The albedo of other surfaces is larger than in the paper, by at most 0.007 or 1.2 %
+(at r = 1). At r = 0 the model is Lambert's. It suits clay, plaster, cloth and the base layer of
+paints: flat, with retro-reflection, without gloss.
 """
 
 import math
@@ -45,7 +47,7 @@ class EON(Model):
         return self.facet_factor() * (1 + self.roughness * s / t) / dr.pi
 
     def multiple_scattering(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        # The formula with its fraction reduced by r A, a factor of 1 - E and of 1 - Ē
+        # The fraction of the formula is reduced by r A, a common factor of 1 - E and 1 - Ē
         return (
             self.roughness
             * self.facet_factor()
@@ -66,11 +68,11 @@ class EON(Model):
 
 
 def lost_albedo(cosine: JitFloat) -> JitFloat:
-    """Return (1 - E) / (r A) = c₁ - G/π, where 1 - E is the share of light that is scattered again.
+    """Return c₁ - G/π, which is 0 at the horizon; `cosine` is that of a direction to the normal.
 
-    `cosine` is the cosine of the direction's angle to the normal; the result is 0 at the horizon.
+    Times r A it is 1 - E, the share of the light that facets scatter again.
     """
     sine = dr.sqrt(dr.maximum(1 - cosine * cosine, 1e-14))
-    grazing = sine * cosine * (1 + sine + sine * sine) / (1 + sine)  # tanθ (1 - sin³θ)
+    grazing = sine * cosine * (1 + sine + sine * sine) / (1 + sine)  # tanθ (1 - sin³θ), no 0/0
     G = sine * (dr.safe_acos(cosine) - sine * cosine) + 2 / 3 * (grazing - sine)
     return C1 - G / dr.pi

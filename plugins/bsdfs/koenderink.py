@@ -6,12 +6,14 @@
     anisotropic  f = Σ a_nkml H_nkml,
                  H_nkml = [K_n^k(i) K_m^l(r) + K_n^k(r) K_m^l(i)] / √(2 + 2δ_nm δ_kl)
 
-The directions of light (i) and view (r) have the angle θ to the normal and the azimuth φ; Δφ = φ_i
-- φ_r, ρ = √2 sin(θ/2), and R are Zernike's radial polynomials. A = (1 if l > 0 else 2)(1 if n ≠ m
-else 2). The basis of one hemisphere is K_n^l = √((n+1)/2π) R_n^|l|(ρ) {√2 cos lφ, 1, √2 sin |l|φ},
-for l > 0, l = 0 and l < 0. The sum is over m ≤ n ≤ `order` with n - l even. The orders 2, 4 and 8
-have 5, 14 and 55 isotropic weights, and 21, 120 and 1035 anisotropic ones. Order 0 is Lambert's
-model with a_0_0_0 = 2 k_d. Weights may be negative; a sum below 0 is clamped at 0.
+The weights a multiply basis functions I or H, which the indices n, k, m and l number. The
+directions of light (i) and view (r) have the angle θ to the normal and the azimuth φ.
+Δφ = φ_i - φ_r, ρ = √2 sin(θ/2), and R are Zernike's radial polynomials; δ is 1 for equal indices,
+else 0. A = (1 if l > 0 else 2)(1 if n ≠ m else 2). The basis of one hemisphere is K_n^l =
+√((n+1)/2π) R_n^|l|(ρ) {√2 cos lφ, 1, √2 sin |l|φ}, for l > 0, l = 0 and l < 0. The sum is over m ≤
+n ≤ `order` with n - l even. The orders 2, 4 and 8 have 5, 14 and 55 isotropic weights, and 21, 120
+and 1035 anisotropic ones. Order 0 is Lambert's model with a_0_0_0 = 2 k_d. Weights may be negative;
+a sum below 0 is clamped at 0.
 
 [Koenderink et al. 1996]; [Koenderink & van Doorn 1998]; [Kurt 2007, section 3.1]. It suits rough,
 diffuse and retro-reflecting surfaces; a highlight would need infinitely many terms.
@@ -120,7 +122,8 @@ def _list_anisotropic(order: int) -> list[tuple[int, ...]]:
 def _make_lobe(term: Callable[..., JitFloat], index: tuple[int, ...], cosine: Cosine) -> Lobe:
     """Make the lobe of the basis function `term` with this index.
 
-    Only the constant function counts for the energy, by which lobes are chosen.
+    The energies of lobes choose between them when directions are drawn. Only the constant function
+    has an energy above 0.
     """
     constant = not any(index)
     albedo = 0.5 if constant else 0.0

@@ -70,7 +70,7 @@ def make_lobe(c_x: JitFloat, c_y: JitFloat, c_z: JitFloat, n: JitFloat) -> Lobe:
     a_x, a_y, a_z = (ratio_to_largest(c, largest) for c in (c_x, c_y, c_z))
 
     def lobe_value(wi: JitVector, wo: JitVector) -> JitFloat:
-        # 1 minus the bracket of the formula, accurate where the bracket is close to 1
+        # 1 minus the bracket of the formula; this sum is accurate where the bracket is close to 1
         complement = (
             complement_term(a_x, wi.x, wo.x)
             + complement_term(a_y, wi.y, wo.y)
@@ -93,7 +93,7 @@ def make_lobe(c_x: JitFloat, c_y: JitFloat, c_z: JitFloat, n: JitFloat) -> Lobe:
 
 
 def ratio_to_largest(c: JitFloat, largest: JitFloat) -> JitFloat:
-    """Return c / largest, or if `c` is the largest, ±1 as a constant, since its derivative is 0."""
+    """Return c / largest; it is ±1 without a derivative if `c` itself is the largest."""
     sign = dr.select(c < 0, -1, 1)
     return dr.select(dr.abs(c) == largest, sign, c / largest)
 

@@ -8,12 +8,12 @@ The plugin reads a `.bsdf` file, whose path may be relative to the scene's file;
 variants measured wavelengths are kept, and colours become smooth spectra. Negative values, which
 come from colours out of gamut, become 0.
 
-A file stores f cosθ_o, where θ_o is the angle between the outgoing direction and the normal: this
-stays finite up to the horizon. The values lie on a unit square, which is warped to the normals that
-are visible from the incident direction. Outgoing directions are drawn by the luminance on the
-square and this warp. A fiftieth of them are drawn in proportion to the cosine, because the other
-densities may be 0. Albedo images show the albedo, linear between the incident directions of the
-file, because nobody can tell which part of a measurement is diffuse.
+A file stores the BRDF f times cosθ_o, where θ_o is the angle between the outgoing direction and the
+normal: this product stays finite up to the horizon. The values lie on a unit square, which is
+warped to the normals that are visible from the incident direction. Outgoing directions are drawn by
+the luminance on the square and this warp. A fiftieth of them are drawn in proportion to the cosine,
+because the density of the others may be 0. Albedo images show the albedo, linear between the
+incident directions of the file, because nobody can tell which part of a measurement is diffuse.
 
 [Dupuy & Jakob 2018]; https://rgl.epfl.ch/materials
 """

@@ -30,9 +30,9 @@ class Mixture(Model):
 
     @classmethod
     def list_summands(cls) -> list[tuple[str, type[Model], list[str]]]:
-        """Return the models of the sum: for each its parameters' prefix, class and weights' names.
+        """Return for each model of the sum the prefix of its parameters, its class and its weights.
 
-        The weights leave out the diffuse term of every model but the first.
+        The weights are names; the diffuse term is left out for every model but the first.
         """
         named, parts = cls.models.split("+"), []
         if len(named) < 2:
@@ -64,7 +64,7 @@ class Mixture(Model):
             for name, parameter in model.parameters.items():
                 if parameter.linear and name not in brought:
                     continue
-                # A fit starts at the defaults. So equal models get unequal widths, and weights are
+                # A fit starts at the defaults, so equal models need unequal widths, and weights are
                 # divided by the number of models
                 default = parameter.default
                 if default is not None and parameter.width:

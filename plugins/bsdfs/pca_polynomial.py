@@ -37,7 +37,7 @@ PICTURE = {
     "beta_6": [-0.169, -0.117, -0.056],
     "angle_1_2": 0.492,
 }
-# Number of components → the planes in which the angles rotate them, one after the other
+# Number of components → pairs of axes, the planes in which the angles rotate one after the other
 PLANES = {2: ((0, 1),), 3: ((0, 1), (0, 2), (1, 2))}
 
 
@@ -61,7 +61,7 @@ def rotate_to_axes(products: Sequence[JitFloat], angles: Sequence[JitFloat]) -> 
 
 def find_rotation_angles(axes: FloatArray) -> list[float]:
     """Return the angles [rad] that rotate the coordinate axes onto `axes`, orthonormal rows."""
-    if np.linalg.det(axes) < 0:  # the sign of a component is arbitrary
+    if np.linalg.det(axes) < 0:  # a rotation needs det > 0; signs are arbitrary
         axes = np.vstack([axes[:-1], -axes[-1]])
     angles = [math.atan2(axes[0, 1], axes[0, 0])]
     if len(axes) == 3:

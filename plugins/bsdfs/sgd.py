@@ -58,7 +58,7 @@ class ShiftedGamma:
 
         Λ = ∫ P₂₂ (y - arctan y) / π ds over the squared slopes s with y² = s tan²θ - 1 > 0.
         """
-        # With parameters as wide as w, Dr.Jit sums derivatives over all w once, not for every node
+        # Parameters become as wide as w, so that Dr.Jit sums derivatives over w once, not per node
         wide = dr.zeros(type(w.z), dr.width(w.z))
         slopes = ShiftedGamma(self.alpha + wide, self.p + wide)
         scale = self.alpha * self.alpha * _squared_slope(w)
@@ -69,10 +69,10 @@ class ShiftedGamma:
         return 1 / (1 + above / (dr.pi * total))
 
     def _quadrature_nodes(self) -> Iterator[tuple[JitFloat, JitFloat]]:
-        """Yield the nodes of a quadrature over squared slopes s: s/α², and its share of I.
+        """Yield s/α² and a weight for each node of a quadrature over squared slopes s.
 
-        The Gauss-Legendre nodes are spread in log(1 + s/α²), with s/α between 0 and END. The shares
-        are P₂₂ without its normalisation, times the quadrature weight.
+        The Gauss-Legendre nodes are spread in log(1 + s/α²), with s/α between 0 and END. The
+        weights include P₂₂ without its normalisation, so that they add up to the integral I.
         """
         end = log1p(END / self.alpha)
         for point, gauss in zip(POINTS.tolist(), GAUSS.tolist(), strict=True):

@@ -49,7 +49,7 @@ class StudentSlopes:
         """Return Smith's auxiliary function Λ, which determines the shadowing, at a direction `w`.
 
         It is ∫ (t - cotθ)⁺ P(t) dt / cotθ, where t is the slope of a facet towards w, P the
-        one-dimensional density of t, and θ the angle of w to the normal. With
+        one-dimensional density of t, θ the angle of w to the normal, and (x)⁺ = max(x, 0). With
         a = √(γ - 1) α tanθ, v² = 1 / (1 + a²), z² = 1 - v², n = 2γ - 3 and
         c = Γ(γ - 1/2) / (√π Γ(γ - 1)), integration by parts gives
 

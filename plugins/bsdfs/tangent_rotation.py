@@ -2,8 +2,9 @@
 
     {"type": "tangent_rotation", "angle": {"type": "bitmap", ...}, "bsdf": {"type": "ward", ...}}
 
-The material may be any BSDF of Mitsuba or brdfkit. It is turned about the normal: its width
-`alpha_u` applies along the turned u axis. Within a `normalmap`, the normal is the one of the map.
+The material may be any BSDF of Mitsuba or brdfkit. It is turned about the normal by the `angle`:
+its width `alpha_u` applies along the turned u axis. A `normalmap` around the plugin gives the
+normal.
 """
 
 from typing import Any
@@ -63,13 +64,13 @@ def define(mi: MitsubaModule) -> type:
             inside, cosine, sine = self.turn_interaction(si, active)
             drawn, weight = self.bsdf.sample(ctx, inside, sample1, sample2, active)
             drawn.wo = dr.detach(turn_direction(drawn.wo, cosine, sine))
-            if not dr.is_diff_v(mi.Float):  # replace_grad of Dr.Jit crashes with Python's numbers
+            if not dr.is_diff_v(mi.Float):  # replace_grad of Dr.Jit crashes with plain numbers
                 return drawn, weight
             # The drawn direction has no derivatives: it stays fixed while the material turns
             smooth = active & (drawn.pdf > 0) & mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Smooth)
             value = self.bsdf.eval(ctx, inside, turn_direction(drawn.wo, cosine, -sine), smooth)
             pdf = dr.select(smooth, dr.detach(drawn.pdf), 1)
-            # Dr.Jit's stub knows no result of this function
+            # Dr.Jit's type stub wrongly declares that replace_grad returns None
             weight_of_value = dr.replace_grad(weight, value / pdf)  # type: ignore[func-returns-value]
             return drawn, dr.select(smooth, weight_of_value, weight)
 

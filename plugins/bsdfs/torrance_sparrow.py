@@ -4,11 +4,11 @@
     G = min(1, 2 (N·H)(N·V) / (V·H), 2 (N·H)(N·L) / (V·H))
 
 N, L, V and H are the normal, the directions of light and view, and the half vector at the angle θ_h
-to N. [Torrance & Sparrow 1967]; [Kurt 2007, eqs. 3.25-3.27], with Schlick's Fresnel reflectance F
-(eq. 3.16). The constant of the distribution D [Ramamoorthi & Hanrahan 2001] normalises D only for
-small m: ∫ D cosθ_h dω is 0.974 at m = 0.2 and 0.548 at m = 1, so that rough surfaces are too dark,
-never too bright. It suits metals and plastics of one roughness with off-specular peaks, and has no
-long tails and no anisotropy.
+to N; m is the rms inclination of the facets. [Torrance & Sparrow 1967]; [Kurt 2007, eqs.
+3.25-3.27], with Schlick's Fresnel reflectance F (eq. 3.16). The constant of the distribution D
+[Ramamoorthi & Hanrahan 2001] normalises D only for small m: ∫ D cosθ_h dω is 0.974 at m = 0.2 and
+0.548 at m = 1, so that rough surfaces are too dark, never too bright. It suits metals and plastics
+of one roughness with off-specular peaks, and has no long tails and no anisotropy.
 """
 
 from dataclasses import dataclass
@@ -38,16 +38,16 @@ class GaussianAngle:
         return dr.exp(-x * x) / (dr.pi * self.m * self.m)
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
-        theta = self.m * dr.sqrt(-log1p(-u.x * self._share_above()))
+        theta = self.m * dr.sqrt(-log1p(-u.x * self._share_above_surface()))
         sin_theta, cos_theta = dr.sincos(theta)
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
         return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 
     def pdf(self, wi: JitVector, h: JitVector, cos_d: JitFloat) -> JitFloat:
-        # The density is D θ_h / sinθ_h, divided by the share; θ_h / sinθ_h is 1 at the normal
-        return self.D(h) * _angle_to_normal(h) / (_sine_to_normal(h) * self._share_above())
+        # The density is D θ_h / sinθ_h, divided by the share of the Gaussian above the surface
+        return self.D(h) * _angle_to_normal(h) / (_sine_to_normal(h) * self._share_above_surface())
 
-    def _share_above(self) -> JitFloat:
+    def _share_above_surface(self) -> JitFloat:
         """Return the share of the Gaussian that lies at θ_h < π/2, above the surface."""
         end = dr.pi / 2 / self.m
         return 1 - dr.exp(-end * end)

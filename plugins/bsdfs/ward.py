@@ -4,10 +4,10 @@
                   / (4π α_u α_v √((N·L)(N·V)))
 
 N, L and V are the normal and the directions of light and view, θ_h and φ_h the angle of the half
-vector to N and its azimuth. [Ward 1992]; [Kurt 2007, eqs. 3.6, 3.7]. It suits brushed metal and
-satin paint, and has no Fresnel effect and no retro-reflection. At grazing angles the lobe loses
-energy up to about 88°, and gains it without bound in the last degree: at α = 0.5 it reflects 0.38
-k_s at 88° and 4.7 k_s at 89.99°.
+vector to N and its azimuth, α_u and α_v the widths along x and y. [Ward 1992]; [Kurt 2007, eqs.
+3.6, 3.7]. It suits brushed metal and satin paint, and has no Fresnel effect and no
+retro-reflection. At grazing angles the lobe loses energy up to about 88°, and gains it without
+bound in the last degree: at α = 0.5 it reflects 0.38 k_s at 88° and 4.7 k_s at 89.99°.
 """
 
 import drjit as dr

@@ -9,15 +9,19 @@ sample chooses a block, then a point in it, with a density that is linear along 
 light falls off there; in the thesis this density is constant. `to_world` may only rotate and mirror
 the map.
 
-`criterion` says which block is cut next: the block with the largest squared error over its mean,
-which is what a block adds to the variance of samples (`relative`), or one of the thesis's criteria,
-the largest squared error (`sse`), `variance` or `range`. `distribution` says how a sample chooses a
-block: `exact` walks down the tree, by the share of each block in the power. Two closed forms need
-no walk and no table: `hyperbolic` is the thesis's law with one parameter, and noisier where the
-sorted shares are not hyperbolic; `steps` has eight ranges of equal shares. `lookup` says how the
-density finds the block in a direction that a BSDF drew: `texture` stores the number of the block
-for every cell between pixels, `tree` walks down, `grid` tries the blocks that a square of a coarse
-grid lists. `compensated` is for integrators that also sample BSDFs [Karlík et al. 2019].
+`criterion` says which block is cut next. With `relative` it is the block with the largest squared
+error over its mean, which is what a block adds to the variance of samples. The thesis has three
+other criteria: the largest squared error (`sse`), `variance` and `range`.
+
+`distribution` says how a sample chooses a block. `exact` walks down the tree, by the share of each
+block in the power. Two closed forms need no walk and no table: `hyperbolic` is the thesis's law
+with one parameter, and noisier where the sorted shares are not hyperbolic; `steps` has eight ranges
+of equal shares.
+
+`lookup` says how the density finds the block in a direction that a BSDF drew. `texture` stores the
+number of the block for every cell between pixels, `tree` walks down the tree, and `grid` tries the
+blocks that a square of a coarse grid lists. `compensated` is for integrators that also sample BSDFs
+[Karlík et al. 2019].
 
 Mitsuba's samplers `stratified`, `multijitter`, `orthogonal` and `ldsampler` stratify the numbers
 that choose blocks, `independent` does not. `exact` keeps the strata; the closed forms lose most.

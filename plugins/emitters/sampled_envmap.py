@@ -45,7 +45,7 @@ class Mip:
         power = np.append(power, power[:, :1], axis=1).astype(np.float32)
         self.rows, self.columns = power.shape[0] - 1, power.shape[1] - 1
         self.warp = mi.Hierarchical2D0(power)
-        self.nbytes = 4 * round(power.size * 7 / 3)  # the map, and a pyramid of sums over it
+        self.nbytes = 4 * round(power.size * 7 / 3)  # bytes of the map and of its mip levels
 
     def sample(self, u: JitVector, active: JitMask) -> tuple[JitFloat, JitFloat, JitFloat]:
         point, density = self.warp.sample(u, active=active)
@@ -159,7 +159,7 @@ def make_alias_table(weights: FloatArray) -> tuple[FloatArray, IntArray]:
     share = weights * (n / total) if total > 0 else np.ones(n)
     thresholds, aliases = np.ones(n), np.arange(n)
     light, heavy = np.flatnonzero(share < 1), np.flatnonzero(share >= 1)
-    if min(len(light), len(heavy)) == 0:  # equal weights, except for rounding
+    if min(len(light), len(heavy)) == 0:  # up to rounding, all weights are equal
         return thresholds, aliases
     deficit, excess = np.cumsum(1 - share[light]), np.cumsum(share[heavy] - 1)
     last = len(heavy) - 1

@@ -74,7 +74,7 @@ def define(mi: MitsubaModule) -> type:
             medium: MitsubaObject = None,
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
-            # The visible surface and its own light
+            # Find the visible surface and the light that it emits
             si = scene.ray_intersect(mi.Ray3f(ray), active)
             hit = active & si.is_valid()
             emitter = si.emitter(scene)
@@ -127,7 +127,7 @@ def define(mi: MitsubaModule) -> type:
             active = active & (bs.pdf > 0)
             ray = si.spawn_ray(si.to_world(bs.wo))
 
-            # The environment in this direction, and its density
+            # Look up the environment's light in this direction, and the density of drawing it
             far = mi.SurfaceInteraction3f(si)
             far.t, far.wi = dr.inf, -ray.d
             ds = mi.DirectionSample3f(scene, far, si)

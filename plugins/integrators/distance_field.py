@@ -9,37 +9,37 @@ the integrator is the material of the field; a bsdf with a name is the material 
 `field.made_of(NAME)` names. Textures have u = x and v = y. The tangent of anisotropic materials is
 the x axis projected onto the surface, or the z axis where the x axis is normal to the surface.
 
-`shadow` is the method that finds the visible share of a lamp. Most march along a cone, which treats
-everything in the cone as one half-plane: `linear`, `base`, `discrete`, and `convex`, which takes
-longer steps in unions of convex solids. `split` marches 7 times, and is correct for several, small
-and thin objects. `hard` follows one ray to the lamp's centre, `quilez` and `aaltonen` are two
-formulas known from games, `monte_carlo` follows a number of `rays`, and `none` omits shadows. With
-`direction` A the march leads from the surface to the lamp, with B back. `epsilon` is the largest
-error of the share, within the assumptions of the method.
+`shadow` is the method that finds the visible share of a lamp. Most methods march along the cone
+from a point to the lamp and treat everything in it as one half-plane: `linear`, `base`, `discrete`,
+and `convex`, which takes longer steps in unions of convex solids. `split` marches 7 times, and is
+correct for several, small and thin objects. `hard` follows one ray to the lamp's centre, `quilez`
+and `aaltonen` are two formulas known from games, `monte_carlo` follows a number of `rays`, and
+`none` omits shadows. With `direction` A the march leads from the surface to the lamp, with B back.
+`epsilon` is the largest error of the share, within the assumptions of the method.
 
 `shading` is the method that sums up the light of a lamp. `split` has no noise: it multiplies the
 BSDF towards the lamp's centre, the radiance, a solid angle (π (r/d)² of a sphere with the radius r
 at the distance d, A cosθ / d² of other lamps with the area A) and the visible share. On shiny
 materials a large lamp then looks like a small one: rough metal with α = 0.1 is 9 % too dark beside
 a lamp with r/d = 0.2, 2 % with r/d = 0.1; highlights are correct within 6 % up to r/d = α/2 (the
-gallery has the table). `estimated` draws `samples` points of the lamp, and the edge of the shadow
-lets some of them through: highlights have the lamp's shape, and rectangles and disks are exact
-instead of the spheres about them. `exact` follows a ray to every sample and ignores `shadow`. A
-sky, `constant` or `envmap`, is always sampled in this way, and by the bsdf as well.
+gallery has the table). `estimated` draws `samples` points of the lamp and decides by the edge of
+the shadow which of them are visible. Highlights then have the lamp's shape, and rectangles and
+disks are not replaced by the spheres about them. `exact` follows a ray to every sample and ignores
+`shadow`. A sky, `constant` or `envmap`, is always sampled in this way, and by the bsdf as well.
 
 Derivatives flow to all parameters of the field (`mi.traverse` lists them, by the names of
 `field.parameters()`), to bsdfs and to lamps, through visible surfaces, their silhouettes and soft
 shadows. Mitsuba's `prb` has none of the latter two. Silhouettes are evaluated ε/2 outside of their
-true place, with ε = 2.8 pixels over the root of the samples per pixel. Derivatives do not include
-the silhouettes of lamps, nor the shadows of `estimated`, `exact` and the sky. The derivative of a
-shadow is exact for any `epsilon`; finite differences of a picture with `epsilon` = 0.05 are wrong
-at single points by 40 %.
+true place, where ε is 2.8 pixels divided by the square root of the samples per pixel. Derivatives
+do not include the silhouettes of lamps, nor the shadows of `estimated`, `exact` and the sky. The
+derivative of a shadow is exact for any `epsilon`; finite differences of a picture with `epsilon` =
+0.05 are wrong at single points by 40 %.
 
-A field with unsafe steps or values that are not finite is refused, if random walks find them
-(`check_steps`). The bound of the Mandelbulb is measured, not proven, so that rays and shadows may
-miss some detail of it. Limits: there is no light between surfaces; mirrors show the sky, but no
-lamp; light that passes through a bsdf, such as `dielectric` and `mask`, is missing, with a warning;
-a lamp casts no shadow; other shapes of Mitsuba are refused.
+Random walks test the field before it is used (`check_steps`): it is refused if its values are too
+large for safe steps or not finite. The bound of the Mandelbulb is measured, not proven, so that
+rays and shadows may miss some detail of it. Limits: there is no light between surfaces; mirrors
+show the sky, but no lamp; light that passes through a bsdf, such as `dielectric` and `mask`, is
+missing, with a warning; a lamp casts no shadow; other shapes of Mitsuba are refused.
 
 [Bálint et al. 2019]; [Wang et al. 2024]
 """
@@ -136,13 +136,13 @@ def define(mi: MitsubaModule) -> type:
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             require_vectorised("distance_field")
-            # Directly visible lamps and sky
+            # Find the lamps and the sky that are directly visible
             background = scene.ray_intersect(mi.Ray3f(ray), active)
             emitter, radiance = background.emitter(scene), mi.UnpolarizedSpectrum(0)
             if emitter is not None:
                 radiance = mi.unpolarized_spectrum(emitter.eval(background, active))
 
-            # The field in front of them
+            # March to the surface of the field in front of them
             end = dr.minimum(background.t, self.far)
             point = find_visible_point(self.now, ray, end, self.precision, active)
             light = dr.select(point.found, self.reflect_light(scene, point, sampler), radiance)

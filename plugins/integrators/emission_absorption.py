@@ -74,8 +74,8 @@ def define(mi: MitsubaModule) -> type:
             self.white = make_white_light()
             self.light: Any = make_rgb_emission() if self.has_colours else None
 
-        def eval_end(self, it: MitsubaObject, active: JitMask) -> JitVector:
-            """Return the transfer function's integrals at one end of a part, if `uses_means`."""
+        def eval_integrals_at_end(self, it: MitsubaObject, active: JitMask) -> JitVector:
+            """Return the transfer function's integrals at one end of a part, () unless needed."""
             return self.extinction.eval_integrals(it, active) if self.uses_means else ()
 
         def eval_extinction_and_emission(
@@ -127,7 +127,7 @@ def define(mi: MitsubaModule) -> type:
                 front: JitVector,
             ) -> tuple[JitFloat, ...]:
                 stop = dr.minimum(near + (mi.Float(i) + first) * step, far)
-                back = self.eval_end(make_point(stop), inside)
+                back = self.eval_integrals_at_end(make_point(stop), inside)
                 sigma, e = self.eval_extinction_and_emission(
                     front, make_point((start + stop) / 2), back, inside
                 )
@@ -136,8 +136,8 @@ def define(mi: MitsubaModule) -> type:
                 radiance = radiance + transmittance * e * (mean_transmittance(depth) * length)
                 return i + 1, radiance, transmittance * dr.exp(-depth), stop, back
 
-            # Sum up radiance and transmittance, from the nearest part to the farthest
-            start = mi.Float(near), self.eval_end(make_point(near), inside)
+            # Add up the radiance of all parts, from the nearest to the farthest
+            start = mi.Float(near), self.eval_integrals_at_end(make_point(near), inside)
             _, radiance, transmittance, *_ = dr.while_loop(
                 (mi.UInt32(0), mi.UnpolarizedSpectrum(0), mi.Float(1), *start),
                 lambda i, radiance, transmittance, *_: (

@@ -2,11 +2,11 @@
 
     L = Σ_lights ρ(ω_l, ω_o) cosθ_l E_l V,   V = 1 where a ray enters as many volumes as it leaves
 
-L is the radiance in the direction ω_o to the camera, ρ the BRDF, ω_l the direction of a light and
-E_l its irradiance. Before each picture a depth map of `resolution`² texels is made for every light.
-A silhouette lies where its depths jump by more than `jump` widths of a texel. Walls that start
-there bound the shadow; each camera ray counts the walls in front of the visible point (depth-pass)
-[McCool 2000].
+L is the radiance in the direction ω_o to the camera, ρ the BRDF, ω_l the direction of a light, E_l
+its irradiance and V its visibility. Before each picture a depth map of `resolution`² texels is made
+for every light. A silhouette lies where its depths jump by more than `jump` widths of a texel.
+Walls that start there bound the shadow; each camera ray counts the walls in front of the visible
+point (depth-pass) [McCool 2000].
 
 Any shape casts shadows in this way, with or without triangles, and the time depends on the map, not
 on meshes. The borders of shadows are jagged, like the texels, and off by some pixels; shadows

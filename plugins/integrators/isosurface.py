@@ -2,12 +2,13 @@
 
     {"type": "isosurface", "volume": {...}, "level": 110.0, "bsdf": {"type": "ggx"}}
 
-The inside of the surface is where F = V - `level` > 0, with the value V of the volume, or with A
-for a volume of the type `transfer_function`. A ray is cut into `steps` equal parts within the box
-of the volume. The first end of a part that lies inside is refined to the exact crossing, so that no
-picture shows the parts. Without this refinement the surface would lie half a part too deep, or with
-N random points on a length D, as in [Lesar 2018, eq. 6.2], by D / (N + 1). Details that are thinner
-than a part may be missed. Where the box cuts through the inside, its face is visible.
+The inside of the surface is where F = V - `level` > 0. V is the value of the volume, or for a
+volume of the type `transfer_function` its opacity. A ray is cut into `steps` equal parts within the
+box of the volume. The first end of a part that lies inside is refined to the exact crossing, so
+that no picture shows the parts. Without this refinement the surface would lie half a part too deep.
+With N random points on a length D instead of parts, as in [Lesar 2018, eq. 6.2], it would lie
+D / (N + 1) too deep. Details that are thinner than a part may be missed. Where the box cuts through
+the inside, its face is visible.
 
 The normal is -∇F, computed by differences over a voxel to each side, which is smoother than the
 derivative of the interpolated values. `bsdf` is the material, white and matte by default. Textures

@@ -14,9 +14,9 @@ and weaknesses. Their settings are parameters here; settings of techniques that 
 ignored.
 
 A bias keeps lit surfaces out of their own shadow. By default each texel is compared with the depth
-of the surface's tangent plane at the texel's centre (`plane_bias`), less the share `bias` of the
-light's way through the scene. This bias had the fewest wrong pixels in tests with low suns, curved
-objects, a street and foliage. `slope_bias` and `normal_offset` are common in games instead.
+of the surface's tangent plane at the texel's centre (`plane_bias`), minus `bias` times the length
+of the light's way through the scene. This bias had the fewest wrong pixels in tests with low suns,
+curved objects, a street and foliage. `slope_bias` and `normal_offset` are common in games instead.
 
 Derivatives by the geometry flow through the filters `variance`, `exponential_variance` and
 `moment`, including silhouettes; through filters that compare depths they are 0. Derivatives by the

@@ -2,12 +2,12 @@
 
     L = Σ_lights ρ(ω_l, ω_o) cosθ_l E_l V,   V = 1 where a ray enters as many volumes as it leaves
 
-L is the radiance in the direction ω_o to the camera, ρ the BRDF, ω_l the direction of a light and
-E_l its irradiance. Before each picture, shapes are extruded to volumes: walls from their
-silhouettes away from the light, and caps that close them [Crow 1977]. Each camera ray then counts
-the faces of the volumes, as the stencil buffer of a graphics card does for each sample of a pixel
-[Heidmann 1991]: the faces in front of the visible point (`depth_pass`) or behind it (`depth_fail`).
-Faces that the ray enters count 1, faces that it leaves -1.
+L is the radiance in the direction ω_o to the camera, ρ the BRDF, ω_l the direction of a light, E_l
+its irradiance and V its visibility. Before each picture, shapes are extruded to volumes: walls from
+their silhouettes away from the light, and caps that close them [Crow 1977]. Each camera ray then
+counts the faces of the volumes, as the stencil buffer of a graphics card does for each sample of a
+pixel [Heidmann 1991]: the faces in front of the visible point (`depth_pass`) or behind it
+(`depth_fail`). Faces that the ray enters count 1, faces that it leaves -1.
 
 `depth_fail` [Everitt & Kilgard 2002] gives the same shadows as rays to the light. `depth_pass` does
 so if the camera is not in shadow, the near plane cuts no volume, and no light passes through

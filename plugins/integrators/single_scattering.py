@@ -16,13 +16,13 @@ them through the volume. They cast shadows, even if their BSDF transmits light. 
 behind everything.
 
 Ratio tracking along a ray finds both the transmitted share of light and a collision for the rest:
-each sample includes the light from behind the volume and light that is scattered in it. Emitters
-are sampled twice, by the power heuristic: in a direction that the emitters draw (from two samples,
-mostly the brighter one is followed) and in a direction that the phase function or the BSDF draws.
-`majorants` are the bounds of σ that determine the steps: `local` has one for each coarse cell,
-which is several times faster for scans with much empty space, `global` has a single one. They are
-computed again when parameters change. An extinction above them is an error; if an error goes
-unnoticed, the pixel is NaN.
+each sample includes the light from behind the volume and light that is scattered in it. The light
+of emitters is sampled in two directions, which the power heuristic combines. The emitters draw one
+of them: they draw two candidates, of which mostly the brighter one is followed. The phase function
+or the BSDF draws the other direction. `majorants` are the bounds of σ that determine the steps:
+`local` has one for each coarse cell, which is several times faster for scans with much empty space,
+`global` has a single one. They are computed again when parameters change. An extinction above them
+is an error; if an error goes unnoticed, the pixel is NaN.
 
 `max_depth` counts as in Mitsuba's `volpath`: 1 for emitted light through the volume, 2 for single
 scattering, more for multiple scattering. The means are equal to `volpath`, except for light that
@@ -169,7 +169,7 @@ def define(mi: MitsubaModule) -> type:
                 ray, dr.select(in_medium, t, si.t), sampler, active
             )
             log_sigma = dr.log(dr.select(in_medium, sigma, 1))
-            # Dr.Jit's stub knows no result of this function
+            # Dr.Jit's type stub wrongly declares that replace_grad returns None
             one = dr.replace_grad(mi.Float(1), log_sigma - depth)  # type: ignore[func-returns-value]
             weight = (collided + passed) * one
             light += dr.select(in_medium, weight * own, 0)
@@ -218,5 +218,6 @@ def reference() -> tuple[dict[str, Any], Sequence[float] | FloatArray]:
         "sensor": make_cube_camera(),
         "sun": {"type": "directional", "direction": [0, 0, -1], "irradiance": colour},
     }
-    back = (1 - g**2) / (4 * math.pi * (1 + g**2 + 2 * g) ** 1.5)  # Henyey-Greenstein at μ = -1
+    # Henyey-Greenstein's phase function for light that is scattered straight back
+    back = (1 - g**2) / (4 * math.pi * (1 + g**2 + 2 * g) ** 1.5)
     return scene, irradiance * albedo * back * (1 - math.exp(-2 * sigma)) / 2

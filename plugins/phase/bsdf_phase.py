@@ -40,7 +40,8 @@ PARAMETERS = {
     "bsdf": declare_bsdf("f, by default white and matte; in a scene file it needs this name"),
     "density": declare_volume(1.0, "ρ, which has the gradient: the same grid as the medium's"),
 }
-ROUNDING = 1e-5  # changes of ρ below this share of ρ count as rounding errors
+# Changes of the density ρ that are below this share of ρ count as rounding errors
+ROUNDING = 1e-5
 
 
 def define(mi: MitsubaModule) -> type:
@@ -73,7 +74,7 @@ def define(mi: MitsubaModule) -> type:
         ) -> tuple[JitVector, JitColour, JitFloat]:
             si, there = self.make_surface_interaction(interaction, active)
             drawn, _ = self.bsdf.sample(self.context, si, sample1, sample2, active & there)
-            lost = there & (drawn.pdf <= 0)  # such as directions below the surface
+            lost = there & (drawn.pdf <= 0)  # the BSDF drew no direction, or one below the surface
             even = mi.warp.square_to_uniform_sphere(sample2)
             # Neither the direction nor its density in the weight has derivatives
             wo = dr.detach(dr.select(drawn.pdf > 0, si.to_world(drawn.wo), even))

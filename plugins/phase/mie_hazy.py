@@ -3,7 +3,7 @@
     p(μ) = (1 + 9 ((1 + μ) / 2)⁸) / 8π,   μ = cosine of the angle by which light is deflected
 
 Light with μ = 1 goes straight on. Sampling is exact: one half is uniform in μ, and the cumulative
-distribution of the other half has an inverse. The mean cosine is 2/5.
+distribution of the other half can be inverted. The mean cosine is 2/5.
 
 [Nishita et al. 1987]; [Lesar 2018, eq. 4.62].
 """

@@ -3,7 +3,7 @@
     p(μ) = (1 + 33 ((1 + μ) / 2)³²) / 8π,   μ = cosine of the angle by which light is deflected
 
 Light with μ = 1 goes straight on. Sampling is exact: one half is uniform in μ, and the cumulative
-distribution of the other half has an inverse. The mean cosine is 8/17.
+distribution of the other half can be inverted. The mean cosine is 8/17.
 
 [Nishita et al. 1987]; [Lesar 2018, eq. 4.63].
 """

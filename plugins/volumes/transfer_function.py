@@ -113,7 +113,8 @@ def define(mi: MitsubaModule) -> type:
                 return False
             low, high = self.function.range
             voxels_per_step = max(1, max(data.shape) / steps)
-            change = rms_neighbour_difference(data) * voxels_per_step  # of the values within a step
+            # The change of the values within a step, and the number of table entries that it covers
+            change = rms_neighbour_difference(data) * voxels_per_step
             reach = change / (high - low) * self.lookup.integrals.steps
             thin = has_narrow_peaks(np.array(self.lookup.table), reach)
             return thin and is_trilinear(self.values, data, self.to_local)
@@ -201,7 +202,7 @@ def read_function(transfer: str, values: MitsubaObject) -> TransferFunction:
     else:
         function = TransferFunction.load(resolve_file(transfer))
     channels = 1 if function.gradients is None else 2
-    count = values.channel_count() or 1  # a constvolume says 0
+    count = values.channel_count() or 1  # a constvolume reports 0
     if count != channels:
         raise BrdfkitError(
             f"transfer_function: the function {function.name} is one of {CHANNELS[channels]}, and "
