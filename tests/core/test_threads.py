@@ -102,7 +102,7 @@ def test_renders_of_several_threads_run_one_after_the_other(inside, tmp_path):
 def test_a_scene_ends_in_its_turn(monkeypatch, llvm_variant):
     """Mitsuba traces through the BSDFs of every scene, also of one that another thread frees."""
     seen = []
-    load_and_trace, trace = render_materials._load_and_trace, render_materials.trace_scenes
+    load_and_trace, trace = render_materials._load_and_trace_scenes, render_materials.trace_scenes
 
     def noted(loaded, *others):
         for scene in loaded.values():
@@ -115,7 +115,7 @@ def test_a_scene_ends_in_its_turn(monkeypatch, llvm_variant):
         return result
 
     monkeypatch.setattr(render_materials, "trace_scenes", noted)
-    monkeypatch.setattr(render_materials, "_load_and_trace", counted)
+    monkeypatch.setattr(render_materials, "_load_and_trace_scenes", counted)
     bk.render(["ward", "ggx"], size=4, spp=1)
 
 

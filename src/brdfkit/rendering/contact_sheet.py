@@ -19,14 +19,13 @@ from brdfkit.rendering.montage import (
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
-BALLS_IN_ROW = 6  # pictures in a row of a large sheet; a small one has COLUMNS, like a montage
+BALLS_IN_ROW = 6  # number of pictures in a row of a large sheet; a small sheet has COLUMNS
 
 
 def draw_contact_sheet(balls: Mapping[str, tuple[FloatArray, str]]) -> PillowImage:
-    """Draw pictures in a grid, each below its name and a line of text.
+    """Draw pictures of balls in a grid, each below its name and a line of text.
 
-    `balls` contains for each name a pair (picture, line); the pictures are (side, side, 3), linear
-    sRGB.
+    `balls` contains for each name the picture (side, side, 3), in linear sRGB, and the line.
     """
     from PIL import Image, ImageDraw
 

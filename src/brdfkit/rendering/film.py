@@ -17,13 +17,14 @@ from brdfkit.images.tone_mapping import ToneMapping
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
+# For each suffix of a film's file, Pillow's name of the format
 SUFFIXES = {
     ".gif": "GIF",
     ".png": "PNG",
     ".webp": "WEBP",
-}  # suffix of a file → Pillow's name of its format
+}
 TURN = 4.0  # duration of a whole film [s]
-SHORTEST_FRAME = 20  # duration of a frame [ms]; browsers slow down films with shorter frames
+SHORTEST_FRAME = 20  # shortest duration of a frame [ms]; browsers slow down shorter frames
 PALETTE_FRAMES = 16  # approximate number of frames from which the palette of a GIF is chosen
 
 
@@ -111,7 +112,7 @@ def find_film_suffix(path: str | Path) -> str:
 
 
 def _reduce_to_one_palette(images: list[PillowImage]) -> list[PillowImage]:
-    """Reduce images to the 256 colours that suit all of them best; without this, GIFs flicker."""
+    """Reduce images to one common palette of 256 colours; with a palette each, GIFs flicker."""
     from PIL import Image
 
     chosen = images[:: -(-len(images) // PALETTE_FRAMES)]

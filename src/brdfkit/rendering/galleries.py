@@ -21,22 +21,22 @@ from brdfkit.rendering.scene_input.arguments import Renderable, to_material_list
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-# Space above and at the left of the pictures for names, below for captions, and between columns
-# [pixels]
+# Widths of four spaces [pixels]: above the grid and at its left, for names; below each picture, for
+# the caption; and between columns
 HEAD, SIDE, BELOW, GAP = 26, 26, 22, 6
-DPI = 100  # pixels of the grid per inch of the figure
+DPI = 100  # resolution of the figure [pixels per inch]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Gallery(Shown):
     """Pictures of materials and of models fitted to them, made by `gallery`.
 
-    A gallery prints as a table of the PSNR of each fit's picture to its material's picture.
+    A gallery prints as a table of PSNRs, each of a fit's picture to the picture of its material.
 
     Attributes
     ----------
     rows : dict of str to Rendering
-        The pictures of each row by the material's name; the first one shows the material itself.
+        For each material, by name, the pictures of its row; the first shows the material itself.
     """
 
     rows: dict[str, Rendering] = field(repr=False)
@@ -65,7 +65,7 @@ class Gallery(Shown):
             draw_grid(self.rows).savefig(beside, format="png", dpi=DPI)
 
     def document(self) -> Document:
-        """Return the grid, and a table of the PSNR of each picture to its material's picture."""
+        """Return the grid, and a table of the PSNR of each fit's picture to its material's."""
         first = next(iter(self.rows.values()))
         height, width = first.pictures[first.reference].shape[:2]
         columns = ("material", *(f">{name}" for name in first.differences))
@@ -81,7 +81,7 @@ class Gallery(Shown):
 
     def _to_png(self) -> bytes:
         """Draw the grid as a PNG for notebooks."""
-        from brdfkit.core.figures import to_png  # here, because it imports matplotlib
+        from brdfkit.core.figures import to_png  # not at the top, as it imports matplotlib
 
         return to_png(draw_grid(self.rows), DPI)
 
@@ -101,7 +101,7 @@ def gallery(
     ----------
     materials : iterable of iterables of what `render` takes
         A row for each material: the material itself, which is the reference of its row, then its
-        fits, by the same models in every row.
+        fits; the models must be the same in every row.
     spp : int, default 64
         Samples per pixel.
     size : int, default 192

@@ -1,4 +1,7 @@
-"""`compare_samplers`: finds the sampler of an environment map that makes the best use of time."""
+"""`compare_samplers`: finds the sampler of an environment map that needs least time for a picture.
+
+A sampler chooses random directions in proportion to the light of the map.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +35,7 @@ SAMPLERS: dict[str, dict[str, Any]] = {
     "alias, compensated": {"type": "sampled_envmap", "sampler": "alias", "compensated": True},
 }
 SPP, SIZE, ROUNDS, FEWEST_ROUNDS = 16, 96, 10, 3
-# Noise is divided by the brightness of its pixel, but at least by this share of the mean brightness
+# Smallest brightness by which the noise of a pixel is divided, as a share of the mean brightness
 DARK = 0.01
 
 
@@ -114,7 +117,10 @@ def _measure_noise_and_time(
     seed: int,
     progress: Progress | None,
 ) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
-    """Return `SamplerComparison.noise` and `SamplerComparison.seconds` of the finished rounds."""
+    """Return the noise and the time [s] of each sampler in each finished round, (rounds,) by name.
+
+    They are the attributes `noise` and `seconds` of `SamplerComparison`.
+    """
     scenes = _load_scene_for_each_sampler(environment, material, scene, size)
     names = list(scenes)
     for loaded in scenes.values():  # the first rendering compiles, which should not be timed
@@ -131,7 +137,7 @@ def _measure_noise_and_time(
                     start = time.process_time()
                     pair[name].append(_render_luminance(scenes[name], spp, seed + 2 * r + k))
                     each.append(time.process_time() - start)
-                took[name] = min(each)  # other programs may have delayed the slower one
+                took[name] = min(each)  # other programs may have delayed the slower rendering
             pairs.append(pair)
             seconds.append(took)
             if progress:
@@ -152,7 +158,7 @@ def _measure_noise_and_time(
 def _load_scene_for_each_sampler(
     environment: str | Path, material: resolve.Material, scene: str | Path, size: int
 ) -> dict[str, MitsubaObject]:
-    """Load a `mitsuba.Scene` for each sampler, by the sampler's name."""
+    """Load the same scene with each of the samplers; return `mitsuba.Scene`s by sampler name."""
     import mitsuba as mi
 
     light, is_mesh = describe_environment(environment), bool(find_scene_suffix(scene))

@@ -20,14 +20,14 @@ from brdfkit.images.errors.colour_difference import ciede2000
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
 
-COLUMNS = 4  # pictures in a row of a montage
-TILE = 320  # narrower pictures are enlarged to this width [pixels], so that captions fit
+COLUMNS = 4  # largest number of pictures in a row of a montage
+TILE = 320  # smallest width of a picture [pixels]; narrower ones are enlarged, so captions fit
 GAP = 20  # space around each picture [pixels]
-# Pillow's mode of a page, and the colours of its ground, of names, and of the text below them
+# A page's mode in Pillow, and the colours of its ground, of names, and of the text below names
 WHITE_GROUND = "RGB", (255, 255, 255), (26, 26, 26), (105, 105, 105)
-# In a notebook the ground is transparent, and the middle grey can be read on white and on black
+# The same for a page in a notebook: transparent, with grey text that is readable on white and black
 ANY_GROUND = "RGBA", (125, 125, 125, 0), (125, 125, 125, 255), (125, 125, 125, 255)
-LARGEST_DIFFERENCE = 20  # ΔE of the brightest false colour; fixed, so montages can be compared
+LARGEST_DIFFERENCE = 20  # colour difference ΔE of the brightest false colour, in all montages
 
 
 def find_picture_suffix(path: Path) -> str:
@@ -43,7 +43,7 @@ def write_exr(rendering: Any, path: Path) -> None:
     import OpenEXR
 
     parts = []
-    # Maps the title of each part to the name of its picture and to its values
+    # For each part of the file, by title: the name of the picture to which it belongs, its values
     named = {name: (name, p) for name, p in rendering.pictures.items()}
     named |= {f"difference: {n}": (n, d) for n, d in rendering.differences.items()}
     if rendering.standard_error is not None:
@@ -64,7 +64,7 @@ def write_exr(rendering: Any, path: Path) -> None:
         parts.append(OpenEXR.Part(header, channels, to_printable(title)))
     try:
         OpenEXR.File(parts).write(str(path))
-    except RuntimeError as error:  # for example, the disk is full
+    except RuntimeError as error:  # raised by OpenEXR, for example if the disk is full
         raise OSError(str(error)) from error
 
 
@@ -124,9 +124,9 @@ def to_visible_srgb(linear: FloatArray) -> FloatArray:
 
 
 def compute_colour_differences(rendering: Any) -> dict[str, FloatArray]:
-    """Return ΔE2000 (height, width) between the reference and each other picture of a `Rendering`.
+    """Return the colour difference ΔE2000 of each picture but the reference from the reference.
 
-    The keys are the names of the other pictures.
+    The differences (height, width) are by the names of the pictures of the `Rendering`.
     """
     pictures = rendering.pictures
     reference = pictures[rendering.reference]
@@ -137,7 +137,7 @@ def _to_false_colours(difference: FloatArray) -> AnyArray:
     """Return sRGB values (height, width, 3) in 0..1 for colour differences (height, width)."""
     import matplotlib as mpl
 
-    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # where ΔE is nan
+    colours = mpl.colormaps["magma"].with_extremes(bad="magenta")  # for differences that are NaN
     return colours(difference / LARGEST_DIFFERENCE)[..., :3]
 
 
@@ -159,14 +159,14 @@ def draw_caption(
     size: int,
     inks: list[Any],
 ) -> None:
-    """Draw the name of a picture, and the line of text `below` the name.
+    """Draw the name of a picture, and the line of text `below` the name, at a `corner` (x, y).
 
     A name wider than `width` [pixels] is shortened in its middle. `size` is the size of the font
     [pixels]; `inks` are the colours of the name and of the line.
     """
     x, y = corner
     bold = _load_font(size, bold=True)
-    shown = name = to_printable(name)  # Pillow cannot measure several lines
+    shown = name = to_printable(name)  # without line breaks, which Pillow cannot measure
     keep = len(name)
     while bold.getlength(shown) > width and keep > 2:
         keep -= 1

@@ -55,7 +55,7 @@ class Progressive:
         number = self.accumulated[name].passes
         seed = np.random.SeedSequence(self.seed).generate_state(number + 1)[number]
         scene = self.scenes[name]
-        # mi.render would turn Ctrl-C into a RuntimeError, and drjit.freeze does not save time here
+        # So that Ctrl-C arrives as KeyboardInterrupt, not in a RuntimeError of mi.render
         with raise_first_cause():
             return to_rgb(scene.integrator().render(scene, seed=mi.UInt32(int(seed)), spp=spp))
 

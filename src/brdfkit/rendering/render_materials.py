@@ -31,8 +31,8 @@ from brdfkit.rendering.scene_input.arguments import (
 from brdfkit.rendering.scene_input.loading import SIZE, load_scenes
 from brdfkit.rendering.tracing import Traced, trace_scenes
 
-SPP = 256  # samples per pixel by default
-MOST_SPP = 16_384  # largest number of samples per pixel, if a noise floor is requested
+SPP = 256  # default number of samples per pixel
+MOST_SPP = 16_384  # default limit of the samples per pixel if a noise floor is requested
 Scene: TypeAlias = Callable[[dict[str, Any], tuple[int, int]], dict[str, Any]]
 SceneLike: TypeAlias = str | Path | Scene
 Renderables: TypeAlias = Renderable | Iterable[Renderable] | Node | Callable[[Any], Any]
@@ -122,15 +122,15 @@ def render(
     if file:
         return _render_scene_file(file, spp, seed, progress, noise_floor)
     spp = _to_sample_count(spp, field.SPP if is_field else SPP, noise_floor)
-    size = None if size is None else to_size(size)
+    size = None if size is None else to_picture_size(size)
     if isinstance(materials, Node):
         return _render_field(materials, spp, size or field.SIZE, seed, progress, noise_floor)
     subjects = to_material_list(materials)
     require_memory(size or SIZE, len(subjects))
-    load_mitsuba()  # the BSDF dictionaries below depend on the variant that this sets
+    load_mitsuba()  # it sets Mitsuba's variant, on which the dictionaries of BSDFs below depend
     described, parameters = describe_materials(subjects)
     where = scene, size, environment
-    traced, mask = _load_and_trace(described, where, spp, seed, progress, noise_floor)
+    traced, mask = _load_and_trace_scenes(described, where, spp, seed, progress, noise_floor)
     return to_rendering(traced, seed, noise_floor, parameters, mask)
 
 
@@ -164,7 +164,7 @@ def _render_scene_file(
     return to_rendering(traced, seed, noise_floor)
 
 
-def to_size(size: int | tuple[int, int]) -> tuple[int, int]:
+def to_picture_size(size: int | tuple[int, int]) -> tuple[int, int]:
     """Return (width, height) from a side or a pair; raise `BrdfkitError` for invalid sizes."""
     sides = (size, size) if isinstance(size, int | np.integer) else size
     try:
@@ -177,10 +177,10 @@ def to_size(size: int | tuple[int, int]) -> tuple[int, int]:
 
 
 def _to_sample_count(spp: int | None, default: int, noise_floor: float | None) -> int:
-    """Return the number of samples per pixel, or its limit if a `noise_floor` is requested.
+    """Check the user's `spp`; return the samples per pixel, or their limit with a `noise_floor`.
 
-    The `default` holds if the user gave none; the limit is at least 2, because one sample shows no
-    noise.
+    Without a `noise_floor`, a `spp` of None gives the `default`. The limit is at least 2, because
+    the noise cannot be estimated from one sample.
     """
     if noise_floor is None:
         return to_whole_number("spp", default if spp is None else spp, least=1)
@@ -194,7 +194,7 @@ def to_rendering(
     parameters: dict[str, dict[str, Any]] | None = None,
     mask: BoolArray | None = None,
 ) -> Rendering:
-    """Convert `Traced` pictures to the `Rendering` that users receive."""
+    """Convert the result of `trace_scenes` to the `Rendering` that users receive."""
     return Rendering(
         traced.pictures,
         traced.spp,
@@ -218,7 +218,10 @@ def _render_field(
     progress: PictureProgress | None,
     noise_floor: float | None,
 ) -> Rendering:
-    """Render a distance field, and free its scene before another thread renders."""
+    """Render a distance field, the graph of its `node`; return the `Rendering`.
+
+    The scene is freed when this function returns, before another thread renders.
+    """
     require_memory(size, 1)
     load_mitsuba()
     traced = trace_scenes(
@@ -228,7 +231,7 @@ def _render_field(
 
 
 @in_turn
-def _load_and_trace(
+def _load_and_trace_scenes(
     materials: dict[str, dict[str, Any]],
     where: tuple[SceneLike, tuple[int, int] | None, str | Path | None],
     spp: int,
@@ -239,9 +242,8 @@ def _load_and_trace(
     """Path-trace `materials`, BSDF dictionaries by name; return the pictures and the mask.
 
     The mask is True in the pixels that show the material. `where` is (scene, size, environment).
-    The scenes are freed when this function returns, before another thread renders: a kernel of
-    Mitsuba calls the BSDFs of all scenes in the process, even of a scene that another thread is
-    about to free.
+    The scenes must be freed when this function returns, before another thread renders: kernels of
+    Mitsuba call the BSDFs of all scenes in the process, and would call one that is being freed.
     """
     loaded, mask = load_scenes(materials, *where)
     require_memory(next(iter(loaded.values())).sensors()[0].film().size(), len(loaded))

@@ -19,7 +19,7 @@ from brdfkit.images.errors.psnr import psnr
 from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.rendering.montage import COLUMNS, TILE, draw_montage, find_picture_suffix, write_exr
 
-BILLION = 1e9  # larger estimates of the samples per pixel are printed as "more than a billion"
+BILLION = 1e9  # number of samples per pixel above which texts say "more than a billion"
 WIDEST = 1100  # largest width of the montage in a notebook [pixels]
 
 
@@ -55,7 +55,7 @@ class Rendering(Shown):
         The standard error of the reference picture, estimated from its passes; inaccurate for few
         passes, and None for one.
     shadows : str
-        Words on the shadows in pictures of `preview`, such as "no shadows"; "" for path-traced
+        A text on the shadows in pictures of `preview`, such as "no shadows"; "" for path-traced
         pictures, which contain all shadows.
     tone_mapping : ToneMapping
         The curve with which PNG files and notebooks show the pictures; by default radiance 1 is
@@ -98,7 +98,7 @@ class Rendering(Shown):
         >>> render(["car_paint", "ward"], spp=16, size=128).psnr()    # doctest: +SKIP
         {'ward': 24.6}
         """
-        return {name: self._psnr(self.pictures[name]) for name in self.differences}
+        return {name: self._compute_psnr(self.pictures[name]) for name in self.differences}
 
     @cached_property
     def noise_floor(self) -> float:
@@ -106,9 +106,9 @@ class Rendering(Shown):
 
         The PSNR of other pictures may exceed it, because they have the same seed as the reference.
         """
-        return nan if self.other_seed is None else self._psnr(self.other_seed)
+        return nan if self.other_seed is None else self._compute_psnr(self.other_seed)
 
-    def _psnr(self, picture: np.ndarray) -> float:
+    def _compute_psnr(self, picture: np.ndarray) -> float:
         """Return the PSNR [dB] of a picture to the reference, in the pixels of the mask."""
         return psnr(self.pictures[self.reference], picture, self.mask)
 
@@ -235,7 +235,7 @@ class Rendering(Shown):
         return Document(self.head, (picture, Table(tuple(self.captions.items())), *short))
 
     def drawn(self) -> bytes:
-        """Draw the montage as a WebP with a transparent ground, small enough for a notebook."""
+        """Draw the montage as the bytes of a WebP file for notebooks, on a transparent ground."""
         stream, page = io.BytesIO(), draw_montage(self, on_any_ground=True)
         page.thumbnail((WIDEST, 4 * WIDEST))
         page.save(stream, "WEBP", quality=90)

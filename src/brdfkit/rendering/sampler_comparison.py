@@ -9,7 +9,7 @@ import numpy as np
 
 from brdfkit.core.documents import Document, Paragraph, Shown, Table
 
-LEVEL = 0.05  # level of significance, for all pairs of samplers together
+LEVEL = 0.05  # p-value below which a difference is significant, for all pairs of samplers together
 COLUMNS = "sampler", ">noise", ">time [ms]", ">cost", ">± [%]", "beside the best"
 
 
@@ -25,8 +25,8 @@ class SamplerComparison(Shown):
     environment, material, scene : str
         Names of the environment map, the material and the scene that were rendered.
     noise : dict of str to ndarray, shape (rounds,)
-        Noise of each round, by sampler: the variance of a pixel divided by its squared mean, as a
-        mean over the picture.
+        Noise of each round, by sampler: for each pixel the variance divided by the squared mean,
+        averaged over the picture.
     seconds : dict of str to ndarray, shape (rounds,)
         Processor time for a picture in each round, by sampler; the lesser of two measured times.
     rounds_requested : int
@@ -58,11 +58,11 @@ class SamplerComparison(Shown):
 
     @cached_property
     def p_values(self) -> dict[str, float]:
-        """Probability, by sampler, that chance makes its cost differ so much from the best one.
+        """The p-value of each sampler: how probable so large a distance from the best cost is.
 
-        It is from Tukey's test on the logarithms of the costs, with the rounds as blocks. The test
-        holds for all pairs of samplers together, so the best sampler may be chosen from the same
-        data.
+        It is the probability if chance alone made the costs differ, by Tukey's test on the
+        logarithms of the costs, with the rounds as blocks. The test holds for all pairs of samplers
+        together, so the best sampler may be chosen from the same data.
         """
         from scipy.stats import studentized_range
 
@@ -70,19 +70,19 @@ class SamplerComparison(Shown):
         freedom = (len(logs) - 1) * (self.rounds - 1)
         p_values = {}
         for name, costs in logs.items():
-            apart = abs(costs.mean() - logs[self.best].mean()) / max(self._spread, 1e-12)
+            apart = abs(costs.mean() - logs[self.best].mean()) / max(self._standard_error, 1e-12)
             p_values[name] = (
                 float(studentized_range.sf(apart, len(logs), freedom)) if apart else 1.0
             )
         return p_values
 
     def significant(self, name: str) -> bool:
-        """Return whether a sampler's cost differs from the best one, at the level of 5 %."""
+        """Return whether a sampler's cost differs significantly (5 %) from the best cost."""
         return self.p_values[name] < LEVEL
 
     @property
-    def _spread(self) -> float:
-        """Standard error of a sampler's mean logarithm of the cost, pooled over all samplers."""
+    def _standard_error(self) -> float:
+        """Standard error of the mean of a sampler's log costs over the rounds, for all alike."""
         x = np.log([self.noise[name] * self.seconds[name] for name in self.noise])
         residuals = x - x.mean(axis=0) - x.mean(axis=1, keepdims=True) + x.mean()
         freedom = (x.shape[0] - 1) * (x.shape[1] - 1)
@@ -104,7 +104,7 @@ class SamplerComparison(Shown):
         return f"Take {self.best}: it costs {saved.partition(' costs ')[2]}{tied}."
 
     def table(self) -> list[tuple[str, ...]]:
-        """Return the texts of a row for each sampler, under the heads `COLUMNS`.
+        """Return the rows of the table as texts, a sampler each; the heads are `COLUMNS`.
 
         Noise and cost are relative to those of Mitsuba's `envmap`.
         """
@@ -116,7 +116,7 @@ class SamplerComparison(Shown):
             chance = "p < 0.001" if p[name] < 1e-3 else f"p = {p[name]:.2g}"
             beside = "best" if name == self.best else f"{said}, {chance}"
             time_of = 1e3 * float(np.median(self.seconds[name]))
-            error = 100 * np.sqrt(2) * self._spread
+            error = 100 * np.sqrt(2) * self._standard_error
             shown = f"{ratio:.2f}", f"{time_of:.0f}", f"{cost:.2f}", f"{error:.0f}", beside
             rows.append((name, *shown))
         return rows

@@ -20,10 +20,10 @@ from brdfkit.images.errors.noise import Accumulated, Halves, estimate_samples
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.rendering.progressive import Progressive
 
-# Largest number of samples per pixel in one pass. It is a power of two, so that one thread renders
-# all samples of a pixel: see `brdfkit.reporting.pictures.pictures`
+# Default limit of the samples per pixel in one pass. It is a power of two, so that one thread
+# renders all samples of a pixel, in a fixed order
 PASS = 16
-RAYS = 2**22  # largest number of camera rays in a pass, which limits memory and Ctrl-C's delay
+RAYS = 2**22  # largest number of camera rays in a pass, so that it needs little memory and time
 
 
 @dataclass(frozen=True)
@@ -54,13 +54,13 @@ def trace_scenes(
 ) -> Traced:
     """Path-trace scenes, given by name, with `spp` samples per pixel; the first is the reference.
 
-    Each pass renders every picture once, with at most `most` samples per pixel, by default PASS. If
+    Each pass renders every picture once, with at most `most` samples per pixel (default PASS). If
     `spp` is at least 2, there are at least two passes, from which the noise is estimated. With a
-    `noise_floor` [dB], measured over the `mask`, the passes end as soon as it is reached; with a
-    `limit` [s], they end after the pass in which this time is over. Then `spp` is the largest
-    number of samples.
+    `noise_floor` [dB], measured over the `mask`, the passes end as soon as it is reached. With a
+    `limit` [s], they end after the pass in which this time is over. In both cases `spp` is the
+    largest number of samples.
 
-    After Ctrl-C the pictures contain the passes that all of them have; before the first of these,
+    After Ctrl-C the pictures contain the passes that all of them have; if there is none,
     KeyboardInterrupt is raised. `progress` is called with (done, total) after each picture of a
     pass. If it has a parameter `pictures`, it also receives a function that returns the pictures so
     far.
@@ -107,9 +107,9 @@ def trace_scenes(
 def _find_progress_arguments(
     progress: Callable[..., object] | None, growing: Progressive
 ) -> dict[str, Callable[[], Any]]:
-    """Return further keyword arguments for `progress`: `pictures`, if it has such a parameter.
+    """Return the keyword argument `pictures` for `progress`, if it has a parameter of this name.
 
-    Its value is a function, so that the pictures are computed only when it is called.
+    The argument is a function, so that the pictures are computed only when it is called.
     """
     with suppress(TypeError, ValueError):  # some callables, such as built-ins, have no signature
         if progress and "pictures" in inspect.signature(progress).parameters:
@@ -132,7 +132,7 @@ def _estimate_passes_to_noise_floor(
     if noise_floor is None or done == 1:
         return len(passes)
     floor = psnr(halves.picture, halves.other_seed, mask)
-    if not floor < noise_floor:  # also if the floor is nan, because no pixel shows the material
+    if not floor < noise_floor:  # true also for NaN, if no pixel shows the material
         return done
     samples = estimate_samples(noise_floor, floor, sum(halves.spp))
     needed = np.searchsorted(np.cumsum(passes), samples) + 1
@@ -147,7 +147,7 @@ def _estimate_passes_within_time(limit: float | None, seconds: float, done: int)
 
 
 def divide_into_passes(spp: int, largest: int) -> Iterator[int]:
-    """Divide `spp` samples per pixel into passes of at most `largest` samples; yield their numbers.
+    """Divide `spp` samples per pixel into passes of at most `largest`; yield each pass's number.
 
     Each number is a product of two nearly equal integers, so that stratified samplers work well.
 

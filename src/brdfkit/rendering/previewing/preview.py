@@ -24,17 +24,17 @@ from brdfkit.core.memory import require_memory
 from brdfkit.lighting.environments.map_files import find_map
 from brdfkit.materials.resolve import Material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
-from brdfkit.rendering.previewing.cache import load_bsdf, load_through_cache
+from brdfkit.rendering.previewing.cache import load_bsdf, load_material_through_cache
 from brdfkit.rendering.previewing.scene import PreviewShape, describe_preview
 from brdfkit.rendering.progressive import to_rgb
-from brdfkit.rendering.render_materials import to_size
+from brdfkit.rendering.render_materials import to_picture_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input import mesh_file
 from brdfkit.rendering.scene_input.arguments import (
     Renderable,
     collect_parameters,
     load_mitsuba,
-    name_materials,
+    load_named_materials,
     to_material_list,
 )
 from brdfkit.rendering.scene_input.environment import describe_environment, replace_lower_half
@@ -103,25 +103,25 @@ def preview(
     >>> preview("ward", environment="probe.exr", scene="teapot.obj", size=512)    # doctest: +SKIP
     """
     size, subjects = (
-        to_size(size),
-        [load_through_cache(subject) for subject in to_material_list(materials)],
+        to_picture_size(size),
+        [load_material_through_cache(subject) for subject in to_material_list(materials)],
     )
     spp = to_whole_number("spp", spp, least=1)
     require_memory(size, len(subjects))
-    load_mitsuba()  # the BSDF dictionaries below depend on the variant that this sets
+    load_mitsuba()  # it sets Mitsuba's variant, on which the dictionaries of BSDFs below depend
     _require_valid_ray_count(spp)
     if not isinstance(scene, str | Path):
         raise BrdfkitError(f"scene = {scene!r:.60} should be a scene's name or a mesh's file.")
     return _render_preview(
-        name_materials(subjects), environment, size, scene, method, spp, bool(shadows)
+        load_named_materials(subjects), environment, size, scene, method, spp, bool(shadows)
     )
 
 
 def _require_valid_ray_count(spp: int) -> None:
     """Raise `BrdfkitError` if `spp` rays per pixel make no square grid, or give wrong colours.
 
-    In spectral variants each ray has four wavelengths, a quarter of the range apart. The rays of a
-    grid with an even number of rays have equal wavelengths, so the colours would be wrong.
+    Colours are wrong in spectral variants if all rays of a pixel have the same wavelengths: each
+    ray has four, a quarter of the range apart, and an even number of rays repeats them.
     """
     import mitsuba as mi
 
@@ -143,7 +143,7 @@ def _render_preview(
     spp: int,
     shadows: bool,
 ) -> Rendering:
-    """Render the preview of materials, which are given by name."""
+    """Render the preview of `materials`, which are given by name, with `spp` rays per pixel."""
     import mitsuba as mi
 
     start, variant = time.perf_counter(), str(mi.variant())
@@ -172,7 +172,7 @@ def _render_preview(
 
 
 def _find_time_of_change(path: str | Path) -> int | None:
-    """Return when a file was changed [ns]; None for the name of a scene or of a map."""
+    """Return the time at which a file was changed [ns], or None if the path is not a file."""
     return Path(path).stat().st_mtime_ns if Path(path).is_file() else None
 
 
@@ -182,7 +182,8 @@ def _load_light(
 ) -> MitsubaObject:
     """Load the emitter of an environment map; with `ground` its lower half shows lit ground.
 
-    `variant` and `changed`, the time of change of the map's file, only key the cache.
+    The emitter is kept in memory. `variant` and `changed`, the time of change of the map's file,
+    are keys of the cache only.
     """
     import mitsuba as mi
 
@@ -193,7 +194,10 @@ def _load_light(
 
 @lru_cache(maxsize=4)
 def _load_integrator(variant: str, method: str, shadows: bool) -> MitsubaObject:
-    """Load the integrator of previews, which keeps the light that it has filtered."""
+    """Load the integrator of previews, and keep it in memory with the light that it has filtered.
+
+    The `variant` of Mitsuba is a key of the cache only.
+    """
     import mitsuba as mi
 
     entries = {"type": "filtered_environment", "method": method}
@@ -203,8 +207,8 @@ def _load_integrator(variant: str, method: str, shadows: bool) -> MitsubaObject:
 
 @lru_cache(maxsize=4)
 def _load_shape(variant: str, scene: str | Path, changed: int | None) -> PreviewShape:
-    """Load the shape of a scene or a mesh.
+    """Load the shape of a scene or a mesh, and keep it in memory.
 
-    `variant` and `changed`, the time of change of the mesh's file, only key the cache.
+    `variant` and `changed`, the time of change of the mesh's file, are keys of the cache only.
     """
     return PreviewShape(scene)

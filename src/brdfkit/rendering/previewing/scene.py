@@ -12,7 +12,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.rendering.scene_input.environment import replace_light
 from brdfkit.rendering.scene_input.loading import find_scene
 
-# Entries of a scene's dictionary that do not belong to its shape
+# Entries of a scene's dictionary that do not belong to the shape that shows the material
 SURROUNDINGS = "sensor", "integrator", "sky", "softbox", "ground"
 
 
@@ -22,7 +22,7 @@ class PreviewShape:
     Attributes
     ----------
     build : callable
-        Function that returns the scene's dictionary for a BSDF and a size, see `find_scene`.
+        Function that returns the scene's dictionary for a BSDF and (width, height).
     """
 
     def __init__(self, scene: str | Path) -> None:

@@ -44,13 +44,13 @@ def describe_materials(
     renderables: list[Renderable],
 ) -> tuple[dict[str, dict[str, Any]], dict[str, dict[str, Any]]]:
     """Return the BSDF dictionaries and the parameter values of materials, each by unique name."""
-    materials = name_materials(renderables)
+    materials = load_named_materials(renderables)
     bsdfs = {name: material.scene_dict() for name, material in materials.items()}
     return bsdfs, collect_parameters(materials)
 
 
-def name_materials(renderables: list[Renderable]) -> dict[str, Material]:
-    """Load materials and return them by unique names."""
+def load_named_materials(renderables: list[Renderable]) -> dict[str, Material]:
+    """Load materials, and return them by their names, which are made unique."""
     materials: dict[str, Material] = {}
     for name, material in map(to_named_material, renderables):
         materials[make_unique(name, materials)] = material

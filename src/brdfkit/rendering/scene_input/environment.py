@@ -11,16 +11,18 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.latitude_rows import projected_solid_angles
 from brdfkit.lighting.environments.map_files import load_radiance
 
-ILLUMINANCE = 1.0  # illuminance of level ground, equal to that from a scene's sky and softbox
+ILLUMINANCE = 1.0  # illuminance of level ground by a map, the same as by a scene's sky and softbox
 
 
 def describe_environment(environment: str | Path) -> dict[str, Any]:
     """Return the emitter dictionary of an environment map by latitude and longitude.
 
-    `environment` is the name of a map or an HDR file. The map is scaled so that the ground receives
-    the same illuminance as in the scenes, so pictures need no other exposure. Raises `BrdfkitError`
-    for a file that is missing, that Mitsuba cannot read, or whose width is not twice its height,
-    for radiance that is negative or not finite, and for a map whose upper half is black.
+    `environment` is the name of a map or an HDR file. The map is scaled to give the ground the same
+    illuminance as the scenes' own lights, so pictures need no other exposure.
+
+    Raises `BrdfkitError` for a file that is missing or that Mitsuba cannot read, for a map whose
+    width is not twice its height, or whose upper half is black, and for radiance that is negative
+    or not finite.
     """
     import mitsuba as mi
 
@@ -32,14 +34,14 @@ def describe_environment(environment: str | Path) -> dict[str, Any]:
         "type": "envmap",
         "bitmap": mi.Bitmap(rgb),
         "scale": ILLUMINANCE / illuminance,
-        "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], 90),  # from y up in maps to z up
+        "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], 90),  # y points up in maps, here z
     }
 
 
 def replace_lower_half(light: dict[str, Any], reflectance: float) -> dict[str, Any]:
-    """Return an emitter whose lower half shows matte ground, lit by the map's upper half.
+    """Return an environment map whose lower half shows matte ground, lit by the upper half.
 
-    `light` is a dictionary from `describe_environment`, and `reflectance` that of the ground.
+    `light` is the map's dictionary from `describe_environment`, and `reflectance` is the ground's.
     """
     import mitsuba as mi
 
@@ -49,7 +51,7 @@ def replace_lower_half(light: dict[str, Any], reflectance: float) -> dict[str, A
 
 
 def _compute_ground_irradiance(rgb: FloatArray) -> FloatArray:
-    """Return the irradiance (3,) of level ground under a map (height, width, 3) of radiance."""
+    """Return the irradiance (3,) of level ground, lit by a map (height, width, 3) of radiance."""
     return projected_solid_angles(*rgb.shape[:2]) @ rgb.astype(float).sum(axis=1)
 
 

@@ -18,11 +18,11 @@ from brdfkit.distance_fields.shadows.field import bounding_sphere
 from brdfkit.materials.resolve import to_material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
-SIZE = 400, 300  # width and height of a picture by default [pixels]
-SPP = 4  # samples per pixel, which only smooth edges: the shading has no noise
-FIELD_OF_VIEW = 30.0  # angle of the picture's shorter side [degrees]
+SIZE = 400, 300  # default width and height of a picture [pixels]
+SPP = 4  # default samples per pixel; they only smooth edges, as the shading has no noise
+FIELD_OF_VIEW = 30.0  # angle of view along the picture's shorter side [degrees]
 CAMERA = (0.35, -0.85, 0.45)  # direction from the field to the camera
-# Centre and radius [radii of the bounding sphere] and radiance of each lamp
+# For each spherical lamp: centre, radius, and radiance; lengths are in radii of the bounding sphere
 LAMPS = {
     "key": ((-3.0, -2.5, 4.5), 0.7, 70.0),
     "fill": ((7.0, -5.0, 5.0), 3.0, 2.5),

@@ -16,7 +16,7 @@ from brdfkit.rendering.scene_input.material import find_material_mask, load_mate
 from brdfkit.rendering.scenes import find_scene as find_scene_by_name
 from brdfkit.rendering.scenes import scene_names
 
-SIZE = 512, 512  # width and height of a picture by default [pixels]
+SIZE = 512, 512  # default width and height of a picture [pixels]
 
 
 def load_scenes(
@@ -25,13 +25,18 @@ def load_scenes(
     size: tuple[int, int] | None = None,
     environment: str | Path | None = None,
 ) -> tuple[dict[str, MitsubaObject], BoolArray | None]:
-    """Load a `mitsuba.Scene` for each material, and the mask of the pixels that show the material.
+    """Load a scene once for each material; return the scenes, and a mask of the pixels that matter.
 
-    `materials` are BSDF dictionaries by name, and the scenes have the same names. `scene` is an
-    argument of `find_scene`. `size` is (width, height) [pixels], by default 512 × 512, or the size
-    in a scene file. `environment` is the name or file of an environment map. The mask is (height,
-    width); it is None if the user gave a function as the scene, which receives the BSDF dictionary
-    itself. Raises `BrdfkitError` for anything that cannot be loaded.
+    The scenes are `mitsuba.Scene`s, by the names of the materials. The mask (height, width) is True
+    in pixels that show the material; it is None if `scene` is a function, which receives the BSDF
+    dictionary itself.
+
+    materials : BSDF dictionaries by name.
+    scene : a scene's name, file or function, as `find_scene` takes it.
+    size : (width, height) [pixels]; by default 512 × 512, or the size in a scene file.
+    environment : the name or file of an environment map that replaces the scene's light.
+
+    Raises `BrdfkitError` for anything that cannot be loaded.
     """
     import mitsuba as mi
 
@@ -46,7 +51,7 @@ def load_scenes(
         built = build(material or bsdf, size)
         built = replace_light(light, built) if light else built
         if material and isinstance(built, dict) and "sky" in built:
-            # Kernels contain the number of the emitter: one emitter for all scenes saves compiling
+            # All scenes share one emitter: with another emitter, kernels would be compiled again
             sky = sky or load_by_mitsuba(mi.load_dict, built["sky"], name)
             built["sky"] = sky
         loaded = load_by_mitsuba(mi.load_dict, built, name) if isinstance(built, dict) else built
@@ -58,7 +63,10 @@ def load_scenes(
 
 
 def require_scene(scene: Any, environment: str | Path | None = None) -> None:
-    """Raise `BrdfkitError` for a missing scene or environment map, before a long computation."""
+    """Raise `BrdfkitError` if a scene or an environment map does not exist.
+
+    So a long computation can fail before it begins.
+    """
     find_scene(scene)
     if environment is not None:
         find_map(environment)

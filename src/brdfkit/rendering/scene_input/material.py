@@ -38,7 +38,7 @@ def find_material_mask(scene: MitsubaObject, material: MitsubaObject) -> BoolArr
         ray, _ = sensor.sample_ray(0.0, 0.5, place, mi.Point2f(0.5))
         return scene.ray_intersect_preliminary(ray).shape
 
-    if str(mi.variant()).startswith("scalar"):  # scalar variants trace single rays only
+    if str(mi.variant()).startswith("scalar"):  # scalar variants can only trace rays one by one
         shapes = (find_shape(mi.Point2f(*p)) for p in zip(x.flat, y.flat, strict=True))
         mask = np.array([s is not None and s.bsdf() is material for s in shapes])
     else:

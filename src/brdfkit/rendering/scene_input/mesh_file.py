@@ -19,13 +19,13 @@ from brdfkit.rendering.scenes._meshes import make_mesh
 from brdfkit.rendering.scenes._studio import make_studio
 
 SUFFIXES = ".obj", ".ply"
-SIZE = 2.0  # longest side of the mesh's bounding box in the scene, as large as the ball's
-SHARP_ANGLE = np.radians(35)  # largest angle between a face's normal and the one at its corner
-SMALLEST_AREA = 1e-12  # smallest area of a face, for a mesh whose longest side is 1
-FOOT_HEIGHT = 0.02  # vertices below this share of the mesh's height touch the ground
-FOOT_SHARE = 0.1  # smallest area of a foot, relative to the mesh's outline from above
+SIZE = 2.0  # longest side of the mesh's bounding box in the scene, the diameter of the ball [m]
+SHARP_ANGLE = np.radians(35)  # angle between a corner's and its face's normal at a sharp edge
+SMALLEST_AREA = 1e-12  # smallest area of a face, as a share of the squared longest side of the mesh
+FOOT_HEIGHT = 0.02  # share of the mesh's height below which a vertex counts as on the ground
+FOOT_SHARE = 0.1  # smallest area of a foot, as a share of the mesh's outline from above
 
-# Rotations (axis, degrees) that turn the file's upward axis to z
+# For each axis of a file that may point up: the rotation (axis, degrees) that makes z point up
 TURNS: dict[str, tuple[list[int], int]] = {
     "x": ([0, 1, 0], -90),
     "y": ([1, 0, 0], 90),
@@ -36,28 +36,29 @@ TURNS: dict[str, tuple[list[int], int]] = {
 def make_mesh_scene(source: str | Path) -> Callable[..., dict[str, Any]]:
     """Return a function (bsdf, size) that makes the dictionary of a scene with the mesh of a file.
 
-    `source` is the file, "FILE.obj", or the file with the axis that points up, "FILE.obj#z".
-    Without an axis it is guessed (`guess_up_axis`). If y points up, z points to the camera. The
-    mesh is scaled to the size of the ball and stands on the ground. Missing normals are computed.
-    An anisotropic material is brushed along the texture coordinate u, or around the vertical axis
-    if the mesh has no texture coordinates. Raises `BrdfkitError` for a missing file, for a file
-    that is no such mesh, for faces with missing vertices or without an area, and for an unknown
-    axis.
+    `source` is the file, "FILE.obj", or the file with the axis that points up, "FILE.obj#z"; by
+    default the axis is guessed. If y points up, z points to the camera. The mesh is scaled to the
+    size of the ball, and stands on the ground. Missing normals are computed. An anisotropic
+    material is brushed along the texture coordinate u, or around the vertical axis if the mesh has
+    no texture coordinates.
+
+    Raises `BrdfkitError` for a missing file, for a file that is no mesh, for faces with missing
+    vertices or without an area, and for an unknown axis.
     """
     name, _, up = str(source).partition("#")
     if up and up not in TURNS:
         raise BrdfkitError(f"{source}: the axis that points up, behind the #, is x, y or z.")
     path = require_file(name)
-    # The mesh is read once, because it is the same for every material
+    # The list keeps the mesh after the first call, because it is the same for every material
     meshes: list[tuple[FloatArray, FloatArray, FloatArray, IntArray]] = []
 
-    def build(
+    def build_scene(
         bsdf: dict[str, Any] | MitsubaObject, size: tuple[int, int] = (512, 512)
     ) -> dict[str, Any]:
         meshes[:] = meshes or [read_mesh(path, up)]
         return make_studio(size) | {"mesh": make_mesh(*meshes[0], bsdf=bsdf)}
 
-    return build
+    return build_scene
 
 
 def read_mesh(path: Path, up: str = "") -> tuple[FloatArray, FloatArray, FloatArray, IntArray]:
@@ -75,7 +76,8 @@ def read_mesh(path: Path, up: str = "") -> tuple[FloatArray, FloatArray, FloatAr
             plugin = {"type": path.suffix.lower()[1:], "filename": str(file)}
             return mi.traverse(load_by_mitsuba(mi.load_dict, plugin | settings, path))
 
-        # First without normals, because Mitsuba cannot compute them for empty or very small faces
+        # To find its size, the mesh is first loaded without normals: Mitsuba cannot compute normals
+        # if faces are missing or very small
         points, faces = _read_points_and_faces(load_mesh(face_normals=True), path)
         middle, extent = _find_bounding_box(points, faces, path)
         to_world = mi.ScalarTransform4f().rotate(
@@ -84,7 +86,7 @@ def read_mesh(path: Path, up: str = "") -> tuple[FloatArray, FloatArray, FloatAr
         to_world = to_world.scale([SIZE / extent] * 3).translate((-middle).tolist())
         buffers = load_mesh(to_world=to_world)
 
-    # From here on faces share no vertices: arrays are (faces, corners, 3), in the scene's axes
+    # In the arrays (faces, corners, 3) below, faces share no vertices; coordinates are the scene's
     points, faces = _read_points_and_faces(buffers, path)
     faces = faces[_compute_triangle_areas(points, faces) > SMALLEST_AREA * SIZE**2]
     normals, uv = (
@@ -150,22 +152,22 @@ def _compute_triangle_areas(points: FloatArray, faces: IntArray) -> FloatArray:
 
 
 def _keep_sharp_edges(normals: FloatArray, points: FloatArray) -> FloatArray:
-    """Return the normals (m, 3, 3) at the corners of faces, without smoothing across sharp edges.
+    """Return the normals at the corners of faces, without smoothing across sharp edges.
 
     If the normal at a corner differs much from the face's own normal, the edge is meant to be
-    sharp, and the face's own normal replaces it.
+    sharp, and the face's own normal replaces it. All arrays are (faces, 3 corners, 3).
     """
     flat = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
     flat /= np.maximum(np.linalg.norm(flat, axis=-1, keepdims=True), 1e-30)
     flat = np.broadcast_to(flat[:, None], normals.shape)
     cos = np.einsum("fci,fci->fc", flat, normals)
-    # A negative cosine means that the vertices are in reverse order, and the normals are right
+    # Where the cosine is negative, the vertices of the face run the wrong way round
     sharp = np.abs(cos) < np.cos(SHARP_ANGLE)
     return np.where(sharp[..., None], np.where(cos < 0, -1, 1)[..., None] * flat, normals)
 
 
 def _make_uv_around_axis(points: FloatArray) -> FloatArray:
-    """Return texture coordinates (m, 3, 2) at the corners of faces, for a mesh without any.
+    """Return texture coordinates (m, 3, 2) at the three corners of m faces, for a mesh without any.
 
     u is the angle around the vertical axis, which does not jump within a face; v is the angle from
     that axis. Both are in radians.
@@ -202,5 +204,5 @@ def _stands_upright(points: FloatArray, axis: int) -> bool:
     volumes = np.abs(np.linalg.det(corners))
     middle = points[hull.vertices].mean(axis=0) + volumes @ corners.sum(axis=1) / 4 / volumes.sum()
     inside = np.all(foot.equations @ np.append(middle[level], 1) < 0)
-    # SciPy calls the area of a polygon `volume`
+    # For a polygon, SciPy's attribute `volume` is the area
     return bool(inside and foot.volume > FOOT_SHARE * outline.volume)

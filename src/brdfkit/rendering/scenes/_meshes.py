@@ -14,7 +14,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray, MitsubaObject
 from brdfkit.core.jit.padding import pad
 
-AROUND = 192  # number of columns of the grid on a surface of revolution
+AROUND = 192  # number of grid columns around the axis of a surface of revolution
 
 
 def make_grid_mesh(
@@ -29,7 +29,7 @@ def make_grid_mesh(
     rows, columns = points.shape[:2]
     v, u = np.meshgrid(np.linspace(0, 1, rows), np.linspace(0, 1, columns), indexing="ij")
 
-    # Two triangles for each cell, with the corners a and b in one row, c and d in the next
+    # Each cell of the grid, with the corners a, b in a row and c, d in the next, is two triangles
     number = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, :-1], number[1:, 1:]
     faces = np.moveaxis(np.array([[a, b, d], [a, d, c]]), 1, -1).reshape(-1, 3)

@@ -12,7 +12,7 @@ from brdfkit.core.array_types import FloatArray, MitsubaObject
 
 CAMERA = (0.0, -8.0, 3.2)
 TARGET = (0.0, 0.0, 0.96)
-FOV = 19.8  # angle of the picture's shorter side [degrees], of which the ball fills 70 %
+FOV = 19.8  # angle of view along the picture's shorter side [degrees]; the ball fills 70 % of it
 SOFTBOX = (-4.4, -3.2, 5.4)
 BALL = (0.0, 0.0, 1.0)
 SUN = (0.75, 0.5, 0.45)
@@ -97,14 +97,14 @@ def _make_grey_sky(at: MitsubaObject) -> dict[str, Any]:
     """
     import mitsuba as mi
 
-    # Direction of each pixel: the polar angle changes along columns, the azimuth along rows
+    # Directions of the pixels: the polar angle theta by row, the azimuth phi by column
     height, width = 129, 256
     theta = np.linspace(0, np.pi / 2, height // 2 + 1)[:, None]  # the first row is the zenith
     phi = (np.arange(width) + 0.5) / width * 2 * np.pi
     up, side = np.cos(theta), np.sin(theta)
     towards = np.stack(np.broadcast_arrays(side * np.sin(phi), side * np.cos(phi), up), axis=-1)
 
-    # The standard's factors: gradation towards the horizon, and scattering about the sun
+    # Two factors of the CIE sky: gradation from zenith to horizon, and scattering about the sun
     from_sun = np.arccos(np.clip(towards @ SUN / np.linalg.norm(SUN), -1, 1))
     gradation = 1 - np.exp(-0.32 / np.maximum(up, 1e-6))
     glow = 16 * (np.exp(-3 * from_sun) - np.exp(-3 * np.pi / 2)) + 0.3 * np.cos(from_sun) ** 2
@@ -114,7 +114,7 @@ def _make_grey_sky(at: MitsubaObject) -> dict[str, Any]:
     return {
         "type": "envmap",
         "bitmap": mi.Bitmap(luminance),
-        "to_world": at.rotate([1, 0, 0], 90),  # from y up in environment maps to z up
+        "to_world": at.rotate([1, 0, 0], 90),  # y points up in environment maps, here z
     }
 
 

@@ -40,7 +40,7 @@ def make_knot_tube() -> tuple[FloatArray, FloatArray]:
     cos, sin = np.cos(LEAN), np.sin(LEAN)
     axis = axis @ np.array([[1, 0, 0], [0, cos, -sin], [0, sin, cos]])
 
-    # Two directions across the tube: away from the middle of the knot, and perpendicular to this
+    # `side` and `other` are directions across the tube; `side` leads away from the knot's middle
     along = np.gradient(axis, axis=0)
     along[[0, -1]] = axis[1] - axis[-2]  # as the curve is closed, its ends are neighbours
     along /= np.linalg.norm(along, axis=1, keepdims=True)

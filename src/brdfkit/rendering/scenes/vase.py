@@ -8,7 +8,7 @@ from brdfkit.core.array_types import MitsubaObject
 from brdfkit.rendering.scenes._meshes import make_grid_mesh, revolve_profile
 from brdfkit.rendering.scenes._studio import make_studio
 
-# Radii and heights of the profile, from the middle of the foot up the outside and down the inside
+# (radius, height) of points of the profile: from the foot's middle up the outside, down the inside
 PROFILE = np.array(
     [
         (0.0, 0.02),

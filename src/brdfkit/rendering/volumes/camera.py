@@ -10,13 +10,13 @@ import numpy as np
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.volumes import Volume
 
-# A function that receives a volume and k, and returns a mask of every k-th voxel along each axis,
-# which is True if the voxel is visible
+# A function that receives a volume and k. It tests every k-th voxel along each axis, and returns a
+# mask of the tested voxels, True for visible ones
 VisibilityTest: TypeAlias = Callable[[Volume, int], BoolArray]
 
-FOV = 25.0  # angle of the picture's shorter side [degrees]
-MARGIN = 1.03  # size of the picture divided by the size of the visible parts
-TESTED_VOXELS = 5e4  # largest number of voxels, roughly, that are tested for visibility
+FOV = 25.0  # angle of view along the picture's shorter side [degrees]
+MARGIN = 1.03  # size of the picture, divided by the size of the volume's visible parts in it
+TESTED_VOXELS = 5e4  # approximate largest number of voxels that are tested for visibility
 
 
 def camera_direction(volume: Volume, azimuth: float, elevation: float) -> FloatArray:
@@ -61,7 +61,8 @@ def _find_camera_distance(from_middle: FloatArray, towards: FloatArray, aspect: 
     right /= np.linalg.norm(right)
     up = np.cross(towards, right)
 
-    # A point p is in the picture of a camera at a distance d if |p · right| ≤ t (d - p · towards)
+    # The picture shows a point p if |p · right| and |p · up| ≤ t (d - p · towards), where d is the
+    # camera's distance; solve for d
     t = np.tan(np.radians(FOV / 2)) / MARGIN
     across = np.stack([right / max(aspect, 1), up * min(aspect, 1)])
     needed = np.abs(from_middle @ across.T).max(axis=1) / t + from_middle @ towards
@@ -78,7 +79,7 @@ def _find_visible_corners(volume: Volume, is_visible: VisibilityTest) -> FloatAr
     kji = k * np.argwhere(is_visible(volume, k))
     if not len(kji):
         kji, k = np.array([[0, 0, 0], volume.values.shape]), 0
-    # A voxel's value is interpolated up to the next voxels, but not beyond the box
+    # A visible voxel is seen up to the next tested voxels on all sides, but not beyond the box
     cells = kji[:, None] + k * (2 * np.indices((2, 2, 2)).reshape(3, -1).T - 1)
     corners = np.clip(cells.reshape(-1, 3), -0.5, np.array(volume.values.shape) - 0.5)
     return corners[:, ::-1] @ volume.to_world[:3, :3].T + volume.to_world[:3, 3]

@@ -12,17 +12,18 @@ from brdfkit.volumes import Volume
 from brdfkit.volumes.transfer import windows
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
-AIR, TISSUE = -900, 200  # a scan with values below and above these two [HU] is a CT scan
-BODY, BONE = -500, 250  # least values of the body and of bone [HU]
-BONE_SHARE = 0.002  # a body with a larger share of bone is shown without its skin
-# Optical thickness of the visible parts at the largest extinction, for three kinds of pictures
+AIR, TISSUE = -900, 200  # values [HU]: a scan with values below AIR and above TISSUE is a CT scan
+BODY, BONE = -500, 250  # smallest values of the body and of bone [HU]
+BONE_SHARE = 0.002  # share of bone in the body, above which bones are shown without the skin
+# Optical thickness along a volume's longest edge at the largest extinction: for a volume that
+# glows, for a volume in light, and for a volume of labels
 GLOWING, DENSE, OPAQUE = 10, 50, 400
 RAMP = [(0, 0), (1, 1)]  # opacity that rises linearly over the volume's window of values
-# Percentiles of the largest values along rays, between which the grey of maximum intensity is
-# linear. It is the mean of a grey that is linear in the value and one that is linear in the
-# percentile, so that frequent and rare values both have contrast
+# Percentiles of the largest values along rays at which the colours of maximum intensity have nodes.
+# A node's position in the colour map is the mean of a position that is linear in the value and one
+# of equal steps, so that rare and frequent values both have contrast
 NODES = (2, 10, 30, 50, 70, 90, 99.8)
-DARKEST = 0.1  # position in the colour map of the first of these percentiles
+DARKEST = 0.1  # position in the colour map, 0 to 1, of the faintest values above the background
 LEVELS = 256  # number of bins of the histogram of values, and of entries of a transfer function
 CLAY: dict[str, Any] = {
     "type": "roughplastic",
@@ -64,10 +65,10 @@ def choose_transfer_function(volume: Volume, renderer: str) -> TransferFunction:
 
 
 def _find_longest_edge(volume: Volume) -> float:
-    """Return the longest edge of the box of visible voxels, from which the extinction is computed.
+    """Return the longest edge [the volume's unit of length] of the box of all visible voxels.
 
-    Voxels are visible if their values are above the lower end of the volume's window. The box is
-    aligned with the grid, and the edge is in the volume's unit of length.
+    The extinction is computed from it. Voxels are visible if their values are above the lower end
+    of the volume's window, and the box is aligned with the grid.
     """
     longest = 0.0
     for axis, (n, step) in enumerate(zip(volume.values.shape, volume.spacing[::-1], strict=True)):
@@ -78,10 +79,10 @@ def _find_longest_edge(volume: Volume) -> float:
 
 
 def _make_maximum_intensity_function(volume: Volume, colours: str) -> TransferFunction:
-    """Make the transfer function for maximum intensity, from a colour map of Matplotlib.
+    """Make the transfer function for pictures of the largest value along each ray.
 
-    The contrast depends on the largest values along rays; here these are the rays along the three
-    axes of the grid.
+    `colours` is the name of a colour map of Matplotlib. The colours suit the largest values along
+    the rays that are parallel to the three axes of the grid.
     """
     import matplotlib as mpl
 
@@ -142,13 +143,14 @@ def choose_surface_level(volume: Volume) -> float:
     if volume.labels or low == high:
         return 0.5 * (1 if volume.labels else high)
     values = windows.sample_values(volume.values)
-    # Outliers are left out, because they would compress all other values into a few bins
+    # Outliers are left out, because they would leave only a few bins for all other values
     values = values[
         (values >= np.percentile(values, 0.1)) & (values <= np.percentile(values, 99.9))
     ]
     counts, edges = np.histogram(values, LEVELS)
     below = np.cumsum(counts)[:-1]
     sums = np.cumsum(counts * (edges[1:] + edges[:-1]) / 2)
-    # The difference of the two classes' means is proportional to this
+    # For each edge of the histogram as the limit between two classes of values, this is
+    # proportional to the difference between the means of the classes
     difference = sums[-1] / values.size * below - sums[:-1]
     return float(edges[1:-1][np.argmax(difference**2 / (below * (values.size - below)))])

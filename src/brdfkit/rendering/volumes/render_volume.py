@@ -15,7 +15,7 @@ from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
-from brdfkit.rendering.render_materials import PictureProgress, to_rendering, to_size
+from brdfkit.rendering.render_materials import PictureProgress, to_picture_size, to_rendering
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input.arguments import load_mitsuba
 from brdfkit.rendering.tracing import Traced, trace_scenes
@@ -25,10 +25,10 @@ from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.transfer_function import TransferLike
 from brdfkit.volumes.transfer.windows import scale_transfer_to_values
 
-SPP, UNLIT_SPP = 64, 8  # samples per pixel by default, for renderers with light and without
-MOST_SPP = 16_384  # largest number of samples per pixel, if a noise floor or a time is requested
-PASS_SPP = 4  # samples per pixel in a pass, few so that the first picture appears soon
-BACKGROUND = 0.02  # radiance behind the volume
+SPP, UNLIT_SPP = 64, 8  # default samples per pixel, for renderers with light and without light
+MOST_SPP = 16_384  # default limit of the samples per pixel if a noise floor or a time is requested
+PASS_SPP = 4  # samples per pixel in a pass: few, so that the first picture appears soon
+BACKGROUND = 0.02  # default radiance behind the volume
 
 VolumeLike: TypeAlias = Volume | str | Path
 Radiance: TypeAlias = float | tuple[float, float, float]
@@ -131,14 +131,14 @@ def render_volume(
         else MOST_SPP
     )
     spp = to_whole_number("spp", most if spp is None else spp, least=1)
-    seed, size = to_whole_number("seed", seed, least=0), to_size(size)
+    seed, size = to_whole_number("seed", seed, least=0), to_picture_size(size)
     view = to_number("azimuth", azimuth), to_number("elevation", elevation)
     light = environment, _to_background_rgb(background)
     if renderer not in RENDERERS:
         raise no_such_error("renderer", renderer, RENDERERS)
     volume = volume if isinstance(volume, Volume) else volumes.load(volume)
     require_memory(size, 1)
-    mi = load_mitsuba()  # the dictionaries of scenes depend on the variant that this sets
+    mi = load_mitsuba()  # it sets Mitsuba's variant, on which the dictionaries of scenes depend
     if mi.variant().startswith("scalar"):
         raise BrdfkitError(f"Volumes do not render in {mi.variant()}; set llvm_ad_rgb.")
     function = _choose_transfer_function(
@@ -148,8 +148,8 @@ def render_volume(
         _require_surface(volume, to_number("level", settings["level"]))
     described = volume, function, renderer, size, view, light, settings, all_around
     limits = {"progress": progress, "noise_floor": noise_floor, "limit": limit, "most": PASS_SPP}
-    traced = _load_and_trace(described, spp=spp, seed=seed, **limits)
-    # The header of an EXR file can contain these types
+    traced = _load_and_trace_volume(described, spp=spp, seed=seed, **limits)
+    # Other types than these cannot be written to the header of an EXR file
     plain = {
         n: v if isinstance(v, bool | int | float | str) else str(v) for n, v in settings.items()
     }
@@ -158,11 +158,11 @@ def render_volume(
 
 
 @in_turn
-def _load_and_trace(described: tuple[Any, ...], **settings: Any) -> Traced:
-    """Path-trace the scene that `describe_scene` makes from the arguments `described`.
+def _load_and_trace_volume(described: tuple[Any, ...], **settings: Any) -> Traced:
+    """Path-trace the scene of a volume.
 
-    `settings` are further arguments of `trace_scenes`. The scene is freed when this function
-    returns, before another thread renders.
+    `described` are the arguments of `describe_scene`, and `settings` further arguments of
+    `trace_scenes`. The scene is freed when this function returns, before another thread renders.
     """
     import mitsuba as mi
 
@@ -174,10 +174,10 @@ def _load_and_trace(described: tuple[Any, ...], **settings: Any) -> Traced:
 def _choose_transfer_function(
     volume: Volume, transfer: TransferLike | None, renderer: str, density: float
 ) -> TransferFunction | None:
-    """Return the transfer function to show, in the volume's unit of length, or None for a surface.
+    """Return the transfer function to show, in the volume's unit of length.
 
-    `density` is a factor of its extinction. None means that the surface of one level of the volume
-    is shown.
+    `transfer` is what the user gave, and `density` a factor of the extinction. The result is None
+    if the picture shows the surface on which the values have one level.
     """
     if transfer is None and renderer == "isosurface":
         return None
@@ -185,7 +185,7 @@ def _choose_transfer_function(
         transfer = defaults.choose_transfer_function(volume, renderer)
     elif not isinstance(transfer, TransferFunction):
         transfer = TransferFunction.load(transfer)
-    # The camera is placed by the opaque voxels, which depend on this scale
+    # Scaled here already, as the place of the camera depends on which voxels are opaque
     transfer = scale_transfer_to_values(transfer, volume.values)
     if volume.unit and transfer.length_unit:
         transfer = transfer.per(volume.unit)
@@ -209,7 +209,7 @@ def _to_background_rgb(background: Radiance | None) -> list[float] | None:
     try:
         rgb = np.broadcast_to(np.array(background, float), 3)
     except (TypeError, ValueError):
-        rgb = np.full(3, -1.0)  # an invalid value, which raises the error below
+        rgb = np.full(3, -1.0)  # an invalid radiance, so that the error below is raised
     if not (np.isfinite(rgb).all() and (rgb >= 0).all()):
         raise BrdfkitError(
             f"background = {background!r} should be one radiance, or R, G, B, at least 0."

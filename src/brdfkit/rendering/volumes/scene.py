@@ -19,7 +19,7 @@ from brdfkit.rendering.volumes import defaults
 from brdfkit.rendering.volumes.camera import FOV, camera_direction, place_camera
 from brdfkit.volumes import TransferFunction, Volume
 
-# Each renderer is a plugin, an integrator; the value is the name of its parameter for the volume
+# For each renderer, an integrator plugin, the name of its parameter that receives the volume
 RENDERERS = {
     "single_scattering": "extinction",
     "emission_absorption": "extinction",
@@ -27,12 +27,12 @@ RENDERERS = {
     "isosurface": "volume",
 }
 UNLIT = "emission_absorption", "maximum_intensity"  # renderers without light from outside
-# Illuminance of level ground for each renderer. A volume that scatters once gets more light: it
-# reflects much less than a surface does, but should look as bright
+# Illuminance that the light of each renderer gives level ground. Light that a volume scatters once
+# is darker than light from a surface, so it needs more light to look as bright
 ILLUMINANCES = {"single_scattering": 10.0, "isosurface": 3.0}
-EDGE = 2.0  # margin of the background around the picture [degrees], because maps are interpolated
-LEAST_STEPS = 64  # least number of steps along a ray
-TURN_AZIMUTHS = range(0, 360, 15)  # azimuths [degrees] from which a film shows the whole volume
+EDGE = 2.0  # margin of the background around the picture [degrees], as maps are interpolated
+LEAST_STEPS = 64  # smallest number of steps along a ray
+TURN_AZIMUTHS = range(0, 360, 15)  # azimuths [degrees] at which all of a volume must be in a film
 
 
 def describe_scene(
@@ -66,7 +66,8 @@ def describe_scene(
         emitter = make_environment_light(
             environment, ILLUMINANCES[renderer], background, towards, aspect
         )
-    distance = float(np.linalg.norm(origin - target))  # a reference for any unit of length
+    # The near and far planes are multiples of the distance, as volumes have any unit of length
+    distance = float(np.linalg.norm(origin - target))
     clipping = {"near_clip": 1e-3 * distance, "far_clip": 1e3 * distance}
     return {
         "type": "scene",
@@ -102,7 +103,7 @@ def describe_integrator(
 
 
 def _to_plugin_value(name: str, value: Any) -> Any:
-    """Convert a user's setting for the integrator; names of BSDFs become dictionaries."""
+    """Convert a user's setting for Mitsuba: BSDFs and phase functions become dictionaries."""
     if name == "bsdf":
         return to_material(value).scene_dict()
     return {"type": value} if name == "phase" and isinstance(value, str) else value
@@ -123,10 +124,10 @@ def make_environment_light(
 ) -> dict[str, Any]:
     """Return the emitter of an environment map with a uniform `background` behind the volume.
 
-    The camera sees this background, and the light from all other directions is that of the map.
-    With a `background` of None the camera sees the map itself. The whole map gives level ground
-    this `illuminance`. `towards` is the unit vector to the camera, and `aspect` the picture's width
-    divided by its height.
+    The background replaces the part of the map that the camera sees; if it is None, the camera sees
+    the map itself. The map is scaled so that all of it gives level ground this `illuminance`.
+    `towards` is the unit vector to the camera, and `aspect` the picture's width divided by its
+    height.
     """
     import mitsuba as mi
 
@@ -138,7 +139,7 @@ def make_environment_light(
     corner = np.degrees(np.arctan(half * np.hypot(max(aspect, 1), max(1 / aspect, 1))))
     rgb = np.array(light["bitmap"])
     x, y, z = -towards
-    cosine = pixel_directions(*rgb.shape[:2]) @ [x, z, -y]  # in the map's axes y points up
+    cosine = pixel_directions(*rgb.shape[:2]) @ [x, z, -y]  # y points up in environment maps
     behind = cosine > np.cos(np.radians(corner + EDGE))
     rgb[behind] = np.broadcast_to(background, 3) / light["scale"]
     return light | {"bitmap": mi.Bitmap(rgb)}
