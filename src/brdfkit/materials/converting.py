@@ -19,7 +19,7 @@ from brdfkit.materials.resolve import Material, MaterialLike, to_material
 # The BRDFs of a material and its converted file are compared at this number of random pairs of
 # directions, at angles to the normal of at most LARGEST_ANGLE
 PAIRS, LARGEST_ANGLE = 4000, np.radians(80)
-LEAST_DIFFERENCE = 5e-4  # a smaller relative difference would be printed as 0.0 %
+LEAST_DIFFERENCE = 5e-4  # smaller relative differences, printed as 0.0 %, are not reported
 
 
 @dataclass(frozen=True)

@@ -20,13 +20,13 @@ LARGEST_FILE_SHARE, LARGEST_RISE = 0.005, 1.05
 
 
 def note_fit_extrapolation(data: Measured, max_angle: float) -> list[str]:
-    """Return a sentence that warns of a fit which extrapolates much, or an empty list.
+    """Return a list with a sentence on a fit that extrapolates much, or an empty list.
 
     A fit extrapolates where both angles to the normal are below its `max_angle` [degrees], but
     beyond the angles at which `data` was measured.
     """
     if data.is_table:
-        return []  # a table does not say which cells were measured
+        return []  # a table does not say which of its cells were measured
     smaller, larger = find_largest_angles(data)
     inside = [1 - np.cos(np.radians(min(a, max_angle))) for a in (smaller, larger, max_angle)]
     # Return early for most measurements, by a cheap upper bound on the share beyond the measured
@@ -45,10 +45,11 @@ def note_fit_extrapolation(data: Measured, max_angle: float) -> list[str]:
 
 
 def describe_file_extrapolation(before: Measured, after: Measured) -> list[str]:
-    """Return a sentence on how much of a converted file was not measured, or an empty list.
+    """Return a list with a sentence on how much of a file was not measured, or an empty list.
 
-    `before` is the measurement, `after` the content of the file. The share is one of all pairs of
-    directions for a table, and one of the samples for scattered samples.
+    `before` is the measurement, `after` the content of the file to which it was converted. The
+    sentence states a share of all pairs of directions if the file holds a table, otherwise a share
+    of its samples.
     """
     if before.is_table or len(after.values) == len(before.values):
         return []

@@ -16,10 +16,10 @@ from brdfkit.regression import losses, regress
 MODEL, STARTS = "ggx", 2
 FEWEST_SAMPLES, MOST_SAMPLES = 12, 1_000  # smallest and largest number of samples in the test
 MAX_ANGLE = 85  # degrees; in many files, samples at larger angles to the normal are unreliable
-TURN = np.array([-1.0, -1.0, 1.0])  # times a direction (x, y, z): turns it by 180° about the normal
-# If the correlation of the values with the nearness to the mirror direction is larger, the azimuths
-# are right, and no model is fitted. Of 37 files with phi_o turned by 180°, all that the test
-# recognises have a correlation of -0.1 or less
+TURN = np.array([-1.0, -1.0, 1.0])  # factors of x, y, z that turn a direction by 180° in azimuth
+# If values correlate more than this with nearness to the mirror direction, the azimuths are right,
+# and no model is fitted. Of 37 files with phi_o turned by 180°, all that the test recognises have a
+# correlation of -0.1 or less
 CLEAR_CORRELATION = 0.1
 
 

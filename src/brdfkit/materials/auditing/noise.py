@@ -11,7 +11,7 @@ from brdfkit.materials.auditing.symmetries import compute_relative_differences, 
 from brdfkit.materials.measured import Measured
 
 TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, for a normal distribution
-FEWEST_DIFFERENCES = 20  # an estimate needs at least this number of differences
+FEWEST_DIFFERENCES = 20  # smallest number of differences from which the noise is estimated
 LEAST_NOISE = 1e-6  # smaller relative noise means that mirrored values are copies of each other
 
 

@@ -19,7 +19,7 @@ from brdfkit.materials.plotting.plane_of_incidence import choose_angles
 from brdfkit.model.samples import Table
 
 SIZE = 12.6, 6.8  # inches
-GREY = "0.45"  # colour of legend entries that stand for all channels
+GREY = "0.45"  # colour of legend entries that belong to no single channel
 COLOURS = {"R": "#d55e00", "G": "#009e73", "B": "#0072b2"}  # of channels; all others are black
 TICKS = np.array([0, 1, 5, 10, 20, 40, 60, 90])  # theta_h [degrees] at the ticks of its axis
 # The axis of the albedo reaches to the albedo of the samples alone, but at most to this multiple of

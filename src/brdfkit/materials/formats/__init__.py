@@ -79,7 +79,7 @@ def _recognise_format(source: Source) -> ModuleType:
     named.sort(key=lambda m: getattr(m, "MANY", False) != (source.sample is not None))
     if len(sniffed) == 1:
         return sniffed[0]
-    if named:  # the suffix decides, and if this is no such file, the reader says what is wrong
+    if named:  # the suffix decides; if the content does not fit, the reader says what is wrong
         return named[0]
     if sniffed:
         raise source.error(

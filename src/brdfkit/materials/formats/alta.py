@@ -174,7 +174,10 @@ def _read_dimensions(source: Source, header: dict[str, str]) -> tuple[int, tuple
 
 
 def _read_intervals(source: Source, text: str, channels: int) -> list[int]:
-    """Parse `text`, the value of VS: the number of interval columns of each channel, 0 to 2."""
+    """Return the number of interval columns of each channel, 0 to 2, from the header's key VS.
+
+    `text` is the value of the key.
+    """
     kinds = text.split()
     if len(kinds) > channels or not all(kind in ("0", "1", "2") for kind in kinds):
         raise source.error(f"VS is {text[:40]!r} where 0, 1 or 2 per value belong; mend the line")

@@ -117,9 +117,9 @@ def _read_header(source: Source) -> tuple[dict[str, str], int, Lines]:
 def _read_column_names(
     source: Source, text: str, vars_line: int, rows: Lines
 ) -> tuple[list[str], dict[str, str]]:
-    """Return the names of the columns in `text`, the value of VARS; add phi_s if it is left out.
+    """Return the names of the columns in `text`, the line VARS, and phi_s if it is left out.
 
-    The second result is a note on the addition. `vars_line` is the number of the line VARS.
+    The second result is a note on this addition. `vars_line` is the number of the line VARS.
     """
     names = [name.strip() for name in text.split(",")]
     notes = {}

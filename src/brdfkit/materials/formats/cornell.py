@@ -30,7 +30,7 @@ MOST_WAVELENGTHS = 4096
 
 
 def sniff(head: bytes) -> bool:
-    """Return whether a file that begins with `head` is Cornell's, by a count and a wavelength."""
+    """Return whether `head` begins as a Cornell file does: with a number, then a wavelength."""
     lines = [line for line in head.split(b"\n") if line.strip() and not line.startswith(b"#")]
     tokens = b" ".join(lines[:3]).split()
     try:
@@ -131,7 +131,8 @@ def _read_description(source: Source) -> dict[str, str]:
 def _note_clipping(values: FloatArray) -> dict[str, str]:
     """Return a note that negative values were set to 0, or an empty dictionary.
 
-    Some values are then 0 and none is negative, though noise makes values near 0 negative.
+    They surely were if some values are 0 and none is negative, because noise makes values near 0
+    negative.
     """
     zeros = (values == 0).mean()
     if not zeros or (values < 0).any():

@@ -154,7 +154,7 @@ def _is_newer_version(version: str) -> bool:
     numbers = ([int(part) for part in v.split(".")[:2]] for v in (version, __version__))
     try:
         theirs, ours = numbers
-    except ValueError:  # versions of a development between releases contain words: do not compare
+    except ValueError:  # a development version, which contains words, cannot be compared
         return False
     return theirs > ours
 

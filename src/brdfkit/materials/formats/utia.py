@@ -27,7 +27,7 @@ from brdfkit.materials.measured import Measured
 NAME = "UTIA"
 SUFFIXES = (".bin",)
 
-SHAPE = (6, 48, 6, 48)  # numbers of theta_i, phi_i, theta_v, phi_v
+SHAPE = (6, 48, 6, 48)  # numbers of stored angles theta_i, phi_i, theta_v, phi_v
 THETA, PHI = np.radians(15) * np.arange(6), np.radians(7.5) * np.arange(48)
 SIZE = 3 * 8 * 288 * 288  # size of a file in bytes
 

@@ -255,7 +255,10 @@ def _describe_measurement(tally: Tally, total: int) -> dict[str, str]:
 
 
 def _check_table_shape(shape: Sequence[int] | None, isotropic: bool) -> tuple[int, ...]:
-    """Return the table's numbers of cells, by default for the kind of surface; check the limits."""
+    """Return the table's `shape`, or the default one if it is None.
+
+    Raises `BrdfkitError` for another number of axes, and for too many cells.
+    """
     shape = tuple(shape or (ISOTROPIC if isotropic else ANISOTROPIC))
     dimensions = 3 if isotropic else 4
     if len(shape) != dimensions or min(shape) < 1:

@@ -139,7 +139,7 @@ def _make_gaussian_heights(slope: float, length_x: float, length_y: float, seed:
     """
     to_number("slope", slope, above=0, most=2)
     to_whole_number("seed", seed, 0)
-    # Filter white noise in the frequency domain, which gives it this autocorrelation
+    # Filter white noise in the frequency domain, to give the heights a Gaussian autocorrelation
     noise = np.fft.fft2(np.random.default_rng(seed).standard_normal((SIZE, SIZE)))
     k = 2 * np.pi * np.fft.fftfreq(SIZE)
     x, y = np.meshgrid(length_x * k, length_y * k, indexing="ij")

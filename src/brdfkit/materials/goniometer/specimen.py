@@ -7,10 +7,10 @@ that are spread evenly over one tile of the height field. Hence the BRDF is
     f(wi, wo) = ⟨L⟩ / (E cosθ_i)
               = 1 / (A cosθ_i cosθ_o) ∫ f_facet (n·wi)⁺ (n·wo)⁺ V(wi) V(wo) dS + more bounces,
 
-with A the area of the tile in the plane, S the surface, n its normal, and the visibility V = 1
-where nothing is in the way, else 0. One BRDF sample takes one such line. A path follows the line
-down to the surface, and continues by sampling the BSDF of the facets. At every bounce a shadow ray
-tests whether the light is visible.
+with A the area of the tile in the plane, S the surface, n its normal, ⁺ the positive part, and the
+visibility V = 1 where nothing is in the way, else 0. One BRDF sample takes one such line. A path
+follows the line down to the surface, and continues by sampling the BSDF of the facets. At every
+bounce a shadow ray tests whether the light is visible.
 
 The tile repeats without end: a ray that leaves it sideways enters it again on the other side.
 """
@@ -41,7 +41,7 @@ from brdfkit.materials.goniometer.microgeometry import HeightField
 # that they leave. Single precision needs about 1e-4; with Mitsuba's own offset, 20 times larger
 # than ours, grazing light reaches 1 % too far.
 RAY_OFFSET = 1e-3
-MOST_TILES = 1000  # a ray that crosses more repetitions of the tile counts as having missed
+MOST_TILES = 1000  # a ray that crosses more repetitions of the tile counts as missing the surface
 
 
 class Specimen:

@@ -38,12 +38,13 @@ from brdfkit.model.samples.coordinates import (
 from brdfkit.regression import losses, regress
 
 NEIGHBOURS = 12  # number of nearest samples that are averaged
-GUIDE_DISTANCE = 0.4  # the guide weighs as much in the mean as a sample at this distance
+GUIDE_DISTANCE = 0.4  # distance of a sample that weighs as much in the mean as the fitted guide
 # The logarithm of the ratio of samples to guide fades to 1/e at this angle beyond the measured ones
 FADING_ANGLE = np.radians(20)
-# The model of the guide; with fewer samples than this, the guide is a constant
+# The model of the guide, which is fitted to the samples. With fewer than FEWEST_SAMPLES, the guide
+# is a constant
 GUIDE, FEWEST_SAMPLES = "ggx", 30
-MAX_ANGLE = 90  # degrees; the guide is fitted to all samples but those at the horizon
+MAX_ANGLE = 90  # degrees; the guide is fitted to samples with smaller angles to the normal
 # Share of the light that the highlight may reflect at the horizon even where a bright diffuse term
 # leaves less
 LEAST_HIGHLIGHT = 0.05
@@ -61,7 +62,7 @@ class Interpolant:
         self.floor = 1e-3 * np.median(positive) if positive.size else 1e-12
         self.guide = _fit_guide(samples, anisotropic)
         wi, wo = samples.wi, samples.wo
-        # Each sample has a smaller and a larger angle to the normal; find the maximum of both kinds
+        # Find the maximum of all samples' smaller angles to the normal, and of their larger angles
         self.largest_angles = _sort_angles(wi, wo).max(axis=0)
         ratios = self._take_bounded_logarithm(samples.values) - self._take_bounded_logarithm(
             self.guide(wi, wo)

@@ -8,7 +8,7 @@ from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.colours import RGB
 from brdfkit.materials.measured.validation import Origin
 
-DIGITS = 4  # number of decimals, or 0.006°, to which unit vectors of the same sample agree
+DIGITS = 4  # unit vectors that agree to this number of decimals, 0.006°, belong to one sample
 NANOMETRES = (100, 100_000)  # smallest and largest wavelength that is accepted [nm]
 CHANNEL_NUMBERS = {"r": 0, "red": 0, "g": 1, "green": 1, "b": 2, "blue": 2}
 

@@ -21,7 +21,7 @@ UP = np.array([0.0, 0.0, 1.0])
 LATTICE = np.stack(
     [(np.arange(256) + 0.5) / 256, np.arange(256) * (np.sqrt(5) - 1) / 2 % 1], axis=1
 )
-LEAST_COSINE = 1e-3  # where a stored direction has a smaller cosine, the BRDF counts as unknown
+LEAST_COSINE = 1e-3  # stored directions with a smaller cosine to the normal have no known BRDF
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +62,7 @@ class AdaptiveTable:
 
         Importance sampling with 256 directions estimates it; the renderer needs it.
         """
-        # Draw points u by their density, and find the directions that they stand for
+        # Draw points u of the unit square by their density, and find the directions they stand for
         a, b, n, _ = self.density.shape
         warp = Warp(self.density.reshape(-1, n, n))
         u = np.stack([warp.sample(at, LATTICE) for at in range(a * b)])
@@ -93,7 +93,7 @@ class AdaptiveTable:
         arrays |= {"values": self.values, "density": self.density, "albedo": self.albedo()}
         tensors = {n: mi.TensorXf(np.ascontiguousarray(a, np.float32)) for n, a in arrays.items()}
         flags = {"isotropic": grid.isotropic, "divided": self.divided}
-        return {"type": "measured_adaptive", **tensors, **flags, "parts": grid.parts}
+        return {"type": "measured_adaptive", **tensors, **flags, "parts": grid.symmetric_part_count}
 
     def compute_stored_extents(self, max_angle: float, usable: BoolArray) -> FloatArray:
         """Return the extents (n, 2) of the stored points: the share of directions each stands for.

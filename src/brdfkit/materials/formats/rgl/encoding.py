@@ -53,8 +53,8 @@ class Resolution:
     grid: int
 
 
-# Resolutions of written files, which then have 16 and 45 MB. With fewer nodes, the noise of a
-# measured table would be lost
+# Resolutions of written files, which then have 16 and 45 MB. Fewer nodes would smooth out the noise
+# of a measured table
 ISOTROPIC = Resolution(phi_i=0, theta_i=64, phi_m=1, theta_m=256, grid=112)
 ANISOTROPIC = Resolution(phi_i=12, theta_i=20, phi_m=64, theta_m=128, grid=48)
 
@@ -75,9 +75,9 @@ def encode_brdf(f: Lookup) -> AdaptiveTable:
     M = np.zeros((*above.shape, f_cos.shape[1]))
     M[above] = f_cos / factor[above][:, None]
 
-    # Compute the density over points u by which Mitsuba draws directions. The normals m should be
-    # drawn with the density M D wi·m. The warp from u to m already draws them with D wi·m times
-    # two factors, so the density over u is M divided by these factors
+    # Compute the density over points u from which Mitsuba draws directions: the stored values M,
+    # divided by the two factors by which the warp from u to normals m draws them more densely than
+    # visible normals are, D wi·m
     m = m.reshape(-1, 2)
     D = interpolate(grid.ndf[None], m)
     cosines = np.linalg.norm(wi + wo, axis=-1) / 2
@@ -159,7 +159,7 @@ def _compute_microfacets(f: Lookup, size: Resolution) -> list[FloatArray]:
 
 
 def _compute_even_density(m: FloatArray) -> FloatArray:
-    """Return a density [sr⁻¹] at points `m` (n, 2) of the square of directions.
+    """Return a density [sr⁻¹] at points `m` (n, 2) of the square of directions (`map_to_square`).
 
     It is uniform over the square except near the surface's normal. Added to the density D of the
     normals, it gives half of the grid's points to the slopes of a highlight, where D is small.

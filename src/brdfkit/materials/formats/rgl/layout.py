@@ -9,8 +9,8 @@ from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats.rgl.tensor_file import REMEDY, format_shape
 
-# The dimensions of each field, a letter each: equal letters stand for equal numbers in all fields,
-# and capital letters for numbers of at least 2
+# The shape of each field, as a letter for each dimension: dimensions with equal letters have equal
+# sizes in all fields, and capital letters stand for sizes of at least 2
 LAYOUT = {
     "phi_i": "a",
     "theta_i": "b",
@@ -23,7 +23,7 @@ LAYOUT = {
 COLOURS = {"rgb": "abcNN"}
 SPECTRA = {"wavelengths": "c", "spectra": "abcNN"}
 RIGHT_ANGLE = np.pi / 2 + 1e-3  # rad; a little more than 90°, because files round angles
-# Conditions on the values of a field, in words for errors and as a function
+# Condition on the values of each field: in words, for error messages, and as a test of the values
 RULES: dict[str, tuple[str, Callable[[FloatArray], Any]]] = {
     "phi_i": (
         "increase within the circle",
@@ -68,8 +68,8 @@ def _check_field(
 ) -> FloatArray:
     """Return the field `name` as float64; raise `BrdfkitError` for a wrong type, shape or value.
 
-    `letters` are the field's dimensions. `sizes` has the number for each letter, to which letters
-    that occur for the first time are added.
+    `letters` has a letter for each of the field's dimensions, as `LAYOUT` explains. `sizes` has the
+    size for each letter; letters that occur for the first time are added to it.
     """
     if name not in arrays:
         raise source.error(f"has no field {name!r}, which an RGL file needs; {REMEDY}")

@@ -39,8 +39,9 @@ class Parameterisation:
     `map_to_square` defines; `vndf`: density of the visible normals over this square, up to a
     factor, (a, b, y, x).
 
-    With one or two `phi_i` the surface is isotropic, and the azimuth on the square is φ_m - φ_i.
-    More of them may span half or a quarter of the circle, whose other parts are symmetric.
+    With one or two `phi_i` the surface is isotropic, and azimuths on the square are relative to the
+    azimuth of the light. More `phi_i` may span half or a quarter of the circle, if the BRDF is
+    symmetric in the rest of it.
     """
 
     phi_i: FloatArray
@@ -55,7 +56,7 @@ class Parameterisation:
         return len(self.phi_i) <= 2
 
     @property
-    def parts(self) -> int:
+    def symmetric_part_count(self) -> int:
         """The number of symmetric parts of the circle of azimuths, of which `phi_i` spans one."""
         return 1 if self.isotropic else round(2 * np.pi / (self.phi_i[-1] - self.phi_i[0]))
 
@@ -67,10 +68,11 @@ class Parameterisation:
     def compute_facet_factor(
         self, theta_i: FloatArray, phi_i: FloatArray, m: FloatArray
     ) -> FloatArray:
-        """Return D(m) / 4σ(wi) (n,), the factor between a stored value M and f cosθ_o.
+        """Return the factor (n,) that converts a stored value to the BRDF times cosθ_o.
 
-        `theta_i` and `phi_i` [rad] are the angles of wi, and `m` (n, 2) points of the normals on
-        the square of directions.
+        It is D(m) / 4σ(wi), by the distribution of normals D and the projected area σ. `theta_i`
+        and `phi_i` [rad] are the angles of the light wi, and `m` (n, 2) the points of the normals
+        on the square of directions.
         """
         wi = map_to_square(theta_i, phi_i)
         return interpolate(self.ndf[None], m) / (4 * interpolate(self.sigma[None], wi))
@@ -80,8 +82,8 @@ class Parameterisation:
     ) -> tuple[FloatArray, Slices, FloatArray]:
         """Return the points u (n, 2) of the unit square that stand for pairs of directions (n, 3).
 
-        The directions must be above the surface. The other results are the slices of the table to
-        interpolate, by `warp.find_slices` for the incidences, and the factors (n,) of
+        The directions must be above the surface. The other results are the slices of the table for
+        the incidences, as `warp.find_slices` returns them, and the factors (n,) of
         `compute_facet_factor`.
         """
         wi, wo = self._fold_azimuths(wi, wo)
@@ -124,10 +126,10 @@ class Parameterisation:
 
     def _fold_azimuths(self, wi: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Rotate or mirror wi and wo (n, 3) so that wi lies in the stored part of the circle."""
-        if self.parts < 2:
+        if self.symmetric_part_count < 2:
             return wi, wo
         sign_y = np.where(np.signbit(wi[:, 1]), 1, -1)
-        sign_x = np.where(np.signbit(wi[:, 0]), 1, -1) if self.parts == 4 else sign_y
+        sign_x = np.where(np.signbit(wi[:, 0]), 1, -1) if self.symmetric_part_count == 4 else sign_y
         turn = np.stack([sign_x, sign_y, np.ones_like(sign_x)], axis=1)
         return wi * turn, wo * turn
 
@@ -141,11 +143,11 @@ def map_to_square(theta: FloatArray, phi: FloatArray) -> FloatArray:
 
 
 def map_from_square(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the angles θ and φ [rad] of points (n, 2) of the square of directions."""
+    """Return the angles θ and φ [rad] of points (n, 2), the inverse of `map_to_square`."""
     return points[:, 0] ** 2 * np.pi / 2, (2 * points[:, 1] - 1) * np.pi
 
 
 def solid_angle_per_area(points: FloatArray) -> FloatArray:
-    """Return the solid angle per area of the square of directions [sr] at points (n, 2)."""
+    """Return the solid angle per area [sr] at points (n, 2) of the square of `map_to_square`."""
     theta, _ = map_from_square(points)
     return 2 * np.pi**2 * points[:, 0] * np.sin(theta)

@@ -95,7 +95,10 @@ class Warp:
         )
 
     def sample(self, at: int, u: FloatArray) -> FloatArray:
-        """Map uniform points (x, y), `u` (n, 2), to points with the density of the slice `at`."""
+        """Map uniform points `u` (n, 2), as (x, y), to points with the density of a slice.
+
+        `at` is the number of the slice.
+        """
         density, along, rows = (table[at] for table in self._cumulative_tables)
         # Find y by inverting the marginal distribution of y
         y = np.clip(np.searchsorted(rows, u[:, 1]) - 1, 0, len(rows) - 2)
