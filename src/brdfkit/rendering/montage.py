@@ -25,7 +25,7 @@ TILE = 320  # smallest width of a picture [pixels]; narrower ones are enlarged, 
 GAP = 20  # space around each picture [pixels]
 # A page's mode in Pillow, and the colours of its ground, of names, and of the text below names
 WHITE_GROUND = "RGB", (255, 255, 255), (26, 26, 26), (105, 105, 105)
-# The same for a page in a notebook: transparent, with grey text that is readable on white and black
+# Mode and colours of a page in notebooks: transparent, with grey text, readable on white and black
 ANY_GROUND = "RGBA", (125, 125, 125, 0), (125, 125, 125, 255), (125, 125, 125, 255)
 LARGEST_DIFFERENCE = 20  # colour difference ΔE of the brightest false colour, in all montages
 

@@ -9,7 +9,8 @@ from brdfkit.rendering.scenes._meshes import make_grid_mesh, revolve_profile
 from brdfkit.rendering.scenes._studio import make_studio
 
 INNER = 0.84  # radius of the inner ball [m]; the outer ball has radius 1
-OPENING, BAND = 0.62, (1.32, 1.5)  # angles from the axis to the edges of opening, band [radians]
+# Angles from the ball's axis to the edge of the opening, and to both edges of the band [radians]
+OPENING, BAND = 0.62, (1.32, 1.5)
 EDGE = 0.03  # half the width of a rounded edge [radians]
 AXIS = (-0.42, -0.66, 0.62)  # the ball's axis: towards the camera, up and to the left
 RING, WIRE = 0.62, 0.1  # radii of the ring and of its cross-section [m]
@@ -27,7 +28,7 @@ def material_ball(
     """
     import mitsuba as mi
 
-    height = WIRE + np.sqrt((1 + WIRE) ** 2 - RING**2)  # height of the ball's centre
+    height = WIRE + np.sqrt((1 + WIRE) ** 2 - RING**2)  # the ball's centre, over the ground
     points, normals = (_rotate_to_ball_axis(x) for x in revolve_profile(*_make_ball_profile()))
     floor = {
         "type": "checkerboard",

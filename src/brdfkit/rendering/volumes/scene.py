@@ -110,7 +110,10 @@ def _to_plugin_value(name: str, value: Any) -> Any:
 
 
 def make_background_light(background: ArrayLike) -> dict[str, Any]:
-    """Return the dictionary of an emitter with equal radiance, a number or R, G, B, all around."""
+    """Return the dictionary of a light with the same radiance from all directions.
+
+    `background` is the radiance, a number or R, G, B.
+    """
     rgb = np.broadcast_to(background, 3).tolist()
     return {"type": "constant", "radiance": {"type": "rgb", "value": rgb}}
 

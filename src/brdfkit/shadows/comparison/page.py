@@ -27,7 +27,7 @@ QUALITY = 60  # quality of the WebP pictures, from 0 to 100
 ERROR_SCALE = "RdBu_r"  # matplotlib's colour map for errors: blue for lost light, red for gained
 ERROR_STEPS = 8  # number of colours from no error to the largest; few colours make small files
 TINTS = "Set2"  # matplotlib's palette with a colour for each shadow map
-NO_SURFACE = (0.16, 0.2, 0.3)  # linear sRGB of texels whose light ray meets no surface
+NO_SURFACE = (0.16, 0.2, 0.3)  # colour, in linear sRGB, of texels whose light ray meets no surface
 
 
 def require_page_path(path: str | Path) -> None:

@@ -32,7 +32,8 @@ class Pictures:
     @classmethod
     def from_view(cls, view: LitView, title: str) -> "Pictures":
         """Return the pictures of a view, to which techniques are added later."""
-        # Half precision suffices for pictures; radiance above its largest number would be infinite
+        # Half precision suffices for pictures; its largest number limits the radiance, as infinity
+        # could not be drawn
         radiance = np.minimum(view.unshadowed, np.finfo(np.float16).max).astype(np.float16)
         exact, facing = view.exact.reshape(view.size), view.facing.reshape(view.size)
         arrays = radiance.reshape(*view.size, 3), exact, facing

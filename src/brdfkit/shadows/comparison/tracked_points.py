@@ -20,8 +20,8 @@ from brdfkit.shadows.maps.placement import Placement
 PIXEL_STRIDE = 7  # every seventh pixel is tracked
 STEPS = 4  # number of pictures on a path, the first of which is the view itself
 CAMERA_TURN = 0.003  # angle by which the camera turns between two pictures [rad]
-CAMERA_STEP = 0.01  # the camera's move between two pictures, divided by the nearest depth
-LIGHT_TURN = 0.01  # angle by which the light moves between two pictures, from far away [rad]
+CAMERA_STEP = 0.01  # the camera's move between two pictures, divided by the least visible depth
+LIGHT_TURN = 0.01  # the light's move between two pictures, seen from the scene's far end [rad]
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from brdfkit.shadows.maps.placement import Placement
 from brdfkit.shadows.volumes.light_volumes import LightVolumes
 from brdfkit.shadows.volumes.projected_faces import make_pinhole_camera
 
-JUMP = 8.0  # least change of depth at a silhouette [texel widths], `hybrid_shadow`'s default
+JUMP = 8.0  # least change of depth at a silhouette [widths of a texel], as in `hybrid_shadow`
 
 
 def make_mesh_volumes(view: LitView, placement: Placement, resolution: int) -> LightVolumes:

@@ -84,7 +84,7 @@ def make_partition_from_placements(
 def _renumber_parts(
     find_placement: Callable[[Any], Any], indices: list[int]
 ) -> Callable[[Any], Any]:
-    """Return a function that finds the part of a point: `indices[i]` for the placement i."""
+    """Return a function that finds the index of a point's part, `indices[i]` in placement i."""
     import mitsuba as mi
 
     table = mi.UInt32(np.array(indices, np.uint32))

@@ -68,9 +68,10 @@ class MovingDepths:
     def _compute_edge_derivatives(
         self, f: MitsubaObject, axis: int, motion: TexelMotion
     ) -> MitsubaObject:
-        """Return zeros whose derivatives are those of `f` by silhouettes between texels on an axis.
+        """Return a tensor of zeros whose derivatives are those of `f` due to moving silhouettes.
 
-        motion : motion of the surfaces along the axis.
+        axis : the axis of the tensor along which neighbouring texels are compared.
+        motion : motion of the surfaces along this axis.
         """
         with dr.suspend_grad():
             z, z_next = pair_neighbours(self.values, axis)

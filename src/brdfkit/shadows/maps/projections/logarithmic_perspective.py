@@ -42,7 +42,7 @@ def make_projection(placement: Placement, apex: float) -> Projection:
     near, far = sight.y_range
     n = apex * placement.visible_depths[0] / sight.sine_to_light * sight.map_scale
     warped = sight.make_warped_projection(n)
-    # The logarithm is 0/0 at a ratio of 1, its linear limit; slightly above, it is nearly linear
+    # At a ratio of 1, the formula is 0/0; at this slightly larger ratio, the map is nearly linear
     ratio = max(1 + (far - near) / n, 1 + 1e-4)
     return Logarithmic(warped.matrix, warped.inverse, warped.light, ratio=ratio)
 
@@ -79,7 +79,7 @@ class Logarithmic(Projection):
         return super().light_ray(x, self.undo_logarithm(y))
 
     def unproject(self, x: JitFloat, y: JitFloat, z: JitFloat) -> tuple[JitFloat, ...]:
-        if self.depth:  # then the base class calls `light_ray`, which undoes the logarithm
+        if self.depth:  # a `LightDepth`, for which `light_ray` undoes the logarithm
             return super().unproject(x, y, z)
         return super().unproject(x, self.undo_logarithm(y), z)
 
