@@ -59,7 +59,7 @@ class FinalMessage(click.ClickException):
 
 @contextmanager
 def translate_errors() -> Iterator[None]:
-    """Turn errors in the block that a user can cause into a `FinalMessage`.
+    """Turn errors that a user can cause, if the block raises them, into a `FinalMessage`.
 
     They are `BrdfkitError`, click's errors, failures to read a file or write the output, too little
     memory, Ctrl-C and SIGTERM, and any error that native code raises after one of these signals.

@@ -88,7 +88,7 @@ def _is_in_disc(w: AnyArray, azimuth: float, elevation: float, radius: float) ->
 
 
 class LightSampling:
-    """Draws directions by a light's radiance, tabulated over polar angle and azimuth."""
+    """Draws directions in proportion to a light's radiance, from a table over both angles."""
 
     def __init__(self, light: Callable[[AnyArray], AnyArray]) -> None:
         heights, widths = CELLS

@@ -104,7 +104,7 @@ class LightDirections:
         self.powers = Rows(make_radiance_function(emitter)(directions) / density)
 
     def get_direction(self, i: JitInt, ray: JitInt) -> tuple[JitVector, JitColour]:
-        """Return direction `i` of a ray, and the radiance from there divided by its density."""
+        """Return direction `i` of a ray, and its radiance divided by the density of drawing it."""
         import mitsuba as mi
 
         place = ray * self.per_ray + i

@@ -62,7 +62,7 @@ class Hyperbolic:
         return cls(n, float(np.exp(minimum.x)))
 
     def cumulative_probability(self, x: JitFloat) -> JitFloat:
-        """Return the probability F(x) of all blocks before the rank `x`, by eq. 6.4."""
+        """Return the probability F(x) of all blocks before the rank `x`."""
         log = self.maths.log
         return log(1 + x / self.u) / log(1 + self.n / self.u)
 
@@ -72,7 +72,7 @@ class Hyperbolic:
         return log(1 + 1 / (self.u + i)) / log(1 + self.n / self.u)
 
     def inverse_cumulative(self, xi: JitFloat) -> JitFloat:
-        """Return the rank below which the blocks together have the probability `xi`, by eq. 6.5."""
+        """Return the rank below which the blocks together have the probability `xi`."""
         return self.u * ((1 + self.n / self.u) ** xi - 1)
 
 

@@ -160,8 +160,9 @@ def _cut_boxes(sums: Sums, boxes: IntArray) -> IntArray:
 def _find_best_column(table: FloatArray, boxes: IntArray) -> tuple[IntArray, FloatArray]:
     """Return the column (n,) before which each box is best cut, and the cut's score (n,).
 
-    The score, eq. 6.2, is Σ (sum of a part)² / (its number of pixels), which is largest where the
-    parts' squared error is smallest. A box of one column, which cannot be cut, has the score -1.
+    The score is Σ (sum of a part)² / (its number of pixels), which is largest where the parts'
+    squared error is smallest. A box of one column, which cannot be cut, has the score -1.
+    [Ergun 2015, eq. 6.2]
     """
     x0, x1, y0, y1 = boxes.T
     cuts = x1 - x0 - 1

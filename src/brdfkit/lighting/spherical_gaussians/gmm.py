@@ -116,7 +116,7 @@ def _move_lobes_to_view(lobes: Mixture, before: FloatArray, view: FloatArray) ->
 
 
 def fit_channel_weights(lobes: Mixture, one: OneView, steps: int = 5) -> FloatArray:
-    """Fit the weights (lobes, channels) of lobes, whose axes and κ all colour channels share.
+    """Fit the weights (lobes, channels) of lobes; all colour channels share axes and widths.
 
     It takes steps of expectation maximisation for the weights alone. Unlike least squares, they
     keep the weights ≥ 0, and their sum equal to the light that the view reflects.

@@ -99,7 +99,10 @@ def split_lobe(mu: ArrayLike, kappa: ArrayLike, n: int) -> tuple[FloatArray, Any
 
 
 def estimate_concentration(kappa: ArrayLike, n: int) -> AnyArray:
-    """Return the κ of the kernel density estimate from `n` points of a lobe of κ = `kappa`."""
+    """Return the concentration of the kernel density estimate from `n` points of a lobe.
+
+    The lobe itself has the concentration `kappa`, which is larger.
+    """
     kappa = np.asarray(kappa, float)
     mean = vmf.spread_lobe_points(np.array([0.0, 0.0, 1.0]), kappa, n).mean(axis=-2)
     # The estimate convolves the points with the kernel, so that their mean cosines are multiplied
@@ -108,9 +111,10 @@ def estimate_concentration(kappa: ArrayLike, n: int) -> AnyArray:
 
 
 def _sharpen_lobe(kappa: AnyArray, n: int) -> AnyArray:
-    """Return the κ of a sharper lobe, whose kernel density estimate is as wide as a given lobe.
+    """Return the concentration of a lobe whose kernel density estimate is as wide as a given lobe.
 
-    The estimate uses `n` points of the sharper lobe; `kappa` is the given lobe's concentration.
+    The estimate uses `n` points of the lobe, which is sharper than the given one, whose
+    concentration is `kappa`.
     """
     sharper = kappa * (1 + n ** (-1 / 3))
     for _ in range(10):  # few steps suffice, as the two are nearly proportional

@@ -29,13 +29,13 @@ def density(x: FloatArray, mu: ArrayLike, kappa: ArrayLike) -> AnyArray:
 
 
 def log_density(cosine: ArrayLike, kappa: ArrayLike) -> AnyArray:
-    """Return the log density (...) at directions with this `cosine` of the angle to the axis."""
+    """Return a lobe's log density (...) where the angle to its axis has this `cosine`."""
     cosine, kappa = np.asarray(cosine, float), np.asarray(kappa, float)
     return kappa * (cosine - 1) - np.log(4 * np.pi * exprel(-2 * kappa))
 
 
 def mean_cosine(kappa: ArrayLike) -> FloatArray:
-    """Return the mean cosine of the angle to the axis, coth κ - 1/κ (...).
+    """Return a lobe's mean cosine of the angle to its axis, coth κ - 1/κ (...).
 
     It is the length of the mean of directions that are distributed as the lobe.
     """
@@ -45,7 +45,7 @@ def mean_cosine(kappa: ArrayLike) -> FloatArray:
 
 
 def approximate_kappa(mean_cosine: AnyArray) -> AnyArray:
-    """Return a lobe's κ from its mean cosine R̄, within 4 % of the exact κ [Banerjee et al. 2005].
+    """Return a lobe's concentration from its mean cosine, within 4 % [Banerjee et al. 2005].
 
     >>> round(approximate_kappa(0.9), 3)
     10.374
@@ -54,7 +54,7 @@ def approximate_kappa(mean_cosine: AnyArray) -> AnyArray:
 
 
 def solve_kappa(mean_length: ArrayLike) -> AnyArray:
-    """Return the κ (...) ≤ 1e8 of a lobe from the length R̄ of its mean, 0 to 1.
+    """Return a lobe's concentration κ (...) ≤ 1e8 from the length R̄ of its mean vector, 0 to 1.
 
     Newton's method solves coth κ - 1/κ = R̄.
 
