@@ -68,9 +68,9 @@ class EON(Model):
 
 
 def lost_albedo(cosine: JitFloat) -> JitFloat:
-    """Return c₁ - G/π, which is 0 at the horizon; `cosine` is that of a direction to the normal.
+    """Return the share of light that facets scatter again, divided by r A of the model's formula.
 
-    Times r A it is 1 - E, the share of the light that facets scatter again.
+    This is (1 - E) / (r A) = c₁ - G/π, for a direction with this `cosine` to the normal.
     """
     sine = dr.sqrt(dr.maximum(1 - cosine * cosine, 1e-14))
     grazing = sine * cosine * (1 + sine + sine * sine) / (1 + sine)  # tanθ (1 - sin³θ), no 0/0

@@ -30,8 +30,7 @@ from brdfkit.core.array_types import JitFloat, JitVector
 from brdfkit.model import Model, Parameter, option, weight
 from brdfkit.model.lobes import Cosine, Lobe
 
-# The ball in the picture on the model's page: a fit to a cloth of the Burley model, which
-# reflects some light back and is brighter at its rim
+# The ball in the picture on the model's page: a fit to a cloth of the Burley model
 PICTURE = {
     "a_0_0_0": [1.006, 0.179, 0.268],
     "a_1_1_1": [0.091, 0.016, 0.024],
@@ -85,13 +84,13 @@ def map_to_disc(w: JitVector) -> tuple[JitFloat, JitFloat, JitFloat]:
 def radial_polynomial(n: int, l: int, square: JitFloat) -> JitFloat:
     """Return Zernike's radial polynomial R_n^l(ρ) divided by ρ^l, a polynomial in ρ² = `square`."""
     value = 0.0
-    for c in _list_coefficients(n, l):
+    for c in _list_radial_coefficients(n, l):
         value = value * square + c
     return value
 
 
 @cache
-def _list_coefficients(n: int, l: int) -> list[float]:
+def _list_radial_coefficients(n: int, l: int) -> list[float]:
     """Return the coefficients of ρ^(n-l), ρ^(n-l-2), ..., 1 in Zernike's R_n^l(ρ) / ρ^l."""
     return [
         (-1) ** s
@@ -102,7 +101,7 @@ def _list_coefficients(n: int, l: int) -> list[float]:
 
 
 @cache
-def _list_isotropic(order: int) -> list[tuple[int, ...]]:
+def _list_isotropic_indices(order: int) -> list[tuple[int, ...]]:
     """Return the indices (n, m, l) of the isotropic basis functions up to an order."""
     return [
         (n, m, l)
@@ -113,7 +112,7 @@ def _list_isotropic(order: int) -> list[tuple[int, ...]]:
 
 
 @cache
-def _list_anisotropic(order: int) -> list[tuple[int, ...]]:
+def _list_anisotropic_indices(order: int) -> list[tuple[int, ...]]:
     """Return the indices (n, k, m, l) of the anisotropic basis functions up to an order."""
     modes = [(n, l) for n in range(order + 1) for l in range(-n, n + 1, 2)]
     return [(*a, *b) for j, a in enumerate(modes) for b in modes[: j + 1]]
@@ -122,8 +121,8 @@ def _list_anisotropic(order: int) -> list[tuple[int, ...]]:
 def _make_lobe(term: Callable[..., JitFloat], index: tuple[int, ...], cosine: Cosine) -> Lobe:
     """Make the lobe of the basis function `term` with this index.
 
-    The energies of lobes choose between them when directions are drawn. Only the constant function
-    has an energy above 0.
+    Directions are drawn from a lobe that is chosen by its energy. Only the constant function has an
+    energy above 0.
     """
     constant = not any(index)
     albedo = 0.5 if constant else 0.0
@@ -152,7 +151,9 @@ class Koenderink(Model):
     @classmethod
     def list_indices(cls) -> list[tuple[int, ...]]:
         """Return the indices of all terms: (n, m, l), or (n, k, m, l) if it is anisotropic."""
-        list_terms = _list_isotropic if cls.symmetry == "isotropic" else _list_anisotropic
+        list_terms = (
+            _list_isotropic_indices if cls.symmetry == "isotropic" else _list_anisotropic_indices
+        )
         return list_terms(cls.order)
 
     def lobes(self) -> tuple[Lobe, ...]:

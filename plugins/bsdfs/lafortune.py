@@ -34,8 +34,7 @@ class Lafortune(Model):
     lobe_count = option(1, (1, 2, 3), "S: the number of lobes")
     diffuse_reflectance = weight(0.4, "k_d: albedo of the diffuse term")
     specular_reflectance = weight(0.3, "k_s: strength of the lobe")
-    # These bounds allow all ratios up to 1000. C_z > 0 keeps the lobe's axis above the surface, and
-    # excludes that C_x, C_y and C_z are all 0
+    # The lower bound of C_z keeps the lobe's axis above the surface; ratios to C_z may reach 1000
     c_x = shape(-0.7, (-1.0, 1.0), "C_x: below 0 towards the mirror direction, above 0 back")
     c_y = follows("c_x", c_x, "C_y: like C_x, along y")
     c_z = shape(0.68, (0.001, 1.0), "C_z: along the normal; only the ratios to C_x and C_y matter")
@@ -45,8 +44,7 @@ class Lafortune(Model):
     def more_parameters(cls) -> dict[str, Parameter | None]:
         more: dict[str, Parameter | None] = {}
         for j in range(2, cls.lobe_count + 1):
-            # Equal lobes would be a saddle point of the fit, so each lobe starts wider than the one
-            # before
+            # Each lobe starts wider than the one before, as equal lobes are a saddle point of a fit
             more |= {
                 f"specular_reflectance_{j}": weight(0.1, f"k_s: strength of lobe {j}"),
                 f"c_x_{j}": (c_x := shape(-0.7, (-1.0, 1.0), f"C_x of lobe {j}")),

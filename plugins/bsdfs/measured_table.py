@@ -26,8 +26,7 @@ from brdfkit.mitsuba_bridge.channels import make_channels
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 from brdfkit.model.samples import Table
 
-# The size of the table from which half vectors of an anisotropic material are drawn; a larger one
-# would take seconds to compute
+# Size of the table to draw half vectors of anisotropic materials; larger ones take seconds to make
 ANISOTROPIC = {"azimuths": 24, "angles": 16, "cells": (60, 32), "points": 1}
 
 

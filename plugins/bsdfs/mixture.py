@@ -16,8 +16,7 @@ from brdfkit.model import Model, Parameter, labels, option
 from brdfkit.model.lobes import Lobe
 from brdfkit.model.samples import Samples
 
-# A fit from equal lobes would start at a saddle point, so each further lobe of the same model
-# starts narrower by this factor
+# Each lobe starts narrower than the one before by this factor, as equal lobes are a saddle point
 NARROWER = 3.0
 
 
@@ -64,8 +63,7 @@ class Mixture(Model):
             for name, parameter in model.parameters.items():
                 if parameter.linear and name not in brought:
                     continue
-                # A fit starts at the defaults, so equal models need unequal widths, and weights are
-                # divided by the number of models
+                # A fit starts at these defaults, so the widths of equal models have to differ
                 default = parameter.default
                 if default is not None and parameter.width:
                     default = default * NARROWER ** (-earlier.count(model) / parameter.width)

@@ -109,7 +109,7 @@ class PCAPolynomial(Model):
 
     @classmethod
     def determine_parameters(cls, samples: Samples) -> dict[str, float]:
-        """Return the angles that rotate the products of the measured directions to their axes."""
+        """Return the angles between the coordinate axes and the principal axes of the data."""
         data = samples.wi * samples.wo
         if cls.component_count() == 2:
             data = np.stack([data[:, 0] + data[:, 1], data[:, 2]], axis=1)

@@ -29,8 +29,7 @@ from brdfkit.model.lobes import HalfVector, Lobe, lambertian
 from brdfkit.model.microfacet import Visible
 from brdfkit.model.numerics import expm1, log1p
 
-# Nodes and weights of Gauss-Legendre quadrature over slopes, which ends where the Gaussian factor
-# of the density is exp(-END)
+# Quadrature nodes and weights over slopes, up to where the density's Gaussian factor is exp(-END)
 POINTS, GAUSS = np.polynomial.legendre.leggauss(12)
 END = 10
 

@@ -1,4 +1,4 @@
-"""Student's t: a microfacet model with any tails from longer than GGX's to Beckmann's.
+"""Student's t: a microfacet model with adjustable tails, from longer than GGX's to Beckmann's.
 
     f = k_d / π + k_s D G₂ F / (4 (N·L)(N·V))
     D = 1 / (π α² cos⁴θ_h) [1 + tan²θ_h / ((γ - 1) α²)]^-γ
@@ -6,7 +6,7 @@
 N, L and V are the normal and the directions of light and view, θ_h and φ_h the angle of the half
 vector to N and its azimuth. This is the distribution STD of [Ribardière et al. 2017]: slopes follow
 Student's t-distribution of width α with 2γ - 2 degrees of freedom. γ = 2 is GGX, γ → ∞ Beckmann. G₂
-is Smith's height-correlated shadowing [Heitz 2014]. The paper approximates it by fitted rational
+is Smith's height-correlated shadowing [Heitz 2014]. The paper approximates G₂ by fitted rational
 functions; the approximation here has a G₁ within 2e-4 of the integral for every α, γ and direction,
 and is exact at γ = 2. F is Schlick's Fresnel reflectance. Where the widths along x and y differ,
 tan²θ_h (cos²φ_h / α_u² + sin²φ_h / α_v²) takes the place of tan²θ_h / α². It suits metals, paints

@@ -147,8 +147,7 @@ def define(mi: MitsubaModule) -> type:
             point = find_visible_point(self.now, ray, end, self.precision, active)
             light = dr.select(point.found, self.reflect_light(scene, point, sampler), radiance)
 
-            # A silhouette that passes just beside the ray contributes derivatives: if it moved, the
-            # field would cover the ray
+            # A silhouette just beside the ray has derivatives, because its motion may cover the ray
             if dr.grad_enabled(self.now.distance(ray(0))):
                 end = dr.minimum(point.si.t, end)
                 miss = find_near_miss(self.now, ray, end, self.precision, active)

@@ -75,7 +75,7 @@ def define(mi: MitsubaModule) -> type:
             self.light: Any = make_rgb_emission() if self.has_colours else None
 
         def eval_integrals_at_end(self, it: MitsubaObject, active: JitMask) -> JitVector:
-            """Return the transfer function's integrals at one end of a part, () unless needed."""
+            """Return the transfer function's integrals at a part's end, () without `uses_means`."""
             return self.extinction.eval_integrals(it, active) if self.uses_means else ()
 
         def eval_extinction_and_emission(

@@ -19,7 +19,7 @@ are from [Ergun 2008, section 2.1], with their faults:
 `far_plane` = finite clips volumes at the camera's far plane, and shadows break there. `casters` are
 the triangles that make the volumes: `all` takes open shapes, lights inside them and triangles of
 any orientation; `light_facing` and `facing_away` make half as many caps, and refuse shapes that are
-not closed, such as a ground. So does `silhouettes` = shared_edges.
+not closed, such as a ground. `silhouettes` = shared_edges refuses them, too.
 
 Spheres, cylinders and disks become meshes with 128 steps around; instances, curves and signed
 distances are refused. The time of a pixel is proportional to its faces: shadow rays are faster

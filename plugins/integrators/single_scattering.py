@@ -163,8 +163,7 @@ def define(mi: MitsubaModule) -> type:
             in_medium = active & (sampler.next_1d(active) * (collided + passed) < collided)
             mei = make_medium_interaction(ray, t)
             sigma, albedo, own = self.medium.evaluate_coefficients(mei, in_medium)
-            # `one` has the value 1, and the derivatives of log(σ T) at a collision or of log T at a
-            # surface, where T is the transmittance
+            # `one` is 1 with the derivatives of log σT (T: transmittance), or at surfaces of log T
             depth = self.medium.estimate_optical_depth(
                 ray, dr.select(in_medium, t, si.t), sampler, active
             )

@@ -82,7 +82,7 @@ def define(mi: MitsubaModule) -> type:
             to_world = np.array(props.get("to_world", mi.ScalarTransform4f()).matrix)
             self.to_local = mi.Transform4f(np.linalg.inv(to_world))
             dr.make_opaque(self.to_local)
-            self.function = read_function(self.transfer, self.values)
+            self.function = read_transfer_function(self.transfer, self.values)
             self.lookup = TransferLookup(self.function)
 
         def traverse(self, callback: MitsubaObject) -> None:
@@ -191,7 +191,7 @@ def find_box_transform(mi: MitsubaModule, values: MitsubaObject) -> MitsubaObjec
     return mi.ScalarTransform4f().translate(box.min).scale(box.extents())
 
 
-def read_function(transfer: str, values: MitsubaObject) -> TransferFunction:
+def read_transfer_function(transfer: str, values: MitsubaObject) -> TransferFunction:
     """Read a `TransferFunction` from a preset, file or text, and scale it to a volume of `values`.
 
     Raises `BrdfkitError` if `transfer` is none of these, and for values without the gradient

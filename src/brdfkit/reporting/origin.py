@@ -73,7 +73,7 @@ def make_command(
     missing = set() if all(fit.loss_name == fits[0].loss_name for fit in fits) else {"loss"}
     for name in dict.fromkeys(name for fit in fits for name in fit.settings):
         value = fits[0].settings.get(name)
-        option = _to_option(name, value)
+        option = _to_command_option(name, value)
         if any(fit.settings.get(name) != value for fit in fits):
             missing.add(name)
         elif (value or None) != (defaults.get(name) or None):
@@ -87,7 +87,7 @@ def make_command(
     return shlex.join([*words, "-o", Path(output).name]), sorted(missing)
 
 
-def _to_option(name: str, value: Any) -> list[str]:
+def _to_command_option(name: str, value: Any) -> list[str]:
     """Return the option of `brdfkit report` for a setting of a fit, as words; [] if none."""
     if name == "robust":
         return ["--robust", str(value)]

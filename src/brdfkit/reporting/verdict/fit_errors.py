@@ -77,7 +77,7 @@ def compute_fit_errors(material: Measured, fits: Sequence[Fit], loss: str) -> li
     """Return the `FitErrors` of each fit; `loss`: the name of the loss that decides ties."""
     max_angle = fits[0].settings.get("max_angle", 80.0)
     compared = [compare(material, fit, max_angle=max_angle) for fit in fits]
-    samples = _draw_samples(select_samples(material, max_angle))
+    samples = _select_random_samples(select_samples(material, max_angle))
     if not (samples.values > 0).any():
         raise BrdfkitError(
             f"{material.name}: no measured value is above 0, so a report cannot compare fits with "
@@ -100,7 +100,7 @@ def compute_fit_errors(material: Measured, fits: Sequence[Fit], loss: str) -> li
             {name: one.errors[one.best][name] for name in choose_losses_to_show(loss)},
             one.albedos[one.best],
             *own_factors,
-            _count_numbers(fit),
+            _count_searched_parameters(fit),
             is_tied(*compare_with_best(own, best, shares)),
         )
         for fit, one, own, own_factors in zip(fits, compared, sums, factors, strict=True)
@@ -118,7 +118,7 @@ def order_fits(errors: Sequence[FitErrors], loss: str) -> list[int]:
     return [taken, *(k for k in by_error if k != taken)]
 
 
-def _draw_samples(samples: Any) -> Any:
+def _select_random_samples(samples: Any) -> Any:
     """Return the samples, or if there are more, `SAMPLE_LIMIT` of them drawn at random."""
     count = len(samples.wi)
     if count <= SAMPLE_LIMIT:
@@ -154,7 +154,7 @@ def _find_quantile(values: FloatArray, share: float) -> float:
     return float(np.quantile(values, share, method="inverted_cdf"))
 
 
-def _count_numbers(fit: Fit) -> int:
+def _count_searched_parameters(fit: Fit) -> int:
     """Return the number of parameters that a fit searched."""
     if fit.certainty:
         return fit.certainty.parameters

@@ -48,7 +48,7 @@ def write_verdict(
         f"{format_factor(taken.typical_factor)}, 95\xa0% within "
         f"{format_factor(taken.large_factor)}, and {describe_visibility(picture_errors)}."
     )
-    more = [] if alone else _describe_others(names, errors, leaders, loss)
+    more = [] if alone else _describe_other_fits(names, errors, leaders, loss)
     if ranking and not alone:
         more.append(f"{ranking.best} was {_explain_choice(ranking)}.")
     more += describe_nearest_picture(names, picture_errors["psnr"])
@@ -91,7 +91,7 @@ def _explain_lead(loss: str, leaders: Mapping[str, int], in_picture: bool) -> st
     return f"is best {by}" + " and by its picture" * in_picture
 
 
-def _describe_others(
+def _describe_other_fits(
     names: Sequence[str], errors: Sequence[FitErrors], leaders: Mapping[str, int], loss: str
 ) -> list[str]:
     """Return sentences on fits that are tied with the first, or better by other losses."""

@@ -29,7 +29,7 @@ def find_camera(
     check_fov(fov)
     start = _estimate_pose(_find_ray_slopes(places, picture_size, fov), corners)
 
-    def measure_distances(pose: FloatArray) -> FloatArray:
+    def measure_corner_distances(pose: FloatArray) -> FloatArray:
         """Return how far a camera with the `pose` (6,) projects the corners from their places.
 
         The result (8,) has differences of columns and rows, in shares of the picture's width.
@@ -38,7 +38,7 @@ def find_camera(
         return np.nan_to_num((projected - places).ravel() / picture_size[0], nan=1e3)
 
     if np.isfinite(start).all() and start[2] > 0:
-        result = least_squares(measure_distances, start, x_scale=[start[2]] * 3 + [1] * 3)
+        result = least_squares(measure_corner_distances, start, x_scale=[start[2]] * 3 + [1] * 3)
         if np.sqrt((result.fun**2).mean()) < TOLERANCE:
             return _make_pinhole(result.x, fov)
     raise BrdfkitError(

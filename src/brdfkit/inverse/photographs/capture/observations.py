@@ -49,7 +49,7 @@ class Observations:
         to_light, irradiance = illuminate_points(points, capture.positions, capture.intensities)
         to_camera = np.array([find_directions(camera.origin, points) for camera in capture.cameras])
         scale = np.maximum(radiance, 0) + DARK_OFFSET * radiance.mean()
-        # A pixel at the edge also sees the sample's surroundings; its texel follows the neighbours
+        # Pixels at the edge do not count, because they also show the sample's surroundings
         for light in range(len(lost)):
             lost[light] |= ~capture.is_shown(light, points[:, :2])[:, None]
         weights = np.where(lost, 0, 1 / scale**2)
@@ -97,7 +97,7 @@ class Observations:
     def _apply_to_arrays(
         self, function: Callable[[FloatArray], FloatArray], shape: tuple[int, int]
     ) -> Observations:
-        """Return the results of a `function` of each array as observations for maps of `shape`."""
+        """Apply a `function` to each array; return the results as observations for a `shape`."""
         arrays = {name: function(getattr(self, name)) for name in ARRAYS}
         return Observations(**arrays, shape=shape)
 

@@ -8,8 +8,7 @@ from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 
 # Eigenvalue of a Hessian with unit diagonal below which a combination of numbers is undetermined
 SMALLEST_EIGENVALUE = 1e-4
-# Numbers take part in an undetermined combination if their entry of its eigenvector exceeds this
-# share of the largest entry
+# Numbers belong to a combination if their share of its eigenvector's largest entry is larger
 MAIN_PART = 0.3
 # A number is named if it takes part in more than this share of the undetermined texels
 MENTIONED_SHARE = 0.25
@@ -20,7 +19,7 @@ UNDETERMINED_SHARE = 0.05
 def describe_undetermined(
     parameters: TexelParameters, hessian: FloatArray, lights: int
 ) -> tuple[str, ...]:
-    """Return sentences on numbers that the photographs of many single texels do not determine.
+    """Return sentences on numbers that the photographs do not determine in many texels.
 
     `hessian` (texels, numbers, numbers) holds the second derivatives of each texel's own squared
     residuals, without the penalty on differences from its neighbours. `lights` is the number of

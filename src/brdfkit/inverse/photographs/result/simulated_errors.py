@@ -26,7 +26,7 @@ from brdfkit.inverse.photographs.search.through_renderer import (
 )
 
 AVERAGED_SIDE = 9  # side [texels] of the square over which simulated errors are averaged
-# Ratio of a simulated error to the error by the equations at which the ratio is clipped
+# Largest ratio of a simulated error to the error by the equations; larger ones are clipped
 LARGEST_ERROR_RATIO = 5.0
 # Smallest share of the noise variance that a fit is assumed to leave in the residuals
 FEWEST_FREE = 0.3

@@ -26,7 +26,7 @@ from brdfkit.inverse.scenes.problem.tensors import (
 )
 from brdfkit.model import Model
 
-# Largest number of unknowns for Gauss-Newton steps, which render derivatives by each of them
+# Gauss-Newton steps search at most this many numbers, as they render derivatives by each of them
 PARAMETER_LIMIT = 32
 
 Bounds = tuple[float, float]
@@ -100,9 +100,10 @@ class Unknown:
         return np.full_like(coordinates, self.high - self.low if self.is_bounded else 1.0)
 
     def sum_over_copies(self, derivatives: FloatArray) -> FloatArray:
-        """Return the derivatives by the numbers (n,) as sums of derivatives by all texels.
+        """Return derivatives by the numbers (n,), from derivatives by all texels.
 
-        Some texels of an environment map are copies that hold the same number.
+        Derivatives by texels that hold the same number, as copies in an environment map do, are
+        added up.
         """
         if self.texels is None:
             return derivatives

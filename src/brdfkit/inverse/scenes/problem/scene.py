@@ -58,7 +58,10 @@ def make_integrator(scene: MitsubaObject) -> MitsubaObject:
         raise BrdfkitError('the scene has no integrator; add {"type": "prb"}.')
     kind = integrator.class_name() if type(integrator).__module__ == "mitsuba" else ""
     if kind in DIFFERENTIABLE:
-        options = {"hide_emitters": integrator.hide_emitters, **_read_depths(integrator, kind)}
+        options = {
+            "hide_emitters": integrator.hide_emitters,
+            **_read_depth_limits(integrator, kind),
+        }
         return mi.load_dict({"type": DIFFERENTIABLE[kind], **options})
     if kind:
         raise BrdfkitError(
@@ -68,7 +71,7 @@ def make_integrator(scene: MitsubaObject) -> MitsubaObject:
     return integrator
 
 
-def _read_depths(integrator: MitsubaObject, kind: str) -> dict[str, int]:
+def _read_depth_limits(integrator: MitsubaObject, kind: str) -> dict[str, int]:
     """Return the path length limits max_depth and rr_depth of an integrator of class `kind`."""
     if kind == "DirectIntegrator":
         return {"max_depth": 2}

@@ -32,9 +32,7 @@ MITSUBA_BOUNDS = {
     **dict.fromkeys(("metallic", "sheen", "sheen_tint", "spec_tint"), SHARE_BOUNDS),
     **dict.fromkeys(("spec_trans", "specular"), SHARE_BOUNDS),
 }
-# Class of a BSDF → parameters by which Mitsuba's derivatives of pictures are wrong. The derivatives
-# of rough plastic are 0.5 to 0.7 times the true ones, because it tabulates functions of alpha and
-# eta; derivatives by the colour below a smooth coat are 1.1 times the true ones
+# Class of a BSDF → parameters by which Mitsuba's derivatives are wrong, by factors from 0.5 to 1.1
 WRONG_DERIVATIVES = {"RoughPlastic": ("alpha", "eta"), "SmoothPlastic": ("diffuse_reflectance",)}
 
 
@@ -48,7 +46,7 @@ def find_searchable_entries(parameters: MitsubaObject) -> dict[str, str]:
 
 
 def find_owner_model(parameters: MitsubaObject, key: str) -> tuple[type[Model] | None, str, str]:
-    """Return the brdfkit model that an entry belongs to, its BSDF's name, and the parameter's.
+    """Return the brdfkit model that an entry belongs to, and the names of BSDF and parameter.
 
     The model is None, and the BSDF's name empty, for entries that belong to no brdfkit model.
     """
@@ -97,7 +95,7 @@ def read_model_values(
     return values
 
 
-def write_values(scene: MitsubaObject, values: Mapping[str, Any]) -> None:
+def write_scene_values(scene: MitsubaObject, values: Mapping[str, Any]) -> None:
     """Write `values`, by the short names of their entries, into a Mitsuba scene."""
     import mitsuba as mi
 

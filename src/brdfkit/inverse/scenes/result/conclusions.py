@@ -78,8 +78,8 @@ def _to_result_value(unknown: Unknown, numbers: FloatArray) -> Value:
 def estimate_certainty(views: Views, state: Search, noise: ResidualNoise) -> Certainty:
     """Return the covariance of the values, with blocks of pixels as independent samples.
 
-    The covariance grows where the residuals are more than `noise`, and by the next step where the
-    search has not converged. Tensors have no standard errors.
+    It is enlarged if the residuals are more than noise, by the correlations in `noise`, and if the
+    search has not converged, by its next step. Tensors have no standard errors.
     """
     here, equations = state.residuals, state.equations
     slopes = views.differentiate_values(here.x)
@@ -200,13 +200,13 @@ def _make_fits(views: Views, result: Refinement) -> dict[str, Fit]:
             message=result.message,
             at_bounds=tuple(names[name] for name in result.at_bounds if name in names),
             notes=tuple(note.replace(f"{owner}.", "") for note in result.notes),
-            certainty=_select_certainty(result.certainty, owner),
+            certainty=_select_certainty_of_bsdf(result.certainty, owner),
             versions=dict(find_versions()),
         )
     return fits
 
 
-def _select_certainty(certainty: Certainty, owner: str) -> Certainty:
+def _select_certainty_of_bsdf(certainty: Certainty, owner: str) -> Certainty:
     """Return the part of a `Certainty` about the BSDF `owner`, with short parameter names."""
     rows = [row for row, name in enumerate(certainty.names) if name.startswith(f"{owner}.")]
     covariance = certainty.make_covariance_matrix()[np.ix_(rows, rows)]

@@ -190,11 +190,11 @@ class Refinement(Shown):
         >>> mitsuba.render(result.put_into("scene.xml"), spp=256)    # doctest: +SKIP
         """
         from brdfkit.inverse.scenes.problem.scene import load_scene
-        from brdfkit.inverse.scenes.problem.scene_parameters import write_values
+        from brdfkit.inverse.scenes.problem.scene_parameters import write_scene_values
 
         height, width = self.pictures[0].shape[:2]
         scene = load_scene(scene, (width, height))
-        write_values(scene, self.values)
+        write_scene_values(scene, self.values)
         return scene
 
     def __eq__(self, other: object) -> bool:

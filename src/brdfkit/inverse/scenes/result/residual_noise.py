@@ -31,7 +31,8 @@ class ResidualNoise:
 
     chi2 : a lower estimate of χ² per degree of freedom, squared residuals over those of pure noise.
     significance : the correlation of neighbours in units of its standard error.
-    area : the number of blocks, as wide as the filter, whose residuals are correlated.
+    area : the number of neighbouring blocks, as wide as the filter, that count as one independent
+        sample because their residuals are correlated.
     """
 
     chi2: float
@@ -57,9 +58,10 @@ class ResidualNoise:
             side, counted = find_block_side(sensor), (weights > 0).astype(float)
             a, b = _clip_outliers(a, b, counted)
             sums += _correlate_pictures(a, b, counted, side)
-            near += _compare_rows(a, b, counted, side)
+            near += _correlate_rows(a, b, counted, side)
+            # With swapped axes, the function compares columns
             a, b, counted = (array.swapaxes(0, 1) for array in (a, b, counted))
-            near += _compare_rows(a, b, counted, side)  # axes are swapped: compares columns
+            near += _correlate_rows(a, b, counted, side)
         products, squares, variance = near
         if not (squares > 0 and variance > 0):
             return cls(1.0, 0.0, 1.0)
@@ -84,7 +86,7 @@ def _clip_outliers(
     return np.clip(a, -limit, limit), np.clip(b, -limit, limit)
 
 
-def _compare_rows(a: FloatArray, b: FloatArray, counted: FloatArray, side: int) -> FloatArray:
+def _correlate_rows(a: FloatArray, b: FloatArray, counted: FloatArray, side: int) -> FloatArray:
     """Return sums from which the correlation of pixels with those `side` rows below follows.
 
     They are the sum of products of both pixels, the sum of their squares, and the squared standard
@@ -95,8 +97,7 @@ def _compare_rows(a: FloatArray, b: FloatArray, counted: FloatArray, side: int) 
     both = counted[upper] * counted[lower]
     products = (both * (a[upper] * b[lower] + b[upper] * a[lower]) / 2).sum(axis=2)
     squares = (both * (a[upper] * b[upper] + a[lower] * b[lower]) / 2).sum()
-    # The camera's filter correlates the noise of nearby pixels, so blocks as wide as the filter are
-    # the independent samples
+    # Blocks as wide as the camera's filter have independent noise, since only the filter mixes it
     height, width = (n // side for n in products.shape)
     blocks = products[: height * side, : width * side].reshape(height, side, width, side)
     return np.array([products.sum(), squares, (blocks.sum(axis=(1, 3)) ** 2).sum()])

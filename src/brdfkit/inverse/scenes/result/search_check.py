@@ -104,8 +104,7 @@ def _compare_with_search(
     certain = np.array([name in errors for name in views.names])
     step = solve_step(views, here, equations, damping=0)
     moved = dict(zip(views.names, np.abs(views.differentiate_values(here.x) * step), strict=True))
-    # The search minimised E² of its own samples, so E² of new samples is larger; this excess, the
-    # predicted gain of a step, is subtracted from the change
+    # The search minimised E² of its samples, so E² of new ones may be larger by a step's gain
     change = abs(here.error - before.error) - max(equations.predict_gain(step), 0)
     deviation = np.hypot(here.deviation, before.deviation)
     share = np.diagonal(equations.hessian) / np.maximum(equations.power, 1e-300)

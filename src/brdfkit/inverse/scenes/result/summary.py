@@ -28,7 +28,7 @@ def describe_refinement(result: Any) -> Document:
         (
             *(Paragraph(early, kind=BAD) for _ in range(not result.converged)),
             Table(rows),
-            *(_make_picture(result, sensor) for sensor in range(len(result.pictures))),
+            *(_make_comparison_picture(result, sensor) for sensor in range(len(result.pictures))),
             *(Paragraph(note) for note in result.notes),
             Paragraph(
                 f"{result.message}; {result.steps} step{several}, the last at {result.samples} "
@@ -39,7 +39,7 @@ def describe_refinement(result: Any) -> Document:
     )
 
 
-def _make_picture(result: Any, sensor: int) -> Picture:
+def _make_comparison_picture(result: Any, sensor: int) -> Picture:
     """Return the given and the rendered picture of a sensor side by side, drawn on demand."""
     width = min(WIDEST, 2 * max(result.pictures[sensor].shape[1], TILE))
     alt_text = f"given and found pictures {sensor}, and their difference"

@@ -67,8 +67,9 @@ def _choose_smoothness(
 ) -> tuple[FloatArray, float]:
     """Return the coordinates and the weight of the penalty that predict held-out pixels best.
 
-    The trials go from strong to weak smoothness, each from the end of the one before. All of them
-    are made: until a small light is sharp, a weaker weight may not improve the prediction.
+    The trials go from strong to weak smoothness, each from the end of the one before. No trial is
+    left out, even if a weaker weight does not improve the prediction: a still weaker one may, as
+    for a small light that only then becomes sharp.
     """
     held_out = _choose_held_out_pixels(views, seed)
     fitted, hidden = views.weights * ~held_out[:, None], views.weights * held_out[:, None]

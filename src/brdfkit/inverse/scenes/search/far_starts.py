@@ -1,7 +1,7 @@
 """Chooses where a search begins, among many points spread over the bounds.
 
-A wide lobe in place of a narrow highlight is a local minimum that no descent leaves. So many points
-are tried with few samples, and the best ones take a few steps.
+A wide lobe in place of a narrow highlight is a local minimum that no descent leaves. Therefore many
+points are tried with few samples, and the best ones take a few steps.
 """
 
 from collections.abc import Callable, Iterable

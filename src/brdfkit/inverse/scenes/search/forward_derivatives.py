@@ -92,8 +92,7 @@ def _render_derivative(
         with raise_first_cause(), track_derivatives(views, x) as entries:
             for entry, part in zip(entries, views.split_by_unknown(tangent), strict=True):
                 dr.set_grad(entry, make_opaque_array(type(entry), part))
-            # Plugins compute some values before rendering; derivatives have to reach these first,
-            # because the loops of the renderer do not propagate them there
+            # The renderer's loops do not propagate derivatives to values that plugins precompute
             dr.enqueue(dr.ADMode.Forward, entries)
             dr.traverse(dr.ADMode.Forward, flags=dr.ADFlag.ClearEdges)
             return views.join_pictures(

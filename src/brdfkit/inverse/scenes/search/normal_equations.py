@@ -97,7 +97,7 @@ class Residuals:
         return float(change.sum()), float(change.std() * np.sqrt(len(change)))
 
     def compute_noise(self, views: Views) -> float:
-        """Return the variance that rendering adds to the squared residual of the mean picture."""
+        """Return how much noise of rendering adds to the squared residual of the mean picture."""
         return float((views.weights * (self.a - self.b) ** 2).sum() / 4)
 
 
