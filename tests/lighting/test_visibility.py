@@ -35,7 +35,7 @@ RAYS = 20_000
 @pytest.fixture(autouse=True)
 def own_cache(monkeypatch, tmp_path):
     """Decompositions are kept in a folder of the test's, not in the user's."""
-    monkeypatch.setattr(decomposition, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(decomposition, "find_decomposition_folder", lambda: tmp_path)
 
 
 def unit_vectors(rng, n):

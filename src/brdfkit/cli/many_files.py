@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from brdfkit.fitting.sweeping import Sweep
 
 
-def fit_many(
+def fit_many_files(
     files: Sequence[str],
     names: Sequence[str],
     settings: dict[str, Any],

@@ -119,7 +119,7 @@ def _list_inputs(words: Any) -> Iterator[Path]:
     """Yield the files that arguments name, files in named folders, and files named in these."""
     waiting, known = [Path(word) for word in _list_texts(words)], set()
     while waiting:
-        path = _resolve_existing(waiting.pop())
+        path = _resolve_existing_path(waiting.pop())
         if path is None or path in known:
             continue
         known.add(path)
@@ -144,7 +144,7 @@ def _list_texts(value: Any) -> Iterator[str]:
             yield from _list_texts(part)
 
 
-def _resolve_existing(path: Path) -> Path | None:
+def _resolve_existing_path(path: Path) -> Path | None:
     """Return the path without links of an existing file or folder, and None otherwise."""
     with suppress(OSError, ValueError):  # a text that is no file name, such as a too long one
         return path.resolve() if path.is_file() or path.is_dir() else None

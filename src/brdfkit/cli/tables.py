@@ -31,7 +31,8 @@ def make_table(
     rows = [row for section in sections for row in section]
     cells = [[h, *texts] for h, *texts in zip(headers, *rows, strict=True)]
     whole = [k == 0 or column.startswith(">") for k, column in enumerate(columns)]
-    widths = _compute_widths(cells, whole, width - 3 * len(columns) + 1)  # minus gaps
+    # `width` minus the gaps between columns is left for texts
+    widths = _compute_column_widths(cells, whole, width - 3 * len(columns) + 1)
     if widths is None:
         return None
 
@@ -67,7 +68,7 @@ def format_blocks(columns: Sequence[str], sections: Sections, width: int) -> Ite
             )
 
 
-def _compute_widths(
+def _compute_column_widths(
     cells: Sequence[Sequence[str]], whole: Sequence[bool], total: int
 ) -> list[int] | None:
     """Compute the widths of columns within `total` characters, or None if words do not fit.

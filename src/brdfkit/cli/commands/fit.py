@@ -81,7 +81,7 @@ def fit(
     Several FILEs are fitted by several processes; files that cannot be read are skipped. With -o,
     the command also writes a page and a table; when repeated, it continues where it was stopped.
     """
-    from brdfkit.cli.many_files import fit_many
+    from brdfkit.cli.many_files import fit_many_files
     from brdfkit.cli.rank_output import BEST, refuse_best
     from brdfkit.model import labels
 
@@ -98,7 +98,7 @@ def fit(
         _refuse_mends(mends)
         if rendered:
             raise BrdfkitError("--render shows one material; name one FILE, or leave it out.")
-        fit_many(files, models, how, output, workers, judge, console)
+        fit_many_files(files, models, how, output, workers, judge, console)
     elif judge:
         raise BrdfkitError("--judge is for several FILEs; -m best judges all models of one FILE.")
     else:

@@ -18,9 +18,9 @@ def draw_normals(
     """Draw normals of points of the ball, half of them in highlights.
 
     Returns the normals (count, 3), and their weights (count,), by which a weighted mean over them
-    is a mean over the ball's disc. Half of the normals are spread evenly; the others
-    are drawn by the material's distribution of half vectors, about the half vectors of camera and
-    light. So even the narrow highlight of a small lamp gets some normals.
+    is a mean over the ball's disc. Half of the normals are spread evenly. The others are drawn by
+    the material's distribution of half vectors, about the half vectors of camera and light, so that
+    even the narrow highlight of a small lamp gets some normals.
     """
     from scipy.stats import qmc
 

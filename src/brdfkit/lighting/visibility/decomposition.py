@@ -84,7 +84,7 @@ def _cut_piece(
         return []
     if settings[PREPROCESS] == "off" and _fills_its_hull(points, faces):
         return [whole]
-    file = cache_folder() / f"{_checksum_mesh(points, faces, settings)}.npz"
+    file = find_decomposition_folder() / f"{_checksum_mesh(points, faces, settings)}.npz"
     if not file.is_file():
         _run_coacd(points, faces, settings, file)
     with np.load(file) as stored:
@@ -92,7 +92,7 @@ def _cut_piece(
     return [hull for part in parts if (hull := make_hull(part)) is not None]
 
 
-def cache_folder() -> Path:
+def find_decomposition_folder() -> Path:
     """Return the folder in the user's cache folder in which decompositions are stored."""
     import pooch
 
