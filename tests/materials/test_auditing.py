@@ -276,7 +276,7 @@ def test_reciprocity_of_samples(anisotropic):
     angles = 20, 40, 60
     for model, expected in ((GGX, 0), (OneWay(), DIFFERENCE)):
         data = scattered(model.eval, *grid(angles, angles), anisotropic=anisotropic)
-        found = symmetries.compare_reciprocal(data)
+        found = symmetries.compare_reciprocal_values(data)
         assert found.pairs == (3 if anisotropic else 3 * 36)
         assert found.median == pytest.approx(expected, abs=1e-9)
 
@@ -284,24 +284,26 @@ def test_reciprocity_of_samples(anisotropic):
 def test_a_lookup_is_compared_with_itself_exchanged():
     wi, wo = grid()
     data = scattered(OneWay().eval, wi, wo, lookup=OneWay().eval)
-    found = symmetries.compare_reciprocal(data)
+    found = symmetries.compare_reciprocal_values(data)
     assert found.pairs == data.samples.valid.sum()
     assert found.median == pytest.approx(DIFFERENCE, abs=1e-6)
-    assert symmetries.compare_mirrored(data).percentile_95 == pytest.approx(0, abs=1e-9)
+    assert symmetries.compare_mirrored_values(data).percentile_95 == pytest.approx(0, abs=1e-9)
 
 
 def test_mirror_symmetry():
     data = scattered(LeftHanded().eval)
-    found = symmetries.compare_mirrored(data)
+    found = symmetries.compare_mirrored_values(data)
     assert found.pairs == 3 * 25 * 17  # all but the plane itself
     assert found.median == pytest.approx(DIFFERENCE)
     for period, left in ((np.pi, slice(0, 18)), (2 * np.pi, slice(0, 36))):
         values = tabulated(shape=(20, 10, 2 * left.stop), period=period)
         values[..., left, :] *= 1.1
-        found = symmetries.compare_mirrored(Measured.from_table(values, phi_d_period=period))
+        found = symmetries.compare_mirrored_values(Measured.from_table(values, phi_d_period=period))
         assert found.median == pytest.approx(DIFFERENCE)
-    assert not symmetries.compare_mirrored(scattered(anisotropic=True))
-    assert not symmetries.compare_mirrored(Measured.from_table(tabulated(shape=(4, 9, 9, 18))))
+    assert not symmetries.compare_mirrored_values(scattered(anisotropic=True))
+    assert not symmetries.compare_mirrored_values(
+        Measured.from_table(tabulated(shape=(4, 9, 9, 18)))
+    )
 
 
 # Albedo
@@ -689,7 +691,7 @@ def test_white_paint_reflects_too_much(measured_data):
 def test_paints_are_reciprocal_within_a_few_percent(measured_data, name, low, high):
     """20°, 40°, 60° and 0° against each other, both azimuth sides measured."""
     data = load(measured_data / PAINTS / f"{name}.astm.xz")
-    found = symmetries.compare_reciprocal(data)
+    found = symmetries.compare_reciprocal_values(data)
     assert found.pairs == 3 * 6 * 36
     assert low < found.median < high
     assert low < max(estimate_noise(data).relative) < 0.09
@@ -724,10 +726,10 @@ def test_retroreflective_tapes(measured_data, name):
 def test_the_tape_that_does_not_state_its_cosine_has_it(measured_data):
     """Its file says of PARAM_OUT nothing, the other's that the cosine is in its values."""
     tape = load(measured_data / "alta_retro" / "retro-gray-tape.dat.xz")
-    assert symmetries.compare_reciprocal(tape).median > 0.3
+    assert symmetries.compare_reciprocal_values(tape).median > 0.3
     assert any("divide_by_cos=True" in finding for finding in bk.audit(tape).findings())
     mended = tape.mend(divide_by_cos=True)
-    assert symmetries.compare_reciprocal(mended).median < 0.1
+    assert symmetries.compare_reciprocal_values(mended).median < 0.1
     assert not any("cos theta_o" in finding for finding in bk.audit(mended).findings())
 
 

@@ -27,7 +27,11 @@ from brdfkit.materials.auditing.ratios import (
 from brdfkit.materials.auditing.report import describe_audit, list_findings
 from brdfkit.materials.auditing.spikes import Spike, find_spikes
 from brdfkit.materials.auditing.subsets import draw_samples
-from brdfkit.materials.auditing.symmetries import Difference, compare_mirrored, compare_reciprocal
+from brdfkit.materials.auditing.symmetries import (
+    Difference,
+    compare_mirrored_values,
+    compare_reciprocal_values,
+)
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import Coverage, compute_coverage, is_in_plane
 from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean
@@ -214,8 +218,8 @@ def audit(material: MaterialLike) -> Audit:
         largest=float(values.max()),
         coverage=compute_coverage(data),
         in_plane=is_in_plane(part),
-        reciprocity=compare_reciprocal(data),
-        mirror=compare_mirrored(data),
+        reciprocity=compare_reciprocal_values(data),
+        mirror=compare_mirrored_values(data),
         noise=estimate_noise(data),
         albedo=compute_albedo(coloured, theta_i[-1]),
         albedo_of_samples=compute_sample_albedo(coloured),

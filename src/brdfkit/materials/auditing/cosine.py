@@ -1,7 +1,7 @@
 """Tests whether measured values are the BRDF times cos theta_o, in place of the BRDF.
 
 Two tests, by reciprocity and by values near the horizon, estimate the power p for which the values
-are the BRDF times cos^p theta_o. It is 1 if the values contain the cosine, and about 0 if not.
+are the BRDF times cos^p theta_o. p is 1 if the values contain the cosine, and about 0 if not.
 """
 
 import numpy as np
@@ -47,14 +47,18 @@ def explain_suspected_cosine(data: Measured) -> str:
     if data.is_table or data.has_lookup:
         return ""
     samples = draw_valid_samples(data)
-    power, unexplained, pairs = compute_power_by_reciprocity(samples, data.anisotropic)
+    power, unexplained, pairs = compute_cosine_power_by_reciprocity(samples, data.anisotropic)
     if pairs >= FEWEST_PAIRS:
         agrees = _is_within(power, RECIPROCAL_POWERS) and unexplained <= LARGEST_REST
         return BY_RECIPROCITY if agrees else ""
-    return BY_HORIZON if _is_within(compute_power_at_horizon(samples), HORIZON_POWERS) else ""
+    return (
+        BY_HORIZON if _is_within(compute_cosine_power_at_horizon(samples), HORIZON_POWERS) else ""
+    )
 
 
-def compute_power_by_reciprocity(samples: Samples, anisotropic: bool) -> tuple[float, float, int]:
+def compute_cosine_power_by_reciprocity(
+    samples: Samples, anisotropic: bool
+) -> tuple[float, float, int]:
     """Estimate the power p of cos theta_o that values f of valid samples contain, by reciprocity.
 
     Pairs of samples with exchanged directions give p, because the BRDF itself is reciprocal:
@@ -76,7 +80,7 @@ def compute_power_by_reciprocity(samples: Samples, anisotropic: bool) -> tuple[f
     return power, float(unexplained), len(cosines)
 
 
-def compute_power_at_horizon(samples: Samples) -> float:
+def compute_cosine_power_at_horizon(samples: Samples) -> float:
     """Estimate the power p for which valid samples fall towards the horizon as cos^p theta_o.
 
     The result is the median over the angles of incidence. It is NaN if no angle has enough samples,

@@ -20,7 +20,7 @@ from brdfkit.materials.auditing.ratios import (
     compute_retroreflection_ratio,
 )
 from brdfkit.materials.auditing.subsets import draw_samples
-from brdfkit.materials.auditing.symmetries import compare_reciprocal
+from brdfkit.materials.auditing.symmetries import compare_reciprocal_values
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.conventions import can_mend
 from brdfkit.materials.measured.coverage import is_in_plane
@@ -71,7 +71,7 @@ def list_data_findings(data: Measured, max_angle: float = 90.0) -> tuple[str, ..
 
 
 def _find_faults(data: Measured) -> dict[str, str]:
-    """Test a `Measured` for each kind of fault; return a sentence on it by its topic, or ""."""
+    """Test a `Measured` for all kinds of faults; return by topic a sentence on each, or ""."""
     samples = draw_samples(data)
     cosine = _warn_of_cosine_factor(data)
     return {
@@ -132,7 +132,7 @@ def _warn_of_cosine_factor(data: Measured) -> str:
 
 def _warn_of_broken_reciprocity(data: Measured) -> str:
     """Return a warning of values that are not reciprocal to within their noise, or ""."""
-    difference = compare_reciprocal(data)
+    difference = compare_reciprocal_values(data)
     if difference.pairs < FEWEST_PAIRS or not difference.median > RECIPROCITY_ERROR:
         return ""
     noise = [n for n in estimate_noise(data).relative if not math.isnan(n)]

@@ -36,7 +36,7 @@ class Difference:
 NOTHING = Difference(0, np.nan, np.nan)
 
 
-def compare_reciprocal(data: Measured) -> Difference:
+def compare_reciprocal_values(data: Measured) -> Difference:
     """Return how far values f(wi, wo) and f(wo, wi) of a `Measured` differ, as a `Difference`."""
     if data.is_table:
         # Compare the two halves of the axis of phi_d, because exchanging wi and wo adds π to phi_d
@@ -52,7 +52,7 @@ def compare_reciprocal(data: Measured) -> Difference:
     return compare_values(samples.values[first], samples.values[second])
 
 
-def compare_mirrored(data: Measured) -> Difference:
+def compare_mirrored_values(data: Measured) -> Difference:
     """Return how far values on both sides of the plane of incidence differ, as a `Difference`.
 
     They should be equal for an isotropic material. For an anisotropic one nothing is compared.

@@ -142,7 +142,7 @@ def _refuse_split_numbers(
 
 
 def _require_one_decimal_mark(source: Source, line: int, text: str, marks: dict[str, int]) -> None:
-    """Raise `BrdfkitError` if some numbers of the file contain points, and others commas.
+    """Raise `BrdfkitError` if the numbers of a file contain both points and commas.
 
     One of the two would then separate thousands. `text` has the fields of line number `line`.
     `marks` has the number of the first line with a point or a comma, and is updated.

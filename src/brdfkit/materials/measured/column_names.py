@@ -51,8 +51,8 @@ class Layout:
 def are_sample_columns(names: Iterable[str]) -> bool:
     """Return whether columns with these `names` give both directions and values of a BRDF."""
     texts = [_split_unit(name)[0] for name in names]
-    coordinates = set(map(_match_coordinate, texts))
-    has_values = any(map(_match_value, texts))
+    coordinates = set(map(_match_coordinate_column, texts))
+    has_values = any(map(_match_value_column, texts))
     return has_values and any(coordinates.issuperset(line) for line in COORDINATES)
 
 
@@ -69,7 +69,7 @@ def parse_layout(names: Sequence[str], origin: Origin) -> Layout:
     keys: dict[str, int] = {}
     for number, name in enumerate(names):
         text, unit = _split_unit(name)
-        coordinate, value = _match_coordinate(text), _match_value(text)
+        coordinate, value = _match_coordinate_column(text), _match_value_column(text)
         key = match_channel_column(name)
         if coordinate in coordinates or value in values or (key and keys):
             raise origin.error(f"the column {_quote_name(name)} comes twice; keep one")
@@ -194,12 +194,12 @@ KEYS = {_simplify_name(name): name for line in COORDINATES for name in line}
 KEYS |= {_simplify_name(alias): name for alias, name in ALIASES.items()}
 
 
-def _match_coordinate(text: str) -> str | None:
+def _match_coordinate_column(text: str) -> str | None:
     """Return the coordinate that a column of this name contains, such as "theta_i", or None."""
     return KEYS.get(_simplify_name(text))
 
 
-def _match_value(text: str) -> tuple[str, bool] | None:
+def _match_value_column(text: str) -> tuple[str, bool] | None:
     """Return the channel of a column with this name, and whether it contains standard errors.
 
     The result is None for a column that contains neither values nor errors of a BRDF.

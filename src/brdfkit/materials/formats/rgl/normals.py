@@ -64,12 +64,12 @@ class Hemisphere:
 
     @cached_property
     def _projection_kernel(self) -> FloatArray:
-        """The Fourier coefficients (n_theta, n_theta', k) of max(0, w·m), for `projected_area`.
+        """The Fourier coefficients of max(0, w·m) over the azimuth between w and m.
 
-        For polar angles θ of w, θ' of m and an azimuth Δφ between them, w·m = a + b cosΔφ with
+        `projected_area` needs them. The axes are the polar angle θ of w, the polar angle θ' of m,
+        and the number k of the coefficient. For an azimuth Δφ, w·m = a + b cosΔφ with
         a = cosθ cosθ' and b = sinθ sinθ'. Its positive part is 0 beyond φ₀ = arccos(-a/b). The
-        coefficients over Δφ are (φ₀/π) (a s_k + b (s_{k-1} + s_{k+1}) / 2) with
-        s_k = sin(k φ₀) / (k φ₀).
+        coefficients are (φ₀/π) (a s_k + b (s_{k-1} + s_{k+1}) / 2) with s_k = sin(k φ₀) / (k φ₀).
         """
         a, b = (np.multiply.outer(x, x) for x in (np.cos(self.theta), np.sin(self.theta)))
         a, b = a[..., None], b[..., None]
