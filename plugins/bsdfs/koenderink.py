@@ -47,8 +47,7 @@ def isotropic_term(n: int, m: int, l: int, wi: JitVector, wo: JitVector) -> JitF
     """
     a = (1 if l > 0 else 2) * (1 if n != m else 2)
     i, r = map_to_disc(wi), map_to_disc(wo)
-    # (ρ_i ρ_r)^l cos lΔφ is the real part of u^l, where u is the product of p_i = x_i + i y_i and
-    # the conjugate of p_r; a recurrence computes it without azimuths
+    # (ρ_i ρ_r)^l cos lΔφ is the real part of ((x_i + i y_i)(x_r - i y_r))^l, by a recurrence
     re, square = i[0] * r[0] + i[1] * r[1], i[2] * r[2]
     harmonic, before = (re, 1.0) if l > 0 else (1.0, None)
     for _ in range(l - 1):

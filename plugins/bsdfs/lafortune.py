@@ -3,13 +3,14 @@
     f = k_d / π + Σ_j k_s (n + 2) / 2π [C_x l_x v_x + C_y l_y v_y + C_z l_z v_z]₊ⁿ
                       / max(|C_x|, |C_y|, |C_z|)ⁿ
 
-l and v are the directions of light and view, with z along the normal. [Lafortune et al. 1997];
-[Kurt 2007, eqs. 3.10-3.12]. Only the ratios of C_x, C_y and C_z matter: with -C_x = -C_y = C_z the
-lobe is Phong's, with C_z < -C_x it peaks below the mirror direction, with C_x > 0 it reflects back
-to the light, and with C_x ≠ C_y it is anisotropic. The option `lobe_count` is the number of lobes
-in the sum. The weight k_s is the albedo of a mirror lobe at normal incidence; other lobes reflect
-less. It suits rough surfaces with off-specular peaks or retro-reflection. Highlights are round,
-never elliptic, and there is no Fresnel effect.
+l and v are the directions of light and view, with z along the normal; n is the sharpness of the
+lobe, and [x]₊ = max(x, 0). [Lafortune et al. 1997]; [Kurt 2007, eqs. 3.10-3.12]. Only the ratios of
+C_x, C_y and C_z matter: with -C_x = -C_y = C_z the lobe is Phong's, with C_z < -C_x it peaks below
+the mirror direction, with C_x > 0 it reflects back to the light, and with C_x ≠ C_y it is
+anisotropic. The option `lobe_count` is the number of lobes in the sum. The weight k_s is the albedo
+of a mirror lobe at normal incidence; other lobes reflect less. It suits rough surfaces with
+off-specular peaks or retro-reflection. Highlights are round, never elliptic, and there is no
+Fresnel effect.
 """
 
 import drjit as dr

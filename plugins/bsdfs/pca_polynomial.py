@@ -86,7 +86,7 @@ class PCAPolynomial(Model):
 
     @classmethod
     def list_powers(cls) -> list[tuple[int, int]]:
-        """Return (component j from 0, exponent k) of the power of Z for each of β_1, β_2, ..."""
+        """Return for each β_1, β_2, ... the index of its component Z, from 0, and the exponent."""
         return [(j, k) for k in range(1, cls.degree + 1) for j in range(cls.component_count())]
 
     @classmethod

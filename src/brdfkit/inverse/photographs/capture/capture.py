@@ -169,7 +169,7 @@ def downsample(capture: Capture, shape: tuple[int, int]) -> Capture:
 
 
 def _find_padding(pixels: int, side: int) -> int:
-    """Return how many pixels at both ends make the length of a row a multiple of the odd `side`."""
+    """Return how many pixels each end of a row needs, to make its length a multiple of `side`."""
     return next(n for n in range(side) if (pixels + 2 * n) % side == 0)
 
 

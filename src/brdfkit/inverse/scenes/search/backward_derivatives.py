@@ -24,8 +24,8 @@ def compute_error_and_gradient(
 ) -> tuple[float, FloatArray]:
     """Return the squared difference from the targets and its gradient (n,) by the coordinates `x`.
 
-    Each of the two renderings has `spp` samples; `weights` (pixels, channels) are those of the
-    squared differences.
+    Each of the two renderings has `spp` samples; `weights` (pixels, channels) multiply the squared
+    differences.
     """
     a, b = (views.render_residuals(x, spp, seed + 1000 * half) for half in (0, 1))
     gradient = np.zeros(len(x))
@@ -39,10 +39,10 @@ def compute_error_and_gradient(
 def _render_backward(
     views: Views, x: FloatArray, number: int, adjoint: AnyArray, spp: int, seed: int
 ) -> FloatArray:
-    """Return the derivatives (n,) of Σ `adjoint` · I by the values, I being one sensor's picture.
+    """Return derivatives (n,) of a loss by the scene's values, through one sensor's picture.
 
-    `number` is that of the sensor, and `adjoint` (height, width, channels) the derivative of the
-    loss by its pixels.
+    `number` is the sensor's index. `adjoint` (height, width, channels) holds the derivatives of the
+    loss by the picture's pixels.
     """
     import mitsuba as mi
 
