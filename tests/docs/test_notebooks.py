@@ -27,6 +27,9 @@ SMALLER = {  # smaller pictures and shorter searches, of which the notebooks' as
     r"size=(256|128)\)": "size=32)",
     r"starts=4": "starts=1",
     r"samples=256": "samples=64",
+    r"spp=(256|128), starts": "spp=64, starts",
+    r"spp=256,\n": "spp=64,\n",
+    r"spp=1024": "spp=512",
 }
 IN_A_KERNEL = "first_render"  # alone, because a kernel takes as long to start as a notebook to run
 # a notebook has as many threads as a test (conftest.py): more would wait for the other tests'

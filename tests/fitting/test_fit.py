@@ -63,7 +63,7 @@ def assert_same_parameters(found, truth):
 def test_known_parameters_come_back(model, loss, starts):
     """To 1e-4, from few starts and with the usual several ones."""
     truth = isotropic(model)
-    data = synthetic(truth)
+    data = synthetic(truth, n=1000)
     found = bk.fit(data, truth.type_name(), loss=loss, starts=starts, fixed=given(truth, data))
     assert_same_parameters(found, truth)
     assert found.loss < 1e-5
