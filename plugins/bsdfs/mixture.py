@@ -78,7 +78,10 @@ class Mixture(Model):
 
     @classmethod
     def determine_parameters(cls, samples: Samples) -> dict[str, float]:
-        """Return the models' shape parameters that follow from the measured directions alone."""
+        """Return the shape parameters that need no search, from all models of the sum, by name.
+
+        They follow from the directions of the `samples`, whatever values were measured there.
+        """
         return {
             prefix + name: value
             for prefix, model, _ in cls.list_summands()

@@ -109,7 +109,11 @@ class PCAPolynomial(Model):
 
     @classmethod
     def determine_parameters(cls, samples: Samples) -> dict[str, float]:
-        """Return the angles between the coordinate axes and the principal axes of the data."""
+        """Return the angles, by name, that turn the coordinate axes to the principal axes.
+
+        The principal axes are those of the products of `samples.wi` and `samples.wo`, component by
+        component, so the angles need no search.
+        """
         data = samples.wi * samples.wo
         if cls.component_count() == 2:
             data = np.stack([data[:, 0] + data[:, 1], data[:, 2]], axis=1)

@@ -38,16 +38,20 @@ class GaussianAngle:
         return dr.exp(-x * x) / (dr.pi * self.m * self.m)
 
     def sample(self, wi: JitVector, u: JitVector) -> JitVector:
-        theta = self.m * dr.sqrt(-log1p(-u.x * self._share_above_surface()))
+        theta = self.m * dr.sqrt(-log1p(-u.x * self._compute_share_above_surface()))
         sin_theta, cos_theta = dr.sincos(theta)
         sin_phi, cos_phi = dr.sincos(2 * dr.pi * u.y)
         return type(wi)(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 
     def pdf(self, wi: JitVector, h: JitVector, cos_d: JitFloat) -> JitFloat:
         # The density is D θ_h / sinθ_h, divided by the share of the Gaussian above the surface
-        return self.D(h) * _angle_to_normal(h) / (_sine_to_normal(h) * self._share_above_surface())
+        return (
+            self.D(h)
+            * _angle_to_normal(h)
+            / (_sine_to_normal(h) * self._compute_share_above_surface())
+        )
 
-    def _share_above_surface(self) -> JitFloat:
+    def _compute_share_above_surface(self) -> JitFloat:
         """Return the share of the Gaussian that lies at θ_h < π/2, above the surface."""
         end = dr.pi / 2 / self.m
         return 1 - dr.exp(-end * end)

@@ -21,7 +21,7 @@ values at both ends of a part [Engel et al. 2001]; steps as long as voxels are e
 does not apply to functions of gradient magnitudes or of labels.
 
 [Max 1995]; [Lesar 2018, eq. 6.3]. It renders CT scans, MRI scans and smoke without a source of
-light. The derivatives by both volumes are exact derivatives of the sum over the parts.
+light. The derivatives with respect to both volumes are exact derivatives of the sum over the parts.
 """
 
 from collections.abc import Sequence

@@ -18,10 +18,10 @@ of the surface's tangent plane at the texel's centre (`plane_bias`), minus `bias
 of the light's way through the scene. This bias had the fewest wrong pixels in tests with low suns,
 curved objects, a street and foliage. `slope_bias` and `normal_offset` are common in games instead.
 
-Derivatives by the geometry flow through the filters `variance`, `exponential_variance` and
-`moment`, including silhouettes; through filters that compare depths they are 0. Derivatives by the
-position or direction of a light include the shading, but not the change of its maps. There is no
-indirect light, and other kinds of lights are refused.
+Derivatives with respect to the geometry flow through the filters `variance`, `exponential_variance`
+and `moment`, including silhouettes; through filters that compare depths they are 0. Derivatives
+with respect to a light's position or direction include the shading, but not the change of its maps.
+There is no indirect light, and other kinds of lights are refused.
 """
 
 from collections.abc import Callable, Sequence

@@ -57,7 +57,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import (
     declare_choice,
     declare_int,
     declare_number,
-    declare_phase,
+    declare_phase_function,
     declare_volume,
     derive_plugin,
 )
@@ -72,7 +72,7 @@ PARAMETERS = {
     "scale": declare_number(1.0, (0.0, math.inf), "what σ is multiplied by"),
     "albedo": declare_volume(1.0, "α: share of the collisions that scatter light"),
     "emission": declare_volume(0.0, "e: radiance that is added per unit of length"),
-    "phase": declare_phase("p: the directions of scattered light, by default uniform"),
+    "phase": declare_phase_function("p: the directions of scattered light, by default uniform"),
     "max_depth": declare_int(2, (1, 1_000_000), "largest number of segments of a path"),
     "majorants": declare_choice(
         ("local", "global"), "bounds of σ: of coarse cells, or one for all"

@@ -112,13 +112,15 @@ def test_a_moving_light_has_the_shadows_of_a_light_there_and_its_error_alone_fli
         assert np.mean(true != there) < 0.002
 
     first = tracked.true[0]
-    still = tracked.flicker(seen.exact, lambda *_: SimpleNamespace(visibility=lambda p, n: first))
+    still = tracked.measure_flicker(
+        seen.exact, lambda *_: SimpleNamespace(visibility=lambda p, n: first)
+    )
     assert still == np.abs(np.diff(tracked.true.astype(float), axis=0)).mean() > 0.001
 
     def exact(seen, moved):
         return SimpleNamespace(visibility=partial(is_lit, seen.scene, moved.light))
 
-    assert tracked.flicker(seen.exact, exact) == 0
+    assert tracked.measure_flicker(seen.exact, exact) == 0
 
 
 @pytest.mark.usefixtures("llvm_variant")

@@ -1,4 +1,4 @@
-"""Checks the derivatives by a model's parameters: of its formula, its BSDF and its samples."""
+"""Checks derivatives with respect to a model's parameters: of its formula, BSDF and samples."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -33,7 +33,7 @@ def check_plugin_is_formula(subject: Subject) -> tuple[bool, str]:
 
 @check_of(MODELS)
 def check_gradient(subject: Subject) -> tuple[bool, str]:
-    """Check that the formula's derivatives by shape parameters equal finite differences."""
+    """Check the formula's derivatives for shape parameters against finite differences."""
     model = subject.model
     if model is None or not model.shapes():
         return True, NO_SHAPES
@@ -50,7 +50,7 @@ def check_gradient(subject: Subject) -> tuple[bool, str]:
 
 @check_of(MODELS)
 def check_plugin_gradient(subject: Subject) -> tuple[bool, str]:
-    """Check that Mitsuba's BSDF has the derivatives of the formula by every parameter."""
+    """Check that Mitsuba's BSDF has the formula's derivatives with respect to every parameter."""
     import mitsuba as mi
 
     model = subject.model
@@ -120,7 +120,7 @@ def check_sampling_gradient(subject: Subject) -> tuple[bool, str]:
 
 @contextmanager
 def _track_gradients(bsdf: MitsubaObject, names: Sequence[str]) -> Iterator[list[JitFloat]]:
-    """Track derivatives by parameters of a BSDF in the `with` block, and yield their values."""
+    """Track derivatives for parameters of a BSDF in the `with` block, and yield their values."""
     import mitsuba as mi
 
     parameters = mi.traverse(bsdf)
@@ -145,7 +145,7 @@ def list_free_shapes(model: Model) -> list[str]:
 
 
 def depends_on_parameter(model: Model, name: str) -> bool:
-    """Return whether the value of some lobe has a derivative by the parameter in Dr.Jit."""
+    """Return whether the parameter changes some lobe in a way that Dr.Jit can differentiate."""
     values = {
         n: double_precision.to_scalar(getattr(model, n)) for n in model.shapes(anisotropic=True)
     }
@@ -181,7 +181,7 @@ def compute_exact_derivative(
 def _differentiate_lobes(
     model: Model, name: str, wi: FloatArray, wo: FloatArray
 ) -> list[FloatArray]:
-    """Return the derivatives of all lobes by a shape parameter, by Dr.Jit's forward mode.
+    """Return all lobes' derivatives with respect to a shape parameter, by Dr.Jit's forward mode.
 
     A lobe's value is a term times its weight, and in a few models another one times the weight's
     square. Returns the derivatives of the terms, then those of the others, each (n, lobes).

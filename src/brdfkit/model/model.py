@@ -128,9 +128,10 @@ class Model(Shown, Declaration):
 
     @classmethod
     def determine_parameters(cls, samples: Any) -> dict[str, float]:
-        """Return the shape parameters, by name, that follow from the directions of the `samples`.
+        """Return the shape parameters that a fit need not search, with their values by name.
 
-        A model overrides this if a fit need not search for some of its parameters.
+        They follow from the directions of the `samples`, whatever values were measured there. Most
+        models have none.
         """
         return {}
 

@@ -77,9 +77,9 @@ def _sum_hessian(
     """Return the scaled Hessian (n, n) of the squared loss by the n `free` parameters.
 
     Three more results follow: its units (n,), which make its diagonal 1; for each channel, the
-    indices of the free parameters that it depends on; and the derivatives of its residuals by them.
-    `jacobians`: derivatives (shapes + lobes, samples) for each channel; `shapes`: number of shape
-    parameters.
+    indices of the free parameters that it depends on; and the derivatives of its residuals with
+    respect to them. `jacobians`: derivatives (shapes + lobes, samples) for each channel; `shapes`:
+    number of shape parameters.
     """
     where = np.cumsum(free) - 1
     rows, derivatives = [], []

@@ -10,7 +10,10 @@ LONGEST_NAME = 32  # characters; a row with a longer name takes two lines
 
 
 def to_text(document: Document) -> str:
-    """Return a document as text, without pictures and folded lines."""
+    """Convert a document to text for a terminal: its title, then paragraphs and tables, indented.
+
+    Pictures are left out, and so is what an HTML page shows only after a click.
+    """
     lines = []
     for part in document.parts:
         if isinstance(part, Table):

@@ -5,8 +5,8 @@ Where the jump moves, the picture has a derivative that is found as follows.
 
 At the distance t along a camera ray, a cone around the ray has the gap g(t) = f / L - ρ(t) to the
 surface, with the field f, its bound L and the cone's radius ρ. The ray meets the surface where g
-falls to 0. A ray that passes closely has a smallest gap g₀ > 0. With ∂ for the derivative by
-a parameter that moves the surface, and Dirac's δ, the derivative of the picture is
+falls to 0. A ray that passes closely has a smallest gap g₀ > 0. With ∂ for the derivative with
+respect to a parameter that moves the surface, and Dirac's δ, the derivative of the picture is
 
     ∫ δ(g₀) ∂g₀ (L_b - L_f) du
 

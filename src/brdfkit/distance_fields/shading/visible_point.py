@@ -50,7 +50,9 @@ class VisiblePoint:
 def find_visible_point(
     field: Node, ray: MitsubaObject, far: JitFloat, precision: JitFloat, active: JitMask
 ) -> VisiblePoint:
-    """Return where each `mi.RayDifferential3f` meets a field, with derivatives by its parameters.
+    """Return where each `mi.RayDifferential3f` meets a field.
+
+    The result has derivatives with respect to the field's parameters.
 
     far : the distance along rays at which they end.
     precision : the radius of the thinnest cones.

@@ -1,8 +1,10 @@
-"""The straight edge of an occluder that a march finds, which tells visible samples of a light.
+"""Tells which points of a light are visible, from a single march along a cone to the light.
 
-In the model of a `Shadow`, the occluder ends at a straight line on the cone's disc, at right angles
-to the gradient of the distance. So simple arithmetic tells whether a sample is visible, on a
-spherical light or on any shape within its sphere, without further evaluations of the distance.
+The march gives a `Shadow`: how much of the light an occluder hides. The model behind it is that the
+occluder's edge, seen from the surface point, is a straight line across the cone's circular section.
+The line is at right angles to the gradient of the distance field. So simple arithmetic tells on
+which side of the edge a point of the light lies, without further evaluations of the distance. The
+light is a sphere, or any shape within it.
 
 [Bálint et al. 2019, sections 5.2, 5.3]
 """

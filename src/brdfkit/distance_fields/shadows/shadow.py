@@ -2,9 +2,10 @@
 
 The march itself is not differentiated. It finds the minimum of f / ρ, the distance over the cone's
 radius, and by the envelope theorem a minimum has the derivative of the function at the minimum's
-place. So f / ρ is evaluated there once more, with derivatives by the light, its radius, the surface
-point, and the parameters of the field. As the march ends within ε of the minimum, the place is
-first refined. Where nothing carries derivatives, none of this is part of the kernel.
+place. So f / ρ is evaluated there once more, with derivatives with respect to the light, its
+radius, the surface point, and the parameters of the field. As the march ends within ε of the
+minimum, the place is first refined. Where nothing carries derivatives, none of this is part of the
+kernel.
 """
 
 from dataclasses import dataclass

@@ -11,8 +11,8 @@ Here e is the distance to a face, and min_faces the minimum over the faces beyon
 copy. B is the distance to the box of the whole lattice, which makes steps outside of it long.
 
 f is an estimate whose error is at most about the size of a cell. Its sign is right, and its bound L
-is the child's. Its derivatives by the child's parameters are right near the surface, where f equals
-g; gaps and boxes have none.
+is the child's. Its derivatives with respect to the child's parameters are right near the surface,
+where f equals g; gaps and boxes have none.
 """
 
 from dataclasses import dataclass

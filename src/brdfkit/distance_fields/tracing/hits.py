@@ -31,7 +31,7 @@ def make_march_start(o: JitVector, t: JitFloat) -> tuple[JitFloat, JitInt]:
 
 
 def reattach(distance: Callable[[Any], Any], o: JitVector, d: JitVector, t: JitFloat) -> JitFloat:
-    """Return the `t` of hits with its derivatives by all parameters of the field and of the rays.
+    """Return the `t` of hits with derivatives, for all parameters of the field and of the rays.
 
     By the implicit function theorem dt = -df / (∇f·d), with the field f; a central difference gives
     its slope along the ray. Rays that graze the surface get 0.
@@ -74,7 +74,7 @@ def normal(distance: Callable[[Any], Any], p: JitVector, step: float = 1e-3) -> 
 
     It is computed from four values of f. Automatic differentiation would be exact and take half the
     time. But Dr.Jit has no second derivatives, and scalar variants have none at all; these normals
-    have derivatives by every parameter of f, and are the same in all variants.
+    have derivatives with respect to every parameter of f, and are the same in all variants.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
 """Estimates the noise of a path-traced picture from its passes.
 
 The passes of a rendering are independent, so the means of two halves of them differ only by noise.
-From the halves follows a picture that differs from the mean as much as a rendering with another
-seed would, so that no second rendering is needed. For squared differences this is exact on average.
+From the halves follows an estimate of the picture that another random seed would give. It differs
+from the mean as much as a second rendering would, which need not be made. For squared differences
+this is exact on average.
 Other metrics need small noise: at 16 samples per pixel SSIM becomes up to 0.02 too large.
 """
 
@@ -47,11 +48,12 @@ class Halves:
 
     @property
     def other_seed(self) -> Any:
-        """A picture as different from `picture` as one with another seed; None for one pass.
+        """An estimate of the picture that another random seed would give; None for one pass.
 
-        If σ² is the variance of a sample, the difference of halves with m and n samples has the
-        variance σ² (1/m + 1/n), and that of two seeds 2σ²/(m + n). So the picture is moved by the
-        difference of the halves, scaled to this variance.
+        It differs from `picture` by as much noise as a second rendering would. If σ² is the
+        variance of a sample, the difference of halves with m and n samples has the variance
+        σ² (1/m + 1/n), and that of two seeds 2σ²/(m + n). So the picture is moved by
+        the difference of the halves, scaled to this variance.
         """
         (a, b), (m, n) = self.sums, self.spp
         if not (m and n):
@@ -94,7 +96,7 @@ class Accumulated:
 
     @property
     def other_seed(self) -> AnyArray | None:
-        """A picture as different from `picture` as one with another seed; None for one pass."""
+        """An estimate of the picture that another random seed would give; None for one pass."""
         other = self.halves.other_seed
         return None if other is None else other.astype(np.float32)
 

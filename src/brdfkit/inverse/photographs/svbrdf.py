@@ -137,7 +137,11 @@ def svbrdf(
         )
 
     def make_final_result(rendered: RenderedMaps, errors: FloatArray) -> Svbrdf:
-        """Return the `Svbrdf` of a finished search, with standard errors (texels, numbers)."""
+        """Return the `Svbrdf` of a finished search: maps, uncertainty, misfit and notes.
+
+        `rendered` has the fitted maps and their renderings. `errors` (texels, numbers) are the
+        standard errors of the searched numbers of each texel.
+        """
         fitted, pictures = rendered.fitted, rendered.pictures
         maps = Maps.from_texel_numbers(parameters, fitted.x, shape, photographs.size).maps
         beyond = sample_at_texels(photographs, photographs.pictures - pictures, shape)

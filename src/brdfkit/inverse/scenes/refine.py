@@ -22,7 +22,7 @@ from brdfkit.inverse.scenes.problem.parameters import PARAMETER_LIMIT, choose_un
 from brdfkit.inverse.scenes.problem.scene import load_scene, make_integrator
 from brdfkit.inverse.scenes.problem.targets import Pictures, Target, read_targets
 from brdfkit.inverse.scenes.problem.unseen_parameters import make_no_effect_error
-from brdfkit.inverse.scenes.problem.views import Views, silence_samplers
+from brdfkit.inverse.scenes.problem.views import Views, suppress_sampler_warnings
 from brdfkit.inverse.scenes.result.conclusions import make_refinement
 from brdfkit.inverse.scenes.result.refinement import Refinement
 from brdfkit.inverse.scenes.result.search_check import (
@@ -159,7 +159,7 @@ def refine(
             return make_refinement(views, state, time.perf_counter() - began, notes=notes)
         count = count_default_starts(views) if starts is None else starts
         report = make_step_counter(progress, (count + FINALISTS if count > 1 else 0) + steps)
-        with silence_samplers():
+        with suppress_sampler_warnings():
             x = find_best_start(views, count, seed, report)
             state, search_check = _search_and_check(views, x, steps, spp, seed_of_search, report)
         return make_checked_refinement(views, state, search_check, time.perf_counter() - began)

@@ -81,8 +81,8 @@ def is_isotropic(bsdf: MitsubaObject) -> bool:
 def is_uniform_over_surface(bsdf: MitsubaObject) -> bool:
     """Return whether a BSDF is equal at all points of a surface, so that results can be stored.
 
-    It counts as different if it has a texture, a mirror or refraction, if derivatives by its
-    parameters are needed, and in spectral variants.
+    It counts as different if it has a texture, a mirror or refraction, if derivatives with respect
+    to its parameters are needed, and in spectral variants.
     """
     import drjit as dr
     import mitsuba as mi

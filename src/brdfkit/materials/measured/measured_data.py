@@ -32,11 +32,11 @@ Data = TypeVar("Data", bound="MeasuredData")
 
 @dataclass(frozen=True, eq=False)
 class MeasuredData:
-    """The measured values of a `Measured`, without their interpolation.
+    """The base class of `Measured`: it checks, holds and describes the measured values.
 
-    `_samples`: scattered samples, or None where there is a table; `_table`: the table, or None
-    where there are samples; `_lookup`: interpolation function that the file format itself defines,
-    or None. `Measured` describes the public attributes.
+    The derived class interpolates them, and describes the public attributes. Either `_samples`,
+    which are scattered, or `_table` holds the values, and the other one is None. `_lookup` is a
+    function that replaces brdfkit's interpolation, such as that of a file format, or None.
     """
 
     name: str

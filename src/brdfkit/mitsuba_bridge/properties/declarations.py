@@ -153,7 +153,7 @@ def declare_texture(default: float, meaning: str) -> Setting:
     return Setting(default, None, meaning, read_texture, differentiable=True)
 
 
-def declare_phase(meaning: str) -> Setting:
+def declare_phase_function(meaning: str) -> Setting:
     """Declare a phase function, which is isotropic where the scene gives none."""
 
     def read_phase(value: Any) -> Any:

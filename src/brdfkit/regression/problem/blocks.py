@@ -97,7 +97,7 @@ class Block:
     def evaluate_difference(
         self, value: Any, channel: int, clamped: bool = False, extended: bool = False
     ) -> tuple[JitFloat, JitFloat]:
-        """Return the loss's difference in a channel, and its derivative by the model's `value`.
+        """Return the loss's difference in a channel, and its derivative with respect to `value`.
 
         `clamped`: whether a negative value counts as 0; `extended`: whether the difference instead
         continues below 0 as a straight line, with the slope that it has at 0.

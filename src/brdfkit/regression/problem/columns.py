@@ -1,10 +1,10 @@
-"""Evaluates the lobes of a model at pairs of directions, and their derivatives by its shapes.
+"""Evaluates a model's lobes at pairs of directions, and their derivatives for its shape parameters.
 
 A model is a weighted sum of lobes, M = Σ_l (a_l P_l + a_l² Q_l), with a weight a_l for each lobe l.
 Only few lobes have a term Q_l with the squared weight. All functions P_l and Q_l at some
-pairs of directions are the "values" of the model. Their derivatives by searched shape parameters,
-such as a roughness, are its "slopes", without those that are always 0. Values and slopes together
-are the "columns", one number for each pair of directions.
+pairs of directions are the "values" of the model. Their derivatives with respect to searched shape
+parameters, such as a roughness, are its "slopes", without those that are always 0. Values and
+slopes together are the "columns", one number for each pair of directions.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from brdfkit.model.lobes import Lobe
 class Columns:
     """The list of columns of a model class, and the functions that evaluate them.
 
-    The columns are the values of the model's lobes and their slopes, the derivatives by shape
-    parameters, as the file describes.
+    The columns are the values of the model's lobes and their slopes, the derivatives with respect
+    to shape parameters, as the file describes.
 
     `model`: the class; `names`: searched shape parameters; `fixed`: values of the other shape
     parameters; `lobes`: index of the lobe of each value; `powers`: power of the lobe's weight that

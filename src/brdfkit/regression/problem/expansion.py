@@ -118,10 +118,10 @@ ARRAYS = [f.name for f in fields(Expansion) if f.name not in ("columns", "space"
 def make_derivative_matrix(columns: Columns, weights: FloatArray, slopes: FloatArray) -> FloatArray:
     """Return the matrices (points, channels, shapes + lobes, columns) of the model's derivatives.
 
-    A matrix times the columns of the model gives its derivatives by the coordinates of the shape
-    parameters, then by the weights of the lobes in a channel. `weights` (points, channels, lobes):
-    weights of the lobes; `slopes` (points, shapes): derivative of each shape parameter by its
-    coordinate.
+    A matrix times the columns of the model gives its derivatives with respect to the coordinates of
+    the shape parameters, then with respect to the weights of the lobes in a channel. `weights`
+    (points, channels, lobes): weights of the lobes; `slopes` (points, shapes): derivative of each
+    shape parameter with respect to its coordinate.
     """
     points, channels, lobes = weights.shape
     shapes, values = len(columns.names), len(columns.lobes)

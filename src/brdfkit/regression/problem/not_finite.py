@@ -64,7 +64,8 @@ def require_finite_loss(
     """Raise `BrdfkitError` if the difference of a loss, or its derivative, is not finite.
 
     `model`, `measured`: values of the BRDF at the samples of the `block`; `difference`: the loss's
-    difference between both; `slope`: its derivative by the model's value; all are Dr.Jit arrays.
+    difference between both; `slope`: its derivative with respect to the model's value; all are
+    Dr.Jit arrays.
     """
     differences, slopes = np.array(difference), np.array(slope)
     rows = np.flatnonzero(~(np.isfinite(differences) & np.isfinite(slopes)))
@@ -100,11 +101,11 @@ def _raise_for_lobe(model: Any, lobe: int, value: float, pair: str) -> NoReturn:
 def require_finite_slopes(
     model: Any, values: Mapping[str, float], names: Iterable[str], wi: Vector, wo: Vector
 ) -> None:
-    """Raise `BrdfkitError` if the derivative of a lobe by a shape parameter is not finite.
+    """Raise `BrdfkitError` if a lobe's derivative with respect to a shape parameter is not finite.
 
-    `values`: values of all shape parameters by name; `names`: the parameters to differentiate by;
-    `wi`, `wo`: pairs of directions. Derivatives are taken in reverse mode, because Dr.Jit's forward
-    mode returns NaN for the derivative of 0^p by p, which is 0.
+    `values`: values of all shape parameters by name; `names`: the parameters whose derivatives are
+    checked; `wi`, `wo`: pairs of directions. Derivatives are taken in reverse mode, because
+    Dr.Jit's forward mode returns NaN for the derivative of 0^p with respect to p, which is 0.
     """
     # Each pair of directions gets its own copy of a parameter, and so its own derivative
     count = len(wi.x)

@@ -129,7 +129,7 @@ class Space:
         return np.clip(np.where(self.log, log, linear), 0, 1)
 
     def differentiate_parameters(self, u: FloatArray) -> FloatArray:
-        """Return the derivatives of the parameters by their coordinates, at coordinates `u`."""
+        """Return the parameters' derivatives with respect to their coordinates, at `u`."""
         with np.errstate(divide="ignore", invalid="ignore"):
             log = self._interpolate_logarithmically(u) * np.log(self.high / self.low)
         return np.where(self.log, log, self.high - self.low)

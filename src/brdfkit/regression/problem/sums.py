@@ -1,7 +1,7 @@
 """Adds up samples for the squared loss E² and its derivatives, and finds the best weights.
 
-"Columns" are the values of the model's lobes at the samples, and their derivatives by shape
-parameters.
+"Columns" are the values of the model's lobes at the samples, and their derivatives with respect to
+shape parameters.
 """
 
 from __future__ import annotations

@@ -256,7 +256,7 @@ class RobustProblem:
 def _iterate_weight_derivatives(
     problem: Problem, u: FloatArray, weights: FloatArray
 ) -> Iterator[tuple[slice, list[FloatArray]]]:
-    """Yield the indices of each block's samples, and derivatives of residuals by lobe weights.
+    """Yield each block's sample indices, and derivatives of residuals with respect to lobe weights.
 
     The derivatives are arrays (lobes, samples) by channel.
     """

@@ -12,7 +12,7 @@ from brdfkit.rendering.result import Rendering
 
 @dataclass(frozen=True)
 class PictureError:
-    """The errors of all fits' pictures by one metric.
+    """The errors of all fits' pictures in one metric.
 
     metric : the metric, such as PSNR.
     values : the errors, in the order of the fits.
@@ -48,7 +48,10 @@ class PictureError:
 
 
 def compute_picture_errors(rendering: Rendering) -> dict[str, PictureError]:
-    """Return the errors of the fits' pictures in a rendering, by key of the metric."""
+    """Compute the errors of all fits' pictures in a rendering, compared with its reference.
+
+    The result has an entry for each metric, under the metric's key, such as "psnr".
+    """
     errors = rendering.errors()
     return {
         key: PictureError(METRICS[key], tuple(row[key] for row in errors.by_name.values()), floor)

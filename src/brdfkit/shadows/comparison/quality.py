@@ -49,13 +49,13 @@ def aliasing_error(e: Any) -> float:
     return float(10 * np.log10(WHITE**2 / np.square(e).mean())) if e.size else np.nan
 
 
-def flicker(lit: Any, true: Any) -> float:
+def measure_flicker(lit: Any, true: Any) -> float:
     """Return the mean absolute change of a technique's error between successive pictures.
 
     lit, true : share of the light that arrives at each point (pictures, points), by the technique
         and exactly. The error is their difference.
 
-    >>> flicker([[1, 0], [0, 0]], [[1, 1], [1, 1]])
+    >>> measure_flicker([[1, 0], [0, 0]], [[1, 1], [1, 1]])
     0.5
     """
     errors = np.asarray(lit, float) - np.asarray(true, float)

@@ -48,7 +48,7 @@ def score_technique(
         image.reshape(view.size) for image in (lit, exact, facing)
     )
     use, fineness = score_texels(shadow, view, placement)
-    by_camera, by_light = (points.flicker(lit, technique) for points in tracked)
+    by_camera, by_light = (points.measure_flicker(lit, technique) for points in tracked)
     scores = Scores(
         psnr=psnr(view.compute_picture(exact), view.compute_picture(lit), facing_picture),
         wrong=float(np.abs(lit - exact)[facing].mean()),

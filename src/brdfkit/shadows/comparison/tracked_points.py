@@ -14,7 +14,7 @@ from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, MitsubaObj
 from brdfkit.core.projective.homogeneous import make_rigid_matrix, project_points
 from brdfkit.core.projective.light import Light
 from brdfkit.shadows.comparison.exact_shadow import LitView
-from brdfkit.shadows.comparison.quality import flicker
+from brdfkit.shadows.comparison.quality import measure_flicker
 from brdfkit.shadows.maps.placement import Placement
 
 PIXEL_STRIDE = 7  # every seventh pixel is tracked
@@ -56,7 +56,9 @@ class TrackedPoints:
         true = [is_lit(view.scene, each.light, p, n) for each in path]
         return cls(view, pixels, path, np.array(true))
 
-    def flicker(self, lit: FloatArray, technique: Callable[[LitView, Placement], Any]) -> float:
+    def measure_flicker(
+        self, lit: FloatArray, technique: Callable[[LitView, Placement], Any]
+    ) -> float:
         """Return the mean change of a technique's error between pictures; NaN without points.
 
         lit : share (pixels,) of the light that arrives in the first picture, by the technique.
@@ -67,7 +69,7 @@ class TrackedPoints:
             return nan
         p, n = self.view.gather_points(self.pixels)
         later = [np.array(technique(self.view, each).visibility(p, n)) for each in self.path[1:]]
-        return flicker([lit[self.pixels], *later], self.true)
+        return measure_flicker([lit[self.pixels], *later], self.true)
 
 
 def make_camera_path(placement: Placement) -> list[Placement]:

@@ -60,7 +60,7 @@ def _choose_format(file: VolumeFile) -> ModuleType:
     Raises `BrdfkitError` if the file is in no known format.
     """
     if file.path.is_dir():
-        return _find_format_module(_volume_file.find_folder_format(file))
+        return _find_format_module(_volume_file.find_format_of_folder(file))
     if not (file.size is file.dtype is file.offset is None):  # only raw voxels need these settings
         return _find_format_module("raw")
     head, packed = _read_unpacked_head(file)

@@ -29,7 +29,7 @@ def list_tiffs(folder: Path) -> list[Path]:
     return [p for p in list_files(folder) if p.suffix.lower() in (".tif", ".tiff")]
 
 
-def find_folder_format(file: "VolumeFile") -> str:
+def find_format_of_folder(file: "VolumeFile") -> str:
     """Return the format of the files in a folder, "tiff" or "dicom"."""
     if not list_files(file.path):
         raise file.error("the folder is empty; name one with DICOM slices or TIFF files")

@@ -64,14 +64,14 @@ def read_header(file: VolumeFile) -> StoredVolume:
     if code is None or channels != 1:
         what = f"{channels} channels of {fields['ElementType']}"
         raise file.error(f"has {what} at each voxel; it should be one number")
-    big_endian = _is_field_true(fields, "BinaryDataByteOrderMSB", "ElementByteOrderMSB")
+    big_endian = _read_boolean_field(fields, "BinaryDataByteOrderMSB", "ElementByteOrderMSB")
     dtype = np.dtype((">" if big_endian else "<") + code)
     path, start = _find_voxel_file(file, fields["ElementDataFile"], start)
-    if not _is_field_true(fields, "BinaryData", default="True"):
+    if not _read_boolean_field(fields, "BinaryData", default="True"):
         require_enough_bytes(file, path, start, shape, np.uint8)
         stream = make_text_opener(path, start, dtype)
     else:
-        packed = _is_field_true(fields, "CompressedData")
+        packed = _read_boolean_field(fields, "CompressedData")
         if skip == -1 and not packed and path.exists():  # -1: the voxels are the file's last bytes
             start, skip = path.stat().st_size - int(np.prod(shape)) * dtype.itemsize, 0
         start = max(start + max(skip, 0), 0)
@@ -126,8 +126,11 @@ def _find_voxel_file(file: VolumeFile, name: str, start: int) -> tuple[Path, int
     return file.path.parent / name, 0
 
 
-def _is_field_true(fields: dict[str, str], *names: str, default: str = "False") -> bool:
-    """Return whether a header's field is true; `names` are its names in versions of the format."""
+def _read_boolean_field(fields: dict[str, str], *names: str, default: str = "False") -> bool:
+    """Return a field of a header as True or False; `default` is its text where it is missing.
+
+    `names` are the names that versions of the format give the field.
+    """
     return _get_first_field(fields, *names, default=default).lower() in ("true", "1", "yes")
 
 

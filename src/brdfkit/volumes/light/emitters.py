@@ -43,8 +43,8 @@ def sample_emitters(
     """Sample a point of an emitter for each point `it`; `sample` are two uniform random numbers.
 
     Returns the `mi.DirectionSample3f`; the radiance divided by the density of the sample, without
-    any occlusion; and a mask of the points that have a sample. Derivatives by the emission pass
-    through the radiance.
+    any occlusion; and a mask of the points that have a sample. Derivatives with respect to the
+    emission pass through the radiance.
     """
     import mitsuba as mi
 

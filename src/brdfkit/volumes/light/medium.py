@@ -9,7 +9,7 @@ t. Each sample gets the derivative of this integrand, divided by the density:
 
 The derivative of T is -T ∂τ. Both need ∂τ = ∫ ∂σ ds from 0 to t, which is the mean of t ∂σ(ut) for
 u uniform in [0, 1): one more look-up of σ, at a random u, gives an unbiased estimate. Where σ = 0
-nothing collides, so that the derivative of the light by σ is only that of T.
+nothing collides, so that the derivative of the light with respect to σ is only that of T.
 """
 
 from dataclasses import dataclass

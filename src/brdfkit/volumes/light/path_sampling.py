@@ -26,7 +26,7 @@ def scatter_direct_light(
     if len(scene.emitters()) > 1:
         halves = [mi.Point2f((u.x + k) / 2, u.y) for k in range(2)]
         first, second = (sample_unshadowed_light(scene, vertex, half) for half in halves)
-        ray, light, lit = choose_brighter_sample(first, second, sampler.next_1d(vertex.active))
+        ray, light, lit = choose_sample_by_brightness(first, second, sampler.next_1d(vertex.active))
     else:
         ray, light, lit = sample_unshadowed_light(scene, vertex, u)
     with dr.suspend_grad():
@@ -50,7 +50,7 @@ def sample_unshadowed_light(
     return emitters.spawn_ray_to_emitter(it, ds), value * light * weight, there
 
 
-def choose_brighter_sample(
+def choose_sample_by_brightness(
     first: tuple[MitsubaObject, JitColour, JitMask],
     second: tuple[MitsubaObject, JitColour, JitMask],
     u: JitFloat,

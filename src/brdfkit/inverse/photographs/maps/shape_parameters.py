@@ -117,5 +117,5 @@ class ShapeParameters:
         return math.exp(number) if self.model.parameters[name].log else number
 
     def _differentiate(self, name: str, value: AnyArray) -> Any:
-        """Return the derivative of the parameter `name` by its searched number, at this `value`."""
+        """Return how fast the parameter `name` grows with its searched number, at this `value`."""
         return value if self.model.parameters[name].log else 1.0

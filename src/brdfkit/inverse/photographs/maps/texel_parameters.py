@@ -101,9 +101,9 @@ class TexelParameters:
     ) -> tuple[Lobes, list[Lobes]]:
         """Return the model's lobes for texels with numbers `x`, and their derivatives.
 
-        The derivatives are by each number of the shapes and the normal; there are none unless
-        `differentiate`. `x` is (texels, numbers), `observed` holds the directions of lights and
-        cameras.
+        The derivatives are with respect to each number of the shapes and the normal; there are none
+        unless `differentiate`. `x` is (texels, numbers), `observed` holds the directions of lights
+        and cameras.
         """
         lights, texels = observed.to_light.shape[:2]
         arrays = [

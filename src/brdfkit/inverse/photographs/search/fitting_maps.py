@@ -87,9 +87,12 @@ def fit_maps(problem: Problem, smoothness: float | None = None) -> FittedMaps:
 
 
 def _measure_held_out_errors(problem: Problem, noise: float) -> dict[float, float]:
-    """Return the RMS relative error of held-out photographs for each τ, on a patch of the maps.
+    """Return for each smoothness τ how badly maps predict photographs that were held out.
 
-    τ is the typical difference of neighbouring texels.
+    Three or four photographs are held out, and a patch in the middle of the maps is fitted to the
+    others. The error is the RMS relative error of the radiances that the patch predicts for the
+    photographs held out. τ is the typical difference of neighbouring texels; `noise` is the
+    variance of relative radiances.
     """
     patch = _select_middle_patch(problem.observed)
     lights = np.arange(len(patch.radiance))

@@ -25,7 +25,7 @@ class Equations:
     """The Gauss-Newton equations of n texels, each by itself, without differences of neighbours.
 
     error : the sums (n,) of weighted squared residuals.
-    gradient : half of their gradients (texels, numbers) by the numbers of the texel.
+    gradient : half of their gradients (texels, numbers) with respect to the numbers of the texel.
     hessian : half of their Gauss-Newton Hessians (texels, numbers, numbers).
     """
 
@@ -68,7 +68,10 @@ class Problem:
         return replace(self, observed=observed)
 
     def compute_errors(self, x: FloatArray) -> FloatArray:
-        """Return the sum (n,) of weighted squared residuals of each texel, at numbers `x`."""
+        """Return for each texel of the maps the sum (n,) of its weighted squared residuals.
+
+        `x` (texels, numbers) holds the searched numbers of the texels.
+        """
         return self._compute_equations(x, differentiate=False).error
 
     def compute_equations(self, x: FloatArray) -> Equations:

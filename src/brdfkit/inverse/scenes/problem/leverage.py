@@ -51,8 +51,9 @@ def sum_by_block(values: AnyArray, blocks: Blocks) -> FloatArray:
 def correct_for_leverage(scores: FloatArray, jacobian: AnyArray, blocks: Blocks) -> FloatArray:
     """Return the `scores` (n, blocks), divided by the square root of the matrix 1 - leverage.
 
-    A score is a block's part of the gradient by the n parameters. `jacobian` (n, pixels, channels)
-    holds the derivatives of the pixels by the parameters, times the square roots of the weights.
+    A score is a block's part of the gradient with respect to the n parameters. `jacobian` (n,
+    pixels, channels) holds the derivatives of the pixels with respect to the parameters, times the
+    square roots of the weights.
     """
     n = len(jacobian)
     flat = jacobian.reshape(n, -1).astype(float)

@@ -26,7 +26,8 @@ from brdfkit.inverse.scenes.problem.tensors import (
 )
 from brdfkit.model import Model
 
-# Gauss-Newton steps search at most this many numbers, as they render derivatives by each of them
+# Largest number of values that Gauss-Newton steps search, as they render a picture of derivatives
+# for each value
 PARAMETER_LIMIT = 32
 
 Bounds = tuple[float, float]
@@ -52,7 +53,7 @@ class Unknown:
     shape : the shape of a tensor's numbers; () for other entries.
     texels : the index of the number that each texel of a tensor holds; None for other entries.
     wraps : whether the last column of a tensor is a neighbour of its first one.
-    has_wrong_derivatives : whether Mitsuba's derivatives by this entry are wrong.
+    has_wrong_derivatives : whether Mitsuba's derivatives with respect to this entry are wrong.
     """
 
     key: str
@@ -94,16 +95,16 @@ class Unknown:
         return (values - self.low) / (self.high - self.low) if self.is_bounded else values
 
     def differentiate_values(self, coordinates: FloatArray) -> FloatArray:
-        """Return the derivatives (n,) of the values by their search coordinates."""
+        """Return the derivatives (n,) of the values with respect to their search coordinates."""
         if self.is_log:
             return self.to_values(coordinates) * np.log(self.high / self.low)
         return np.full_like(coordinates, self.high - self.low if self.is_bounded else 1.0)
 
     def sum_over_copies(self, derivatives: FloatArray) -> FloatArray:
-        """Return derivatives by the numbers (n,), from derivatives by all texels.
+        """Return a loss's derivatives with respect to the searched numbers (n,) of a tensor.
 
-        Derivatives by texels that hold the same number, as copies in an environment map do, are
-        added up.
+        `derivatives` are those with respect to all its texels. Some texels are copies that hold the
+        same number, such as the last column of an environment map; their derivatives are added up.
         """
         if self.texels is None:
             return derivatives

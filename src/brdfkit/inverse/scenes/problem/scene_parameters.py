@@ -32,7 +32,8 @@ MITSUBA_BOUNDS = {
     **dict.fromkeys(("metallic", "sheen", "sheen_tint", "spec_tint"), SHARE_BOUNDS),
     **dict.fromkeys(("spec_trans", "specular"), SHARE_BOUNDS),
 }
-# Class of a BSDF → parameters by which Mitsuba's derivatives are wrong, by factors from 0.5 to 1.1
+# Class of a BSDF → its parameters for which Mitsuba's derivatives of pictures are wrong: 0.5 to 1.1
+# times the true ones
 WRONG_DERIVATIVES = {"RoughPlastic": ("alpha", "eta"), "SmoothPlastic": ("diffuse_reflectance",)}
 
 
@@ -132,7 +133,7 @@ def find_default_bounds(
 
 
 def has_wrong_derivatives(parameters: MitsubaObject, key: str) -> bool:
-    """Return whether Mitsuba's derivatives of pictures by an entry are known to be wrong."""
+    """Return whether Mitsuba's derivatives with respect to an entry are known to be wrong."""
     owner, name = _find_mitsuba_bsdf(parameters, key)
     return name in WRONG_DERIVATIVES.get(owner, ())
 

@@ -37,8 +37,8 @@ class Views:
     is_linear : whether pictures of direct light are linear in each number (n,).
     is_nonlinear_share : whether each number (n,) has finite bounds, and pictures are not linear.
     is_unlimited_weight : whether each number (n,) is a lobe's weight without an upper bound.
-    has_wrong_derivatives : whether Mitsuba's derivatives by each number (n,) are wrong.
-    cost : samples per pixel rendered so far; derivatives count by the time that they take.
+    has_wrong_derivatives : whether Mitsuba's derivatives for each number (n,) are wrong.
+    cost : samples per pixel rendered so far; derivatives count as many as take the same time.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class Views:
         ]
 
     def differentiate_values(self, x: FloatArray) -> FloatArray:
-        """Return the derivatives (n,) of the values by their search coordinates `x`."""
+        """Return the derivatives (n,) of values with respect to their search coordinates `x`."""
         parts = zip(self.unknowns, self.split_by_unknown(x), strict=True)
         return np.concatenate([unknown.differentiate_values(part) for unknown, part in parts])
 
@@ -152,7 +152,7 @@ class Views:
 
 
 @contextmanager
-def silence_samplers() -> Iterator[None]:
+def suppress_sampler_warnings() -> Iterator[None]:
     """Suppress Mitsuba's warnings within a block: samplers warn whenever they round up a count."""
     import mitsuba as mi
 

@@ -1,4 +1,4 @@
-"""Computes the difference of pictures and its derivatives by thousands of numbers at once.
+"""Computes the difference of pictures, and its derivatives for thousands of numbers at once.
 
 The squared difference E² of a target picture J is from two renderings I_A and I_B, whose samples
 are independent so that noise does not bias it (see `normal_equations.py`). With a weight w for each
@@ -39,7 +39,7 @@ def compute_error_and_gradient(
 def _render_backward(
     views: Views, x: FloatArray, number: int, adjoint: AnyArray, spp: int, seed: int
 ) -> FloatArray:
-    """Return derivatives (n,) of a loss by the scene's values, through one sensor's picture.
+    """Return a loss's derivatives (n,) for the scene's values, through one sensor's picture.
 
     `number` is the sensor's index. `adjoint` (height, width, channels) holds the derivatives of the
     loss by the picture's pixels.

@@ -50,7 +50,7 @@ def store_by_channel(picture: AnyArray, derivatives: AnyArray, rows: list[int]) 
 
 @contextmanager
 def track_derivatives(views: Views, x: FloatArray) -> Iterator[list[MitsubaObject]]:
-    """Track derivatives by the unknowns at `x` within a block; yield their Mitsuba arrays.
+    """Track derivatives for the unknowns at `x` within a block; yield the unknowns' Mitsuba arrays.
 
     Tracking ends with the block, even after an error: Dr.Jit's loops visit the BSDFs of all scenes,
     so arrays that were still tracked would make every other scene fail.
@@ -116,7 +116,7 @@ def _render_derivative(
 def _compute_finite_differences(
     views: Views, x: FloatArray, numbers: list[int], spp: int, seed: int
 ) -> FloatArray:
-    """Return the derivative of the pixels by central differences of pictures with equal samples."""
+    """Return the pixels' derivative: central differences of pictures with equal samples."""
     ends = np.array([x, x], float)
     step = DIFFERENCE_STEP * np.maximum(np.abs(x), DIFFERENCE_STEP)
     step[views.upper_bounds - views.lower_bounds == 1] = DIFFERENCE_STEP

@@ -1,9 +1,9 @@
 """Minimises the difference of pictures by Gauss-Newton steps.
 
-A step needs derivatives by all numbers, which take most of the time, so the method takes few steps.
-The number of samples grows only as far as the noise of rendering demands. Steps are damped as by
-[Levenberg 1944] and [Marquardt 1963]. E² is the weighted squared difference of rendered and target
-pictures.
+A step needs derivatives with respect to all searched numbers. They take most of the time, so the
+method takes few steps. The number of samples grows only as far as the noise of rendering demands.
+Steps are damped as by [Levenberg 1944] and [Marquardt 1963]. E² is the weighted squared difference
+of rendered and target pictures.
 """
 
 from collections.abc import Callable

@@ -68,11 +68,11 @@ class Parameterisation:
     def compute_facet_factor(
         self, theta_i: FloatArray, phi_i: FloatArray, m: FloatArray
     ) -> FloatArray:
-        """Return the factor (n,) that converts a stored value to the BRDF times cosθ_o.
+        """Return the factors (n,) that turn values M stored in the file into BRDF times cosθ_o.
 
-        It is D(m) / 4σ(wi), by the distribution of normals D and the projected area σ. `theta_i`
-        and `phi_i` [rad] are the angles of the light wi, and `m` (n, 2) the points of the normals
-        on the square of directions.
+        A factor is D(m) / 4σ(wi), where D is the distribution of normals m, and σ the projected
+        area of microfacets. `theta_i` and `phi_i` [rad] are the angles of the light wi. `m` (n, 2)
+        are the normals as points of the square of directions, which `map_to_square` defines.
         """
         wi = map_to_square(theta_i, phi_i)
         return interpolate(self.ndf[None], m) / (4 * interpolate(self.sigma[None], wi))

@@ -55,9 +55,10 @@ class MovingDepths:
     motions: tuple[TexelMotion, TexelMotion] | None = None
 
     def attach_edge_derivatives(self, f: MitsubaObject) -> MitsubaObject:
-        """Return the tensor `f`, a function of the depths, with added derivatives by silhouettes.
+        """Return the tensor `f`, a function of the depths, with the derivatives that edges add.
 
-        They make the derivatives of blurred means right when shapes move; the values do not change.
+        Where a silhouette moves, the depth of a texel jumps. With the derivatives added, those of
+        blurred means are right when shapes move; the values do not change.
         """
         if self.motions is None:
             return f
