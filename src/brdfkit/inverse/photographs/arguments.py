@@ -17,7 +17,8 @@ from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 from brdfkit.model import labels
 
 DEFAULT_LONGEST_SIDE = 512  # largest default number of texels along the maps' longer side
-SMALLEST_SMOOTHNESS = 0.003  # smoother maps would need more steps than a search takes
+# smallest `smoothness` allowed; smoother maps would need more steps than a search takes
+SMALLEST_SMOOTHNESS = 0.003
 
 
 def check_variant() -> None:

@@ -27,14 +27,15 @@ if TYPE_CHECKING:
 EnvironmentAudit = Any  # the class in `auditing.py`, which imports this file
 
 SIZE = 10.4, 9.4  # width and height of the figure in inches
-MIDDLE_GREY = 0.18  # linear grey in which the geometric mean of the map's luminance is drawn
-BLOCKS = 4096  # blocks in the plot of probabilities, the default of `kdtree_envmap`
-DRAWN_BLOCKS = 256  # blocks whose outlines are drawn on the map
+MIDDLE_GREY = 0.18  # linear value at which pixels of the map's geometric mean luminance are drawn
+BLOCKS = 4096  # number of blocks in the plot of probabilities, the default of `kdtree_envmap`
+DRAWN_BLOCKS = 256  # number of blocks whose outlines are drawn on the map
 DRAWN_ROWS = 1024  # approximate number of rows to which a larger map is thinned before drawing
 CURVE_POINTS = 1000  # largest number of points along the curve of the light's shares
 COLOUR = "#0072b2"  # colour of the curves of exact values
 LAW_COLOURS = {"hyperbolic": "#d55e00", "steps": "#009e73"}
-SIDES = ("−z", "+x", "+z", "−x", "−z")  # directions along the horizon, at the ticks of the map
+# names of the directions along the horizon, at the ticks below the map
+SIDES = ("−z", "+x", "+z", "−x", "−z")
 
 
 def draw_audit(audit: EnvironmentAudit) -> "Figure":
@@ -63,7 +64,9 @@ def draw_map(axes: "Axes", audit: EnvironmentAudit, rgb: FloatArray, blocks: Int
     brightness = luminance(rgb)
     lit = brightness[brightness > 0]
     exposure = MIDDLE_GREY / np.exp(np.log(lit).mean()) if lit.size else 1
-    half = 0.5 / (audit.height - 1)  # half a row of pixels; the map from pole to pole has height 1
+    # Pixels of the first and last row lie on the poles, which are drawn at 1 and 0; half a row is
+    # drawn beyond each
+    half = 0.5 / (audit.height - 1)
     extent = 0, 1, -half, 1 + half
     step = 1 + audit.height // DRAWN_ROWS
     axes.imshow(

@@ -31,10 +31,11 @@ from brdfkit.lighting.environments.map_files import (
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-BRIGHTEST = 0.01  # share of the solid angle for which `brightest_share` gives the light's share
+# `brightest_share` is the share of the light that comes from this share of all directions
+BRIGHTEST = 0.01
 # The audit reports larger values than these as likely defects
 ASPECT_TOLERANCE = 0.05  # relative deviation of width / height from 2
-EQUAL_TOLERANCE = 4  # number of pixels as bright as the brightest one; more mean clipping
+EQUAL_TOLERANCE = 4  # number of pixels with the largest brightness; more suggest clipping
 BELOW_TOLERANCE = 2.0  # ratio of the light from below the horizon to that from above
 DPI, WIDTH = 75, 760  # resolution and width [pixels] of the picture in a notebook
 

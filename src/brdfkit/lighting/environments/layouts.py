@@ -20,9 +20,10 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray, IntArray
 from brdfkit.core.geometry import dual_paraboloid
 
-AT_POLE = 1e-12  # polar angle [rad] in place of 0, where a direction would have no azimuth
+AT_POLE = 1e-12  # polar angle [rad] that replaces 0, where a direction would lose its azimuth
 
-PixelCoordinates = tuple[FloatArray, FloatArray, IntArray]  # x, y, and number of the picture's part
+# x and y of pixels, and the index of the part of the picture in which each lies
+PixelCoordinates = tuple[FloatArray, FloatArray, IntArray]
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ class Angular:
     def directions(self, x: AnyArray, y: AnyArray, height: int, width: int) -> FloatArray:
         s, t = _pixel_to_square(x, height), -_pixel_to_square(y, height)
         r = np.hypot(s, t)
-        across = np.pi * np.sinc(r)  # sin(π r) / r, also at r = 0
+        across = np.pi * np.sinc(r)  # sin(π r) / r, with its limit π at r = 0
         towards = np.stack([s * across, t * across, np.cos(np.pi * r)], axis=-1)
         return np.where((r <= 1)[..., None], towards, np.nan)
 

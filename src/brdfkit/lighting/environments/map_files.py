@@ -20,7 +20,7 @@ EIGHT_BIT_WARNING = (
     "8 bits per channel: nothing is brighter than white, so that lamps and the sun are far too "
     "dark; look for the .exr or .hdr of the picture"
 )
-LATLONG = 2.0  # ratio of columns to rows of a map by latitude and longitude
+LATLONG = 2.0  # ratio of width to height of a map by latitude and longitude
 LARGEST_HALF_FLOAT = 65_504.0
 
 

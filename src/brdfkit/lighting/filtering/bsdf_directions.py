@@ -30,7 +30,9 @@ from brdfkit.mitsuba_bridge.arrays import Rows
 # Sharper lobes would leave gaps, in which lamps are lost, and wider ones would blur. This value
 # minimises the error of 64 directions of Ward's BRDF under a light probe with lamps (grace)
 OVERLAP = 0.15
-PLASTIC = 1.32471795724474602596  # the plastic number, x³ = x + 1, for a sequence in 2 dimensions
+# The plastic number, which solves x³ = x + 1; its powers make evenly spread sequences of points in
+# two dimensions
+PLASTIC = 1.32471795724474602596
 SPREAD_DIRECTIONS = from_angles(
     np.arccos(1 - (np.arange(8) + 0.5) / 8), 2 * np.pi / PLASTIC * np.arange(8)
 )
@@ -80,7 +82,7 @@ class Directions:
         # Where the BSDF draws no direction, the view's direction takes its place, with weight 0
         valid = active & (drawn.pdf > 0)
         wo, pdf = dr.select(valid, drawn.wo, si.wi), dr.select(valid, drawn.pdf, 1)
-        # A lobe is as wide as the distance to the next direction; that of a mirror has no width
+        # A lobe gets the width of the gap to the next direction; the lobe of a mirror has no width
         mirror = valid & mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Delta)
         kappa = dr.select(mirror, dr.inf, OVERLAP * 2 * dr.pi * self.count * pdf)
         cos = dr.maximum(wo.z * dr.sign(si.wi.z), 0)

@@ -27,9 +27,11 @@ from brdfkit.lighting.filtering.paraboloid_levels import resample_to_discs
 from brdfkit.lighting.filtering.sphere_filter import convolve_on_sphere, halve_resolution
 from brdfkit.mitsuba_bridge.arrays import Rows
 
-IRRADIANCE_SIDE = 64  # texels along a side of the irradiance's map, few because it is smooth
+# texels along a side of the map of irradiance; few suffice, because it is smooth
+IRRADIANCE_SIDE = 64
 WAVELENGTHS = 96  # evenly spaced wavelengths at which an emitter is evaluated in spectral variants
-LIGHT_DIRECTIONS = 256  # directions to the light by which the irradiance gets its shadows
+# number of directions drawn by an emitter that are tested for shadows of the irradiance
+LIGHT_DIRECTIONS = 256
 FILTERS: dict[str, type[LobeMaps | Mips]] = {"lobes": LobeMaps, "mips": Mips}
 
 
@@ -52,7 +54,8 @@ class FilteredLight:
 
     def __init__(self, kind: type[LobeMaps | Mips], side: int) -> None:
         self.kind, self.side = kind, side
-        self.source: tuple[MitsubaObject, bytes] | None = None  # with digest of parameters
+        # the filtered emitter, and a digest of its parameters
+        self.source: tuple[MitsubaObject, bytes] | None = None
         self.directions: LightDirections | None = None
 
     def filter_if_changed(self, emitter: MitsubaObject) -> FilteredLight:
@@ -95,7 +98,8 @@ class LightDirections:
         from scipy.stats import qmc
 
         self.rays, self.per_ray = rays, -(-count // rays)
-        # In Halton's sequence even few consecutive points, such as those of a ray, are spread out
+        # Points of Halton's sequence are evenly spread, even a few consecutive ones as each ray
+        # takes
         u = qmc.Halton(2, scramble=False).random(1 + rays * self.per_ray)[1:].astype(np.float32)
         origin = dr.zeros(mi.SurfaceInteraction3f, len(u))
         drawn, _ = emitter.sample_direction(origin, mi.Point2f(u.T))

@@ -93,8 +93,9 @@ class LobeMaps(FilteredMap):
         """Return the mean radiance over a von Mises-Fisher lobe of concentration `kappa`."""
         import drjit as dr
 
-        # A lobe of concentration κ has the variance 1/κ. The variance of the levels' lobes is 0 at
-        # level 0, and grows by equal ratios from level 1 on; between 0 and 1 it grows linearly
+        # Find the level between whose lobes the given lobe lies. `variance` is its variance 1/κ,
+        # relative to that of level 1. Level 0 is not blurred, so its variance is 0; from level 1
+        # on, the variance grows by equal ratios
         variance = self.sharpest / kappa
         level = dr.select(variance < 1, variance, 1 + dr.log2(variance) / math.log2(levels.STEP))
         return self.interpolate_trilinearly(axis, level)

@@ -22,17 +22,25 @@ from brdfkit.lighting.filtering.sphere_filter import convolve_on_sphere, halve_r
 from brdfkit.lighting.spherical_gaussians.von_mises_fisher import log_density
 
 BORDER = 1.2  # width of a hemisphere's picture relative to the diameter of its disc
-# Smallest number of texels along a side of a level; a narrower border could not be interpolated
+# Smallest number of texels along a side of a level; with fewer, the border around the disc would be
+# too narrow to interpolate in
 SMALLEST_SIDE = 16
-# Texels per standard deviation 1/√κ of the sharpest lobe, in a disc's middle, where it has fewest
+# Texels per standard deviation 1/√κ of the sharpest lobe, in the middle of a disc, where texels
+# cover the largest angles
 TEXELS = 2.0
-STEP = 2**0.5  # ratio of κ between levels, so small that a lobe between two is nearly their mean
-# Largest ratio of the rows of a map that is convolved to the texels along a side of the level; a
-# larger map is halved first, to save time
+# Ratio of the concentrations κ of two successive levels, so small that a lobe between two levels is
+# nearly their mean
+STEP = 2**0.5
+# A map that is convolved has at most this many rows per texel along a side of the level; larger
+# maps are first halved to save time
 ROWS = 1.7
-SMALLEST_KAPPA = 0.5  # a nearly uniform lobe, which is used for wider ones as well
-CUT_OFF = 12.0  # a lobe is cut off at e^-12 of its peak, beyond which lies e^-12 of its integral
-BLUR = 0.03  # share by which interpolation between texels increases the variance of a lobe
+SMALLEST_KAPPA = 0.5  # concentration κ of the widest lobe, nearly uniform; it replaces wider lobes
+# Lobes are cut off where they fall to e^-12 of their peak; a share of e^-12 of the integral lies
+# beyond
+CUT_OFF = 12.0
+# Share by which the interpolation between texels widens a lobe's variance, so the lobes that are
+# convolved are sharper by it
+BLUR = 0.03
 COVERAGE = 0.5  # share of a lobe that one texel of its mip level covers, called a in eq. 8.9
 CACHED_PICTURES = 4  # pictures whose levels, a few MB each, are kept for the next call
 

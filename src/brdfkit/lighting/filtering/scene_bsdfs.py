@@ -9,7 +9,7 @@ from brdfkit.core.array_types import FloatArray, JitMask, MitsubaModule, Mitsuba
 from brdfkit.core.geometry.directions import rotate_z
 from brdfkit.mitsuba_bridge.bsdf.from_dictionary import eval_bsdf
 
-TOLERANCE = 1e-3  # differences below this share of the largest value count as rounding
+TOLERANCE = 1e-3  # smaller differences, relative to the largest value, count as rounding errors
 CACHED_BSDFS = 16  # largest number of BSDFs whose results `CacheByValues` keeps
 
 

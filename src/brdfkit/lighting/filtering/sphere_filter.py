@@ -50,9 +50,11 @@ def convolve_on_sphere(
     height, width = picture.shape[:2]
     theta, rows = row_polar_angles(height), int(np.ceil(reach / np.pi * height))
     sin, cos = np.sin(theta)[:, None], np.cos(theta)[:, None]
-    turn = np.cos(np.arange(width // 2 + 1) * 2 * np.pi / width)  # for half a turn, by symmetry
+    # cosines of azimuth differences; half a turn suffices, as the kernel is symmetric
+    turn = np.cos(np.arange(width // 2 + 1) * 2 * np.pi / width)
     light = rfft(picture * solid_angles(height, width, at_poles=False)[:, None, None], axis=1)
-    light = light.view(float)  # real and imaginary parts, which real weights multiply alike
+    # Real and imaginary parts side by side: the weights are real, and multiply both alike
+    light = light.view(float)
     convolved = np.zeros_like(light)
     for i in range((height + 1) // 2):
         near = slice(max(i - rows, 0), i + rows + 1)
@@ -60,7 +62,7 @@ def convolve_on_sphere(
         weights = dct(kernel(np.clip(cosines, -1, 1)), type=1, axis=1)
         largest = np.abs(weights).max(axis=0)
         kept = np.flatnonzero(largest > NEGLIGIBLE * largest.max())[-1] + 1
-        # The row at the same distance from the other pole has the same weights
+        # The row as far from the lower pole as row i is from the upper one has the same weights
         for way in (1, -1):
             lit = light[::way][near, :kept]
             convolved[::way][i, :kept] = np.einsum("jm,jmc->mc", weights[:, :kept], lit)

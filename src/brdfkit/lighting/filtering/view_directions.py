@@ -25,9 +25,9 @@ from brdfkit.lighting.filtering.scene_bsdfs import has_separate_diffuse_part, is
 from brdfkit.mitsuba_bridge.arrays import Rows, find_cell
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
-# Numbers of polar angles and azimuths of the views that are stored for a BSDF
+# Numbers of (polar angles, azimuths) of the views that are stored for a BSDF
 ISOTROPIC, ANISOTROPIC = (256, 1), (96, 64)
-ADJACENT = 5  # number of adjacent polar angles over which outliers of weights are removed
+ADJACENT = 5  # number of adjacent polar angles whose median weight replaces outliers
 
 
 class ViewDirections:

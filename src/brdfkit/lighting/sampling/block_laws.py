@@ -23,8 +23,11 @@ from brdfkit.lighting.sampling.block_slopes import line_density, sample_line_den
 from brdfkit.lighting.sampling.tree import Tree
 from brdfkit.mitsuba_bridge.arrays import Rows
 
-STEPS = 8  # number of ranges of ranks with equal probability in the law `Steps`
-EDGES = 64  # number of ranks at which a step may begin, spaced by equal ratios
+# The law `Steps` sorts the blocks of a map by power, and divides the sorted list into at most this
+# many ranges; all blocks of a range get the same probability
+STEPS = 8
+# Number of places in the sorted list where a range may begin; successive places have equal ratios
+EDGES = 64
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,8 @@ class Hyperbolic:
         def loss(log_u: float) -> float:
             return float(-shares @ np.log(cls(n, np.exp(log_u)).probability(i)))
 
-        # The lower bound of u gives nearly all light to one block, the upper one gives equal shares
+        # At the lower bound of log u, the brightest block gets about half of the samples; at the
+        # upper one, all blocks get about the same number
         minimum = minimize_scalar(loss, bounds=(-10, np.log(n) + 10), method="bounded")
         return cls(n, float(np.exp(minimum.x)))
 
@@ -101,13 +105,15 @@ class Steps:
         edges = np.unique(np.append(0, np.geomspace(1, n, EDGES).round())).astype(int)
         below = np.append(0, np.cumsum(shares))[edges]
         share, width = below[None, :] - below[:, None], edges[None, :] - edges[:, None]
-        likelihood = np.full(share.shape, -np.inf)  # entry [i, j]: for a step from edge i to j
+        # entry [i, j] belongs to a step from edge i to edge j
+        likelihood = np.full(share.shape, -np.inf)
         upwards = np.triu(np.ones(share.shape, bool), 1)
         black = upwards & (share <= 0)
         lit = upwards & ~black
         likelihood[black], likelihood[lit] = 0, share[lit] * np.log(share[lit] / width[lit])
 
-        # The best k steps to an edge are the best k - 1 steps to an earlier edge, and one more
+        # Dynamic programming: the best k steps up to an edge are the best k - 1 steps up to some
+        # earlier edge, and one step from there
         best, origins = likelihood[0], []
         for _ in range(min(STEPS, len(edges) - 1) - 1):
             sums = best[:, None] + likelihood

@@ -88,7 +88,8 @@ class GridLookup:
         import drjit as dr
         import mitsuba as mi
 
-        # Blocks are tested with the point's cell, so that rounding cannot put it between two blocks
+        # A block contains the point if it contains the point's pixel: rounding of x and y cannot
+        # put a whole pixel between two blocks
         column, row = (mi.Float(find_cell(a, n)) for a, n in ((x, self.width), (y, self.height)))
         square = find_cell((row + 0.5) * (self.rows / self.height), self.rows) * self.columns
         square = square + find_cell((column + 0.5) * (self.columns / self.width), self.columns)
@@ -134,7 +135,8 @@ class TreeWalk:
         x0, x1, y0, y1 = tree.boxes.T
         probability = np.zeros(len(leaf))
         probability[leaf] = densities * ((x1 - x0) * (y1 - y0))[leaf]
-        for node in np.flatnonzero(~leaf)[::-1]:  # parts, of larger index, before the whole
+        # from the last node to the first, so that both parts precede the whole
+        for node in np.flatnonzero(~leaf)[::-1]:
             probability[node] = probability[left[node]] + probability[left[node] + 1]
         down = x1[left] == x1
         cut = np.where(down, y1[left], x1[left])
@@ -150,7 +152,8 @@ class TreeWalk:
         import mitsuba as mi
 
         def descend_to_part(node: JitVector, box: JitVector, u: JitVector) -> tuple[JitVector, ...]:
-            # Choose a part, and stretch the random number of the cut's axis to 0 to 1 again
+            # Choose one part of the node, and stretch the random number that chose it to the range
+            # 0 to 1 again, for the next choice
             down, share = node.y > 0, node.w
             along = dr.select(down, u.y, u.x)
             second = along >= share

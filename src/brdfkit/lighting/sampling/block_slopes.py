@@ -10,7 +10,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray, JitFloat
 from brdfkit.lighting.sampling.tree import Sums
 
-STEEPEST = 1.8  # largest slope, at which the darker end of a block has a tenth of its mean density
+STEEPEST = 1.8  # largest slope; it leaves a tenth of a block's mean density at the darker end
 
 
 def fit_slopes(sums: Sums, pixels: FloatArray, boxes: IntArray) -> FloatArray:

@@ -42,7 +42,8 @@ MAP_PARAMETERS = {
         False, "sample only what is brighter than the mean; surfaces do the rest"
     ),
 }
-ENVIRONMENT_DISTANCE = 1e7  # distance of sampled points; a plugin cannot find the scene's size
+# distance of points sampled on the environment; plugins do not know the scene's size
+ENVIRONMENT_DISTANCE = 1e7
 SMALLEST_SINE = 1e-4  # lower limit of the polar angle's sine, by which densities are divided
 
 
@@ -53,9 +54,9 @@ def derive_environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]
     `make_sampler(brightness)`, which returns a map sampler.
     """
 
+    # The base class depends on the variant, so a type checker cannot know it
     class EnvironmentEmitter(derive_plugin(mi.Emitter, parameters)):  # type: ignore[misc]
-        # the base class depends on the variant
-        make_sampler: Any
+        make_sampler: Any  # method of derived classes
 
         def __init__(self, props: Any) -> None:
             self.name = props.plugin_name()

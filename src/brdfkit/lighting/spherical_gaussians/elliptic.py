@@ -49,10 +49,11 @@ def _spread_over_ellipse(one: OneView, n: int) -> ViewLobes:
     frame, bandwidths = fit_anisotropic_gaussian(x, weights * share)
     light = one.energy.sum(axis=0)
     variances = 1 / (2 * bandwidths)  # variances along the x and y axes of the lobe's ellipse
-    # A round lobe has half the ellipse's mean variance, but less than that across the ellipse
+    # The ellipse is made of round lobes. Their variance is half the ellipse's mean variance, but
+    # smaller than the ellipse's variance along its shorter axis
     kernel = min(np.sqrt(variances.prod()) / 2, 0.9 * variances.min())
-    # The symmetric root of the remaining variance changes smoothly from view to view, even where
-    # the longer axis of the ellipse becomes the shorter one
+    # Spread the lobes' centres by the symmetric root of the rest of the variance. It changes
+    # smoothly from view to view, even where the ellipse's longer axis becomes the shorter one
     plane = np.array(tangents(frame[2]))
     turn = frame[:2] @ plane.T
     root = turn.T @ np.diag(np.sqrt(variances - kernel)) @ turn

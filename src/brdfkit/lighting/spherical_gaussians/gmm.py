@@ -17,7 +17,9 @@ from brdfkit.lighting.spherical_gaussians import mixture
 from brdfkit.lighting.spherical_gaussians.mixture import Mixture
 from brdfkit.lighting.spherical_gaussians.one_view import OneView, ViewLobes
 
-SMALLEST_COSINE = 0.01  # lower limit of the cosine of view and half vector, by which κ is divided
+# Lower limit of the cosine between view and half vector, as κ is divided by it where lobes over
+# half vectors become lobes over light directions
+SMALLEST_COSINE = 0.01
 STEPS = 20  # steps of a fit that starts from a neighbouring view; more hardly improve it
 
 

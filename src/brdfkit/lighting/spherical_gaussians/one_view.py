@@ -24,9 +24,10 @@ Brdf = Callable[[FloatArray, FloatArray], FloatArray]
 # integrals (lobes, channels), axes (lobes, 3) and concentrations κ (lobes,)
 ViewLobes = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
-RINGS = 48  # half the number of rings of directions; resolves lobes of 0.01 rad up to 80°
-FLOOR_EXCESS = 1e-3  # share of the reflected light that the diffuse part may add to low values
-OMITTED_LIGHT = 1e-3  # share of the glossy light that fits omit, in the darkest directions
+RINGS = 48  # half the number of rings of directions, enough for lobes of 0.01 rad up to 80°
+# The diffuse part may exceed low BRDF values, by at most this share of the reflected light
+FLOOR_EXCESS = 1e-3
+OMITTED_LIGHT = 1e-3  # share of the glossy light that fits ignore: that in the darkest directions
 
 
 @dataclass(frozen=True)

@@ -105,7 +105,8 @@ def estimate_concentration(kappa: ArrayLike, n: int) -> AnyArray:
     """
     kappa = np.asarray(kappa, float)
     mean = vmf.spread_lobe_points(np.array([0.0, 0.0, 1.0]), kappa, n).mean(axis=-2)
-    # The estimate convolves the points with the kernel, so that their mean cosines are multiplied
+    # A kernel density estimate is the points convolved with the kernel, so its mean cosine is the
+    # product of both mean cosines
     length = np.linalg.norm(mean, axis=-1) * vmf.mean_cosine(kernel_bandwidth(kappa, n) ** -2)
     return vmf.solve_kappa(length)
 
@@ -117,6 +118,6 @@ def _sharpen_lobe(kappa: AnyArray, n: int) -> AnyArray:
     concentration is `kappa`.
     """
     sharper = kappa * (1 + n ** (-1 / 3))
-    for _ in range(10):  # few steps suffice, as the two are nearly proportional
+    for _ in range(10):  # few steps suffice, as `sharper` and its estimate are nearly proportional
         sharper = sharper * kappa / estimate_concentration(sharper, n)
     return sharper

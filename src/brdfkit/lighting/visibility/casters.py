@@ -21,7 +21,8 @@ class Casters:
 
     def __init__(self, concavity: float, resolution: int, convex: bool = True) -> None:
         self.concavity, self.resolution, self.convex = concavity, resolution, convex
-        self.key: list[tuple[MitsubaObject, int]] | None = None  # identifies the cached scene
+        # the scene whose casters are cached
+        self.key: list[tuple[MitsubaObject, int]] | None = None
         self.casters: tuple[Occluders | None, MitsubaObject | None] = None, None
 
     def find_casters(self, scene: MitsubaObject) -> tuple[Occluders | None, MitsubaObject | None]:

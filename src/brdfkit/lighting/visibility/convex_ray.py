@@ -16,7 +16,7 @@ import drjit as dr
 from brdfkit.core.array_types import JitFloat, JitInt, JitMask, JitVector, MitsubaModule
 from brdfkit.lighting.visibility.plane_map import PlaneMap
 
-EPSILON = 3e-6  # tolerance of distances, where the part is as large as the unit sphere
+EPSILON = 3e-6  # distances below this count as 0; the unit of length is the radius of a convex part
 LOOKUP_LIMIT = 32  # number of look-ups of planes after which the search ends
 GOING, HIT, MISSED = 0, 1, 2  # states of the search
 

@@ -14,7 +14,7 @@ import numpy as np
 from brdfkit.core.array_types import FloatArray, IntArray, JitInt, JitMask, MitsubaObject
 from brdfkit.mitsuba_bridge.arrays import Integers, Rows
 
-ROOT, END = 1, 0  # node numbers; END is reached after the last subtree
+ROOT, END = 1, 0  # numbers of the first node, and of the end that follows the last subtree
 
 
 class Hierarchy:
@@ -29,7 +29,8 @@ class Hierarchy:
 
         order = _sort_boxes(low, high)
         self.leaves = mi.UInt32(len(order))
-        dr.make_opaque(self.leaves)  # otherwise each number of boxes would need a new kernel
+        # Hidden from Dr.Jit's compiler, which would make a kernel for each number of boxes
+        dr.make_opaque(self.leaves)
         self.order = Integers(np.maximum(order, 0))
         self.low = Rows(_combine_node_corners(_arrange_corners(low, order), np.fmin))
         self.high = Rows(_combine_node_corners(_arrange_corners(high, order), np.fmax))

@@ -12,8 +12,8 @@ from brdfkit.lighting.visibility.hull import Frames, Hull
 from brdfkit.lighting.visibility.plane_map import RasterisedPlaneMap
 from brdfkit.mitsuba_bridge.arrays import Rows
 
-RESOLUTION = 128  # texels along a side of the plane map of the largest part
-CLEARANCE = 0.03  # share of half an object's longest side by which hulls bulge out at most
+RESOLUTION = 128  # texels along a side of the largest convex part's map of planes
+CLEARANCE = 0.03  # largest bulge of hulls beyond their object, relative to half its longest side
 
 
 class Occluders:

@@ -11,7 +11,8 @@ from brdfkit.core.array_types import FloatArray, IntArray
 from brdfkit.core.errors import BrdfkitError
 
 WIDE_HOLE = 0.3  # a hole wider than this share of the mesh's longest side may be an opening
-COVERED = 0.75  # smallest winding number in the middle of a hole that other pieces cover
+# a hole is covered by other pieces if its middle has a winding number of at least this
+COVERED = 0.75
 
 
 def split_solids(

@@ -10,7 +10,7 @@ from brdfkit.lighting.filtering.filtered_light import Light, LightDirections
 Visible: TypeAlias = Callable[[JitVector], JitMask]
 
 GOLDEN_ANGLE = math.pi * (3 - math.sqrt(5))
-RAYS = 4  # shadow rays per lobe
+RAYS = 4  # number of shadow rays per lobe of light
 
 
 class ShadowedLight:
@@ -83,7 +83,7 @@ def visible_share(
     def add_ray(
         i: JitInt, seen: JitColour, total: JitColour
     ) -> tuple[JitInt, JitColour, JitColour]:
-        # The rays have the cosines that divide the lobe into rings of equal probability
+        # The cosines of the rays to the axis are those in the middle of rings of equal probability
         x = (mi.Float(i) + 0.5) / rays
         cos = 1 + dr.log(x + (1 - x) * dr.exp(-2 * kappa)) / kappa
         sin = dr.safe_sqrt(1 - cos * cos)

@@ -32,7 +32,7 @@ from brdfkit.model.samples import Table
 ISOTROPIC = (30, 30, 60)
 ANISOTROPIC = (16, 20, 12, 24)
 PILOT_SAMPLES = 64  # number of samples per cell in the pilot run
-# Smallest number of samples per cell; with fewer, the standard error is too uncertain
+# Smallest number of samples of a cell; with fewer, the standard error is too uncertain
 FEWEST_SAMPLES = 256
 # Number of passes over all cells in which the samples are drawn: if Ctrl-C ends the measurement,
 # all cells have about the same share of their samples
@@ -156,7 +156,7 @@ def measure(
     above, light, eye = _choose_directions(shape)
     rng = np.random.default_rng(seed)
 
-    # Estimate from a pilot run how many samples each cell gets in one pass
+    # A pilot run with few samples shows how many samples each cell needs in each pass
     pilot = Tally(len(light))
     _add_samples(specimen, light, eye, np.full(len(light), PILOT_SAMPLES), rng, pilot)
     share = -(-_plan_sample_counts(pilot, above, error, spp) // PASSES)
@@ -204,14 +204,14 @@ def _plan_sample_counts(pilot: Tally, above: BoolArray, error: float, spp: int) 
         grid[above] = values
         return uniform_filter(grid, 3)[above]
 
-    # Compute the pilot's squared relative error in each cell pooled with its neighbours, of which
-    # only a `share` is measured
+    # The squared relative error of the pilot run, for each cell pooled with its neighbours. `share`
+    # is the share of these cells that were measured, the others count as 0
     share, mean = average_neighbours(1.0), average_neighbours(pilot.mean.sum(axis=1))
     variance = share * average_neighbours(pilot.standard_error.sum(axis=1) ** 2)
     around = np.divide(variance, mean**2, out=np.ones_like(mean), where=mean > 0)
 
-    # Find the number of samples, to which the squared error is inversely proportional, from the
-    # larger one of two errors: in the pooled cells, and in the cell alone
+    # The squared error is inversely proportional to the number of samples. That number follows from
+    # the larger of two errors of the pilot run: of the pooled cells, and of the cell itself
     squares = np.maximum(around, np.minimum(pilot.relative_error, 1) ** 2)
     samples = PILOT_SAMPLES * squares / error**2
     return np.ceil(np.clip(samples, min(FEWEST_SAMPLES, spp), spp)).astype(int)

@@ -95,12 +95,12 @@ def woven(slope: float = 0.3, thickness: float = 0.5, seed: int = 0) -> HeightFi
     ('warp', 'weft')
     """
     to_number("thickness", thickness, 0.1, 1)
-    yarns = 8  # yarns side by side in the tile; with an odd number the weave would not repeat
+    yarns = 8  # number of yarns side by side in a tile; an odd number would not repeat seamlessly
     width = SIZE / yarns
     half = thickness * width / 2
-    # Positions of the grid points in units of a yarn's width, equal along x and y
+    # Coordinate of the grid points along x, and likewise along y, in units of a yarn's width
     s = (np.arange(SIZE) + 0.5) / width
-    # Compute heights: of a yarn's round upper side, and of its path over and under other yarns
+    # The height of a yarn's round upper side, and that of its path over and under the other yarns
     crown = half * np.sqrt(1 - (2 * (s % 1) - 1) ** 2)
     over_under = half * np.outer((-1) ** s.astype(int), np.cos(np.pi * (s - 0.5)))
     # Add the roughness of fibres along each yarn, and take the higher yarn at each point
@@ -146,8 +146,9 @@ def _make_gaussian_heights(slope: float, length_x: float, length_y: float, seed:
     heights = np.fft.ifft2(noise * np.exp(-(x * x + y * y) / 8)).real
     heights -= heights.mean()
 
-    # Measure the mean squared slope along each axis, converted to the axis of the shorter length,
-    # and scale the heights to the slope that is wanted
+    # The slope is asked for along the axis with the shorter correlation length. A slope along the
+    # other axis is smaller by the ratio of the lengths, so it is multiplied by it; then the mean
+    # square of both axes' slopes gives the factor that scales the heights
     shorter = min(length_x, length_y)
     squares = [
         np.mean((length / shorter * (np.roll(heights, -1, axis) - heights)) ** 2)

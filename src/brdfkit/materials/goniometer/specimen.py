@@ -41,7 +41,8 @@ from brdfkit.materials.goniometer.microgeometry import HeightField
 # that they leave. Single precision needs about 1e-4; with Mitsuba's own offset, 20 times larger
 # than ours, grazing light reaches 1 % too far.
 RAY_OFFSET = 1e-3
-MOST_TILES = 1000  # a ray that crosses more repetitions of the tile counts as missing the surface
+# a ray that crosses this many repetitions of the tile counts as missing the surface
+MOST_TILES = 1000
 
 
 class Specimen:

@@ -31,7 +31,7 @@ def find_directions_within(
     """
     first, *others = axes
     parts, size = [], math.prod(map(len, others))
-    for number, centre in enumerate(first):  # the slabs one after the other, to save memory
+    for number, centre in enumerate(first):  # one slab of the table at a time, to save memory
         *phi_h, theta_h, theta_d, phi_d = np.meshgrid([centre], *others, indexing="ij")
         pair = from_half_difference(theta_h, theta_d, phi_d, *phi_h)
         wi, wo = (w.reshape(-1, 3) for w in pair)

@@ -12,8 +12,8 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, ArrayLike
 from brdfkit.core.geometry.directions import half_azimuth, to_half_difference
 
-# Factors of the three coordinates. A highlight is narrow along θ_h and changes slowly with θ_d;
-# retroreflection, at θ_d = 0, is narrow along both
+# Factors of the coordinates θ_h, sin θ_d and the third one. A highlight is narrow along θ_h and
+# changes slowly with θ_d; retroreflection, at θ_d = 0, is narrow along both
 HIGHLIGHT, RETROREFLECTION = (8.0, 1.0, 1.0), (4.0, 4.0, 4.0)
 
 

@@ -25,25 +25,28 @@ from brdfkit.core.geometry.directions import from_half_difference, to_half_diffe
 from brdfkit.model.samples.cells import minimum_cosine
 from brdfkit.model.samples.coordinates import compute_coordinates, compute_sample_coordinates
 
-# The density of each measure in the angles, as a power of `solid_angle_density`; with None each
-# sample counts 1
+# Names of the measures → the power of `solid_angle_density` that is their density over the angles;
+# None: each sample counts 1
 MEASURES: dict[str, float | None] = {
     "samples": None,
     "angles": 0.0,
     "balanced": 0.5,
     "solid_angle": 1.0,
 }
-# The largest distance between a spread point and the sample that represents it, in the coordinates
-# of `coordinates.py`: 3.6° in theta_h, or 0.5 in sin theta_d
+# Largest distance from a point to the sample that represents it, in the coordinates of
+# `coordinates.py`: 3.6° in theta_h, or 0.5 in sin theta_d
 REACH = 0.5
-# The number of spread points per sample, and their smallest and largest total number
+# Number of points per sample that are spread over all direction pairs to estimate extents, and
+# smallest and largest number of all points
 POINTS, FEWEST_POINTS, LARGEST_NUMBER = 16, 2**13, 2**18
-# The extent, in the angles, of a sample that represents no point, as a share of the mean extent
+# If no point is nearest to a sample, because others are very near, its extent in the angles is set
+# to this share of the mean extent, so that it still counts a little
 LEAST_EXTENT = 0.01
-# The number of bins of theta_h, equal in its square root. Half of the points are spread evenly over
-# theta_h, half of them like the samples
+# Number of bins of theta_h, equally wide in its square root, by which points are spread: half of
+# the points evenly over theta_h, half of them as the samples are
 BINS = 90
-# Numbers of cells along theta_h, theta_d and phi_d, enough to integrate a measure to 1e-3
+# Numbers of points along theta_h, theta_d and phi_d for integrals of a measure, which they make
+# right to 1e-3
 GRID = 180, 90, 90
 
 
@@ -101,11 +104,11 @@ def estimate_extents(
     sums = np.stack(
         [np.bincount(nearest[near], volume[near], len(points)) for volume in volumes.T], axis=1
     )
-    # Samples at the same point have equal shares of its extents
+    # Samples at the same point share its extents equally
     shares = (sums / np.bincount(same)[:, None])[same]
-    # A sample of an anisotropic material has two points: its pair in both orders
+    # Each sample of an anisotropic material has two points, one for each order of wi and wo
     extents = shares.reshape(-1, len(wi), 2).sum(axis=0)
-    # A sample that represents no point, since other samples are very near, gets a small extent
+    # Samples that are nearest to no point, since others are very near, get small extents
     missed = extents[:, 0] == 0
     theta_h, theta_d, _ = to_half_difference(wi[missed], wo[missed])
     extents[missed, 0] = LEAST_EXTENT * extents[:, 0].mean()

@@ -116,7 +116,8 @@ class Table:
             return self.values
         from scipy.ndimage import distance_transform_edt
 
-        # Periodic axes are extended at both ends, far enough to find the nearest known cell there
+        # Extend periodic axes at both ends, so far that the nearest known cell is within the
+        # extended table even across the end
         farthest = int(np.ceil(distance_transform_edt(unknown).max()))
         azimuths = (0, 3) if self.anisotropic else (2,)
         added = [min(farthest, n // 2) * (k in azimuths) for k, n in enumerate(self.shape)]

@@ -13,7 +13,8 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole, check_fov
 
-# Largest RMS distance of projected from given corners, in shares of the picture's width
+# Largest RMS distance between the sample's corners as given in the photograph and as the fitted
+# camera shows them, as a share of the picture's width
 TOLERANCE = 0.01
 
 

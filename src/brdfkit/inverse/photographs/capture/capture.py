@@ -12,9 +12,10 @@ from brdfkit.inverse.photographs.capture.checks import check_capture
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole
 
 CLIPPED_SHARE = 1e-4  # pixels are clipped if more than this share has the largest value
-SMALLEST_COSINE = 0.05  # cosine of incidence below which bumps of the sample cast shadows
+# cosine of the light's angle of incidence below which bumps of the sample cast shadows
+SMALLEST_COSINE = 0.05
 SMALLEST_MAP = 4  # fewest texels along a side of a map
-PIXELS_PER_TEXEL = 1.4  # fewest pixels per texel, along a side, in reduced photographs
+PIXELS_PER_TEXEL = 1.4  # fewest pixels of a reduced photograph per texel, along a side
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,9 +16,9 @@ from brdfkit.inverse.photographs.capture.pinhole import Pinhole, find_corners
 from brdfkit.mitsuba_bridge.properties.picture_file import read_photograph
 
 NAME = "capture.toml"
-AT_CAMERA = "camera"  # the value of `position` for a flash, which is at the camera
+AT_CAMERA = "camera"  # value of the key `position` for a flash, which is at the camera
 CAMERA_KEYS = "origin", "target", "up", "fov", "corners"
-POSITION_KEYS = "origin", "corners"  # keys of a camera; one of them determines its position
+POSITION_KEYS = "origin", "corners"  # keys of a camera in the file; one of the two says where it is
 LARGEST_NUMBER = 1e30  # largest number in the file; squares of larger ones could overflow
 
 

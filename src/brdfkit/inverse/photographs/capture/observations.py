@@ -12,9 +12,11 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.inverse.photographs.capture.capture import Capture
 
 ARRAYS = "radiance", "weights", "to_light", "irradiance", "to_camera"
-# A large texel takes over the observations of at most this number of small texels along a side
+# When maps are coarsened, a large texel takes over the observations of this many small texels along
+# a side at most
 POOLED_TEXELS = 8
-# Added to radiances, as a share of their mean, so that relative errors of dark pixels stay finite
+# Share of the mean radiance that is added to radiances before errors are divided by them, so that
+# relative errors of dark pixels stay finite
 DARK_OFFSET = 0.05
 
 

@@ -6,14 +6,13 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.capture.observations import Observations
 
-# Ratio of a texel's residuals to the noise above which the maps do not explain the texel
+# A texel is unexplained by the maps if its residual is more than this multiple of the noise
 UNEXPLAINED = 3
-# Share of unexplained texels above which a sentence mentions them
-UNEXPLAINED_SHARE = 0.03
-LARGEST_NOISE = 0.04  # largest usual noise of cameras, relative to the radiance
-# Relative RMS residual above which some texels probably lie beside the sample
+UNEXPLAINED_SHARE = 0.03  # Share of unexplained texels above which the result's notes mention them
+LARGEST_NOISE = 0.04  # largest noise that cameras usually have, relative to the radiance
+# RMS residual, relative to the radiance, above which some texels probably lie beside the sample
 LARGEST_RESIDUAL = 0.5
-# Photographs are named if their residual exceeds the median of all by this factor
+# A photograph is named in the notes if its residual is more than this multiple of the median
 OUTLIER = 2.5
 PALEST, DARKEST = 1.05, 0.004  # usual limits of a sample's median diffuse reflectance
 

@@ -18,9 +18,10 @@ from brdfkit.model import Model
 
 # The map with the angle [radians] from the sample's x axis to the direction of the width u
 ANGLE = "anisotropy_angle"
-P_OFFSET = 1e-7  # added to the number p, because the angle has no derivatives at p = q = 0
-LARGEST_P = 2.0  # bound of the numbers |p| and |q|, where one width is about 50 times the other
-UNKNOWN_ANGLE_ERROR = np.pi / np.sqrt(12)  # standard deviation of a random angle from 0 to π
+P_OFFSET = 1e-7  # added to the number p, because the angle ψ has no derivatives at p = q = 0
+LARGEST_P = 2.0  # largest |p| and |q|; there, one width is about 50 times the other
+# standard deviation of an angle that is random between 0 and π
+UNKNOWN_ANGLE_ERROR = np.pi / np.sqrt(12)
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,11 @@ from brdfkit.inverse.photographs.capture.observations import Observations
 from brdfkit.inverse.photographs.maps.shape_parameters import ANGLE, ShapeParameters
 from brdfkit.model import Model
 
-STEEPEST_SLANT = 0.65  # largest |x| or |y| of a unit normal in a search
+STEEPEST_SLANT = 0.65  # largest |x| and |y| of the unit normals that a search tries
 CHANNELS = 3
 
-Lobes = list[FloatArray]  # radiances (lights, texels) of each lobe for weight and irradiance 1
+# for each lobe its radiances (lights, texels), at weight 1 and irradiance 1
+Lobes = list[FloatArray]
 
 
 @dataclass(frozen=True)
@@ -123,7 +124,8 @@ class TexelParameters:
             dr.enqueue(dr.ADMode.Forward, array)
             dr.traverse(dr.ADMode.Forward, dr.ADFlag.ClearInterior)
             derivatives.append([dr.grad(lobe) for lobe in lobes])
-        dr.eval(values, derivatives)  # one kernel computes common parts once
+        # one kernel for all, because they have many expressions in common
+        dr.eval(values, derivatives)
 
         def to_numpy(lobes: Sequence[JitFloat]) -> Lobes:
             """Return the lobes' arrays of Dr.Jit as arrays of NumPy (lights, texels)."""

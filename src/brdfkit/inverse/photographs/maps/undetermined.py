@@ -6,13 +6,16 @@ from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
 from brdfkit.core.names import join_words
 from brdfkit.inverse.photographs.maps.texel_parameters import TexelParameters
 
-# Eigenvalue of a Hessian with unit diagonal below which a combination of numbers is undetermined
+# If an eigenvalue of a texel's Hessian, scaled to a unit diagonal, is smaller than this, the
+# photographs do not determine the combination of numbers in its eigenvector
 SMALLEST_EIGENVALUE = 1e-4
-# Numbers belong to a combination if their share of its eigenvector's largest entry is larger
+# A number is part of a combination if its entry of the eigenvector is larger than this share of the
+# largest entry
 MAIN_PART = 0.3
-# A number is named if it takes part in more than this share of the undetermined texels
+# A number is named in the notes if it is undetermined in more than this share of the texels that
+# have undetermined numbers
 MENTIONED_SHARE = 0.25
-# Share of undetermined texels above which a sentence mentions them
+# Share of texels with undetermined numbers above which the notes mention them
 UNDETERMINED_SHARE = 0.05
 
 

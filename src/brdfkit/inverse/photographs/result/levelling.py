@@ -8,10 +8,12 @@ from brdfkit.inverse.photographs.capture.capture import Capture
 from brdfkit.inverse.photographs.capture.observations import Observations
 
 COLOURS = "red", "green", "blue"
-LONG_PIXEL = 1.25  # length of a pixel [texels] above which a sentence mentions it
-# Degrees by which normals of a flat sample may lean, on average and outwards at the edges
+LONG_PIXEL = 1.25  # length of a pixel [texels] above which the result's notes mention it
+# Angles [degrees] by which the normals of a flat sample may lean: as a whole, and outwards at its
+# edges
 LARGEST_LEAN, LARGEST_BULGE = 2.0, 8.0
-# Number of texels along a side below which slopes of bumps do not average to zero
+# Smallest side of a map [texels] whose normals are judged; in fewer texels the slopes of bumps do
+# not average to zero
 FEWEST_TEXELS = 32
 
 

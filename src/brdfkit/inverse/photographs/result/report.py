@@ -17,7 +17,8 @@ VALUE_SCALE, DIFFERENCE_SCALE = "viridis", "RdBu_r"
 # Residual of a texel at the end of the colour scale, as a multiple of the noise
 LARGEST_MISFIT = 2 * UNEXPLAINED
 LARGEST_DIFFERENCE = 0.2  # relative difference at the ends of the colour scale
-# Added to radiances, as a share of white, so that relative differences of dark pixels are finite
+# Share of the white level that is added to radiances before differences are divided by them, so
+# that relative differences of dark pixels stay finite
 DARK_OFFSET = 0.05
 
 
@@ -62,7 +63,8 @@ def _describe_map(svbrdf: Any, name: str) -> dict[str, str | None]:
     shown = {"name": name, "picture": picture, "scale": scale, "error": None, "error_scale": None}
     if errors is not None:
         unit, errors = ("°", np.degrees(errors)) if name == "normal" else ("", errors)
-        high = float(np.quantile(errors, 0.9))  # a few errors at the edge are much larger
+        # the scale ends here, as a few errors at the edge are far larger
+        high = float(np.quantile(errors, 0.9))
         shown["error"] = _to_colour_png(errors, 0, high)
         shown["error_scale"] = f"standard error, 0 (dark) to {high:.2g}{unit} (bright)"
     return shown

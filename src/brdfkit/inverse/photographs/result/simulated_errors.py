@@ -26,9 +26,11 @@ from brdfkit.inverse.photographs.search.through_renderer import (
 )
 
 AVERAGED_SIDE = 9  # side [texels] of the square over which simulated errors are averaged
-# Largest ratio of a simulated error to the error by the equations; larger ones are clipped
+# Largest ratio that counts, of the error in the simulation to the error computed from the equations
+# of a texel
 LARGEST_ERROR_RATIO = 5.0
-# Smallest share of the noise variance that a fit is assumed to leave in the residuals
+# Lower limit of the share of the noise's variance that is left in the residuals, as a fit follows a
+# part of the noise
 FEWEST_FREE = 0.3
 
 

@@ -18,13 +18,14 @@ from brdfkit.inverse.photographs.search.starts import (
     restart_unexplained_texels,
 )
 
-# Default of the smoothness τ, the typical difference of neighbouring texels in the numbers' units
+# Smoothness τ if none is given: the typical difference of neighbouring texels, in units of the
+# searched numbers
 DEFAULT_TAU = 0.1
 COARSEST_SIDE = 4  # number of texels along the longer side of the first maps
-NOISE_ROUNDS = 5  # largest number of searches after which the noise is estimated again
-# The noise is settled when its estimate exceeds this share of the previous estimate
+NOISE_ROUNDS = 5  # largest number of searches, after each of which the noise is estimated again
+# No further search is made if the new estimate of the noise exceeds this share of the previous one
 SETTLED = 0.7
-SWEEPS = 2  # how often texels take over better numbers of their neighbours
+SWEEPS = 2  # how often each texel tries its neighbours' numbers, and keeps those that fit better
 
 
 def fit_coarse_to_fine(problem: Problem) -> Iterator[tuple[FloatArray, float, tuple[int, int]]]:

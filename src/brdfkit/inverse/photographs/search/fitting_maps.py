@@ -17,7 +17,7 @@ from brdfkit.inverse.photographs.search.coarse_to_fine import (
 )
 from brdfkit.inverse.photographs.search.problem import Equations, Problem
 
-# Values of the smoothness τ, the typical difference of neighbouring texels, that are tried
+# Values that are tried for the smoothness τ, the typical difference of neighbouring texels
 TAUS = 1.0, 0.3, 0.1, 0.03
 PATCH_SIDE = 48  # number of texels along a side of the patch on which values of τ are tried
 FEWEST_LIGHTS_TO_HOLD_OUT = 8

@@ -15,13 +15,15 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.inverse.photographs.search.problem import Equations, Problem
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 
-# Largest number of steps if each texel is fitted alone, and if all are fitted together
+# Largest number of steps: where each texel is fitted alone, and where all are fitted together
 STEPS, STEPS_TOGETHER = 12, 6
-# Damping of the first step if each texel is fitted alone, and if all are fitted together
+# Damping of the first step: where each texel is fitted alone, and where all are fitted together
 DAMPING, DAMPING_TOGETHER = 1e-2, 1e-3
-# A search of all texels ends when a step reduces the error E² by less than this share
+# Where all texels are fitted together, the search ends when a step reduces the error E² by less
+# than this share
 SMALLEST_GAIN = 1e-4
-# Conjugate gradients end after this number of rounds, or at this relative residual
+# The conjugate gradients that compute a step end after this many rounds, or at this residual
+# relative to the first
 SOLVER_ROUNDS, SOLVER_TOLERANCE = 40, 1e-3
 
 

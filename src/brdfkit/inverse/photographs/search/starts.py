@@ -14,13 +14,13 @@ from brdfkit.inverse.photographs.maps.texel_parameters import CHANNELS
 from brdfkit.inverse.photographs.search.least_squares import fit_each_texel
 from brdfkit.inverse.photographs.search.problem import Problem
 
-# Widths of the highlight at the start, as shares of the range of the shape parameters
+# Widths of the highlight with which searches start, as shares of the shape parameters' ranges
 WIDTHS = 0.08, 0.2, 0.45
 START_WEIGHT = 0.1  # weight of every lobe at the start, except for the diffuse one
 MATT_SHARE = 0.6  # share of the observations, the darkest ones, that count as free of highlights
-DOUBTFUL = 2  # ratio of a texel's residuals to the noise above which the texel is restarted
+DOUBTFUL = 2  # a texel is restarted if its residual is more than this multiple of the noise
 RESTART_STEPS = 10
-# Shifts (down, right) to the eight texels whose numbers a texel tries, at distances 1 and 3
+# Shifts (rows, columns) to the eight texels, 1 and 3 texels away, whose numbers a texel tries
 OFFSETS = [(way * a, way * b) for way in (1, 3) for a, b in ((0, 1), (1, 0), (0, -1), (-1, 0))]
 
 

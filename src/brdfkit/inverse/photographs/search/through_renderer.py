@@ -32,10 +32,11 @@ from brdfkit.inverse.photographs.search.fitting_maps import FittedMaps
 from brdfkit.inverse.photographs.search.least_squares import fit_all_texels
 from brdfkit.inverse.photographs.search.problem import Problem
 
-SAMPLES = 16  # number of samples in each rendered pixel, evenly spread
+SAMPLES = 16  # samples per pixel of the renderings, evenly spread over the pixel
 ROUND_LIMIT = 5  # largest number of rounds of correction
 STEPS_PER_ROUND = 3  # few steps suffice, because each round begins near its minimum
-LARGEST_REMAINDER = 0.9  # a round is undone if it leaves a larger share of the difference
+# a round is undone if more than this share of the difference to the photographs remains
+LARGEST_REMAINDER = 0.9
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,10 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, IntArray, MitsubaObject
 
-NEGLIGIBLE_TRACE = 0.02  # a block is corrected if the trace of its leverage matrix is larger
-SMALLEST_REMAINDER = 0.05  # lower limit of 1 - leverage, which is 0 for a block that decides alone
+NEGLIGIBLE_TRACE = 0.02  # a block's score is corrected if its leverage matrix has a larger trace
+# Lower limit of 1 - leverage, by whose root scores are divided; it is 0 for a block that decides
+# alone
+SMALLEST_REMAINDER = 0.05
 
 Blocks = tuple[IntArray, int]  # the block of each pixel (pixels,), and the number of blocks
 

@@ -20,7 +20,7 @@ from brdfkit.inverse.scenes.problem.tensors import (
 )
 from brdfkit.model import Model
 
-# Default bounds of roughnesses; the renderer's samples hardly ever meet a narrower lobe
+# Default bounds of roughnesses; random samples hardly ever hit a narrower lobe
 ROUGHNESS_BOUNDS = 0.001, 1.0
 SHARE_BOUNDS = 0.0, 1.0
 MITSUBA_BOUNDS = {

@@ -13,10 +13,12 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.files import require_file
 from brdfkit.mitsuba_bridge.properties.picture_file import read_photograph, read_pixels
 
-# Added to pixels, as a share of the mean brightness, so that weights of dark pixels are finite
+# Share of the mean brightness that is added to pixels before weights are computed, so that weights
+# of dark pixels stay finite
 DARK_OFFSET = 0.02
-WHITE_QUANTILE = 0.99  # share of a picture's values that are darker than its white level
-CLIPPED_SHARE = 1e-3  # values are clipped if more than this share equals the largest value
+WHITE_QUANTILE = 0.99  # quantile of a picture's values that counts as its white level
+# a picture counts as clipped if more than this share of values equals the largest one
+CLIPPED_SHARE = 1e-3
 
 Pictures = FloatArray | str | Path | Iterable[FloatArray | str | Path]
 

@@ -15,7 +15,7 @@ from brdfkit.inverse.scenes.problem.parameters import Unknown
 from brdfkit.inverse.scenes.problem.targets import Target
 from brdfkit.inverse.scenes.problem.tensors import make_tensor
 
-BOUND_DISTANCE = 1e-6  # distance from a bound below which a coordinate counts as being on it
+BOUND_DISTANCE = 1e-6  # a search coordinate counts as on a bound if it is nearer to it than this
 
 
 class Views:

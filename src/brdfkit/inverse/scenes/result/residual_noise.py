@@ -16,11 +16,11 @@ from brdfkit.inverse.scenes.problem.leverage import find_block_side
 from brdfkit.inverse.scenes.problem.views import Views
 from brdfkit.inverse.scenes.search.normal_equations import Residuals
 
-# Residuals, such as those at edges, are clipped at this number of robust standard deviations
+# Larger residuals, such as those at edges, are clipped to this number of robust standard deviations
 CLIP_DEVIATIONS = 3
-LAGS = 6  # largest distance of pixels that are compared, in widths of the camera's filter
+LAGS = 6  # largest distance of compared pixels, in widths of the camera's filter
 SMALLEST_CORRELATION = 0.1  # smallest correlation that counts; a smaller one may be chance
-# Largest correlation that noise may have by chance, in standard errors
+# Residuals may be noise if the correlation of neighbours is below this number of standard errors
 SIGNIFICANT = 5
 CLEAR_CHI2 = 1.25  # χ² per degree of freedom that is clearly above 1, the value for pure noise
 
@@ -59,7 +59,7 @@ class ResidualNoise:
             a, b = _clip_outliers(a, b, counted)
             sums += _correlate_pictures(a, b, counted, side)
             near += _correlate_rows(a, b, counted, side)
-            # With swapped axes, the function compares columns
+            # With swapped axes, `_correlate_rows` compares the pixels along columns
             a, b, counted = (array.swapaxes(0, 1) for array in (a, b, counted))
             near += _correlate_rows(a, b, counted, side)
         products, squares, variance = near

@@ -21,9 +21,10 @@ from brdfkit.inverse.scenes.search.normal_equations import (
     Residuals,
 )
 
-SAMPLE_FACTOR = 2  # ratio of the check's samples to those of the last step of the search
-CHANCE_LIMIT = 4  # largest move of a number by chance, in standard errors
-# Smallest share of the squared derivatives on which two renderings have to agree
+SAMPLE_FACTOR = 2  # the check takes this many times the samples of the search's last step
+CHANCE_LIMIT = 4  # a number that moves by more standard errors than this does not move by chance
+# A number is poorly sampled if the product of its derivatives in two independent renderings is less
+# than this share of their squares
 AGREEMENT_SHARE = 0.5
 SEED_OFFSET = 7_000  # added to the seed of the search, so that the check has other samples
 
@@ -104,7 +105,8 @@ def _compare_with_search(
     certain = np.array([name in errors for name in views.names])
     step = solve_step(views, here, equations, damping=0)
     moved = dict(zip(views.names, np.abs(views.differentiate_values(here.x) * step), strict=True))
-    # The search minimised E² of its samples, so E² of new ones may be larger by a step's gain
+    # The search made E² small for its own samples, so with new samples E² may be larger by as much
+    # as one more step would gain
     change = abs(here.error - before.error) - max(equations.predict_gain(step), 0)
     deviation = np.hypot(here.deviation, before.deviation)
     share = np.diagonal(equations.hessian) / np.maximum(equations.power, 1e-300)

@@ -20,7 +20,7 @@ from brdfkit.inverse.scenes.search.normal_equations import Residuals
 STAGE_SAMPLES = 4, 16, 64  # samples per pixel of each picture in the three stages
 SMOOTHNESS_TRIALS = 0.3, 0.03, 0.003, 0.0003, 0.00003  # weights of the smoothness penalty to try
 TRIAL_STEPS = 8  # number of L-BFGS-B steps for each weight of the penalty that is tried
-HELD_OUT_INTERVAL = 10  # one of every ten pixels is held out of the fit
+HELD_OUT_INTERVAL = 10  # one pixel of this number is held out of the fit, to judge the smoothness
 
 
 def count_descent_steps(smoothness: float | None, steps: int) -> int:
@@ -133,7 +133,8 @@ def _run_lbfgs(
     _, gradient = compute_loss(x)
     if not gradient.any():
         raise make_no_effect_error(views)
-    # L-BFGS's first step is as long as the gradient; a scale keeps it at 0.1 at most
+    # The first step of L-BFGS-B is as long as the gradient; the loss is scaled so that the step is
+    # 0.1 at most in each coordinate
     scale = 1 / max(abs(gradient).max(), 1e-300)
     try:
         result = minimize(

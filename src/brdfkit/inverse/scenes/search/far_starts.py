@@ -24,9 +24,11 @@ from brdfkit.inverse.scenes.search.normal_equations import Residuals
 from brdfkit.regression.problem.box_quadratic import minimise_in_box
 from brdfkit.regression.search.multistart import make_start_points
 
-FINALISTS, FINALIST_STEPS = 3, 2  # how many of the best points take steps, and how many steps
-JUDGE_FACTOR = 2  # ratio of samples in the final comparison to samples in the choice of finalists
-# Number of points to try for each number in which pictures are not linear
+# how many of the best points take Gauss-Newton steps, and how many steps each
+FINALISTS, FINALIST_STEPS = 3, 2
+# Ratio of the number of samples that compare the finalists to the number that chose them
+JUDGE_FACTOR = 2
+# How many points are tried for each searched number in which pictures are not linear
 POINTS_PER_NUMBER = 8
 POINT_LIMIT = 32  # largest number of points besides the scene's own values
 
@@ -67,7 +69,8 @@ def find_best_start(
         if not tried:
             raise
         raise Interrupted(Search(_select_best_point(finalists or tried))) from None
-    # Finalists are compared by new samples, because those that chose a point favour it
+    # New samples compare the finalists, because a finalist was chosen for being good with the old
+    # ones
     candidates = [views.start, *(end.x for end in finalists)]
     return _select_best_point(
         Residuals.render(views, x, JUDGE_FACTOR * spp, seed + 50) for x in candidates

@@ -11,7 +11,7 @@ from brdfkit.core.jit.loops import raise_first_cause
 from brdfkit.inverse.scenes.problem.views import Views, make_opaque_array
 
 DERIVATIVE_COST = 2.3  # time of a picture of derivatives, relative to a plain picture
-# Step of finite differences in a coordinate, relative to its value where it has no bounds
+# Step of finite differences in a search coordinate; without bounds, relative to the coordinate
 DIFFERENCE_STEP = 0.05
 # Integrators of Mitsuba that cannot render a picture of derivatives
 BACKWARD_ONLY = "PRBVolpathIntegrator", "BasicVolumetricPrimitiveRadianceFieldIntegrator"

@@ -21,17 +21,19 @@ from brdfkit.regression.problem.box_quadratic import minimise_in_box
 # Number of rays of the first pictures; fewer are hardly faster, as starting a kernel takes time
 INITIAL_RAYS = 2**18
 INITIAL_SAMPLES = 8, 128  # fewest and most samples per pixel of the first pictures
-GROWTH = 4, 16  # smallest and largest factor by which the number of samples grows at once
-# Squared gradient, relative to its variance by noise, below which a search has converged
+GROWTH = 4, 16  # smallest and largest factor by which the number of samples grows between steps
+# A search has converged when the squared gradient is below this multiple of its variance, which
+# comes from noise
 CONVERGED_GRADIENT = 0.1
-# Largest share of rendering noise in E²; this much adds 12 % to the standard errors
+# Largest share of E² that may be noise of the rendering; this much adds 12 % to the standard errors
 QUIET_SHARE = 0.25
-# Longest step of a number in which pictures are not linear, as a share of its range
+# Longest step of a number in which pictures are not linear, as a share of the number's range
 NONLINEAR_REACH = 0.25
-# Longest step of a weight without an upper bound, as a multiple of the weight or of 1
+# Longest step of a lobe's weight without an upper bound, as a multiple of the weight, or of 1 for
+# smaller weights
 WEIGHT_REACH = 10
-FRESH_SAMPLES = 3  # how often new samples are tried where no step reduces E²
-# A trial whose noise is larger than before by this factor may have a small E² by chance
+FRESH_SAMPLES = 3  # how often new samples are tried if no step reduces E² with the old ones
+# Where a trial has more than this multiple of the noise before it, its E² may be smaller by chance
 NOISE_JUMP = 2
 DAMPING = 1e-2, 1e-6, 1e4  # first, smallest and largest damping of steps
 BETTER, WORSE = 0.1, 8  # factors of the damping after a good and after a bad step

@@ -37,12 +37,15 @@ from brdfkit.inverse.scenes.search.forward_derivatives import (
     group_numbers_by_picture,
 )
 
-DERIVATIVE_SHARE = 2.0  # largest cost of all derivatives, relative to that of the residuals
+# largest cost of rendering all derivatives, as a multiple of that of the residuals
+DERIVATIVE_SHARE = 2.0
 ROUNDING = 1e-6  # rounding error of pixels in single precision, relative to white
-# Smallest diagonal of the Hessian, relative to the squared derivatives; a smaller one is noise
+# Diagonal entries of the Hessian are raised to this share of the squared derivatives at least,
+# since smaller ones are noise
 NOISE_FLOOR = 0.1
-CONFIDENCE = 2  # largest difference that may be chance, in standard deviations
-# Smallest eigenvalue of the Hessian with unit diagonal; smaller ones are noise
+CONFIDENCE = 2  # differences of up to this number of standard deviations may be chance
+# Eigenvalues of the Hessian, scaled to a unit diagonal, are raised to this at least, since smaller
+# ones are noise
 SMALLEST_EIGENVALUE = 1e-5
 
 
@@ -105,7 +108,7 @@ class Residuals:
 class Equations:
     """The quadratic approximation of the squared residual E² around a point.
 
-    gradient : half of the gradient (n,) by the coordinates.
+    gradient : half of the gradient (n,) with respect to the search coordinates.
     hessian : half of the Gauss-Newton Hessian (n, n).
     scores : the contributions (n, blocks) of blocks of pixels to the gradient, corrected for
         leverage.
