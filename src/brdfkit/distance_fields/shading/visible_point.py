@@ -1,11 +1,11 @@
-"""The points where camera rays meet a field, found by cones as wide as a sample of a pixel.
+"""Finds the points where camera rays meet a field, with cones as wide as a sample of a pixel.
 
-A cone ends where it touches the surface, so that no object is missed, however thin. The ball around
-its end that contains no object is where shadows begin. At a sharp edge the normal of such a large
-ball would be that of a rounded edge, which would show false highlights. So the ray goes on to a
-much smaller empty ball, whose normal is used. The shaded point is where the ray meets the plane
-that touches that small ball, so that distances to lamps are exact. Objects look larger by half a
-pixel's diagonal, divided by the root of the number of samples per pixel.
+A cone ends where it touches the surface, so that no object is missed, however thin. Around its end
+there is a ball without any object, from which shadows are traced. At a sharp edge, the normal of
+such a large ball would be that of a rounded edge, and show false highlights. So the ray goes on to
+a much smaller empty ball, and the normal is taken there. The shaded point is where the ray meets
+the plane that touches the small ball, so that distances to lamps are exact. Objects look larger by
+half a pixel's diagonal, divided by the root of the number of samples per pixel.
 
 [Bálint et al. 2019, section 2.7]
 """

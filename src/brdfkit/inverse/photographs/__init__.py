@@ -5,10 +5,10 @@ public function, which runs the parts below one after the other:
 
 - `capture/` reads photographs with the positions of cameras and lights, and collects the radiances
   of each texel (a pixel of the maps).
-- `maps/` defines the numbers of a texel, the radiance that follows from them, and the maps as a
-  Mitsuba scene.
-- `search/` fits the numbers of all texels: coarse maps first, then finer ones, and at last corrects
-  them by Mitsuba's renderings of the maps.
+- `maps/` defines which numbers are searched for each texel, computes the radiance from them, and
+  makes the maps a Mitsuba scene.
+- `search/` fits these numbers: coarse maps first, then finer ones. At last it corrects them with
+  Mitsuba's renderings of the maps.
 - `result/` estimates standard errors, and makes the `Svbrdf` that users receive, its files and its
   report.
 """

@@ -44,7 +44,7 @@ def to_capture(value: object, accept_8_bit: bool) -> tuple[str, Capture]:
 def to_texel_parameters(
     label: str, anisotropic: bool, fixed: Mapping[str, float] | None
 ) -> TexelParameters:
-    """Return the layout of the numbers that describe a texel, for a model's label.
+    """Return which numbers are searched for each texel of the maps, for a model's label.
 
     `fixed` holds shape parameters with one value everywhere. Raises `BrdfkitError` for unknown
     parameters, values beyond their bounds, and a model whose weights may be negative.

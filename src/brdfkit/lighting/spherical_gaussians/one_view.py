@@ -24,7 +24,9 @@ Brdf = Callable[[FloatArray, FloatArray], FloatArray]
 # integrals (lobes, channels), axes (lobes, 3) and concentrations κ (lobes,)
 ViewLobes = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
 
-RINGS = 48  # half the number of rings of directions, enough for lobes of 0.01 rad up to 80°
+# Half the number of rings of directions around the mirror direction; it resolves lobes of 0.01 rad
+# for views at up to 80°
+RINGS = 48
 # The diffuse part may exceed low BRDF values, by at most this share of the reflected light
 FLOOR_EXCESS = 1e-3
 OMITTED_LIGHT = 1e-3  # share of the glossy light that fits ignore: that in the darkest directions

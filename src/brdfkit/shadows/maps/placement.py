@@ -75,7 +75,7 @@ class Placement:
 
     @cached_property
     def relevant_body(self) -> Body:
-        """The part of the scene that the camera may see or that may cast a shadow on that part.
+        """What the camera may see of the scene, and what may cast shadows on it.
 
         It is the convex hull of `visible_body` and the light, within `lit_body`.
         """

@@ -1,1 +1,1 @@
-"""Defines the numbers that describe a texel, the radiance that they cause, and maps of them."""
+"""Defines the searched numbers of a texel (a pixel of the maps), its radiance, and the maps."""

@@ -1,7 +1,8 @@
 """Converts maps of a sample to the numbers of its texels, and back.
 
-The maps are images of a BRDF model's parameters and of the normal. A search works on an array
-(texels, numbers) instead, whose columns `TexelParameters` describes.
+The maps are images of a BRDF model's parameters and of the normal; a texel is a pixel of them. A
+search works on an array (texels, numbers) instead. It has a row for each texel, and a column for
+each number that `TexelParameters` describes: a parameter's value, its logarithm or the like.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ class Maps:
         shape: tuple[int, int],
         size: tuple[float, float],
     ) -> Maps:
-        """Return the maps of `shape` (height, width) for the texels' numbers `x` (texels, numbers).
+        """Return the maps of `shape` (height, width) for searched numbers `x` (texels, numbers).
 
         `parameters` describes the columns of `x`; `size` is the sample's width and height [m].
         """
@@ -61,7 +62,7 @@ class Maps:
 
 
 def to_texel_numbers(svbrdf: Any) -> tuple[TexelParameters, FloatArray]:
-    """Return the layout and the values (texels, numbers) of an `Svbrdf`'s numbers of each texel."""
+    """Return the layout of the searched numbers, and an `Svbrdf`'s maps as (texels, numbers)."""
     model, maps = labels.model(svbrdf.model), svbrdf.maps
     weights = model.weights()
     names = tuple(name for name in maps if name not in (*weights, "normal", ANGLE))
@@ -87,10 +88,10 @@ def find_width_pair(model: type[Model], names: Iterable[str]) -> tuple[str, str]
 def to_error_maps(
     parameters: TexelParameters, errors: FloatArray, x: FloatArray, shape: tuple[int, int]
 ) -> dict[str, FloatArray]:
-    """Return maps (height, width) of standard errors, from those of the texels' numbers.
+    """Return maps (height, width) of standard errors, from those of the searched numbers.
 
-    `errors` and the numbers `x` are (texels, numbers). A colour has the RMS error of its channels,
-    a normal the error of its direction [radians].
+    `errors` belong to the searched numbers `x`; both are (texels, numbers). A colour has the RMS
+    error of its channels, a normal the error of its direction [radians].
     """
     by_name = {}
     for lobe, name in enumerate(parameters.lobes):

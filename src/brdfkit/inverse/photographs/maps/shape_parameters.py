@@ -26,7 +26,7 @@ UNKNOWN_ANGLE_ERROR = np.pi / np.sqrt(12)
 
 @dataclass(frozen=True)
 class ShapeParameters:
-    """The shape parameters of a BRDF model that are searched, and their conversion to numbers.
+    """The searched shape parameters of a BRDF model, and their conversion to searched numbers.
 
     model : the model's class.
     names : the names of the parameters that are searched.
@@ -55,7 +55,7 @@ class ShapeParameters:
         return np.array([*ends, *turning]).reshape(-1, 2).T
 
     def to_parameter_values(self, numbers: Any, math: Any = np) -> dict[str, Any]:
-        """Return the values of the parameters, by name, from the numbers of the search.
+        """Return the values of the parameters, by name, from the searched numbers.
 
         A pair of widths also has its `ANGLE`. `numbers` holds an array for each searched number,
         and `math` is the module of these arrays, numpy or drjit.

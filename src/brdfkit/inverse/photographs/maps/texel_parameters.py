@@ -1,4 +1,4 @@
-"""Defines the numbers of a texel that are searched, and computes its radiances from them.
+"""Defines which numbers are searched for a texel of the maps, and computes its radiances.
 
 A texel has the weights a_l of the BRDF model's lobes l in red, green and blue, the shape
 parameters, and x and y of its normal n. Light i arrives from the direction l_i and would cause the
@@ -30,10 +30,10 @@ Lobes = list[FloatArray]
 
 @dataclass(frozen=True)
 class TexelParameters:
-    """The layout of the searched numbers of a texel, which form a row, for one BRDF model.
+    """The layout of the numbers that are searched for each texel of maps, for one BRDF model.
 
-    A row holds the weights (lobe by lobe, red, green and blue), the numbers of the shape
-    parameters, and x and y of the normal.
+    The numbers of a texel form a row: the weights (lobe by lobe, red, green and blue), the shape
+    parameters as `ShapeParameters` converts them, and x and y of the normal.
 
     model : the model's class.
     names : the names of the shape parameters that are searched.
@@ -69,7 +69,7 @@ class TexelParameters:
 
     @property
     def count(self) -> int:
-        """How many numbers describe a texel."""
+        """How many numbers are searched for each texel."""
         return int(self.normal_columns.stop)
 
     @property
@@ -79,14 +79,14 @@ class TexelParameters:
         return [*weights, *self.shapes.number_names, "normal[x]", "normal[y]"]
 
     def find_limits(self) -> tuple[FloatArray, FloatArray]:
-        """Return the lowest and the highest values (numbers,) of the numbers of a texel."""
+        """Return the lowest and the highest value of each searched number, both (numbers,)."""
         low, high = np.zeros(self.count), np.full(self.count, np.inf)
         low[self.shape_columns], high[self.shape_columns] = self.shapes.find_limits()
         low[self.normal_columns], high[self.normal_columns] = -STEEPEST_SLANT, STEEPEST_SLANT
         return low, high
 
     def compute_radiances(self, x: FloatArray, observed: Observations) -> FloatArray:
-        """Return the radiances (lights, n, 3) of n texels with the numbers `x` (texels, numbers).
+        """Return the radiances (lights, n, 3) of n texels with searched numbers `x` (n, numbers).
 
         `observed` holds the directions of the lights and cameras, and the irradiances.
         """
@@ -100,7 +100,7 @@ class TexelParameters:
     def evaluate_lobes(
         self, x: FloatArray, observed: Observations, differentiate: bool = True
     ) -> tuple[Lobes, list[Lobes]]:
-        """Return the model's lobes for texels with numbers `x`, and their derivatives.
+        """Return the model's lobes for texels with searched numbers `x`, and their derivatives.
 
         The derivatives are with respect to each number of the shapes and the normal; there are none
         unless `differentiate`. `x` is (texels, numbers), `observed` holds the directions of lights
@@ -138,7 +138,7 @@ class TexelParameters:
     ) -> list[JitFloat]:
         """Return each lobe times the cosine to the normal, for all pairs of lights and texels.
 
-        `arrays` holds the numbers of the shape parameters and of the normal.
+        `arrays` holds the searched numbers of the shape parameters, and x and y of the normal.
         """
         *shapes, x, y = arrays
         z = dr.sqrt(dr.maximum(1 - x * x - y * y, 1e-4))

@@ -1,4 +1,4 @@
-"""Finds numbers of texels that the photographs do not determine, and describes them to the user."""
+"""Finds parameters of texels that the photographs do not determine, and tells the user of them."""
 
 import numpy as np
 
@@ -22,7 +22,7 @@ UNDETERMINED_SHARE = 0.05
 def describe_undetermined(
     parameters: TexelParameters, hessian: FloatArray, lights: int
 ) -> tuple[str, ...]:
-    """Return sentences on numbers that the photographs do not determine in many texels.
+    """Return sentences on parameters that the photographs do not determine in many texels.
 
     `hessian` (texels, numbers, numbers) holds the second derivatives of each texel's own squared
     residuals, without the penalty on differences from its neighbours. `lights` is the number of
@@ -56,7 +56,7 @@ def describe_undetermined(
 
 
 def is_observed(hessian: FloatArray) -> BoolArray:
-    """Return which numbers have any effect on the photographs; colours without light have none.
+    """Return which searched numbers affect the photographs; colours without light do not.
 
     `hessian` (texels, numbers, numbers) holds the second derivatives of the squared residuals.
     """
@@ -64,7 +64,7 @@ def is_observed(hessian: FloatArray) -> BoolArray:
 
 
 def is_undetermined(hessian: FloatArray) -> BoolArray:
-    """Return which texels (n,) leave a combination of their numbers undetermined.
+    """Return in which texels (n,) the photographs leave some combination of numbers undetermined.
 
     `hessian` (n, numbers, numbers) holds the second derivatives of the squared residuals.
     """
@@ -72,7 +72,10 @@ def is_undetermined(hessian: FloatArray) -> BoolArray:
 
 
 def _scale_observed_hessians(hessian: FloatArray) -> tuple[IntArray, FloatArray]:
-    """Return the indices of the observed numbers, and the texels' Hessians with unit diagonal."""
+    """Return the indices of the numbers that affect photographs, and their scaled Hessians.
+
+    The Hessian of each texel is scaled to have a unit diagonal.
+    """
     columns = np.flatnonzero(is_observed(hessian))
     hessian = hessian[:, columns[:, None], columns]
     scale = 1 / np.sqrt(np.maximum(np.diagonal(hessian, axis1=1, axis2=2), 1e-300))

@@ -37,11 +37,11 @@ FEWEST_FREE = 0.3
 def simulate_standard_errors(
     problem: Problem, rendered: RenderedMaps, rounds: int, capture: Capture
 ) -> FloatArray:
-    """Return the standard errors (texels, numbers) of the numbers behind the maps.
+    """Return the standard errors (texels, numbers) of the searched numbers of all texels.
 
-    Each error is first computed by the equations of the texel alone. It is then enlarged by the RMS
-    ratio of simulated errors to errors of the equations, over the texels around it. `rounds` is how
-    often the renderer corrected the maps.
+    An error is first computed from the equations of its texel alone, then multiplied by a factor:
+    the RMS ratio of simulated errors to errors from the equations, over the texels around it.
+    `rounds` is how often the renderer corrected the maps.
     """
     fitted, observed = rendered.fitted, problem.observed
     signs = np.random.default_rng(0).choice([-1.0, 1.0], capture.pictures.shape[:3])[..., None]

@@ -29,7 +29,7 @@ SWEEPS = 2  # how often each texel tries its neighbours' numbers, and keeps thos
 
 
 def fit_coarse_to_fine(problem: Problem) -> Iterator[tuple[FloatArray, float, tuple[int, int]]]:
-    """Yield the texels' numbers, the variance of the noise and the shape of ever finer maps."""
+    """Yield for ever finer maps the searched numbers, the variance of the noise and the shape."""
     finest = problem.observed
     side = 2 ** max(0, int(np.ceil(np.log2(max(finest.shape) / COARSEST_SIDE))))
     level = problem.with_observations(finest.pool_texels(side))
@@ -55,7 +55,7 @@ def fit_coarse_to_fine(problem: Problem) -> Iterator[tuple[FloatArray, float, tu
 def _fit_and_estimate_noise(
     problem: Problem, x: FloatArray, noise: float
 ) -> tuple[FloatArray, float]:
-    """Return the texels' numbers and the variance of the noise, by repeated searches.
+    """Search repeatedly; return the numbers of the texels, and the variance of the noise.
 
     The search begins with `x` and `noise` of the coarser maps. Their residuals contain details that
     only finer maps explain, so this `noise` is too large and would make the maps too smooth. Each
@@ -75,9 +75,10 @@ def _fit_and_estimate_noise(
 def enlarge_map(
     x: FloatArray, coarse: tuple[int, int], fine: tuple[int, int], side: int
 ) -> FloatArray:
-    """Return the texels' numbers of `coarse` maps for maps of the shape `fine` (height, width).
+    """Return the numbers `x` of texels in larger maps, where each texel is repeated.
 
-    Each texel is repeated `side` × `side` times.
+    `coarse` and `fine` are the shapes (height, width) of the maps before and after. A texel becomes
+    `side` × `side` texels.
     """
     grid = x.reshape(*coarse, -1).repeat(side, axis=0).repeat(side, axis=1)
     return grid[: fine[0], : fine[1]].reshape(fine[0] * fine[1], -1)
@@ -86,10 +87,10 @@ def enlarge_map(
 def fit_with_restarts(
     problem: Problem, x: FloatArray, strength: FloatArray, noise: float
 ) -> FloatArray:
-    """Return the numbers of all texels, fitted together, then restarted where they fit badly.
+    """Fit the numbers of all texels together, and again from other starts where they fit badly.
 
-    `x` is (texels, numbers), `strength` (numbers,) the weight of squared differences of neighbours,
-    and `noise` the variance of relative radiances.
+    The search begins at `x` (texels, numbers). `strength` (numbers,) is the weight of squared
+    differences of neighbours, and `noise` the variance of relative radiances.
     """
     x = fit_all_texels(problem, x, strength)
     other = restart_unexplained_texels(problem, x, noise)

@@ -25,9 +25,9 @@ FEWEST_LIGHTS_TO_HOLD_OUT = 8
 
 @dataclass(frozen=True)
 class UnfinishedMaps:
-    """Numbers of the texels of maps, from a search that may have been interrupted.
+    """The result of a search for maps that may have been interrupted.
 
-    x : the numbers (texels, numbers) of the n texels.
+    x : the searched numbers (texels, numbers); `TexelParameters` describes the columns.
     tau : the smoothness τ, the typical difference of neighbouring texels in units of their numbers.
     held_out : the relative error of held-out photographs for each τ that was tried.
     """
@@ -39,9 +39,9 @@ class UnfinishedMaps:
 
 @dataclass(frozen=True)
 class FittedMaps(UnfinishedMaps):
-    """Numbers of the texels of maps, from a finished search, and what is needed for their errors.
+    """The result of a finished search for maps, and what is needed for their standard errors.
 
-    equations : the normal equations of the texels at their numbers `x`.
+    equations : the Gauss-Newton equations of the texels at `x`.
     noise : the variance of relative radiances.
     strength : the weights (numbers,) of squared differences of neighbours.
     """
@@ -125,7 +125,7 @@ def _enlarge_unfinished_maps(
 ) -> UnfinishedMaps:
     """Return the maps of an interrupted search enlarged to `shape` (height, width).
 
-    `x` (texels, numbers) are the numbers of their texels, `coarse` is their height and width.
+    `x` (texels, numbers) holds their searched numbers, `coarse` is their own height and width.
     """
     side = 1  # grows to the power of 2 by which `fit_coarse_to_fine` reduced the maps
     while side * coarse[0] < shape[0] or side * coarse[1] < shape[1]:
@@ -134,7 +134,7 @@ def _enlarge_unfinished_maps(
 
 
 def compute_standard_errors(problem: Problem, fitted: FittedMaps) -> FloatArray:
-    """Return the standard errors (texels, numbers) of the texels' numbers.
+    """Return the standard errors (texels, numbers) of the searched numbers.
 
     Each error assumes that the numbers of the neighbouring texels are known. If the photographs do
     not determine a texel, they hardly determine its neighbours either: then only the range or the

@@ -1,4 +1,4 @@
-"""Fits the numbers of all texels by damped Gauss-Newton steps.
+"""Fits the searched numbers of all texels with damped Gauss-Newton steps.
 
 The search minimises the weighted squared residuals of each texel t, plus the squared differences of
 neighbouring texels t and t', whose typical size is τ. With the modelled radiances L_i, the
@@ -30,9 +30,9 @@ SOLVER_ROUNDS, SOLVER_TOLERANCE = 40, 1e-3
 def fit_each_texel(
     problem: Problem, x: FloatArray, steps: int = STEPS
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the fitted numbers of texels, each by itself, and their squared residuals (texels,).
+    """Fit each texel by itself; return the fitted numbers and the squared residuals (texels,).
 
-    The search begins at the numbers `x` (texels, numbers).
+    The search begins at `x` (texels, numbers), and the fitted numbers have the same shape.
     """
     low, high = problem.parameters.find_limits()
     x = np.clip(x, low, high)
@@ -53,7 +53,7 @@ def fit_each_texel(
 def fit_all_texels(
     problem: Problem, x: FloatArray, strength: FloatArray, steps: int = STEPS_TOGETHER
 ) -> FloatArray:
-    """Return the fitted numbers of texels, all together, so that maps are smooth.
+    """Fit all texels together, so that maps are smooth; return the fitted numbers.
 
     The search begins at `x` (texels, numbers). `strength` (numbers,) is the weight of squared
     differences of neighbours in each number.

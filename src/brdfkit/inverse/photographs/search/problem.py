@@ -52,9 +52,11 @@ class Equations:
 
 @dataclass(frozen=True)
 class Problem:
-    """The least-squares problem of n texels, whose numbers `x` (texels, numbers) are searched.
+    """The least-squares problem of n texels of the maps, with the observations to fit.
 
-    parameters : the layout of the numbers.
+    Methods take the searched numbers as `x` (texels, numbers), a row for each texel.
+
+    parameters : the layout of a row.
     observed : the radiances in photographs and the directions of lights and cameras.
     report : a function that is called after each step of a search.
     """
@@ -75,11 +77,11 @@ class Problem:
         return self._compute_equations(x, differentiate=False).error
 
     def compute_equations(self, x: FloatArray) -> Equations:
-        """Return the Gauss-Newton equations of each texel, at numbers `x` (texels, numbers)."""
+        """Return the Gauss-Newton equations of each texel at the searched numbers `x`."""
         return self._compute_equations(x, differentiate=True)
 
     def _compute_equations(self, x: FloatArray, differentiate: bool) -> Equations:
-        """Return the equations at numbers `x`; unless `differentiate`, they have no derivatives."""
+        """Return the equations at `x`; unless `differentiate`, they have no derivatives."""
         texels, count, lobes = len(x), self.parameters.count, len(self.parameters.lobes)
         error = np.zeros(texels)
         gradient = np.zeros((texels, count) if differentiate else 0)
@@ -126,10 +128,10 @@ class Problem:
     def compute_smoothness_weights(
         self, hessian: FloatArray, noise: float, tau: float
     ) -> FloatArray:
-        """Return the weights (numbers,) of squared differences of neighbours in each number.
+        """Return the weight of squared differences of neighbouring texels, for each number.
 
-        They are σ² / (τ u)² for numbers with the units u, where `noise` is σ², `tau` is τ, and
-        `hessian` (texels, numbers, numbers) determines the units.
+        The weights (numbers,) are σ² / (τ u)² for numbers with the units u, where `noise` is σ²,
+        `tau` is τ, and `hessian` (texels, numbers, numbers) determines the units.
         """
         return noise / (tau * self.find_number_units(hessian)) ** 2
 

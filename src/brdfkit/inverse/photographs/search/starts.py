@@ -25,7 +25,7 @@ OFFSETS = [(way * a, way * b) for way in (1, 3) for a, b in ((0, 1), (1, 0), (0,
 
 
 def make_starting_numbers(problem: Problem, width: float) -> FloatArray:
-    """Return the numbers (texels, numbers) with which n flat, isotropic texels begin a search.
+    """Return the numbers (texels, numbers) of flat, isotropic texels, to begin a search with.
 
     `width` is the width of the highlight, as a share of the range of the shape parameters.
     """
@@ -58,9 +58,9 @@ def _estimate_albedos(observed: Observations) -> FloatArray:
 
 
 def restart_unexplained_texels(problem: Problem, x: FloatArray, noise: float) -> FloatArray:
-    """Return the texels' numbers (texels, numbers), searched anew where residuals of `x` are large.
+    """Search anew the texels whose residuals at `x` are large; return the numbers of all texels.
 
-    `noise` is the variance of relative radiances, by which residuals are judged.
+    `noise` is the variance of relative radiances, with which residuals are compared.
     """
     errors = problem.compute_errors(x)
     wrong = np.flatnonzero(compute_misfit(errors, noise, problem.observed) > DOUBTFUL)
@@ -75,10 +75,10 @@ def restart_unexplained_texels(problem: Problem, x: FloatArray, noise: float) ->
 
 
 def copy_better_neighbours(problem: Problem, x: FloatArray) -> FloatArray:
-    """Return the numbers of texels, replaced by numbers of neighbours where these fit better.
+    """Return the numbers `x` (texels, numbers), replaced by neighbours' where these fit better.
 
-    `x` is (texels, numbers). A texel tries the median of the texels around it and the numbers of
-    eight texels nearby, so that good numbers spread, as matches do in [Barnes et al. 2009].
+    A texel tries the median of the texels around it and the numbers of eight texels nearby, so that
+    good numbers spread, as matches do in [Barnes et al. 2009].
     """
     grid = x.reshape(*problem.observed.shape, -1)
     errors = problem.compute_errors(x)

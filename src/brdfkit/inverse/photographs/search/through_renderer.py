@@ -1,9 +1,9 @@
-"""Corrects fitted maps by Mitsuba's renderings of them, which include the blur of pixels.
+"""Corrects fitted maps with Mitsuba's renderings of them, which include the blur of pixels.
 
 The formula for the radiance of a texel ignores that a pixel covers parts of several texels.
-Therefore Mitsuba renders pictures R(x) of the maps with the numbers x, like the photographs P. The
-difference at each texel t is added to the radiance L_t of the formula, and the maps are fitted to
-the sum:
+Therefore Mitsuba renders pictures R(x) of the maps with the searched numbers x, like the
+photographs P. The difference at each texel t is added to the radiance L_t of the formula, and the
+maps are fitted to the sum:
 
     L_t ← L_t(x) + (P - R(x))_t
 

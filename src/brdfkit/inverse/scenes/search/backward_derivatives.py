@@ -22,7 +22,7 @@ from brdfkit.inverse.scenes.search.forward_derivatives import DERIVATIVE_COST, t
 def compute_error_and_gradient(
     views: Views, x: FloatArray, spp: int, seed: int, weights: FloatArray
 ) -> tuple[float, FloatArray]:
-    """Return the squared difference from the targets and its gradient (n,) by the coordinates `x`.
+    """Return the squared difference from the targets and its gradient (n,) for the coordinates `x`.
 
     Each of the two renderings has `spp` samples; `weights` (pixels, channels) multiply the squared
     differences.
