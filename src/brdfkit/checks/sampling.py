@@ -102,7 +102,7 @@ def _map_to_direction(
 
 @check_of(MODELS)
 def check_coverage(subject: Subject) -> tuple[bool, str]:
-    """Check that samples miss no lobe: their mean weight is the albedo by quadrature.
+    """Check that samples miss no lobe: their mean weight equals the numerically integrated albedo.
 
     The χ² test cannot detect a lobe that neither `sample` nor `pdf` includes.
     """

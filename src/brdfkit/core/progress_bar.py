@@ -106,7 +106,7 @@ def _show_in_notebook(what: str) -> Iterator[Callable[[int, int], object]]:
 def _show_in_terminal(what: str) -> Iterator[Callable[[int, int], object]]:
     """Show the bar on standard error, from a thread of its own.
 
-    Thus the bar also appears before its function is called for the first time.
+    So the bar appears at once, even before the first call of the function that this yields.
     """
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn

@@ -19,12 +19,12 @@ SINGULAR = 1e-11
 def find_undetermined_at_bounds(
     jacobians: list[FloatArray], free: BoolArray, shapes: int
 ) -> BoolArray:
-    """Return for each parameter (n,) whether it is on a bound without being determined by the data.
+    """Return which parameters (n,) are on a bound although the data do not determine them.
 
-    The loss stays the same if such a shape parameter moves together with others, so that it is only
-    by chance that the search ended on the bound. `free` (n,): whether a parameter is inside its
-    bounds; `shapes`: number of shape parameters; `jacobians`: for each channel the derivatives
-    (shapes + lobes, samples) of the residuals.
+    The loss stays the same if such a shape parameter moves together with others. So the search
+    ended on the bound by mere chance. `free` (n,): whether a parameter is inside its bounds;
+    `shapes`: number of shape parameters; `jacobians`: for each channel the derivatives (shapes +
+    lobes, samples) of the residuals.
     """
     is_open = np.zeros(len(free), bool)
     moving = free.copy()

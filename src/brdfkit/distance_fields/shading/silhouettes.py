@@ -12,8 +12,8 @@ respect to a parameter that moves the surface, and Dirac's δ, the derivative of
 
 over the points u of the picture. δ is replaced by 1/ε where 0 < g₀ < ε, so that the camera rays
 that are traced anyway can estimate the integral. ε is `BAND_WIDTH` times ρ, less than a pixel. So
-the silhouette is taken ε/2 outside of its place. The relative error of its derivative is ε divided
-by the surface's radius of curvature.
+the silhouette is taken ε/2 outside of its true position. The relative error of its derivative is ε
+divided by the surface's radius of curvature.
 
 [Wang et al. 2024]
 """

@@ -1,11 +1,11 @@
 """`Shadow`, the result of every method, and how a march becomes one, with derivatives.
 
-The march itself is not differentiated. It finds the minimum of f / ρ, the distance over the cone's
-radius, and by the envelope theorem a minimum has the derivative of the function at the minimum's
-place. So f / ρ is evaluated there once more, with derivatives with respect to the light, its
-radius, the surface point, and the parameters of the field. As the march ends within ε of the
-minimum, the place is first refined. Where nothing carries derivatives, none of this is part of the
-kernel.
+The march itself is not differentiated. It finds where on the cone's axis f / ρ is smallest, the
+distance to the surface over the cone's radius. By the envelope theorem, the derivative of this
+minimum is that of f / ρ at a fixed point of the axis. So f / ρ is evaluated there once more, with
+derivatives with respect to the light, its radius, the surface point, and the parameters of the
+field. The march ends within ε of the minimum, so its point is refined first. Where nothing carries
+derivatives, none of this is part of the kernel.
 """
 
 from dataclasses import dataclass
@@ -50,7 +50,7 @@ class Shadow:
 
 
 def clearance_ratio(field: Any, cone: LightCone, t: JitFloat) -> JitFloat:
-    """Return the field's distance over the cone's radius, at the place t of the axis."""
+    """Return the field's distance over the cone's radius, at the distance t along the axis."""
     return distance_function(field)(cone.point(t)) / cone.radius(t)
 
 

@@ -1,9 +1,9 @@
 """Divides samples and pixels into blocks, which cross-validation holds out of a fit as a whole.
 
 Neighbouring samples are alike, so a model that follows the noise of one sample also predicts the
-next one, but not a whole block of directions. Direction pairs with equal values by symmetry are in
-one block. A block spans all azimuths if the material is isotropic. Pixels that show the same region
-of the ball are in one block, under every light.
+next one, but not a whole block of directions. Direction pairs whose values are equal for reasons of
+symmetry are in one block. A block spans all azimuths if the material is isotropic. Pixels that show
+the same region of the ball are in one block, under every light.
 """
 
 from __future__ import annotations

@@ -28,9 +28,9 @@ class PredictionError:
     Attributes
     ----------
     variance : ndarray, shape (n, channels)
-        Variance of the prediction by noise, z (Z'Z)⁻¹ z' σ² [sr⁻²]. The row vector z has the
-        values of the model's lobes at the sample, the matrix Z has these rows for all samples, and
-        σ is the standard deviation of the noise.
+        Variance that noise causes in the prediction, z (Z'Z)⁻¹ z' σ² [sr⁻²]. The row vector z has
+        the values of the model's lobes at the sample, the matrix Z has these rows for all samples,
+        and σ is the standard deviation of the noise.
     bias : ndarray, shape (n, channels)
         Error that repeated measurements would not reduce, z (Z'Z)⁻¹ Z'η - η(z) [sr⁻¹], because
         the model cannot represent the true BRDF η.

@@ -1,6 +1,6 @@
-"""Draws the directions from which a material reflects light to the eye, by values of its BRDF.
+"""Draws directions from which a material reflects light to the eye, mostly where its BRDF is large.
 
-Half vectors h are drawn by a tabulated density over theta_h, their angle to the normal. A density
+Half vectors h are drawn with a tabulated density over theta_h, their angle to the normal. A density
 p_h of half vectors is the density p_h / (4 wo·h) of the directions that they reflect to wo.
 """
 

@@ -68,7 +68,7 @@ class FilteredSampling:
         separate: bool,
         directions: Directions,
     ) -> JitColour:
-        """Return the reflected radiance by directions drawn at the points `si`, not stored ones.
+        """Estimate the reflected radiance with directions drawn at the points `si`, not stored.
 
         `separate` says whether the BSDFs have diffuse components that can be evaluated alone.
         """

@@ -1,11 +1,12 @@
 """Closed formulas for the probabilities of a map's blocks, to draw a block without table or search.
 
-Each of the map's n blocks has a share of its power. The blocks are sorted from the largest share to
-the smallest; a rank is a block's number in this order. A law is a formula that approximates the
-shares by the probability P̂(i) of rank i, its method `probability`. `cumulative_probability` is the
-cumulative distribution F of the ranks, and `inverse_cumulative` its inverse, by which ranks are
-drawn. They use the functions of `maths`: NumPy, or Dr.Jit in the renderer. No law biases an
-estimate, because samples are divided by P̂, not by the block's share. [Ergun 2015, section 6.3]
+Each of the map's n blocks emits a share of its power. The blocks are sorted from the largest share
+to the smallest; the rank of a block is its number in this order, from 0. A law is a formula that
+approximates the share of the block with rank i. The method `probability` returns this value P̂(i),
+and `cumulative_probability` the cumulative distribution F. `inverse_cumulative` is the inverse of
+F, which draws ranks from random numbers. They use the functions of `maths`: NumPy, or Dr.Jit in the
+renderer. No law biases an estimate, because samples are divided by P̂, not by the block's share.
+[Ergun 2015, section 6.3]
 """
 
 from __future__ import annotations
@@ -34,8 +35,8 @@ EDGES = 64
 class Hyperbolic:
     """A law for `n` blocks whose probabilities fall hyperbolically, as 1 / (u + x) at the rank x.
 
-    Sorted shares of power rarely fall like this; where they do not, samples are noisier than by the
-    exact shares. The parameter is `u` > 0. [Ergun 2015, eqs. 6.3-6.5]
+    Sorted shares of power rarely fall like this; where they do not, samples are noisier than with
+    the exact shares. The parameter is `u` > 0. [Ergun 2015, eqs. 6.3-6.5]
     """
 
     n: int
@@ -86,7 +87,7 @@ class Steps:
 
     Step k begins at the rank `edges[k]`, and its blocks have the probability `shares[k]` together.
     The cumulative distribution and its inverse are linear in each range. Samples are less noisy
-    than by the law `Hyperbolic`, since the steps follow the blocks' shares.
+    than with the law `Hyperbolic`, since the steps follow the blocks' shares.
     """
 
     n: int

@@ -44,7 +44,10 @@ class Point:
         return [None if e is None else share * e / total for e in energies]
 
     def draw_direction(self, sample1: JitFloat, sample2: JitVector) -> tuple[JitVector, JitInt]:
-        """Draw an outgoing direction by the cosine or a component; return the component as well."""
+        """Draw an outgoing direction with the density of the cosine, or of a component of the BSDF.
+
+        Returns the direction and the component, which is the first enabled one for the cosine.
+        """
         wo = base.COSINE.sample(self.wi, sample2)
         first = next((k for k, enabled in enumerate(self.enabled) if enabled), 0)
         component = self.mi.UInt32(first)

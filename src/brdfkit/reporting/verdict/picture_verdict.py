@@ -9,7 +9,7 @@ from brdfkit.reporting.pictures.picture_errors import PictureError
 VISIBLE, PLAIN = 1.0, 3.0
 # An error below this share of the rendering's noise cannot be distinguished from noise
 UNKNOWN_SHARE = 0.5
-# Visible noise hides an error that is less than this many times the error by noise
+# Visible noise hides an error that is less than this many times the error that noise causes
 HIDDEN_RATIO = 2.0
 
 

@@ -80,9 +80,9 @@ def write_page(
 def describe_view(
     place: Pictures, order: Sequence[str], scores: Sequence[Scores], flips: FloatArray
 ) -> dict[str, Any]:
-    """Return the page template's values for a view in a light: titles, pictures and captions.
+    """Return what the page shows of a view in a light: titles, pictures and captions, by name.
 
-    place : the pictures of the view.
+    place : the pictures of the view in this light.
     order : the techniques in their order on the page.
     scores, flips : the scores and the FLIP errors of the techniques, in this order.
     """

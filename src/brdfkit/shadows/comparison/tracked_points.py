@@ -26,12 +26,12 @@ LIGHT_TURN = 0.01  # the light's move between two pictures, seen from the scene'
 
 @dataclass(frozen=True)
 class TrackedPoints:
-    """Surface points that stay in place while the camera or the light moves along a path.
+    """Points of surfaces at rest, seen while the camera or the light moves along a path.
 
     view : the view in the first picture.
     pixels : indices of the pixels of `view` that show the points.
     path : placement of the camera and the light in each picture.
-    true : whether the light arrives at each point, by shadow rays, (pictures, points).
+    true : whether the light arrives at each point, (pictures, points); from shadow rays.
     """
 
     view: LitView
@@ -61,7 +61,7 @@ class TrackedPoints:
     ) -> float:
         """Return the mean change of a technique's error between pictures; NaN without points.
 
-        lit : share (pixels,) of the light that arrives in the first picture, by the technique.
+        lit : share (pixels,) of the light that arrives in the first picture, as the technique finds.
         technique : function that makes a shadow, an object with `visibility(p, n)` such as
             `LightShadow`.
         """

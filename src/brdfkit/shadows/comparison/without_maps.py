@@ -37,7 +37,7 @@ WITHOUT_MAPS: dict[str, Callable[..., LightVolumes]] = {
 
 
 def place_camera(view: LitView, placement: Placement) -> Camera:
-    """Return the view's camera at the place of the placement's camera, for counting volumes.
+    """Return the view's camera, moved to the camera of a placement, for counting volumes.
 
     It keeps its own near plane: the placement's is moved in to the scene, but the walls of shadow
     volumes before the scene count, too.

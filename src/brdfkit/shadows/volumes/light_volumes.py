@@ -109,8 +109,8 @@ class LightVolumes:
 def project_near_cap(volumes: Iterable[Volume], light: Light, camera: Camera) -> ProjectedFaces:
     """Return the casting triangles, projected by the light onto the camera's near plane.
 
-    A camera ray starts at a place on the near plane. The triangles over this place, counted like
-    faces in the picture, are as many as the volumes that contain the start of the ray.
+    A camera ray starts on the near plane. The triangles that cover its start, counted like faces in
+    the picture, are as many as the volumes that contain it.
     """
     to_picture, n = picture_matrix(camera), camera.near
     *across, l_z, l_w = to_picture @ light.point

@@ -100,9 +100,9 @@ def find_distance_of_maximum(
 ) -> JitFloat:
     """Find the distance from `near` to `far` at which f is largest.
 
-    f is evaluated at both ends, and once in each step, at the share `place` of the step. Then the
-    surroundings of the largest value are searched at ever smaller distances. The distance needs no
-    derivatives: the derivative of a maximum is that of f at a constant distance.
+    f is evaluated at both ends, and once in each step: where `place`, from 0 to 1, is in the step.
+    Then the surroundings of the largest value are searched at ever smaller distances. The distance
+    needs no derivatives: the derivative of a maximum is that of f at a constant distance.
     """
     import mitsuba as mi
 

@@ -41,8 +41,8 @@ def find_bracketing_points(
     """Find the control points between which to interpolate at `x`: their indices, and a weight.
 
     `points` (n,) rise. Returns the indices of the point below and of the point above each x, both
-    of the shape of `x`, and the weight (..., 1) of the upper one. Of several points at one place,
-    the last one counts at the place itself. Beyond the ends, the nearest end has the weight 1.
+    of the shape of `x`, and the weight (..., 1) of the upper one. Of several points with one value,
+    the last one counts at the value itself. Beyond the ends, the nearest end has the weight 1.
 
     >>> find_bracketing_points(np.array([0.5, 9.0]), np.array([0.0, 2.0]))
     (array([0, 0]), array([1, 1]), array([[0.25],

@@ -13,7 +13,7 @@ from brdfkit.volumes.transfer.opacity import convert_opacities
 
 
 class Conversions:
-    """Base class with the methods of `TransferFunction` for other data, files and presets."""
+    """Base class of `TransferFunction`, with its methods for conversions, files and presets."""
 
     @classmethod
     def from_colormap(

@@ -35,10 +35,10 @@ Bounds = tuple[float, float]
 
 @dataclass(frozen=True)
 class Unknown:
-    """An entry of a scene whose numbers `refine` searches.
+    """An entry of a scene that `refine` searches: a number, a colour or a tensor, as n numbers.
 
-    The search works on coordinates of the numbers: between finite bounds they go from 0 to 1,
-    otherwise they are the values themselves.
+    The search works on coordinates of the numbers: between finite bounds these go from 0 to 1,
+    otherwise they are the numbers themselves.
 
     key : the entry's name in `mitsuba.traverse`.
     name : the key without ".value" at its end.
@@ -80,7 +80,7 @@ class Unknown:
         return tuple(f"{self.name}[{i}]" for i in range(len(self.start)))
 
     def to_values(self, coordinates: FloatArray) -> FloatArray:
-        """Return the values of the numbers (n,) at their search coordinates."""
+        """Return the numbers (n,) of the entry at their search coordinates."""
         if self.is_log:
             return self.low * (self.high / self.low) ** coordinates
         if self.is_bounded:

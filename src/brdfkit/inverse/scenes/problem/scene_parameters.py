@@ -126,7 +126,7 @@ def find_default_bounds(
 ) -> tuple[float, float]:
     """Return the default bounds (low, high) of an entry, or `otherwise` if none are known.
 
-    They are known for roughnesses of Mitsuba's own BSDFs, and for their numbers from 0 to 1.
+    They are known for parameters of Mitsuba's own BSDFs that lie between 0 and 1.
     """
     owner, name = _find_mitsuba_bsdf(parameters, key)
     return MITSUBA_BOUNDS.get(name, otherwise) if owner else otherwise

@@ -94,7 +94,7 @@ class Views:
         return (x <= self.lower_bounds + BOUND_DISTANCE) | (x >= self.upper_bounds - BOUND_DISTANCE)
 
     def split_by_unknown(self, x: AnyArray) -> list[AnyArray]:
-        """Return an array (n,) of all numbers, split into the part of each unknown."""
+        """Return an array (n,), a value for each number, split into the part of each unknown."""
         return np.split(np.asarray(x), self.ends[:-1])
 
     def render_residuals(self, x: FloatArray, spp: int, seed: int) -> FloatArray:

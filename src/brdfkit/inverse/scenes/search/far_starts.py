@@ -83,7 +83,7 @@ def _select_best_point(points: Iterable[Residuals]) -> Residuals:
 
 
 def _solve_linear_numbers(views: Views, x: FloatArray, spp: int, seed: int) -> Residuals:
-    """Return the residuals at `x` after least squares for the numbers that enter linearly.
+    """Solve for the numbers in which pictures are linear; return the residuals at the solution.
 
     The solution is exact for direct light.
     """

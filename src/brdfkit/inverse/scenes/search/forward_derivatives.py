@@ -1,4 +1,4 @@
-"""Computes derivatives of rendered pictures by few numbers, with a rendered picture for each."""
+"""Computes derivatives of pictures with respect to few numbers, by rendering a picture for each."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
