@@ -23,7 +23,7 @@ class Declaration:
             setattr(cls, name, option.default)
         cls.options = {**cls.options, **options}
         parameters = {name: p for name, p in own.items() if isinstance(p, Parameter)}
-        for name in parameters:  # the attributes of objects will hold the values
+        for name in parameters:  # attributes of these names will hold the values of objects
             delattr(cls, name)
         cls._declared = {**cls._declared, **parameters}
         every = {**cls._declared, **cls.more_parameters()}

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-EnvironmentAudit = Any  # the class in `auditing.py`, which imports this file
+# stands for the class in `auditing.py`; that file imports this one, so this one cannot import it
+EnvironmentAudit = Any
 
 SIZE = 10.4, 9.4  # width and height of the figure in inches
 MIDDLE_GREY = 0.18  # linear value at which pixels of the map's geometric mean luminance are drawn

@@ -41,7 +41,7 @@ CUT_OFF = 12.0
 # Share by which the interpolation between texels widens a lobe's variance, so the lobes that are
 # convolved are sharper by it
 BLUR = 0.03
-COVERAGE = 0.5  # share of a lobe that one texel of its mip level covers, called a in eq. 8.9
+COVERAGE = 0.5  # share of a lobe that a texel of its mip level covers, a in [Ergun 2015, eq. 8.9]
 CACHED_PICTURES = 4  # pictures whose levels, a few MB each, are kept for the next call
 
 

@@ -124,7 +124,8 @@ class CacheByValues:
         for bsdf in bsdfs:
             values = eval_bsdf(bsdf, *PAIRS).tobytes()
             result = self.results.pop(values, None) or self.make(bsdf)
-            self.results[values] = result  # moves to the end, as the first ones are deleted below
+            # becomes the last entry; the first ones are deleted below
+            self.results[values] = result
             pairs.append((bsdf, result))
         for oldest in list(self.results)[: -max(CACHED_BSDFS, len(pairs))]:
             del self.results[oldest]

@@ -55,9 +55,9 @@ def build_tree_from_sums(sums: Sums, count: int, criterion: str = "relative") ->
     boxes, left = np.array([[0, width, 0, height]]), np.array([-1])
     keys = error(sums, boxes)
     while True:
-        # A node's key is its error. The tree returned cuts the nodes with the `count` - 1 largest
-        # keys; a node that is not among them now never will be. Half of those that are among them
-        # are cut at once, so that few cuts are superfluous
+        # `keys` holds the errors of the nodes. The finished tree cuts the `count` - 1 nodes with
+        # the largest keys. A node that is not among them now never will be. Only half of those that
+        # are among them are cut at once, lest many of the cuts be in vain
         threshold = np.partition(keys, -count + 1)[-count + 1] if 1 < count <= len(keys) else 0
         uncut = np.flatnonzero((left < 0) & (keys > 0) & (keys >= threshold))
         if len(uncut) == 0 or count == 1:
@@ -65,7 +65,7 @@ def build_tree_from_sums(sums: Sums, count: int, criterion: str = "relative") ->
         uncut = uncut[np.argsort(-keys[uncut], kind="stable")[: len(uncut) // 2 + 1]]
         left[uncut] = len(boxes) + 2 * np.arange(len(uncut))
         parts = _cut_boxes(sums, boxes[uncut])
-        # A part's key is at most that of the whole, before which it cannot be cut
+        # A part's key is limited to that of the whole, since it cannot be cut before the whole
         keys = np.append(keys, np.minimum(error(sums, parts), np.repeat(keys[uncut], 2)))
         boxes, left = np.append(boxes, parts, axis=0), np.append(left, np.full(len(parts), -1))
 
@@ -122,8 +122,7 @@ def value_range(sums: Sums, boxes: IntArray) -> FloatArray:
     return np.array([block.max() - block.min() for block in cut_out])
 
 
-# Errors of a block: the block with the largest one is cut next
-CRITERIA = {
+CRITERIA = {  # Error measures of blocks by name; the block with the largest error is cut next
     "relative": relative_squared_error,
     "sse": squared_error,
     "variance": variance,
@@ -167,7 +166,7 @@ def _find_best_column(table: FloatArray, boxes: IntArray) -> tuple[IntArray, Flo
     x0, x1, y0, y1 = boxes.T
     cuts = x1 - x0 - 1
     start, whole = np.cumsum(cuts) - cuts, _sum_boxes(table, boxes)
-    # Score all possible cuts of all boxes at once; a cut has n columns of its box on its left
+    # Score all possible cuts of all boxes at once; n columns of a box lie to the left of a cut
     n = np.arange(1, cuts.sum() + 1) - np.repeat(start, cuts)
     x, top, bottom = np.repeat(x0, cuts) + n, np.repeat(y0, cuts), np.repeat(y1, cuts)
     left = table[bottom, x] - table[top, x] - np.repeat(table[y1, x0] - table[y0, x0], cuts)
@@ -178,7 +177,7 @@ def _find_best_column(table: FloatArray, boxes: IntArray) -> tuple[IntArray, Flo
     wide = cuts > 0
     if wide.any():
         best[wide] = np.maximum.reduceat(score, start[wide])
-    # In reversed order, so that the first one of equal scores counts
+    # Reversed, as of several assignments the last one counts: the first of equal scores is kept
     hits = np.flatnonzero(score == np.repeat(best, cuts))[::-1]
     box = np.searchsorted(start[wide], hits, side="right") - 1
     at[np.flatnonzero(wide)[box]] += n[hits]

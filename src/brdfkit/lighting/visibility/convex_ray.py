@@ -36,7 +36,8 @@ def find_ray_entry(
     distance of the entry from `o`, whether the ray enters, and the number of look-ups. The distance
     is negative if `o` lies inside the part, or beyond it.
     """
-    # Distances t count from the ray's point nearest to the centre, which is accurate for a far `o`
+    # Distances t are measured from the ray's point nearest to the centre; if measured from a far
+    # origin `o`, they would lose digits
     middle = -dr.dot(o, d)
     nearest = o + middle * d
     half = dr.safe_sqrt(1 + EPSILON - dr.squared_norm(nearest))  # t is ±half on the unit sphere

@@ -61,7 +61,7 @@ class TrackedPoints:
     ) -> float:
         """Return the mean change of a technique's error between pictures; NaN without points.
 
-        lit : share (pixels,) of the light that arrives in the first picture, as the technique finds.
+        lit : share (pixels,) of the light that arrives in the first picture, with the technique.
         technique : function that makes a shadow, an object with `visibility(p, n)` such as
             `LightShadow`.
         """

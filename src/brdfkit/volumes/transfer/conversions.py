@@ -13,7 +13,7 @@ from brdfkit.volumes.transfer.opacity import convert_opacities
 
 
 class Conversions:
-    """Base class of `TransferFunction`, with its methods for conversions, files and presets."""
+    """Base class of `TransferFunction`: makes it from colour maps and the like, saves, loads."""
 
     @classmethod
     def from_colormap(

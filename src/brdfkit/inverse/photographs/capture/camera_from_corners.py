@@ -65,7 +65,7 @@ def _estimate_pose(slopes: FloatArray, corners: FloatArray) -> FloatArray:
     h = np.linalg.svd(np.array(rows))[2][-1].reshape(3, 3)
     h *= np.sign(h[2, 2]) / max(np.sqrt(np.linalg.norm(h[:, 0]) * np.linalg.norm(h[:, 1])), 1e-300)
     r_1, r_2, t = h.T
-    # Right, up and forward are left-handed axes, but scipy's rotations need right-handed ones
+    # scipy's rotations need right-handed axes, so the third row is not forward but backward
     axes = np.column_stack([r_1, r_2, -np.cross(r_1, r_2)]) * [[1], [1], [-1]]
     u, _, v = np.linalg.svd(axes)
     axes = u @ np.diag([1, 1, np.linalg.det(u @ v)]) @ v

@@ -11,7 +11,8 @@ from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
 from brdfkit.inverse.photographs.capture.checks import check_capture
 from brdfkit.inverse.photographs.capture.pinhole import Pinhole
 
-CLIPPED_SHARE = 1e-4  # pixels are clipped if more than this share has the largest value
+# pixels with the largest value count as clipped if they are more than this share
+CLIPPED_SHARE = 1e-4
 # cosine of the light's angle of incidence below which bumps of the sample cast shadows
 SMALLEST_COSINE = 0.05
 SMALLEST_MAP = 4  # fewest texels along a side of a map

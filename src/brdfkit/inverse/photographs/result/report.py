@@ -16,7 +16,7 @@ WIDEST = 512  # largest width of a picture on the page [pixels]
 VALUE_SCALE, DIFFERENCE_SCALE = "viridis", "RdBu_r"
 # Residual of a texel at the end of the colour scale, as a multiple of the noise
 LARGEST_MISFIT = 2 * UNEXPLAINED
-LARGEST_DIFFERENCE = 0.2  # relative difference at the ends of the colour scale
+LARGEST_DIFFERENCE = 0.2  # relative difference from a photograph at the ends of the colour scale
 # Share of the white level that is added to radiances before differences are divided by them, so
 # that relative differences of dark pixels stay finite
 DARK_OFFSET = 0.05

@@ -92,7 +92,8 @@ def _render_derivative(
         with raise_first_cause(), track_derivatives(views, x) as entries:
             for entry, part in zip(entries, views.split_by_unknown(tangent), strict=True):
                 dr.set_grad(entry, make_opaque_array(type(entry), part))
-            # The renderer's loops do not propagate derivatives to values that plugins precompute
+            # Propagate derivatives to values that plugins precompute, as the renderer's loops do
+            # not
             dr.enqueue(dr.ADMode.Forward, entries)
             dr.traverse(dr.ADMode.Forward, flags=dr.ADFlag.ClearEdges)
             return views.join_pictures(
