@@ -47,7 +47,7 @@ class EON(Model):
         return self.facet_factor() * (1 + self.roughness * s / t) / dr.pi
 
     def multiple_scattering(self, wi: JitVector, wo: JitVector) -> JitFloat:
-        # The factor r A, which 1 - E and 1 - Ē have in common, is cancelled from the formula's fraction
+        # The common factor r A of 1 - E and 1 - Ē is cancelled from the formula's fraction
         return (
             self.roughness
             * self.facet_factor()
