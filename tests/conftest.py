@@ -2,6 +2,7 @@
 
 import itertools
 import os
+import shutil
 import signal
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -137,3 +138,18 @@ def configured(form):
 @pytest.fixture
 def model(model_name):
     return bk.models()[model_name]
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Headless Chromium: the system's, or the one that Playwright has installed."""
+    api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+    with api.sync_playwright() as playwright:
+        names = "chromium", "chromium-browser", "google-chrome"
+        own = playwright.chromium.executable_path
+        found = next(filter(None, map(shutil.which, names)), own if Path(own).exists() else None)
+        if not found:
+            pytest.skip("there is no Chromium here; install it, or 'playwright install chromium'")
+        launched = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
+        yield launched
+        launched.close()

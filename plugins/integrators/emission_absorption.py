@@ -4,8 +4,9 @@
 
 L is the radiance along a ray, T the transmittance. The integral is over the part of the ray that
 lies within the box of `extinction` σ [1/unit] and in front of the first surface. L_behind is the
-emission of this surface, or of the environment if there is none. `emission` e [radiance/unit] is
-not multiplied by σ; in spectral variants its colour is multiplied by D65, like an emitter's.
+emission of this surface, or if there is none, `background` or else the environment. `emission` e
+[radiance/unit] is not multiplied by σ; in spectral variants its colour is multiplied by D65, like
+an emitter's.
 
 An `extinction` of the type `transfer_function` adds its own emission, σ RGB. If RGB is an albedo,
 this is the light that the volume scatters under even light of radiance 1 that reaches every point.
@@ -46,6 +47,7 @@ from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import (
     declare_bool,
     declare_int,
+    declare_radiance,
     declare_volume,
     derive_plugin,
 )
@@ -59,6 +61,7 @@ PARAMETERS = {
     "emission": declare_volume(0.0, "e: radiance that is added per unit of length"),
     "steps": declare_int(128, (1, 1_000_000), "parts that a ray is cut into"),
     "jitter": declare_bool(False, "whether the parts are shifted by a random share of one"),
+    "background": declare_radiance("radiance behind the volume, by default the environment's"),
 }
 
 
@@ -106,7 +109,7 @@ def define(mi: MitsubaModule) -> type:
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             # The part of the ray within the volume is cut into steps
-            end, behind = evaluate_light_behind(scene, ray, active)
+            end, behind = evaluate_light_behind(scene, ray, active, self.background)
             near, far = intersect_box(ray, self.extinction)
             far = dr.minimum(far, end)
             inside = active & (far > near)

@@ -14,7 +14,8 @@ The normal is -∇F, computed by differences over a voxel to each side, which is
 derivative of the interpolated values. `bsdf` is the material, white and matte by default. Textures
 have u = x and v = y, the tangent is the x axis projected onto the surface. All lights of the scene
 are sampled, by the lights and by the bsdf. With `shadows` the surface hides lights from itself.
-Other shapes always hide lights; they are visible only by the light that they emit.
+Other shapes always hide lights; they are visible only by the light that they emit. With
+`background`, the camera sees this radiance where it would see the environment.
 
 Derivatives flow to the values, the level, the transfer function, the bsdf and the lights, including
 the motion of the surface. They do not include changes at silhouettes and at the edges of shadows.
@@ -41,6 +42,7 @@ from brdfkit.mitsuba_bridge.properties.declarations import (
     declare_bsdf,
     declare_int,
     declare_number,
+    declare_radiance,
     declare_volume,
     derive_plugin,
 )
@@ -67,6 +69,7 @@ PARAMETERS = {
     "steps": declare_int(256, (1, 1_000_000), "parts that a ray is cut into"),
     "bsdf": declare_bsdf("the material"),
     "shadows": declare_bool(False, "whether the surface hides lights from itself"),
+    "background": declare_radiance("radiance behind the volume, by default the environment's"),
 }
 
 
@@ -92,7 +95,7 @@ def define(mi: MitsubaModule) -> type:
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             require_vectorised("isosurface")
-            end, behind = evaluate_light_behind(scene, ray, active)
+            end, behind = evaluate_light_behind(scene, ray, active, self.background)
             near, far = intersect_box(ray, self.volume)
             far = dr.minimum(far, end)
             crossed = active & (far > near)

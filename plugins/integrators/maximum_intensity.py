@@ -5,8 +5,8 @@
 Angiography and PET use such pictures. T is the transfer function of a `volume` of the type
 `transfer_function`: a colour RGB and an opacity A for each value v. For a colour map alone, with
 A = 1, use `TransferFunction.from_colormap(name, range, opacity=[(0, 1), (1, 1)])`. Any other volume
-is shown in grey: L = v. L_behind is the emission of the first surface, which ends the ray, or of
-the environment.
+is shown in grey: L = v. L_behind is the emission of the first surface, which ends the ray, or
+`background`, or else the environment.
 
 The ray is cut into `steps` equal parts within the box of the volume. Each part is read at one
 point, at a random share of its length that is the same for all parts; then the largest value is
@@ -38,6 +38,7 @@ from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import (
     declare_bool,
     declare_int,
+    declare_radiance,
     declare_volume,
     derive_plugin,
 )
@@ -49,6 +50,7 @@ PARAMETERS = {
     "volume": declare_volume(0.0, "a transfer_function, or any other volume in grey", False),
     "steps": declare_int(256, (1, 1_000_000), "parts that a ray is cut into"),
     "jitter": declare_bool(True, "whether the place in each part is random"),
+    "background": declare_radiance("radiance behind the volume, by default the environment's"),
 }
 
 
@@ -81,7 +83,7 @@ def define(mi: MitsubaModule) -> type:
             medium: MitsubaObject = None,
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
-            end, behind = evaluate_light_behind(scene, ray, active)
+            end, behind = evaluate_light_behind(scene, ray, active, self.background)
             near, far = intersect_box(ray, self.volume)
             far = dr.minimum(far, end)
             inside = active & (far > near)

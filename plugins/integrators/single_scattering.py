@@ -28,6 +28,9 @@ is an error; if an error goes unnoticed, the pixel is NaN.
 scattering, more for multiple scattering. The means are equal to `volpath`, except for light that
 `volpath` loses: 1.3e-4 σ of the light of thick media, and some light of spheres that are near.
 
+With `background`, a radiance in linear sRGB, the camera sees this light behind the volume, and the
+environment lights it all the same.
+
 Derivatives flow to the volumes, the phase function, the BSDFs and the emitters' radiance, at any
 `max_depth`, and are unbiased where σ is above 0. Where σ is 0, they do not include the light that a
 larger σ would scatter, so a search for a volume should start above 0. They do not include changes
@@ -52,12 +55,14 @@ from brdfkit.core.array_types import (
     MitsubaModule,
     MitsubaObject,
 )
+from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import (
     declare_choice,
     declare_int,
     declare_number,
     declare_phase_function,
+    declare_radiance,
     declare_volume,
     derive_plugin,
 )
@@ -77,6 +82,7 @@ PARAMETERS = {
     "majorants": declare_choice(
         ("local", "global"), "bounds of σ: of coarse cells, or one for all"
     ),
+    "background": declare_radiance("radiance behind the volume, by default the environment's"),
 }
 
 
@@ -119,7 +125,9 @@ def define(mi: MitsubaModule) -> type:
                 sampler: MitsubaObject,
             ) -> tuple[Any, ...]:
                 going = continues(depth, ray, throughput)
-                light, vertex, weight = self.follow_segment(scene, ray, density, sampler, going)
+                light, vertex, weight = self.follow_segment(
+                    scene, ray, density, depth == 1, sampler, going
+                )
                 radiance += throughput * light
                 throughput *= weight
                 radiance += throughput * scatter_direct_light(scene, self.medium, vertex, sampler)
@@ -134,9 +142,11 @@ def define(mi: MitsubaModule) -> type:
                 state = dr.while_loop(
                     state, continues, trace_segment, max_iterations=self.max_depth - 1
                 )
-            _, ray, throughput, radiance, density, _ = state
+            depth, ray, throughput, radiance, density, _ = state
             going = active & dr.any(throughput != 0)
-            radiance += throughput * self.add_last_segment(scene, ray, density, sampler, going)
+            radiance += throughput * self.add_last_segment(
+                scene, ray, density, depth == 1, sampler, going
+            )
             return mi.depolarizer(dr.select(active, radiance, 0)), active, []
 
         def follow_segment(
@@ -144,6 +154,7 @@ def define(mi: MitsubaModule) -> type:
             scene: MitsubaObject,
             ray: MitsubaObject,
             density: JitFloat,
+            is_first: JitMask,
             sampler: MitsubaObject,
             active: JitMask,
         ) -> tuple[JitColour, Vertex, JitColour]:
@@ -156,7 +167,7 @@ def define(mi: MitsubaModule) -> type:
             share, collided, t = self.medium.estimate_passed_and_collided_light(
                 ray, si.t, sampler, active
             )
-            light = share * emitters.evaluate_emitter_hit(scene, ray, si, density, active)
+            light = share * self.evaluate_end(scene, ray, si, density, is_first, active)
 
             # The path continues from the collision, or from the surface behind the medium
             passed = dr.select(si.is_valid(), dr.detach(share), 0)
@@ -178,18 +189,42 @@ def define(mi: MitsubaModule) -> type:
             vertex = Vertex(self.phase, mei, in_medium, si, on_surface)
             return light, vertex, weight * dr.select(in_medium, albedo, 1)
 
+        def evaluate_end(
+            self,
+            scene: MitsubaObject,
+            ray: MitsubaObject,
+            si: MitsubaObject,
+            density: JitFloat,
+            is_first: JitMask,
+            active: JitMask,
+        ) -> JitColour:
+            """Return the light from the end `si` of segments, weighted as a sampled direction.
+
+            At the end of first segments, from the camera, the background is in front of the
+            environment, which lights the medium all the same.
+            """
+            light = emitters.evaluate_emitter_hit(scene, ray, si, density, active)
+            if self.background is None:
+                return light
+            behind = make_rgb_emission()(self.background, si)
+            return dr.select(active & is_first & ~si.is_valid(), behind, light)
+
         def add_last_segment(
             self,
             scene: MitsubaObject,
             ray: MitsubaObject,
             density: JitFloat,
+            is_first: JitMask,
             sampler: MitsubaObject,
             active: JitMask,
         ) -> JitColour:
             """Return the light that the last segment of a path adds, without scattering."""
             si = scene.ray_intersect(ray, active)
-            comes = active & emitters.is_emitter_hit(scene, si)
-            light = emitters.evaluate_emitter_hit(scene, ray, si, density, comes)
+            comes = emitters.is_emitter_hit(scene, si)
+            if self.background is not None:
+                comes |= is_first & ~si.is_valid()
+            comes &= active
+            light = self.evaluate_end(scene, ray, si, density, is_first, comes)
             light *= self.medium.estimate_transmittance(ray, si.t, sampler, comes)
             own = self.medium.colour == "emission"
             if self.emits or own:

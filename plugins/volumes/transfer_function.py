@@ -18,6 +18,9 @@ medium
 
 where both are volumes of this type, with the same `values`, within a cube of the same `to_world`.
 By default this cube is the box of the values; an oblique grid needs `Volume.cube_to_world` in both.
+`clip_low` and `clip_high` are two corners, by default (0, 0, 0) and (1, 1, 1), of the part of the
+cube that brdfkit's integrators show: a clipping box opens a head or a gearbox.
+
 Integrators of brdfkit take one such volume and look up σ_t and RGB at once. Derivatives flow to the
 function's table, to its extinction and to the values.
 
@@ -46,6 +49,7 @@ from brdfkit.mitsuba_bridge.channels import make_rgb_emission, make_rgb_spectrum
 from brdfkit.mitsuba_bridge.properties.conversions import resolve_file
 from brdfkit.mitsuba_bridge.properties.declarations import (
     declare_choice,
+    declare_point,
     declare_text,
     declare_volume,
     derive_plugin,
@@ -64,6 +68,8 @@ CHANNELS = {1: "values alone", 2: "values and gradient magnitudes"}
 PARAMETERS = {
     "values": declare_volume(0.0, "the values to look up", least=-np.inf),
     "transfer": declare_text("ct_bone", "the function: a preset, a file, or its text"),
+    "clip_low": declare_point((0, 0, 0), "lowest corner of the visible part, in the unit cube"),
+    "clip_high": declare_point((1, 1, 1), "highest corner of the visible part, in the unit cube"),
     "output": declare_choice(("extinction", "colour"), "what Mitsuba's media and textures read"),
 }
 
@@ -91,6 +97,7 @@ def define(mi: MitsubaModule) -> type:
             callback.put("extinction", self.lookup.extinction, mi.ParamFlags.Differentiable)
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
+            dr.make_opaque(self.clip_low, self.clip_high)  # or a new number means a new kernel
             self.lookup.recompute_texture()
             self.__dict__.pop("majorants", None)
 

@@ -1,6 +1,7 @@
 from . import distance_fields as distance_fields
 from . import rendering as rendering
 from . import shadows as shadows
+from . import viewing as viewing
 from . import volumes as volumes
 from .checks import check as check
 from .core.errors import BrdfkitError as BrdfkitError
@@ -44,5 +45,6 @@ from .rendering import render_volume as render_volume
 from .reporting.report import report as report
 from .theses import Reproduction as Reproduction
 from .theses import reproduce as reproduce
+from .viewing import view as view
 
 __version__: str

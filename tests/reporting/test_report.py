@@ -6,7 +6,6 @@ import io
 import json
 import re
 import shlex
-import shutil
 import zlib
 from base64 import b64decode, b64encode
 from contextlib import contextmanager
@@ -537,21 +536,6 @@ def test_a_fit_of_other_data_is_refused(fits, tmp_path):
 
 
 # ---- In a browser --------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def browser():
-    """Headless Chromium: the system's, or the one that Playwright has installed."""
-    api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-    with api.sync_playwright() as playwright:
-        names = "chromium", "chromium-browser", "google-chrome"
-        own = playwright.chromium.executable_path
-        found = next(filter(None, map(shutil.which, names)), own if Path(own).exists() else None)
-        if not found:
-            pytest.skip("there is no Chromium here; install it, or 'playwright install chromium'")
-        launched = playwright.chromium.launch(executable_path=found, args=["--no-sandbox"])
-        yield launched
-        launched.close()
 
 
 @pytest.fixture

@@ -109,6 +109,41 @@ def declare_bool(default: bool, meaning: str) -> Setting:
     return Setting(default, None, meaning, read_bool)
 
 
+def declare_point(default: tuple[float, float, float], meaning: str) -> Setting:
+    """Declare three coordinates; any values of them use the same kernel."""
+
+    def read(value: Any) -> Any:
+        import drjit as dr
+        import mitsuba as mi
+
+        try:
+            point = mi.Point3f(*(float(coordinate) for coordinate in value))
+        except (TypeError, ValueError):
+            raise ValueError("three numbers") from None
+        dr.make_opaque(point)
+        return point
+
+    return Setting(default, None, meaning, read, differentiable=True)
+
+
+def declare_radiance(meaning: str) -> Setting:
+    """Declare a radiance, a number or a colour, which is None where the scene gives none."""
+
+    def read(value: Any) -> Any:
+        import drjit as dr
+        import mitsuba as mi
+
+        if value is None:
+            return None
+        if not (is_colour(value) or is_number(value)):
+            raise ValueError("a number or a colour")
+        radiance = mi.Color3f(list(value) if is_colour(value) else value)
+        dr.make_opaque(radiance)
+        return radiance
+
+    return Setting(None, None, meaning, read, differentiable=True)
+
+
 def declare_picture(meaning: str) -> Setting:
     """Declare a `mi.Bitmap`, which is None where the scene gives none."""
 
@@ -225,7 +260,7 @@ def derive_plugin(base: Any, parameters: Mapping[str, Setting]) -> Any:
             import mitsuba as mi
 
             for name, setting in parameters.items():
-                if setting.differentiable:
+                if setting.differentiable and getattr(self, name) is not None:
                     callback.put(name, getattr(self, name), mi.ParamFlags.Differentiable)
 
         def to_string(self) -> str:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.array_types import FloatArray, MitsubaObject
+from brdfkit.core.array_types import AnyArray, FloatArray, MitsubaObject
 from brdfkit.core.colours import luminance
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.latitude_rows import projected_solid_angles
@@ -14,11 +14,12 @@ from brdfkit.lighting.environments.map_files import load_radiance
 ILLUMINANCE = 1.0  # illuminance of level ground by a map, the same as by a scene's sky and softbox
 
 
-def describe_environment(environment: str | Path) -> dict[str, Any]:
+def describe_environment(environment: str | Path | AnyArray) -> dict[str, Any]:
     """Return the emitter dictionary of an environment map by latitude and longitude.
 
-    `environment` is the name of a map or an HDR file. The map is scaled to give the ground the same
-    illuminance as the scenes' own lights, so pictures need no other exposure.
+    `environment` is the name of a map, an HDR file, or an array (height, width, 3). The map is
+    scaled to give the ground the same illuminance as the scenes' own lights, so pictures need no
+    other exposure.
 
     Raises `BrdfkitError` for a file that is missing or that Mitsuba cannot read, for a map whose
     width is not twice its height, or whose upper half is black, and for radiance that is negative

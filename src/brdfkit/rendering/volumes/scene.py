@@ -9,9 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import no_such_error
-from brdfkit.lighting.environments.light_distribution import pixel_directions
 from brdfkit.materials.resolve import to_material
 from brdfkit.rendering.scene_input.environment import describe_environment
 from brdfkit.rendering.scenes._studio import make_camera
@@ -30,7 +28,6 @@ UNLIT = "emission_absorption", "maximum_intensity"  # renderers without light fr
 # Illuminance that the light of each renderer gives level ground. Light that a volume scatters once
 # is darker than light from a surface, so it needs more light to look as bright
 ILLUMINANCES = {"single_scattering": 10.0, "isosurface": 3.0}
-EDGE = 2.0  # margin of the background around the picture [degrees], as maps are interpolated
 LEAST_STEPS = 64  # smallest number of steps along a ray
 TURN_AZIMUTHS = range(0, 360, 15)  # azimuths [degrees] at which all of a volume must be in a film
 
@@ -55,26 +52,25 @@ def describe_scene(
     towards, (width, height) = camera_direction(volume, *view), size
     environment, background = light
     entries = describe_integrator(volume, transfer, renderer, settings)
+    if background is not None:
+        rgb = np.broadcast_to(background, 3).tolist()
+        entries["background"] = {"type": "rgb", "value": rgb}
     is_visible = defaults.make_visibility_test(transfer, entries.get("level", 0))
     others = TURN_AZIMUTHS if all_around else ()
     sides = [towards, *(camera_direction(volume, azimuth, view[1]) for azimuth in others)]
     origin, target = place_camera(volume, is_visible, sides, width / height)
-    if renderer in UNLIT:
-        emitter = make_background_light(0.0 if background is None else background)
-    else:
-        aspect = width / height
-        emitter = make_environment_light(
-            environment, ILLUMINANCES[renderer], background, towards, aspect
-        )
     # The near and far planes are multiples of the distance, as volumes have any unit of length
     distance = float(np.linalg.norm(origin - target))
     clipping = {"near_clip": 1e-3 * distance, "far_clip": 1e3 * distance}
-    return {
+    scene = {
         "type": "scene",
         "integrator": entries,
         "sensor": make_camera(origin, target, FOV, size) | clipping,
-        "sky": emitter,
     }
+    if renderer in UNLIT:
+        return scene
+    sky = describe_environment(environment)
+    return scene | {"sky": sky | {"scale": sky["scale"] * ILLUMINANCES[renderer]}}
 
 
 def describe_integrator(
@@ -107,42 +103,3 @@ def _to_plugin_value(name: str, value: Any) -> Any:
     if name == "bsdf":
         return to_material(value).scene_dict()
     return {"type": value} if name == "phase" and isinstance(value, str) else value
-
-
-def make_background_light(background: ArrayLike) -> dict[str, Any]:
-    """Return the dictionary of a light with the same radiance from all directions.
-
-    `background` is the radiance, a number or R, G, B.
-    """
-    rgb = np.broadcast_to(background, 3).tolist()
-    return {"type": "constant", "radiance": {"type": "rgb", "value": rgb}}
-
-
-def make_environment_light(
-    environment: str | Path,
-    illuminance: float,
-    background: ArrayLike | None,
-    towards: FloatArray,
-    aspect: float,
-) -> dict[str, Any]:
-    """Return the emitter of an environment map with a uniform `background` behind the volume.
-
-    The background replaces the part of the map that the camera sees; if it is None, the camera sees
-    the map itself. The map is scaled so that all of it gives level ground this `illuminance`.
-    `towards` is the unit vector to the camera, and `aspect` the picture's width divided by its
-    height.
-    """
-    import mitsuba as mi
-
-    light = describe_environment(environment)
-    light["scale"] *= illuminance
-    if background is None:
-        return light
-    half = np.tan(np.radians(FOV / 2))
-    corner = np.degrees(np.arctan(half * np.hypot(max(aspect, 1), max(1 / aspect, 1))))
-    rgb = np.array(light["bitmap"])
-    x, y, z = -towards
-    cosine = pixel_directions(*rgb.shape[:2]) @ [x, z, -y]  # y points up in environment maps
-    behind = cosine > np.cos(np.radians(corner + EDGE))
-    rgb[behind] = np.broadcast_to(background, 3) / light["scale"]
-    return light | {"bitmap": mi.Bitmap(rgb)}

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
+from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
 SMALLEST_COSINE = 1e-3  # cosine of the angle between a bent normal and the direction to the viewer
 
@@ -23,33 +24,47 @@ def get_world_to_cube(volume: MitsubaObject) -> MitsubaObject:
     return mi.Transform4f().translate(box.min).scale(box.extents()).inverse()
 
 
+def get_visible_part(volume: MitsubaObject) -> tuple[JitVector | float, JitVector | float]:
+    """Return the lowest and the highest corner of a volume's visible part, in its unit cube.
+
+    The plugin `transfer_function` may be clipped to a part of its cube; other volumes are not.
+    """
+    return getattr(volume, "clip_low", 0.0), getattr(volume, "clip_high", 1.0)
+
+
 def intersect_box(ray: MitsubaObject, volume: MitsubaObject) -> tuple[JitFloat, JitFloat]:
-    """Return the distances at which a ray enters and leaves a volume's box.
+    """Return the distances at which a ray enters and leaves the visible part of a volume's box.
 
     The second distance is smaller than the first one if the ray misses the box.
     """
     import mitsuba as mi
 
-    to_cube = get_world_to_cube(volume)
+    to_cube, (low, high) = get_world_to_cube(volume), get_visible_part(volume)
     o, inverse = to_cube @ mi.Point3f(ray.o), dr.rcp(to_cube @ mi.Vector3f(ray.d))
-    a, b = -o * inverse, (1 - o) * inverse
+    a, b = (low - o) * inverse, (high - o) * inverse
     return dr.maximum(dr.max(dr.minimum(a, b)), 0), dr.min(dr.maximum(a, b))
 
 
 def evaluate_light_behind(
-    scene: MitsubaObject, ray: MitsubaObject, active: JitMask
+    scene: MitsubaObject,
+    ray: MitsubaObject,
+    active: JitMask,
+    background: JitColour | None = None,
 ) -> tuple[JitFloat, JitColour]:
     """Return the distance of the first surface along a ray, and the light emitted from there.
 
-    Where there is no surface, the light is that of the environment map.
+    Where there is no surface, the light is that of the environment map, or else the `background`, a
+    radiance in linear sRGB.
     """
     import mitsuba as mi
 
     si = scene.ray_intersect(mi.Ray3f(ray), active)
-    emitter = si.emitter(scene)
-    if emitter is None:  # only scalar variants return None; in others its radiance is 0
-        return si.t, mi.UnpolarizedSpectrum(0)
-    return si.t, mi.unpolarized_spectrum(emitter.eval(si, active))
+    emitter, light = si.emitter(scene), mi.UnpolarizedSpectrum(0)
+    if emitter is not None:  # in scalar variants; in others a missing emitter evaluates to 0
+        light = mi.unpolarized_spectrum(emitter.eval(si, active))
+    if background is not None:
+        light = dr.select(si.is_valid(), light, make_rgb_emission()(background, si))
+    return si.t, light
 
 
 def compute_gradient(
@@ -69,10 +84,11 @@ def compute_gradient(
 
 
 def face_normal(p: JitVector, volume: MitsubaObject) -> JitVector:
-    """Return the outward unit normal of the box's face on which the points `p` lie."""
+    """Return the outward unit normal of the visible box's face on which the points `p` lie."""
     import mitsuba as mi
 
-    beside = get_world_to_cube(volume) @ p - 0.5
+    low, high = get_visible_part(volume)
+    beside = (get_world_to_cube(volume) @ p - low) / (high - low) - 0.5
     largest = dr.max(dr.abs(beside))
     normal = mi.Normal3f(dr.select(dr.abs(beside) == largest, dr.sign(beside), 0))
     return mi.Vector3f(dr.normalize(get_world_to_cube(volume).inverse() @ normal))

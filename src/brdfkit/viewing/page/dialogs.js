@@ -1,0 +1,129 @@
+// Dialogs: a text to copy, the keys, and the form for files of voxels without a header.
+
+const VOXEL_TYPES = ["uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"];
+
+const KEYS = [
+  ["Picture", [
+    ["drag, arrow keys", "orbit"],
+    ["Shift + drag, right drag, Shift + arrow keys", "pan"],
+    ["wheel, two fingers, + and −", "zoom"],
+    ["Ctrl + wheel", "field of view"],
+    ["1 … 6", "look along an axis"],
+    ["double click, R", "camera as at the start"],
+    ["W", "second picture and wipe"],
+    ["Space", "pause, go on"],
+  ]],
+  ["Transfer function", [
+    ["double click, Add", "new point or bump"],
+    ["Page Up, Page Down, Home, End", "another handle"],
+    ["drag, arrow keys", "move it; with Shift in large steps"],
+    ["wheel, [ and ]", "width of a bump; with Shift its height"],
+    ["Delete", "remove it"],
+  ]],
+  ["Slices", [
+    ["drag, arrow keys", "move the cross"],
+    ["wheel, Page Up and Page Down", "next slice"],
+  ]],
+  ["Panels", [
+    ["double click on a name, Delete", "the default of a setting"],
+  ]],
+  ["Everywhere", [
+    ["Ctrl + Z or U, Ctrl + Y", "undo, redo"],
+    ["?", "this help"],
+  ]],
+];
+
+/** Open a dialog inside of `root`; it is removed when it closes. */
+function openDialog(root, title, ...content) {
+  const heading = make("h2", {}, title);
+  const properties = { "aria-label": title, onclose: () => dialog.remove() };
+  const dialog = make("dialog", properties, heading, ...content);
+  root.append(dialog);
+  dialog.showModal();
+  return dialog;
+}
+
+/** Make the row of buttons at the end of a dialog. */
+function makeAnswers(...buttons) {
+  return make("div", { class: "answers" }, ...buttons);
+}
+
+/** Put a text on the clipboard; where the browser forbids that, from the box that shows it. */
+async function copyText(text, box) {
+  try {
+    await navigator.clipboard.writeText(text);
+  } catch {
+    box.select();
+    document.execCommand("copy");
+  }
+}
+
+/** Show a text, selected, with a button that copies it. */
+function showText(root, { title, text }) {
+  const rows = clamp(text.split("\n").length, 2, 18);
+  const box = make("textarea", {
+    value: text, readOnly: true, rows, spellcheck: false, "aria-label": title,
+  });
+  const copy = makeButton("Copy", async () => {
+    await copyText(text, box);
+    copy.textContent = "Copied";
+  }, { class: "main" });
+  const dialog = openDialog(root, title, box, makeAnswers(copy, makeButton("Close", () => dialog.close())));
+  box.focus();
+  box.select();
+}
+
+/** Show what keys, pointers and wheel do. */
+function showHelp(root) {
+  const parts = KEYS.map(([title, rows]) => make("section", {},
+    make("h3", {}, title),
+    make("dl", {}, ...rows.map(([keys, meaning]) =>
+      make("div", {}, make("dt", {}, keys), make("dd", {}, meaning))))));
+  const close = makeButton("Close", () => dialog.close(), { class: "main" });
+  const keys = make("div", { class: "keys" }, ...parts);
+  const dialog = openDialog(root, "Keys and gestures", keys, makeAnswers(close));
+  close.focus();
+}
+
+/** Ask how the voxels of a file without a header are stored, and answer Python. */
+function askRaw(session, root, { name, bytes, guess = {}, dtypes = VOXEL_TYPES }) {
+  const numbers = (label, values, properties) => values.map((value, k) => make("input", {
+    type: "number", value, required: true, "aria-label": `${label} ${"xyz"[k]}`, ...properties,
+  }));
+  const size = numbers("Voxels along", guess.size || ["", "", ""], { min: 1, step: 1 });
+  const spacing = numbers("Spacing along", guess.spacing || [1, 1, 1], { min: 0, step: "any" });
+  const offset = make("input", {
+    type: "number", min: 0, step: 1, value: guess.offset || 0, required: true,
+  });
+  const types = [...new Set([guess.dtype, ...dtypes].filter(Boolean))];
+  const dtype = make("select", {}, ...types.map((type) => make("option", { value: type }, type)));
+  const sum = make("p", { class: "sum", role: "status" });
+  const row = (label, inputs) => make("div", { class: "triple", role: "group", "aria-label": label },
+    make("span", { class: "name" }, label), ...inputs);
+
+  /** Say whether the numbers agree with the size of the file. */
+  function check() {
+    const each = Number(dtype.value.match(/\d+$/)?.[0] || 8) / 8; // "uint16" counts bits
+    const needed = size.reduce((product, { value }) => product * value, each) + Number(offset.value);
+    const write = (count) => Number(count).toLocaleString("en");
+    const verdict = needed === bytes ? "as the file has" : `the file has ${write(bytes)}`;
+    sum.textContent = `${write(needed)} bytes; ${verdict}.`;
+    sum.classList.toggle("bad", needed !== bytes);
+  }
+
+  let answer = null;
+  const form = make("form", { method: "dialog", oninput: check, onsubmit: () => {
+    answer = {
+      size: size.map(({ value }) => Number(value)), dtype: dtype.value,
+      spacing: spacing.map(({ value }) => Number(value)), offset: Number(offset.value),
+    };
+  } },
+  row("Voxels", size), row("Spacing", spacing), makeField("Type", dtype),
+  makeField("Header", offset, "bytes"), sum, makeAnswers(make("button", { type: "submit", class: "main" }, "Open"),
+    makeButton("Cancel", () => dialog.close())));
+  const dialog = openDialog(root, `How are the voxels stored in ${name}?`, form);
+  dialog.addEventListener("close", () => session.send({
+    type: "raw", ...(answer || { size: null, dtype: null, spacing: null, offset: null }),
+  }));
+  check();
+}

@@ -1,0 +1,162 @@
+// The page's side of the conversation with Python: messages, the state, and what is being dragged.
+
+const SETTLING = 400; // ms for which Python's answers to a drag's early steps are not believed
+const PAUSE = 350; // ms without a change after which turning a wheel or holding a key has ended
+
+/** Return the bytes of a buffer, which a carrier gives as an ArrayBuffer or as a view of one. */
+function toBytes(buffer) {
+  if (buffer instanceof ArrayBuffer) return new Uint8Array(buffer);
+  return new Uint8Array(buffer.buffer, buffer.byteOffset, buffer.byteLength);
+}
+
+/**
+ * Start a session on an anywidget model.
+ *
+ * `state` holds the value of each name; `description` is Python's last "open" message. Parts of
+ * the page listen with `on(type, listener)` to the messages of Python by their type, and to
+ * "state", which carries the set of names that have changed, whoever changed them.
+ */
+function createSession(model) {
+  const session = { model, state: {}, description: null };
+  const listeners = new Map();
+
+  session.on = (type, listener) => {
+    listeners.set(type, [...(listeners.get(type) || []), listener]);
+  };
+  session.emit = (type, ...details) => {
+    for (const listener of listeners.get(type) || []) listener(...details);
+  };
+  session.send = (content, buffers) => model.send(content, undefined, buffers);
+  const edits = createEdits(session);
+
+  function receive(content, buffers = []) {
+    const bytes = buffers.map(toBytes);
+    if (content.type === "open") {
+      session.description = content;
+      session.state = { ...content.state };
+      edits.forget();
+      session.emit("open", content, bytes);
+      session.emit("history", content);
+      session.emit("state", new Set(Object.keys(session.state)));
+    } else if (content.type === "state") {
+      edits.accept(content.state);
+      session.emit("history", content);
+    } else {
+      session.emit(content.type, content, bytes);
+    }
+  }
+
+  model.on("msg:custom", receive);
+  session.stop = () => {
+    edits.stop();
+    model.off?.("msg:custom", receive);
+    listeners.clear();
+  };
+  return session;
+}
+
+/**
+ * Add the ways of changing the state to a session.
+ *
+ * - `change(changes)`: at once, one step of undo;
+ * - `drag(changes)`, repeatedly, then `finish()`: the steps between are sent once a frame;
+ * - `nudge(changes)`: as `drag`, and finishes by itself after a pause (wheel, held key, typing).
+ */
+function createEdits(session) {
+  let unsent = {}; // changes since the last message
+  let gesture = {}; // all changes of the drag that is under way
+  let frame = 0;
+  let pause = 0;
+  const held = new Map(); // name → time until which Python's value is not believed
+  let postponed = {}; // Python's values of the names that are held
+
+  function apply(changes) {
+    Object.assign(session.state, changes);
+    session.emit("state", new Set(Object.keys(changes)));
+  }
+
+  function sendUnsent() {
+    frame = 0;
+    if (Object.keys(unsent).length) session.send({ type: "set", changes: unsent, moving: true });
+    unsent = {};
+  }
+
+  session.drag = (changes) => {
+    clearTimeout(pause);
+    for (const name of Object.keys(changes)) held.set(name, Infinity);
+    Object.assign(unsent, changes);
+    Object.assign(gesture, changes);
+    frame = frame || requestAnimationFrame(sendUnsent);
+    apply(changes);
+  };
+
+  session.finish = () => {
+    clearTimeout(pause);
+    cancelAnimationFrame(frame);
+    frame = 0;
+    const changes = gesture;
+    gesture = {};
+    unsent = {};
+    if (!Object.keys(changes).length) return;
+    session.send({ type: "set", changes, moving: false });
+    for (const name of Object.keys(changes)) held.set(name, performance.now() + SETTLING);
+    setTimeout(believe, SETTLING + 10);
+  };
+
+  session.nudge = (changes) => {
+    session.drag(changes);
+    pause = setTimeout(session.finish, PAUSE);
+  };
+
+  session.change = (changes) => {
+    session.finish();
+    session.drag(changes);
+    session.finish();
+  };
+
+  /** Send a command that changes the state in Python, such as "undo", and believe its answer. */
+  session.command = (type) => {
+    session.finish();
+    held.clear();
+    postponed = {};
+    session.send({ type });
+  };
+
+  /** Take over what Python said meanwhile about names that are no longer held. */
+  function believe() {
+    const now = performance.now();
+    const changes = {};
+    for (const [name, until] of held) {
+      if (until > now) continue;
+      held.delete(name);
+      if (name in postponed) changes[name] = postponed[name];
+      delete postponed[name];
+    }
+    if (Object.keys(changes).length) apply(changes);
+  }
+
+  return {
+    accept(state) {
+      const now = performance.now();
+      const changes = {};
+      for (const [name, value] of Object.entries(state)) {
+        if (equal(value, session.state[name])) {
+          delete postponed[name];
+        } else if (held.get(name) > now) {
+          postponed[name] = value;
+        } else {
+          changes[name] = value;
+        }
+      }
+      if (Object.keys(changes).length) apply(changes);
+    },
+    forget() {
+      [unsent, gesture, postponed] = [{}, {}, {}];
+      held.clear();
+    },
+    stop() {
+      cancelAnimationFrame(frame);
+      clearTimeout(pause);
+    },
+  };
+}

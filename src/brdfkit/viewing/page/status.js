@@ -1,0 +1,76 @@
+// The status line, and the notices that stand over the picture until they are closed.
+
+/** Write the size of a volume: 256 × 256 × 128 voxels of 0.8 × 0.8 × 1.6 mm. */
+function writeVolume({ size, spacing, unit }) {
+  const by = (numbers) => numbers.map(writeNumber).join(" × ");
+  const voxels = `${by(size)} voxels`;
+  if (!spacing) return voxels;
+  const same = spacing.every((length) => length === spacing[0]);
+  return `${voxels} of ${same ? writeNumber(spacing[0]) : by(spacing)} ${unit || ""}`.trim();
+}
+
+/** Make the status line. Only its message is announced: samples and values change all the time. */
+function createStatus(session) {
+  const message = make("span", { class: "message", role: "status", "aria-live": "polite" });
+  const bar = make("progress", { hidden: true, "aria-label": "Progress", max: 1 });
+  const [size, samples, value] = ["size", "samples", "value"].map((name) => make("span", { class: name }));
+  let busy = "";
+  let phase = "";
+
+  function say() {
+    const text = busy || phase;
+    // Saying the same again would be announced again
+    if (message.textContent !== text) message.textContent = text;
+  }
+
+  session.on("open", ({ volume }) => {
+    size.textContent = volume ? writeVolume(volume) : "";
+    value.textContent = "";
+  });
+  session.on("progress", ({ samples: count, per_second, noise, paused, converged }) => {
+    const rate = per_second ? `${writeNumber(per_second)}/s` : "";
+    samples.textContent = [`${writeNumber(count)} ${count === 1 ? "sample" : "samples"}`, rate, noise]
+      .filter(Boolean).join(" · ");
+    phase = paused ? "paused" : converged ? "converged" : "";
+    say();
+  });
+  session.on("probe", ({ text }) => (value.textContent = text || ""));
+  session.on("busy", ({ text, fraction }) => {
+    busy = text || "";
+    bar.hidden = !busy;
+    if (typeof fraction === "number") bar.value = fraction;
+    else bar.removeAttribute("value");
+    say();
+  });
+  return make("div", { class: "status" }, size, samples, message, bar, value);
+}
+
+/** Put notices on the stage: errors, which are closed, and the loss of the connection. */
+function createNotices(session, stage) {
+  const notices = make("div", { class: "notices" });
+  stage.append(notices);
+  // The camera does not follow pointers on a notice
+  for (const type of ["pointerdown", "dblclick"]) {
+    notices.addEventListener(type, (event) => event.stopPropagation());
+  }
+
+  function show(text, ...buttons) {
+    const notice = make("div", { class: "notice", role: "alert" }, make("p", {}, text), ...buttons);
+    notices.replaceChildren(notice);
+  }
+  session.on("error", ({ text }) =>
+    show(text, makeButton("Close", () => notices.replaceChildren())));
+  session.on("open", () => notices.replaceChildren());
+  session.on("lost", () => {
+    const { reconnect } = session.model;
+    const buttons = reconnect ? [makeButton("Reconnect", () => reconnect(), { class: "main" })] : [];
+    show("The connection to Python is lost.", ...buttons);
+  });
+
+  const hint = make("p", { class: "hint" }, "Waiting for the first picture …");
+  stage.append(hint);
+  session.on("open", ({ volume }) => {
+    if (volume === null) hint.textContent = "Drop a volume here, or choose Open.";
+  });
+  session.on("picture", () => hint.remove());
+}

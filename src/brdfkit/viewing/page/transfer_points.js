@@ -1,0 +1,88 @@
+// A transfer function of points over values: how the editor places, moves, adds and removes them.
+
+/** Return the linear mixture of two colours "#rrggbb", as the picture of the curve shows it. */
+function mixColours(first, second, share) {
+  const parts = [1, 3, 5].map((at) => {
+    const [a, b] = [first, second].map((colour) => parseInt(colour.slice(at, at + 2), 16));
+    return Math.round(a + share * (b - a)).toString(16).padStart(2, "0");
+  });
+  return `#${parts.join("")}`;
+}
+
+/** Return [colour, opacity] of points at a value. */
+function readPoints(points, value) {
+  const above = points.findIndex(([own]) => own >= value);
+  if (above < 0) return points[points.length - 1].slice(1);
+  if (above === 0) return points[0].slice(1);
+  const [[x0, colour0, a0], [x1, colour1, a1]] = [points[above - 1], points[above]];
+  const share = x1 > x0 ? (value - x0) / (x1 - x0) : 1;
+  return [mixColours(colour0, colour1, share), a0 + share * (a1 - a0)];
+}
+
+/**
+ * Make the menu of presets. Choosing one makes Python fill the points.
+ *
+ * `markEdited` shows that the points are no longer the preset's: so it can be chosen again.
+ */
+function makePresetMenu(session, presets) {
+  const select = make("select", {
+    onchange: () => session.change({ "transfer.preset": presets[select.selectedIndex] }),
+  }, ...presets.map((name) => make("option", {}, name.replace(/_/g, " "))));
+  select.append(make("option", { hidden: true }, "edited"));
+  return {
+    row: makeRow("choice", "Preset", select),
+    show: (name) => (select.selectedIndex = presets.indexOf(name)),
+    markEdited: () => (select.selectedIndex = presets.length),
+  };
+}
+
+/**
+ * Return what the editor needs to know of points.
+ *
+ * Places on the plot are shares of its width and height, upwards. All functions that change
+ * something return a new list and leave the old one as it is.
+ */
+function makePointKind({ range: [low, high], value_unit: unit = "" }) {
+  const width = high - low || 1;
+  const replace = (points, k, point) => points.map((old, other) => (other === k ? point : old));
+  const moved = (points, k, value, a) => {
+    const lowest = k > 0 ? points[k - 1][0] : -Infinity;
+    const highest = k < points.length - 1 ? points[k + 1][0] : Infinity;
+    const kept = clamp(clamp(value, low, high), lowest, highest);
+    return replace(points, k, [roundNumber(kept), points[k][1], roundNumber(clamp(a, 0, 1))]);
+  };
+  return {
+    name: "transfer.points",
+    noun: "point",
+    fewest: 1,
+    place: ([value, , a]) => [(value - low) / width, a],
+    colour: ([, colour]) => colour,
+    move: (points, k, x, y) => moved(points, k, low + x * width, y),
+    describe: ([value, , a]) => `${writeNumber(value)} ${unit}, opacity ${writeNumber(a)}`,
+    add(points, x, y) {
+      const value = roundNumber(low + x * width);
+      const above = points.findIndex(([own]) => own > value);
+      const k = above < 0 ? points.length : above;
+      const [colour] = points.length ? readPoints(points, value) : ["#ffffff"];
+      return [[...points.slice(0, k), [value, colour, roundNumber(y)], ...points.slice(k)], k];
+    },
+    evaluate(points, x) {
+      return points.length ? readPoints(points, low + x * width) : ["#000000", 0];
+    },
+    fields: [
+      {
+        label: "Value", unit, low, high, step: chooseStep(low, low + width),
+        get: ([value]) => value, set: (points, k, value) => moved(points, k, value, points[k][2]),
+      },
+      {
+        label: "Opacity", low: 0, high: 1, step: 0.01,
+        get: ([, , a]) => a, set: (points, k, a) => replace(points, k, [...points[k].slice(0, 2), a]),
+      },
+      {
+        label: "Colour", colour: true,
+        get: ([, colour]) => colour,
+        set: (points, k, colour) => replace(points, k, [points[k][0], colour, points[k][2]]),
+      },
+    ],
+  };
+}

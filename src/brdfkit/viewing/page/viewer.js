@@ -1,0 +1,136 @@
+// The viewer: puts the parts together, and connects them to a model of anywidget's kind.
+
+/** Do what a key means to the whole viewer; the picture's own keys come first. */
+function listenForKeys(session, root, stage, { cameraKey, switchWipe, help }) {
+  stage.addEventListener("keydown", (event) => {
+    if (event.target !== stage) return;
+    const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
+    if (cameraKey(event)) event.preventDefault();
+    else if (plain && event.key === " ") {
+      event.preventDefault();
+      session.emit("pause");
+    } else if (plain && event.key === "w") switchWipe();
+    else if (plain && event.key === "u") session.command("undo");
+  });
+  root.addEventListener("keydown", (event) => {
+    if (event.key === "?" && !takesText(event.target) && !event.target.closest("dialog")) help();
+  });
+  listenForUndo(session, root);
+  // A notebook has keys of its own, which are not meant while the focus is in the viewer
+  root.addEventListener("keydown", (event) => event.stopPropagation());
+}
+
+/** Ask for the value under the pointer while it is over the picture and no button is pressed. */
+function probePicture(stage, picture, probe) {
+  stage.addEventListener("pointermove", (event) => {
+    if (event.buttons || event.target !== stage) return;
+    const [x, y] = picture.locate(event);
+    if (x >= 0 && x <= 1 && y >= 0 && y <= 1) probe({ type: "probe", x, y });
+  });
+}
+
+/** Tell the parts that draw on canvases when the colours of the style sheet change. */
+function watchTheme(session) {
+  const queries = ["(prefers-color-scheme: dark)", "(forced-colors: active)"]
+    .map((text) => window.matchMedia(text));
+  const tell = () => session.emit("theme");
+  queries.forEach((query) => query.addEventListener("change", tell));
+  return () => queries.forEach((query) => query.removeEventListener("change", tell));
+}
+
+/**
+ * Return the function that says hello to Python, with the state that the page has already.
+ *
+ * The state in an address may be one of another volume, or of another version. If Python refuses
+ * it, the view opens without it and says why.
+ */
+function makeGreeting(session, stage) {
+  let refused = "";
+
+  function greet() {
+    const linked = session.model.address && !refused ? readAddress(location.hash) : null;
+    const state = session.description ? session.state : linked;
+    session.send({ type: "hello", ...measurePixels(stage), state });
+  }
+  session.on("error", ({ text }) => {
+    if (session.description || refused) return;
+    refused = text;
+    greet();
+  });
+  session.on("open", () => {
+    if (refused) session.emit("error", { text: refused });
+    refused = "";
+  });
+  return greet;
+}
+
+/**
+ * Show a viewer in `el` for `model`, and return the function that removes it again.
+ *
+ * The contract is anywidget's, and the server's page fulfils it, too. The model of that page has
+ * `address: true`, a `reconnect` function, and the events "lost" and "found".
+ */
+function render({ model, el }) {
+  const session = createSession(model);
+  const stage = make("div", {
+    class: "stage", tabIndex: 0, role: "application", "aria-label": "Picture; ? shows its keys",
+  });
+  const root = make("div", {
+    class: model.address ? "brdfkit-view whole" : "brdfkit-view",
+    "data-lm-suppress-shortcuts": "true", // JupyterLab's keys
+  });
+  const help = () => showHelp(root);
+  const probe = makeProbe(session);
+
+  const picture = createPicture(session, stage);
+  createOverlay(session, stage);
+  createWipe(session, stage, picture);
+  const moves = makeCameraMoves(session, stage);
+  followPointers(session, stage, moves);
+  stage.append(makeViewButtons(session, moves));
+  createNotices(session, stage);
+  probePicture(stage, picture, probe);
+
+  const slices = createSlices(session, probe);
+  const transfer = createTransferEditor(session);
+  const panels = make("div", { class: "panels" });
+  const editors = { transfer: transfer.element, clip: createClipBox(session) };
+  createPanels(session, panels, editors, new Set(TRANSFER_NAMES));
+
+  const pick = acceptFiles(session, root);
+  const views = make("div", { class: "views-area" }, stage, slices.element);
+  root.append(
+    createToolbar(session, pick, help),
+    make("div", { class: "main-area" }, views, panels),
+    createStatus(session),
+  );
+  el.append(root);
+
+  listenForKeys(session, root, stage, {
+    cameraKey: makeCameraKeys(session, moves), switchWipe: makeWipeSwitch(session), help,
+  });
+  session.on("redraw", picture.draw);
+  session.on("file", download);
+  session.on("text", (content) => showText(root, content));
+  session.on("ask_raw", (content) => askRaw(session, root, content));
+
+  const greet = makeGreeting(session, stage);
+  const lose = () => session.emit("lost");
+  const find = () => greet();
+  model.on("lost", lose);
+  model.on("found", find);
+
+  const stops = [
+    watchSize(session, stage, greet, picture.draw), watchVisibility(session, stage),
+    watchTheme(session), slices.stop, transfer.stop, model.address ? keepAddress(session) : () => {},
+  ];
+  return () => {
+    stops.forEach((stop) => stop());
+    model.off?.("lost", lose);
+    model.off?.("found", find);
+    session.stop();
+    root.remove();
+  };
+}
+
+export default { render };

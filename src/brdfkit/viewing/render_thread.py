@@ -1,0 +1,74 @@
+"""`RenderThread`: one thread that renders the pictures of all sessions, in turn."""
+
+from __future__ import annotations
+
+import threading
+import traceback
+from collections.abc import Callable
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit.threads import TURN
+from brdfkit.viewing.session import Message, Session
+
+Send = Callable[[Message], None]  # hands a message to a page; it must not wait for the page
+
+IDLE = 0.5  # seconds after which the thread looks for work without being woken
+
+
+class RenderThread:
+    """Renders the sessions that have work, one pass each in turn, until it is stopped."""
+
+    def __init__(self) -> None:
+        self.sessions: dict[Session, Send] = {}
+        self.changed = threading.Condition()
+        self.stopped = False
+        self.thread = threading.Thread(target=self._run, name="brdfkit view", daemon=True)
+        self.thread.start()
+
+    def add(self, session: Session, send: Send) -> None:
+        """Render a session, and hand its pictures to `send`."""
+        with self.changed:
+            self.sessions[session] = send
+            self.changed.notify()
+
+    def remove(self, session: Session) -> None:
+        """Stop to render a session, because nobody looks any more."""
+        with self.changed:
+            self.sessions.pop(session, None)
+
+    def wake(self) -> None:
+        """Look for work now, after a message."""
+        with self.changed:
+            self.changed.notify()
+
+    def stop(self) -> None:
+        """End the thread after the pass that it renders."""
+        with self.changed:
+            self.stopped = True
+            self.changed.notify()
+
+    def _run(self) -> None:
+        while not self.stopped:
+            with self.changed:
+                waiting = [(s, send) for s, send in self.sessions.items() if s.has_work()]
+                if not waiting:
+                    self.changed.wait(IDLE)
+                    continue
+            for session, send in waiting:
+                for message in work_safely(session):
+                    send(message)
+
+
+def work_safely(session: Session) -> list[Message]:
+    """Return the messages of a pass; an error becomes a message, and pauses the view."""
+    try:
+        with TURN:
+            return session.work()
+    except BrdfkitError as error:
+        text = str(error)
+    except Exception as error:  # a defect of ours must not end the thread in silence
+        traceback.print_exc()
+        text = f"The picture failed: {error}"
+    with session.lock:
+        session.paused = True
+    return [({"type": "error", "text": text}, []), session.describe_progress()]

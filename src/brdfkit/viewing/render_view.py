@@ -1,0 +1,63 @@
+"""`render_view`: the picture of a view's state, from a script."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.jit.threads import in_turn
+from brdfkit.rendering.result import Rendering
+from brdfkit.viewing.volumes.application import VolumeApplication
+from brdfkit.viewing.volumes.opening import load_within_memory
+from brdfkit.viewing.volumes.saving import render_state
+from brdfkit.volumes import Volume
+
+
+@in_turn
+def render_view(
+    volume: Volume | str | Path,
+    state: Mapping[str, Any] | None = None,
+    *,
+    size: tuple[int, int] = (512, 512),
+    spp: int = 64,
+    seed: int = 0,
+) -> Rendering:
+    """Render the picture that an interactive view shows in a state.
+
+    The page's "Copy as Python" writes calls of this function.
+
+    Parameters
+    ----------
+    volume : Volume, str or Path
+        The volume; or the file, folder or name that `brdfkit.volumes.load` takes.
+    state : dict of str to object, optional
+        The settings that differ from those with which a view begins, by name.
+    size : (int, int), default (512, 512)
+        Width and height of the picture [pixels].
+    spp : int, default 64
+        Samples per pixel, 1 or more.
+    seed : int, default 0
+        Seed of the samples.
+
+    Returns
+    -------
+    Rendering
+        The picture; ``write`` makes a PNG, tone-mapped as on the page, or an OpenEXR file.
+
+    Raises
+    ------
+    BrdfkitError
+        For a volume that cannot be read, and for a setting that does not exist or is impossible.
+
+    Examples
+    --------
+    >>> view = {"renderer": "maximum_intensity", "camera.azimuth": 90}
+    >>> brdfkit.viewing.render_view("smoke", view, spp=1, size=(64, 64))    # doctest: +SKIP
+    """
+    spp, seed = to_whole_number("spp", spp, 1), to_whole_number("seed", seed, 0)
+    loaded = volume if isinstance(volume, Volume) else load_within_memory(volume)
+    application = VolumeApplication(loaded, changes=dict(state or {}))
+    width, height = (to_whole_number("size", side, 1) for side in size)
+    return render_state(application, application.first_state(), (width, height), spp, seed)

@@ -1,0 +1,201 @@
+"""`VolumeApplication`: what a session shows of a volume, and its answers to the page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.array_types import AnyArray
+from brdfkit.core.colours import to_srgb
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.viewing.controls import State
+from brdfkit.viewing.encoding import encode_png
+from brdfkit.viewing.session import Message, Session
+from brdfkit.viewing.volumes import saving, slices
+from brdfkit.viewing.volumes.live_scene import LiveScene, SceneKind
+from brdfkit.viewing.volumes.opening import Upload, load_upload
+from brdfkit.viewing.volumes.state import VolumeState, list_controls, needs_samples_anew
+from brdfkit.viewing.volumes.volume_controls import PANELS
+from brdfkit.volumes import Volume
+
+SCENES = (
+    6  # kept at most, as many as a wipe between two renderers needs at rest and moving, and more
+)
+BINS, GRADIENT_BINS = 256, 128  # of the histograms
+COUNTED_VOXELS = 4_000_000  # evenly spread
+ENDS = {"RAS": ["L", "R", "P", "A", "I", "S"]}  # names of the ends of the axes x, y and z
+
+
+class VolumeApplication:
+    """A view of a volume.
+
+    `source` is what `brdfkit.volumes.load` read it from, for the scripts that are copied; None for
+    a volume that was made in Python. `changes` are settings that differ from the first ones.
+    Raises `BrdfkitError` if one of them is not possible.
+    """
+
+    def __init__(
+        self, volume: Volume, source: str | None = None, changes: State | None = None
+    ) -> None:
+        self.show(volume, source, changes)
+
+    def show(self, volume: Volume, source: str | None, changes: State | None = None) -> None:
+        """Show another volume."""
+        self.volume, self.source = volume, source
+        self.states = VolumeState(volume)
+        self.scenes: dict[SceneKind, LiveScene] = {}
+        self.upload = Upload()
+        self.first = self.change(self.states.first(), changes or {})
+
+    def first_state(self) -> State:
+        """Return the state with which a view begins."""
+        return self.first
+
+    def describe(self) -> Message:
+        """Return the message "open": the panels, the controls, the volume and its histograms."""
+        volume = self.volume
+        low, high = self.states.values
+        step = -(-volume.values.size // COUNTED_VOXELS)
+        values = volume.values.reshape(-1)[::step]
+        gradients = volume.gradient_magnitude.reshape(-1)[::step]
+        counts = np.histogram(values, BINS, (low, high))[0]
+        ends = (0, self.states.steepest), (low, high)
+        joint = np.histogram2d(gradients, values, (GRADIENT_BINS, BINS), ends)[0]
+        shade = np.log1p(joint) / max(np.log1p(joint.max()), 1e-9)
+        return {
+            "title": volume.name,
+            "panels": [
+                {"name": name, "label": label, "open": is_open} for name, label, is_open in PANELS
+            ],
+            "controls": list_controls(self.states.controls),
+            "volume": {
+                "name": volume.name,
+                "size": volume.size,
+                "spacing": volume.spacing,
+                "unit": volume.unit,
+                "value_unit": self.value_unit,
+                "range": [low, high],
+                "steepest": self.states.steepest,
+                "labels": volume.labels,
+                "axes": volume.axes,
+            },
+            "histogram": counts.tolist(),
+            "presets": self.states.presets(),
+            "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
+        }, [encode_png(np.rint(255 * shade[::-1]).astype(np.uint8))]
+
+    @property
+    def value_unit(self) -> str:
+        """The unit of the volume's values, "HU" for a scan that has them; empty if unknown."""
+        return self.states.function.value_unit if self.states.function.value_unit == "HU" else ""
+
+    def change(self, state: State, changes: Mapping[str, Any]) -> State:
+        """Return the state after changes; raise `BrdfkitError` if one is not possible."""
+        return self.states.change(state, changes)
+
+    def sides(self, state: State) -> int:
+        """Return the number of pictures: 2 if there is a renderer right of the wipe."""
+        return 2 if state["second"] else 1
+
+    def needs_samples_anew(self, before: State, after: State) -> bool:
+        """Return whether the samples of one state are not those of another."""
+        return needs_samples_anew(before, after)
+
+    def render(
+        self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
+    ) -> AnyArray:
+        """Render a pass of one sample per pixel: (height, width, 3), linear sRGB."""
+        kind = self.states.scene_kind(state, side, size, moving)
+        scene = self.scenes.pop(kind, None) or self._load(kind)
+        self.scenes[kind] = scene  # the last one is the newest
+        while len(self.scenes) > SCENES:
+            self.scenes.pop(next(iter(self.scenes)))
+        scene.show(self.states.look(state, side))
+        return scene.render(seed)
+
+    def _load(self, kind: SceneKind) -> LiveScene:
+        """Load the scene of a kind."""
+        states = self.states
+        return LiveScene(self.volume, kind, states.steepest, states.environments)
+
+    def develop(self, state: State, picture: AnyArray) -> AnyArray:
+        """Return a picture as sRGB in 8 bits."""
+        tone_mapped = self.states.tone_mapping(state)(picture)
+        return np.rint(255 * to_srgb(np.nan_to_num(tone_mapped))).astype(np.uint8)
+
+    def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
+        """Return the places of the box's corners, its size and the names of its ends."""
+        corners = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), -1).reshape(-1, 3)
+        to_world = self.volume.cube_to_world
+        points = corners @ to_world[:3, :3].T + to_world[:3, 3]
+        camera = self.states.camera(state)
+        edges = np.linalg.norm(to_world[:3, :3], axis=0)
+        return {
+            "corners": np.round(camera.project(points, size[0] / size[1]), 5).tolist(),
+            "size": [f"{edge:.4g} {self.volume.unit}".strip() for edge in edges],
+            "ends": ENDS.get(self.volume.axes, []),
+        }
+
+    def follow(self, before: State, after: State) -> list[Message]:
+        """Return the slices if they are shown and have changed."""
+        names = "show.slices", "slices"
+        if not after["show.slices"] or all(before.get(n) == after[n] for n in names):
+            return []
+        planes, pictures = slices.draw_slices(self.volume, after["slices"])
+        return [({"type": "slices", "planes": planes}, pictures)]
+
+    def answer(self, session: Session, message: dict[str, Any], data: bytes) -> list[Message]:
+        """Answer a message that is about the volume."""
+        answers = {
+            "probe": self._probe,
+            "probe_slice": self._probe_slice,
+            "save": self._save,
+            "copy": self._copy,
+        }
+        kind = str(message.get("type"))
+        if kind in ("upload", "raw"):
+            return load_upload(self, session, message, data)
+        if kind not in answers:
+            raise BrdfkitError(
+                f"The page sent a message {kind!r:.40}, which is unknown; reload it."
+            )
+        return answers[kind](session, message)
+
+    def _probe(self, session: Session, message: dict[str, Any]) -> list[Message]:
+        """Return the value of the first voxel that is visible under the pointer."""
+        place = np.clip([float(message.get("x", 0)), float(message.get("y", 0))], 0, 1)
+        state, (width, height) = session.state, session.size
+        side = int(bool(state["second"]) and place[0] > state["wipe"])
+        look = self.states.look(state, side)
+        table = look.table if look.table.ndim == 2 else look.table.max(axis=0)
+        if self.states.scene_kind(state, side, (1, 1), False).renderer == "isosurface":
+            low, high = self.states.values
+            table = table.copy()
+            table[:, 3] = 1e6 * (table[:, 3] > (look.level - low) / (high - low))
+        aspect = width / height
+        at = slices.find_visible_voxel(
+            self.volume, table, look.extinction, look.camera, place, aspect
+        )
+        text = "" if at is None else slices.describe_voxel(self.volume, at, self.value_unit)
+        return [({"type": "probe", "text": text, "voxel": at}, [])]
+
+    def _probe_slice(self, session: Session, message: dict[str, Any]) -> list[Message]:
+        """Return the value of the voxel under the pointer in a slice."""
+        plane = min(max(int(message.get("plane", 0)), 0), 2)
+        x, y = float(message.get("x", 0)), float(message.get("y", 0))
+        at = slices.move_crosshair(self.volume, session.state["slices"], plane, x, y)
+        text = slices.describe_voxel(self.volume, at, self.value_unit)
+        return [({"type": "probe", "text": text, "voxel": at}, [])]
+
+    def _save(self, session: Session, message: dict[str, Any]) -> list[Message]:
+        """Return a file for the page to keep."""
+        return [saving.make_file(self, session, str(message.get("kind")))]
+
+    def _copy(self, session: Session, message: dict[str, Any]) -> list[Message]:
+        """Return the view as a script or a command."""
+        kind = str(message.get("kind"))
+        write = saving.write_command if kind == "command" else saving.write_script
+        title = "The same picture from a command" if kind == "command" else "The same from Python"
+        return [({"type": "text", "title": title, "text": write(self, session)}, [])]

@@ -1,0 +1,259 @@
+"""`LiveScene`: a volume in Mitsuba whose view changes by parameters alone, without a new kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.core.jit.llvm import use_variant
+from brdfkit.core.jit.loops import raise_first_cause
+from brdfkit.rendering.progressive import to_rgb
+from brdfkit.rendering.scene_input.environment import describe_environment
+from brdfkit.rendering.scenes._studio import make_camera
+from brdfkit.rendering.volumes.defaults import CLAY
+from brdfkit.rendering.volumes.scene import ILLUMINANCES, RENDERERS, UNLIT
+from brdfkit.viewing.volumes.camera import Camera
+from brdfkit.volumes import TransferFunction, Volume
+
+VALUE_ROWS = 4097  # of the table of a transfer function, as `TransferLookup` makes it
+GRADIENT_ROWS = 64
+LEAST_STEPS = 64  # along a ray
+PHASES: dict[str, dict[str, Any]] = {
+    "henyey_greenstein": {"type": "hg", "g": 0.0},
+    "rayleigh": {"type": "rayleigh"},
+    "schlick": {"type": "schlick", "k": 0.0},
+    "mie_hazy": {"type": "mie_hazy"},
+    "mie_murky": {"type": "mie_murky"},
+}
+
+
+@dataclass(frozen=True)
+class SceneKind:
+    """Everything about a scene that needs a kernel of its own; all else is a parameter.
+
+    `renderer`: one of `RENDERERS`. `size`: (width, height) [pixels]. `steps`: parts that a ray is
+    cut into. `by_gradients`: whether the transfer function depends on gradient magnitudes.
+    `colour`: whether its RGB is an "albedo" or an "emission". `phase`: one of `PHASES`.
+    `max_depth`: largest number of segments of a path. `sun`: whether there is a sun.
+    `shows_environment`: whether the camera sees the environment map.
+    """
+
+    renderer: str
+    size: tuple[int, int]
+    steps: int
+    by_gradients: bool = False
+    colour: str = "albedo"
+    phase: str = "henyey_greenstein"
+    max_depth: int = 2
+    sun: bool = False
+    shows_environment: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """The parameters of a `LiveScene`, each of which changes without a new kernel.
+
+    `camera`: the camera. `table`: RGBA of the transfer function (n, 4) or (m, n, 4), see
+    `LiveScene`. `extinction`: σ where A is 1 [1/unit of length]. `level`: the value of the surface.
+    `surface`: its reflectance (3,), linear sRGB. `asymmetry`: g, or Schlick's k, of the phase
+    function. `clip`: the lowest and the highest corner of the visible part (2, 3), in the unit
+    cube. `background`: radiance (3,) behind the volume. `environment`: name or file of the map.
+    `turn`: its rotation about the vertical axis [degrees]. `brightness`: a factor of its light.
+    `sun`: irradiance (3,) of the sun. `sun_direction`: the unit vector (3,) towards the sun.
+    """
+
+    camera: Camera
+    table: AnyArray
+    extinction: float
+    level: float
+    surface: FloatArray
+    asymmetry: float
+    clip: FloatArray
+    background: FloatArray
+    environment: str
+    turn: float
+    brightness: float
+    sun: FloatArray
+    sun_direction: FloatArray
+
+
+class LiveScene:
+    """A Mitsuba scene of a volume; `show` changes its parameters, and `render` renders a pass.
+
+    The transfer function is a table of RGBA over `VALUE_ROWS` even steps of the volume's range of
+    values, and over `GRADIENT_ROWS` even steps of gradient magnitudes up to `steepest` if it
+    depends on them. `environments` are maps by name, besides those that brdfkit knows.
+    """
+
+    def __init__(
+        self,
+        volume: Volume,
+        kind: SceneKind,
+        steepest: float,
+        environments: Mapping[str, AnyArray] = MappingProxyType({}),
+    ) -> None:
+        import mitsuba as mi
+
+        use_variant()
+        self.volume, self.kind, self.environments = volume, kind, environments
+        self.prefix = f"integrator.{RENDERERS[kind.renderer]}"
+        self.shown: dict[str, Any] = {}  # the parameters as they are
+        self.map_name, self.map_data = "", np.zeros(0)  # the environment map as it is
+        self.scene = mi.load_dict(self._describe(steepest))
+        self.parameters = mi.traverse(self.scene)
+
+    def _describe(self, steepest: float) -> dict[str, Any]:
+        """Return the dictionary of the scene; its parameters are only placeholders."""
+        kind = self.kind
+        function = _placeholder_function(self.volume, kind, steepest)
+        entries: dict[str, Any] = {
+            "type": kind.renderer,
+            RENDERERS[kind.renderer]: self.volume.scene_dict(function),
+        }
+        if kind.renderer == "single_scattering":
+            entries |= {"phase": PHASES[kind.phase], "max_depth": kind.max_depth}
+        else:
+            entries["steps"] = kind.steps
+        if kind.renderer == "emission_absorption":
+            entries["jitter"] = True
+        if kind.renderer == "isosurface":
+            entries |= {"bsdf": CLAY, "shadows": True, "level": 0.5}
+        if not kind.shows_environment or kind.renderer in UNLIT:
+            entries["background"] = {"type": "rgb", "value": [0.0, 0.0, 0.0]}
+        scene: dict[str, Any] = {
+            "type": "scene",
+            "integrator": entries,
+            "sensor": make_camera((0, -1, 0), (0, 0, 0), 25.0, kind.size) | self._clip(),
+        }
+        if kind.renderer in UNLIT:
+            return scene
+        scene["sky"] = describe_environment("studio") | {"scale": 1.0}
+        if kind.sun:
+            rgb = {"type": "rgb", "value": [0.0, 0.0, 0.0]}
+            scene["sun"] = {"type": "directional", "direction": [0, 0, -1], "irradiance": rgb}
+        return scene
+
+    def _clip(self) -> dict[str, float]:
+        """Return clipping distances for any view: they are written into the kernels."""
+        low, high = self.volume.bounds
+        diagonal = float(np.linalg.norm(high - low))
+        return {"near_clip": 1e-4 * diagonal, "far_clip": 1e4 * diagonal}
+
+    def show(self, look: Look) -> None:
+        """Change the parameters that differ from the last `look`."""
+        kind, camera = self.kind, look.camera
+        new: dict[str, Any] = {
+            "sensor.to_world": camera.to_world,
+            "sensor.x_fov": camera.horizontal_fov(kind.size[0] / kind.size[1]),
+            f"{self.prefix}.table": look.table,
+            f"{self.prefix}.clip_low": look.clip[0],
+            f"{self.prefix}.clip_high": look.clip[1],
+            "integrator.background": look.background,
+        }
+        if kind.renderer != "isosurface":
+            new[f"{self.prefix}.extinction"] = look.extinction
+        if kind.renderer == "isosurface":
+            low, high = self.volume.range
+            new["integrator.level"] = (look.level - low) / (high - low or 1.0)
+            new["integrator.bsdf.diffuse_reflectance.value"] = look.surface
+        new["integrator.phase.g"] = new["integrator.phase.k"] = look.asymmetry
+        new["sky"] = (look.environment, look.turn, look.brightness)
+        new["sun.irradiance.value"], new["sun.to_world"] = look.sun, look.sun_direction
+        changed = {name: value for name, value in new.items() if self._differs(name, value)}
+        for name, value in changed.items():
+            self._assign(name, value)
+            self.shown[name] = value
+        if changed:
+            self.parameters.update()
+
+    def _differs(self, name: str, value: Any) -> bool:
+        """Return whether a parameter that the scene has differs from `value`."""
+        if name == "sky":
+            return "sky.data" in self.parameters and self.shown.get(name) != value
+        if name not in self.parameters:
+            return False
+        return name not in self.shown or not np.array_equal(self.shown[name], value)
+
+    def _assign(self, name: str, value: Any) -> None:
+        """Assign a value to a parameter, in Mitsuba's type."""
+        import drjit as dr
+        import mitsuba as mi
+
+        if name == "sky":
+            self._light(*value)
+        elif name.endswith("to_world"):
+            if name.startswith("sun"):
+                value = _rotation_from_z(-np.asarray(value))
+            self.parameters[name] = mi.Transform4f(np.asarray(value, np.float32))
+        elif name.endswith("table"):
+            self.parameters[name] = mi.TensorXf(np.ascontiguousarray(value, np.float32))
+        else:
+            kind = type(self.parameters[name])
+            coordinates = np.ravel(value).tolist()
+            if kind is float:
+                self.parameters[name] = coordinates[0]
+                return
+            opaque = kind(*coordinates) if len(coordinates) > 1 else kind(coordinates[0])
+            dr.make_opaque(opaque)
+            self.parameters[name] = opaque
+
+    def _light(self, environment: str, turn: float, brightness: float) -> None:
+        """Light the scene by an environment map, turned about the vertical axis [degrees]."""
+        import mitsuba as mi
+
+        if self.map_name != environment:
+            described = describe_environment(self.environments.get(environment, environment))
+            bitmap = mi.load_dict({"type": "envmap", "bitmap": described["bitmap"]})
+            self.map_name = environment
+            self.map_data = np.array(mi.traverse(bitmap)["data"]) * described["scale"]
+        factor = ILLUMINANCES[self.kind.renderer] * brightness
+        self.parameters["sky.data"] = mi.TensorXf(np.float32(factor * self.map_data))
+        at = mi.Transform4f()
+        self.parameters["sky.to_world"] = at.rotate([0, 0, 1], turn) @ at.rotate([1, 0, 0], 90)
+
+    def render(self, seed: int) -> AnyArray:
+        """Render one sample per pixel: (height, width, 3), linear sRGB."""
+        import mitsuba as mi
+
+        with raise_first_cause():
+            picture = self.scene.integrator().render(self.scene, seed=mi.UInt32(seed), spp=1)
+            return to_rgb(picture)
+
+
+def _placeholder_function(volume: Volume, kind: SceneKind, steepest: float) -> TransferFunction:
+    """Return a function with the table's size, and with a narrow peak.
+
+    The peak makes emission and absorption average the function along rays, as any function needs
+    that the user may draw later.
+    """
+    low, high = volume.range
+    high = high if high > low else low + 1
+    middle, step = (low + high) / 2, (high - low) / (VALUE_ROWS - 1)
+    values = np.array([low, middle - step, middle, middle + step, high])
+    rgba = np.zeros((5, 4))
+    rgba[2] = 1.0
+    if not kind.by_gradients:
+        return TransferFunction(values, rgba, 1.0, kind.colour)
+    gradients = np.linspace(0, steepest or 1.0, GRADIENT_ROWS)
+    values, rgba = np.array([low, high]), np.ones((GRADIENT_ROWS, 2, 4))
+    return TransferFunction(values, rgba, 1.0, kind.colour, gradients)
+
+
+def _rotation_from_z(direction: FloatArray) -> FloatArray:
+    """Return the rotation (4, 4) that turns z into a unit vector `direction`."""
+    helper = np.array([1.0, 0, 0]) if abs(direction[0]) < 0.9 else np.array([0, 1.0, 0])
+    s = np.cross(helper, direction)
+    s /= np.linalg.norm(s)
+    turned = np.eye(4)
+    turned[:3, :3] = np.column_stack([s, np.cross(direction, s), direction])
+    return turned
+
+
+def choose_steps(volume: Volume, quality: float = 1.0) -> int:
+    """Return the number of parts of a ray: one for each voxel along the longest axis."""
+    return max(LEAST_STEPS, round(quality * max(volume.size)))

@@ -1,0 +1,188 @@
+"""Files of a view, such as its picture and its settings, and scripts that repeat it."""
+
+from __future__ import annotations
+
+import io
+import json
+import shlex
+import tempfile
+import zipfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from brdfkit.core.array_types import AnyArray
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.images.errors.noise import Accumulated
+from brdfkit.rendering.result import Rendering
+from brdfkit.viewing.controls import State
+from brdfkit.viewing.encoding import encode_png
+from brdfkit.viewing.volumes import transfer_table
+from brdfkit.viewing.volumes.live_scene import GRADIENT_ROWS, VALUE_ROWS
+from brdfkit.volumes import TransferFunction
+
+if TYPE_CHECKING:
+    from brdfkit.viewing.session import Message, Session
+
+    Application = Any  # `VolumeApplication`, which imports this file
+
+KINDS = {
+    "png": "Picture (PNG)",
+    "exr": "Picture (EXR, linear)",
+    "state": "Settings (JSON)",
+    "transfer": "Transfer function (JSON)",
+    "film": "Orbit (PNG frames)",
+}
+FRAMES, FILM_SAMPLES = 36, 8  # of an orbit
+SAMPLES = 64  # per pixel in a copied script, if the page has fewer
+
+
+def join_sides(pictures: dict[int, AnyArray], wipe: float) -> AnyArray:
+    """Return the left picture left of the wipe, and the right one right of it."""
+    if 1 not in pictures:
+        return pictures[0]
+    width = pictures[0].shape[1]
+    edge = round(wipe * width)
+    return np.concatenate([pictures[0][:, :edge], pictures[1][:, edge:]], axis=1)
+
+
+def render_state(
+    application: Application, state: State, size: tuple[int, int], spp: int, seed: int = 0
+) -> Rendering:
+    """Return the picture of a state, of `spp` passes with the seeds `seed`, `seed` + 1 ..."""
+    import time
+
+    start = time.monotonic()
+    sums = {side: Accumulated() for side in range(application.sides(state))}
+    for number in range(spp):
+        for side in sums:
+            picture = application.render(state, side, size, False, seed + number)
+            sums[side] = sums[side].add_pass(picture, 1)
+    joined = join_sides({side: total.picture for side, total in sums.items()}, state["wipe"])
+    tone = application.states.tone_mapping(state)
+    name = application.volume.name
+    seconds = time.monotonic() - start
+    return Rendering({name: joined}, spp, seconds, seed, tone_mapping=tone)
+
+
+def make_file(application: Application, session: Session, kind: str) -> Message:
+    """Return the message "file" of a kind of `KINDS`."""
+    makers = {
+        "png": _make_png,
+        "exr": _make_exr,
+        "state": _make_state,
+        "transfer": _make_transfer,
+        "film": _make_film,
+    }
+    if kind not in makers:
+        raise BrdfkitError(f"A view is saved as {', '.join(makers)}, and not as {kind!r:.20}.")
+    suffix, mime, content = makers[kind](application, session)
+    name = f"{application.volume.name}{suffix}"
+    return {"type": "file", "name": name, "mime": mime}, [content]
+
+
+def _current_picture(session: Session) -> AnyArray:
+    """Return the picture of a session so far, linear."""
+    done = {side: a.picture for side, a in session.accumulated.items() if a.passes}
+    if not done:
+        raise BrdfkitError("There is no picture yet; wait for the first one.")
+    return join_sides(done, session.state["wipe"])
+
+
+def _make_png(application: Application, session: Session) -> tuple[str, str, bytes]:
+    colours = application.develop(session.state, _current_picture(session))
+    return ".png", "image/png", encode_png(colours)
+
+
+def _make_exr(application: Application, session: Session) -> tuple[str, str, bytes]:
+    picture = Rendering({application.volume.name: _current_picture(session)}, session.passes, 0.0)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "picture.exr"
+        picture.write(path)
+        return ".exr", "image/x-exr", path.read_bytes()
+
+
+def _make_state(application: Application, session: Session) -> tuple[str, str, bytes]:
+    text = json.dumps(session.state, indent=1)
+    return ".view.json", "application/json", text.encode()
+
+
+def _make_transfer(application: Application, session: Session) -> tuple[str, str, bytes]:
+    return (
+        ".transfer.json",
+        "application/json",
+        to_function(application, session.state).to_json().encode(),
+    )
+
+
+def to_function(application: Application, state: State) -> TransferFunction:
+    """Return the transfer function of a state."""
+    low, high = application.states.values
+    extinction, colour = state["transfer.extinction"] * state["density"], state["transfer.colour"]
+    name, unit = state["transfer.preset"], application.volume.unit
+    if state["transfer.mode"] == "points":
+        points = state["transfer.points"]
+        rgba = np.array([[*transfer_table.parse_colour(c), a] for _, c, a in points])
+        values, gradients = np.array([value for value, _, _ in points]), None
+    else:
+        rgba = application.states.table(state)
+        step = 16  # of the rows over values, which are far finer than any bump
+        rgba, values = (
+            rgba[..., ::step, :],
+            np.linspace(low, high, VALUE_ROWS)[::step],
+        )
+        rows = GRADIENT_ROWS
+        gradients = np.linspace(0, application.states.steepest, rows) if rgba.ndim == 3 else None
+    return TransferFunction(
+        values, rgba, extinction, colour, gradients, application.value_unit, unit, name
+    )
+
+
+def _make_film(application: Application, session: Session) -> tuple[str, str, bytes]:
+    stream = io.BytesIO()
+    with zipfile.ZipFile(stream, "w") as archive:
+        for number in range(FRAMES):
+            state = session.state | {"camera.azimuth": 360 * number / FRAMES}
+            frame = render_state(application, state, session.size, FILM_SAMPLES)
+            picture = next(iter(frame.pictures.values()))
+            content = encode_png(application.develop(state, picture))
+            archive.writestr(f"{application.volume.name}_{number:03d}.png", content)
+    return ".orbit.zip", "application/zip", stream.getvalue()
+
+
+def changes_from_first(application: Application, state: State) -> State:
+    """Return what of a state differs from the first one."""
+    first = application.states.first()
+    return {name: value for name, value in state.items() if value != first[name]}
+
+
+def write_script(application: Application, session: Session) -> str:
+    """Return a Python script that makes the session's picture."""
+    changes = changes_from_first(application, session.state)
+    lines = [f"    {name!r}: {value!r}," for name, value in changes.items()]
+    state = "{\n" + "\n".join(lines) + "\n}" if lines else "{}"
+    source = application.source
+    volume = "volume" if source is None else f"brdfkit.volumes.load({source!r})"
+    samples = max(session.passes, SAMPLES)
+    return (
+        "import brdfkit\n\n"
+        f"state = {state}\n"
+        f"picture = brdfkit.viewing.render_view({volume}, state, size={session.size}, "
+        f"spp={samples})\n"
+        f"picture.write({application.volume.name + '.png'!r})\n"
+    )
+
+
+def write_command(application: Application, session: Session) -> str:
+    """Return a command that makes the session's picture."""
+    if application.source is None:
+        raise BrdfkitError(
+            "This volume was made in Python, and no command can load it; copy Python."
+        )
+    changes = changes_from_first(application, session.state)
+    width, height = session.size
+    samples = max(session.passes, SAMPLES)
+    words = ["brdfkit", "view", application.source, "--state", json.dumps(changes)]
+    words += ["--size", f"{width}x{height}", "--spp", str(samples)]
+    return shlex.join([*words, "--save", f"{application.volume.name}.png"])

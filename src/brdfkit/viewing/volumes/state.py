@@ -1,0 +1,258 @@
+"""The state of a view of a volume: its first values, its checks, and what a scene shows of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.arguments import is_number
+from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.core.errors import BrdfkitError, no_such_error
+from brdfkit.images.tone_mapping import ToneMapping
+from brdfkit.lighting.environments.map_files import load_radiance
+from brdfkit.rendering.volumes import defaults
+from brdfkit.rendering.volumes.camera import camera_direction, place_camera
+from brdfkit.rendering.volumes.scene import TURN_AZIMUTHS
+from brdfkit.viewing.controls import Control, State, default_state
+from brdfkit.viewing.volumes import transfer_table
+from brdfkit.viewing.volumes.camera import Camera
+from brdfkit.viewing.volumes.live_scene import VALUE_ROWS, Look, SceneKind, choose_steps
+from brdfkit.viewing.volumes.transfer_table import parse_colour
+from brdfkit.viewing.volumes.volume_controls import make_controls
+from brdfkit.volumes import TransferFunction, Volume
+from brdfkit.volumes.transfer.files import list_presets
+from brdfkit.volumes.transfer.windows import scale_transfer_to_values
+
+FIRST_BUMP = {"x": 0.5, "y": 0.25, "sx": 0.15, "sy": 0.25, "colour": "#e8a060", "a": 0.5}
+CLIP = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]
+THINNEST = 1e-3  # edge of the clipping box, as a share of the volume's
+MOVING_STEPS = 0.5  # share of the steps along rays while something moves
+# Names whose change does not alter the samples of a picture
+DRAWN_ONLY = (
+    "wipe",
+    "tone.",
+    "show.box",
+    "show.axes",
+    "show.slices",
+    "slices",
+    "view.moving_scale",
+)
+
+
+class VolumeState:
+    """Makes and checks the states of a view of one volume.
+
+    `steepest` is the gradient magnitude at the upper end of two-dimensional transfer functions.
+    """
+
+    def __init__(self, volume: Volume) -> None:
+        self.volume = volume
+        self.level = defaults.choose_surface_level(volume)
+        gradients = volume.gradient_magnitude
+        self.steepest = float(np.percentile(gradients, 99.9)) or float(gradients.max()) or 1.0
+        self.front = 1 if volume.axes == "RAS" else -1
+        self.function = self._scale(defaults.choose_transfer_function(volume, "single_scattering"))
+        sides = [camera_direction(volume, azimuth, 20.0) for azimuth in TURN_AZIMUTHS]
+        is_visible = defaults.make_visibility_test(self.function, 0.0)
+        origin, target = place_camera(volume, is_visible, sides, 1.0)
+        self.home = tuple(float(x) for x in target)
+        distance = float(np.linalg.norm(origin - target))
+        self.controls = {c.name: c for c in make_controls(volume, self.level, distance)}
+        self.environments: dict[str, AnyArray] = {}  # maps from the page, by name
+        self.functions: dict[str, TransferFunction] = {}  # those from the page, by name
+
+    def first(self) -> State:
+        """Return the state with which a view begins: the default transfer function, home."""
+        return default_state(self.controls.values()) | {
+            "camera.target": list(self.home),
+            "clip": CLIP,
+            "slices": [n // 2 for n in self.volume.size],
+            "transfer.preset": "default",
+            "transfer.bumps": [dict(FIRST_BUMP)],
+            **self._describe_function(self.function),
+        }
+
+    def _describe_function(self, function: TransferFunction) -> State:
+        """Return the part of the state that a transfer function is."""
+        by_gradients = function.gradients is not None
+        return {
+            "transfer.mode": "preset" if by_gradients else "points",
+            "transfer.points": transfer_table.to_points(function, self.values),
+            "transfer.extinction": function.extinction,
+            "transfer.colour": function.colour,
+        }
+
+    @property
+    def values(self) -> tuple[float, float]:
+        """The range of values, of width 1 if there is one value."""
+        low, high = self.volume.range
+        return (low, high) if low < high else (low, low + 1.0)
+
+    def presets(self) -> list[str]:
+        """Return the names of the transfer functions that the page offers."""
+        return ["default", "emission", "intensity", *list_presets(), *self.functions]
+
+    def load_preset(self, name: str) -> TransferFunction:
+        """Return a transfer function of `presets`, scaled to the volume."""
+        if name == "default":
+            return self.function
+        if name in self.functions:
+            return self.functions[name]
+        chosen = {"emission": "emission_absorption", "intensity": "maximum_intensity"}
+        if name in chosen:
+            return self._scale(defaults.choose_transfer_function(self.volume, chosen[name]))
+        if name not in list_presets():
+            raise no_such_error("transfer function", name, self.presets())
+        return self._scale(TransferFunction.load(name))
+
+    def _scale(self, function: TransferFunction) -> TransferFunction:
+        """Return a function in the volume's values and its unit of length."""
+        function = scale_transfer_to_values(function, self.volume.values)
+        if self.volume.unit and function.length_unit:
+            function = function.per(self.volume.unit)
+        return function
+
+    def add_environment(self, path: Path) -> None:
+        """Offer a further environment map, read from a file."""
+        _, rgb = load_radiance(path)
+        self.environments[path.name] = rgb
+        control = self.controls["light.environment"]
+        choices = (*control.choices, (path.name, path.name))
+        self.controls[control.name] = replace(control, choices=choices)
+
+    def with_function(self, state: State, function: TransferFunction) -> State:
+        """Return the state with a transfer function of a file, a further preset."""
+        self.functions[function.name] = self._scale(function)
+        return self.change(state, {"transfer.preset": function.name})
+
+    def change(self, state: State, changes: Mapping[str, Any]) -> State:
+        """Return the state after `changes`; raise `BrdfkitError` if one is not possible."""
+        new = dict(state)
+        for name, value in changes.items():
+            if name not in state:
+                raise no_such_error("setting", name, state)
+            control = self.controls.get(name)
+            new[name] = control.check(value) if control else self._check(name, value)
+        if "transfer.preset" in changes and "transfer.points" not in changes:
+            new |= self._describe_function(self.load_preset(new["transfer.preset"]))
+        elif "transfer.points" in changes and state["transfer.mode"] == "preset":
+            new["transfer.mode"] = "points"
+        return new
+
+    def table(self, state: State) -> AnyArray:
+        """Return RGBA of a state's transfer function, (n, 4) or over gradients (m, n, 4)."""
+        if state["transfer.mode"] == "preset":
+            function = self.load_preset(state["transfer.preset"])
+            return transfer_table.table_of_function(function, self.values, self.steepest)
+        return transfer_table.to_table(state, self.values)
+
+    def _check(self, name: str, value: Any) -> Any:
+        """Return the value of a name that no control declares; raise an error if it is wrong."""
+        fine = {
+            "camera.target": lambda: _is_numbers(value, 3),
+            "clip": lambda: len(value) == 2 and all(_is_numbers(corner, 3) for corner in value),
+            "slices": lambda: _is_numbers(value, 3),
+            "transfer.preset": lambda: value in self.presets(),
+            "transfer.points": lambda: transfer_table.is_points(value),
+            "transfer.bumps": lambda: transfer_table.is_bumps(value),
+            "transfer.extinction": lambda: is_number(value) and 0 < value < 1e9,
+        }[name]
+        try:
+            if not fine():
+                raise BrdfkitError(f"{name} = {str(value)[:60]} is not possible; undo the change.")
+        except TypeError:
+            raise BrdfkitError(f"{name} = {str(value)[:60]} is not possible; undo it.") from None
+        if name == "clip":
+            low, high = np.clip(np.array(value, float), 0, 1)
+            high = np.maximum(high, np.minimum(low + THINNEST, 1))
+            return [np.minimum(low, high - THINNEST).tolist(), high.tolist()]
+        if name == "slices":
+            last = np.array(self.volume.size) - 1
+            return np.clip(np.rint(value), 0, last).astype(int).tolist()
+        return value
+
+    # What a scene shows
+
+    def camera(self, state: State) -> Camera:
+        """Return the camera of a state."""
+        return Camera(
+            state["camera.azimuth"],
+            state["camera.elevation"],
+            state["camera.distance"],
+            state["camera.fov"],
+            tuple(state["camera.target"]),
+            self.front,
+        )
+
+    def scene_kind(self, state: State, side: int, size: tuple[int, int], moving: bool) -> SceneKind:
+        """Return what of a state needs kernels of its own, left (0) or right (1) of the wipe."""
+        renderer = state["second"] if side else state["renderer"]
+        kind = SceneKind(renderer, size, choose_steps(self.volume, MOVING_STEPS if moving else 1.0))
+        if renderer != "isosurface":
+            by_gradients = self.table(state).ndim == 3
+            kind = replace(kind, by_gradients=by_gradients, colour=state["transfer.colour"])
+        if renderer == "single_scattering":
+            kind = replace(kind, phase=state["phase"], max_depth=int(state["depth"]) + 1, steps=0)
+        if renderer in ("single_scattering", "isosurface"):
+            shown = state["show.environment"]
+            kind = replace(kind, sun=state["light.sun"], shows_environment=shown)
+        return kind
+
+    def look(self, state: State, side: int) -> Look:
+        """Return the parameters of a state's scene, left (0) or right (1) of the wipe."""
+        surface = (state["second"] if side else state["renderer"]) == "isosurface"
+        sun = state["light.sun_strength"] * parse_colour(state["light.sun_colour"])
+        return Look(
+            camera=self.camera(state),
+            table=_ramp() if surface else self.table(state),
+            extinction=state["transfer.extinction"] * state["density"],
+            level=state["level"],
+            surface=parse_colour(state["surface.colour"]),
+            asymmetry=state["asymmetry"],
+            clip=np.array(state["clip"], float),
+            background=parse_colour(state["background"]),
+            environment=state["light.environment"],
+            turn=state["light.turn"],
+            brightness=state["light.brightness"],
+            sun=sun,
+            sun_direction=_direction(state["light.sun_azimuth"], state["light.sun_elevation"]),
+        )
+
+    def tone_mapping(self, state: State) -> ToneMapping:
+        """Return the tone mapping of a state."""
+        high = max(state["tone.high"], state["tone.low"] + 1e-3)
+        return ToneMapping(
+            state["tone.curve"], state["tone.exposure"], state["tone.by"], state["tone.low"], high
+        )
+
+
+def needs_samples_anew(before: State, after: State) -> bool:
+    """Return whether two states differ in more than what is drawn over or made of the samples."""
+    changed = [name for name in after if before.get(name) != after[name]]
+    return any(not name.startswith(DRAWN_ONLY) for name in changed)
+
+
+def list_controls(controls: Mapping[str, Control]) -> list[dict[str, Any]]:
+    """Return the controls as the page reads them."""
+    return [control.to_json() for control in controls.values()]
+
+
+def _ramp() -> FloatArray:
+    """Return a table whose A is the share of the range of values, for an isosurface."""
+    share = np.linspace(0, 1, VALUE_ROWS)
+    return np.column_stack([np.ones((len(share), 3)), share])
+
+
+def _direction(azimuth: float, elevation: float) -> FloatArray:
+    """Return the unit vector (3,) at an azimuth from -y, and an elevation [degrees]."""
+    turn, lift = np.radians([azimuth, elevation])
+    return np.array([np.cos(lift) * np.sin(turn), -np.cos(lift) * np.cos(turn), np.sin(lift)])
+
+
+def _is_numbers(value: Any, count: int) -> bool:
+    """Return whether a value is a list of as many finite numbers."""
+    return len(value) == count and all(is_number(x) and abs(x) < 1e12 for x in value)

@@ -1,0 +1,140 @@
+"""Converts the transfer function of a view's state to the table that a `LiveScene` shows, and back.
+
+The state has one of three kinds: "points", linear between control points over the values; "bumps",
+Gaussians over the values; "bumps2d", Gaussians over values × gradient magnitudes [Lesar 2018, as in
+his program VPT]. A bump at (x₀, y₀) with the sizes s_x, s_y and the opacity a has
+
+    A = a exp(-((x - x₀)/s_x)² - ((y - y₀)/s_y)²)
+
+and its colour; later bumps lie over earlier ones. x and y are shares of the range of values and of
+the steepest gradient magnitude.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.core.colours import from_srgb, to_srgb
+from brdfkit.viewing.controls import State
+from brdfkit.viewing.volumes.live_scene import GRADIENT_ROWS, VALUE_ROWS
+from brdfkit.volumes import TransferFunction
+
+POINTS = 24  # control points at most, to which a function is simplified
+TOLERANCE = 0.01  # of RGB and A, by which a simplified function may deviate
+
+
+def to_table(state: State, values: tuple[float, float]) -> AnyArray:
+    """Return RGBA (n, 4) over the range of `values`, or (m, n, 4) over gradients as well."""
+    mode = state["transfer.mode"]
+    if mode == "points":
+        return table_of_points(state["transfer.points"], values)
+    table = table_of_bumps(state["transfer.bumps"], by_gradients=mode == "bumps2d")
+    return table if mode == "bumps2d" else table[0]
+
+
+def table_of_points(points: list[Any], values: tuple[float, float]) -> FloatArray:
+    """Return RGBA (n, 4) of control points [value, "#rrggbb", A]; two at one value are a jump."""
+    at = np.array([point[0] for point in points], float)
+    rgba = np.array([[*parse_colour(point[1]), point[2]] for point in points], float)
+    places = np.linspace(*values, VALUE_ROWS)
+    return np.stack([np.interp(places, at, channel) for channel in rgba.T], axis=-1)
+
+
+def table_of_function(
+    function: TransferFunction, values: tuple[float, float], steepest: float
+) -> FloatArray:
+    """Return RGBA (n, 4) of a function, or (m, n, 4) if it depends on gradient magnitudes."""
+    places = np.linspace(*values, VALUE_ROWS)
+    if function.gradients is None:
+        return function(places)
+    return function(places, np.linspace(0, steepest, GRADIENT_ROWS)[:, None])
+
+
+def table_of_bumps(bumps: list[dict[str, Any]], by_gradients: bool) -> FloatArray:
+    """Return RGBA (m, n, 4) of bumps; m is 1 if they do not depend on gradients."""
+    x = np.linspace(0, 1, VALUE_ROWS)
+    y = np.linspace(0, 1, GRADIENT_ROWS)[:, None] if by_gradients else np.zeros((1, 1))
+    premultiplied, alpha = np.zeros((len(y), len(x), 3)), np.zeros((len(y), len(x)))
+    for bump in bumps:
+        along = np.exp(-(((x - bump["x"]) / bump["sx"]) ** 2))
+        up = np.exp(-(((y - bump["y"]) / bump["sy"]) ** 2)) if by_gradients else 1.0
+        a = bump["a"] * along * up
+        rgb = parse_colour(bump["colour"])
+        premultiplied = a[..., None] * rgb + (1 - a[..., None]) * premultiplied
+        alpha = a + (1 - a) * alpha
+    rgb = premultiplied / np.maximum(alpha, 1e-9)[..., None]
+    return np.concatenate([np.clip(rgb, 0, 1), alpha[..., None]], axis=-1)
+
+
+def parse_colour(text: str) -> FloatArray:
+    """Return "#rrggbb", in sRGB, as linear RGB (3,)."""
+    return from_srgb(np.array([int(text[k : k + 2], 16) for k in (1, 3, 5)]) / 255)
+
+
+def format_colour(rgb: FloatArray) -> str:
+    """Return linear RGB (3,) as "#rrggbb", in sRGB."""
+    return "#" + "".join(f"{round(255 * channel):02x}" for channel in to_srgb(rgb).tolist())
+
+
+def to_points(function: TransferFunction, values: tuple[float, float]) -> list[list[Any]]:
+    """Return a function's control points [value, "#rrggbb", A], simplified to at most `POINTS`.
+
+    Of a function of gradient magnitudes it is the largest A over all of them. The points begin and
+    end at the range of `values`.
+    """
+    rgba = function.rgba
+    if function.gradients is not None:
+        rgba = np.take_along_axis(rgba, rgba[..., 3:].argmax(axis=0)[None], axis=0)[0]
+    at = np.asarray(function.values, float)
+    low, high = values
+    inside = (at > low) & (at < high)
+    ends = np.stack([[np.interp(end, at, c) for c in rgba.T] for end in (low, high)])
+    at = np.concatenate([[low], at[inside], [high]])
+    rgba = np.concatenate([ends[:1], rgba[inside], ends[1:]])
+    kept = _simplify(at, rgba)
+    return [[float(at[k]), format_colour(rgba[k, :3]), float(rgba[k, 3])] for k in kept]
+
+
+def _simplify(at: FloatArray, rgba: FloatArray) -> list[int]:
+    """Return the points to keep of a polyline: always the one next that deviates most."""
+    kept = [0, len(at) - 1]
+    while len(kept) < min(POINTS, len(at)):
+        kept.sort()
+        line = np.stack([np.interp(at, at[kept], channel[kept]) for channel in rgba.T], axis=1)
+        deviation = np.abs(line - rgba).max(axis=1)
+        deviation[kept] = 0
+        if deviation.max() < TOLERANCE:
+            break
+        kept.append(int(deviation.argmax()))
+    return sorted(kept)
+
+
+def is_points(points: Any) -> bool:
+    """Return whether a value is a list of two or more control points, rising."""
+    try:
+        at = [float(value) for value, _, _ in points]
+        fine = all(isinstance(c, str) and len(parse_colour(c)) == 3 for _, c, _ in points)
+        opacities = [float(a) for _, _, a in points]
+    except (TypeError, ValueError, IndexError):
+        return False
+    rising = all(a <= b for a, b in pairwise(at))
+    finite = all(np.isfinite(at)) and all(0 <= a <= 1 for a in opacities)
+    return fine and rising and finite and 2 <= len(points) <= 256 and at[0] < at[-1]
+
+
+def is_bumps(bumps: Any) -> bool:
+    """Return whether a value is a list of bumps."""
+    try:
+        return len(bumps) <= 64 and all(
+            0 <= float(b["a"]) <= 1
+            and all(-1 <= float(b[k]) <= 2 for k in ("x", "y"))
+            and all(1e-4 <= float(b[k]) <= 4 for k in ("sx", "sy"))
+            and len(parse_colour(b["colour"])) == 3
+            for b in bumps
+        )
+    except (TypeError, ValueError, KeyError, IndexError):
+        return False

@@ -1,0 +1,84 @@
+"""The camera, the transfer functions and the page of a view, against independent computations."""
+
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.viewing import front_end
+from brdfkit.viewing.controls import Control
+from brdfkit.viewing.volumes import transfer_table
+from brdfkit.viewing.volumes.camera import Camera
+from brdfkit.volumes.transfer.files import list_presets
+
+
+@pytest.mark.parametrize("size", [(64, 64), (96, 32), (32, 96)])
+@pytest.mark.parametrize("elevation", [-90, 20, 90])
+def test_the_camera_is_the_one_of_mitsuba(mi, size, elevation):
+    """The ray through a place, and the place of a point, as Mitsuba's sensor has them."""
+    camera, aspect = Camera(33.0, elevation, 5.0, 40.0, (1.0, 2.0, 3.0)), size[0] / size[1]
+    film = {"type": "hdrfilm", "width": size[0], "height": size[1]}
+    to_world = mi.ScalarTransform4f(camera.to_world)
+    fov = camera.horizontal_fov(aspect)
+    sensor = {"type": "perspective", "fov": fov, "to_world": to_world, "film": film}
+    ray, _ = mi.load_dict(sensor).sample_ray(0, 0, mi.Point2f(0.2, 0.7), mi.Point2f(0.5))
+    origin, direction = camera.cast_ray(0.2, 0.7, aspect)
+    assert np.array(ray.d)[:, 0] == pytest.approx(direction, abs=1e-5)
+    point = origin + 7 * direction
+    assert camera.project(point[None], aspect)[0, :2] == pytest.approx([0.2, 0.7], abs=1e-6)
+
+
+@pytest.mark.quick
+def test_bumps_lie_over_each_other():
+    bumps = [
+        {"x": 0.4, "y": 0.5, "sx": 0.2, "sy": 0.3, "colour": "#ff0000", "a": 0.6},
+        {"x": 0.6, "y": 0.2, "sx": 0.1, "sy": 0.4, "colour": "#00ff00", "a": 0.9},
+    ]
+    table = transfer_table.table_of_bumps(bumps, by_gradients=True)
+    rows, columns = table.shape[:2]
+    for row, column in ((0, 0), (20, 2000), (40, 2500)):
+        x, y = column / (columns - 1), row / (rows - 1)
+        colour, left = np.zeros(3), 1.0
+        for bump in bumps[::-1]:  # from the top
+            at = ((x - bump["x"]) / bump["sx"]) ** 2 + ((y - bump["y"]) / bump["sy"]) ** 2
+            a = bump["a"] * np.exp(-at)
+            colour += left * a * transfer_table.parse_colour(bump["colour"])
+            left *= 1 - a
+        assert table[row, column, 3] == pytest.approx(1 - left, abs=1e-12)
+        assert table[row, column, :3] * (1 - left) == pytest.approx(colour, abs=1e-9)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", list_presets())
+def test_points_are_the_preset(name):
+    function = bk.volumes.TransferFunction.load(name)
+    low, high = function.range
+    points = transfer_table.to_points(function, (low, high))
+    assert transfer_table.is_points(points)
+    table = transfer_table.table_of_points(points, (low, high))
+    values = np.linspace(low, high, len(table))
+    if function.gradients is None:
+        assert np.abs(table - function(values)).max() < 0.02
+    whole = transfer_table.table_of_function(function, (low, high), 400.0)
+    if function.gradients is None:
+        assert (whole == function(values)).all()
+    else:  # a row for each of 64 gradient magnitudes
+        row = function(values, np.full_like(values, 400 * 20 / 63))
+        assert whole[20] == pytest.approx(row, abs=1e-12)
+
+
+@pytest.mark.quick
+def test_a_slider_keeps_numbers_within_its_ends():
+    slider = Control("n", "N", "p", 1, low=1, high=8, step=1)
+    assert [slider.check(x) for x in (0, 2.4, 99)] == [1, 2, 8]
+
+
+@pytest.mark.quick
+def test_the_page_loads_nothing_from_elsewhere_and_evaluates_nothing():
+    files = [front_end.read_page_file(n) for n in ("page.html", "page.js", "viewer.css")]
+    for text in (front_end.read_module(), *files):
+        assert "http://" not in text.replace("http://www.w3.org/2000/svg", "")
+        assert "https://" not in text
+        assert "eval(" not in text
+    assert front_end.read_module().rstrip().endswith("export default { render };")
+    parts = {path.name for path in front_end.FOLDER.glob("*.js")} - {"page.js"}
+    assert parts == set(front_end.PARTS)

@@ -1,0 +1,287 @@
+"""The state machine behind a page: messages in, messages out, without a browser."""
+
+import json
+
+import drjit as dr
+import numpy as np
+import pytest
+
+import brdfkit as bk
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.viewing.session import Session
+from brdfkit.viewing.volumes.application import VolumeApplication
+from brdfkit.viewing.volumes.volume_controls import LABELS
+
+
+@pytest.fixture(scope="module")
+def volume():
+    return bk.volumes.load("smoke", size=16)
+
+
+@pytest.fixture(scope="module")
+def application(mi, volume):
+    return VolumeApplication(volume, "smoke")
+
+
+@pytest.fixture
+def session(application):
+    session = Session(application)
+    session.handle({"type": "hello", "width": 64, "height": 64, "state": None})
+    return session
+
+
+def work(session):
+    """Let the session render once, and confirm its pictures."""
+    messages = session.work()
+    for message, _ in messages:
+        if message["type"] == "picture":
+            session.handle({"type": "shown", "number": message["number"]})
+    return messages
+
+
+def kinds(messages):
+    return [message["type"] for message, _ in messages]
+
+
+def test_the_first_message_has_all_that_the_page_needs(session):
+    ((message, (joint,)),) = session.handle({"type": "hello", "width": 64, "height": 64})
+    assert json.loads(json.dumps(message))["type"] == "open"
+    names = {control["name"] for control in message["controls"]}
+    assert names <= set(message["state"])
+    assert {control["panel"] for control in message["controls"]} <= {
+        panel["name"] for panel in message["panels"]
+    }
+    assert sum(message["histogram"]) == 16**3
+    assert joint.startswith(b"\x89PNG")
+
+
+def test_a_move_is_small_and_a_rest_converges(session):
+    moving = session.handle({"type": "set", "changes": {"camera.azimuth": 50}, "moving": True})
+    assert moving == []
+    ((picture, (content,)), _) = work(session)
+    assert (picture["width"], picture["mime"], picture["moving"]) == (32, "image/jpeg", True)
+    assert content.startswith(b"\xff\xd8")
+    assert not session.has_work()
+    (state,) = session.handle({"type": "set", "changes": {"camera.azimuth": 51}, "moving": False})
+    assert state[0]["state"]["camera.azimuth"] == 51
+    samples = [work(session)[-1][0]["samples"] for _ in range(3)]
+    assert samples == [1, 2, 3]
+    assert "noise" in session.describe_progress()[0]["noise"]
+
+
+def test_no_picture_is_sent_before_the_last_one_is_shown(session):
+    session.handle({"type": "set", "changes": {"camera.azimuth": 1}, "moving": True})
+    ((picture, _), _) = session.work()
+    session.handle({"type": "set", "changes": {"camera.azimuth": 2}, "moving": True})
+    assert not session.has_work()
+    session.handle({"type": "shown", "number": picture["number"]})
+    assert session.has_work()
+
+
+def test_nothing_is_rendered_while_nobody_looks(session):
+    session.handle({"type": "visible", "visible": False})
+    assert not session.has_work()
+    session.handle({"type": "visible", "visible": True})
+    assert session.has_work()
+    work(session)
+    session.handle({"type": "pause", "paused": True})
+    assert not session.has_work()
+
+
+def test_undo_and_redo_skip_what_was_dragged_over(session):
+    for azimuth in (40, 50, 60):
+        session.handle({"type": "set", "changes": {"camera.azimuth": azimuth}, "moving": True})
+    session.handle({"type": "set", "changes": {"camera.azimuth": 70}, "moving": False})
+    ((undone, _),) = session.handle({"type": "undo"})
+    assert (undone["state"]["camera.azimuth"], undone["can_undo"]) == (30, False)
+    ((redone, _),) = session.handle({"type": "redo"})
+    assert redone["state"]["camera.azimuth"] == 70
+    session.handle({"type": "reset"})
+    assert session.state == session.application.first_state()
+
+
+def test_what_changes_no_sample_keeps_the_samples(session):
+    work(session), work(session)
+    session.handle({"type": "set", "changes": {"tone.exposure": 3, "wipe": 0.2}, "moving": False})
+    assert work(session)[-1][0]["samples"] == 2
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"nonsense": 1},
+        {"renderer": "raster"},
+        {"density": "much"},
+        {"density": float("nan")},
+        {"background": "red"},
+        {"clip": [[0, 0], [1, 1]]},
+        {"clip": 3},
+        {"transfer.points": [[0, "#000000", 0]]},
+        {"transfer.points": [[1, "#000000", 0], [0, "#ffffff", 1]]},
+        {"transfer.bumps": [{"x": 0}]},
+        {"transfer.preset": "ct_bones"},
+        {"camera.target": ["a", 0, 0]},
+        {"slices": None},
+    ],
+    ids=str,
+)
+def test_an_impossible_change_is_a_sentence_and_changes_nothing(session, changes):
+    before = dict(session.state)
+    messages = session.handle({"type": "set", "changes": changes})
+    assert kinds(messages) == ["error", "state"]
+    assert messages[0][0]["text"].endswith(".")
+    assert session.state == before
+
+
+@pytest.mark.parametrize("message", [{}, {"type": "open_file", "path": "/etc/passwd"}, {"type": 3}])
+def test_an_unknown_message_is_refused(session, message):
+    assert kinds(session.handle(message)) == ["error", "state"]
+
+
+def moved(control):
+    """Two values of a slider, a flag or a colour that differ from its default."""
+    if control.kind == "colour":
+        return ["#336699", "#993366"]
+    at = np.array([0.3, 0.6])
+    if control.log:
+        values = np.exp(np.log(control.low) + at * np.log(control.high / control.low))
+    else:
+        values = control.low + at * (control.high - control.low)
+    return values.tolist()
+
+
+@pytest.mark.parametrize("renderer", LABELS)
+def test_no_slider_needs_a_new_kernel(session, renderer):
+    """Except those of the resolution and of the number of scatterings, which are for kernels."""
+    sun = {"renderer": renderer, "light.sun": True}
+    session.handle({"type": "set", "changes": sun})
+    points = [[0.0, "#102030", 0.0], [0.5, "#ffaa00", 0.7], [1.0, "#ffffff", 1.0]]
+    changes = [{"transfer.points": points}, {"transfer.points": points[::2]}]
+    changes += [{"clip": [[0, 0, 0], [1, 1, high]]} for high in (0.8, 0.5)]
+    changes += [{"camera.target": [0.1, 0, 0]}, {"camera.target": [0, 0.1, 0.2]}]
+    for control in session.application.states.controls.values():
+        if control.kind in ("slider", "colour") and control.name not in (
+            "view.scale",
+            "view.moving_scale",
+            "depth",
+        ):
+            changes += [{control.name: value} for value in moved(control)]
+    work(session)
+    session.handle({"type": "set", "changes": changes[0]})
+    work(session)  # what computes the integrals of a table
+    with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
+        for change in changes:
+            dr.kernel_history_clear()
+            assert kinds(session.handle({"type": "set", "changes": change}))[0] == "state"
+            work(session)
+            new = [k for k in dr.kernel_history((dr.KernelType.JIT,)) if not k["cache_hit"]]
+            assert not new, change
+
+
+@pytest.mark.parametrize("second", ["", "isosurface"])
+def test_the_copied_script_and_the_saved_picture_are_the_picture(session, tmp_path, second):
+    changes = {"renderer": "emission_absorption", "second": second, "camera.azimuth": 75.0}
+    session.handle({"type": "set", "changes": changes | {"tone.exposure": 2.0}})
+    work(session), work(session)
+    ((message, _),) = session.handle({"type": "copy", "kind": "python"})
+    script = (
+        message["text"]
+        .replace("spp=64", "spp=2")
+        .replace("load('smoke')", "load('smoke', size=16)")
+    )
+    names = {}
+    exec(script.replace("picture.write", "str"), names)
+    ((file, (png,)),) = session.handle({"type": "save", "kind": "png"})
+    (from_script,) = names["picture"].pictures.values()
+    application = session.application
+    ((_, (again,)),) = [(0, [application.develop(session.state, from_script)])]
+    from io import BytesIO
+
+    from PIL import Image
+
+    assert (np.asarray(Image.open(BytesIO(png))) == again).all()
+    assert file["name"] == "smoke.png"
+
+
+def test_saved_settings_and_functions_come_back(session, tmp_path):
+    session.handle({"type": "set", "changes": {"transfer.mode": "bumps2d", "density": 2.0}})
+    ((_, (state,)),) = session.handle({"type": "save", "kind": "state"})
+    ((_, (function,)),) = session.handle({"type": "save", "kind": "transfer"})
+    before = dict(session.state)
+    session.handle({"type": "reset"})
+    piece = {"type": "upload", "name": "view.json", "size": len(state), "offset": 0}
+    answers = session.handle(piece | {"kind": "state", "count": 1, "index": 0}, state)
+    assert kinds(answers)[-1] == "state"
+    assert session.state == before
+    path = tmp_path / "f.json"
+    path.write_bytes(function)
+    loaded = bk.volumes.TransferFunction.load(path)
+    assert loaded.extinction == pytest.approx(2 * before["transfer.extinction"])
+    assert loaded.gradients is not None
+
+
+def test_a_dropped_volume_replaces_the_one_that_is_shown(session, volume, tmp_path):
+    import nibabel
+
+    values = np.arange(4 * 5 * 6, dtype=np.float32).reshape(4, 5, 6)
+    path = tmp_path / "head.nii.gz"
+    nibabel.save(nibabel.Nifti1Image(values, np.diag([2, 2, 3, 1])), path)
+    data, half = path.read_bytes(), 40
+    piece = {"type": "upload", "kind": "volume", "name": "../../head.nii.gz", "size": len(data)}
+    piece |= {"count": 1, "index": 0}
+    own = Session(VolumeApplication(volume))
+    assert kinds(own.handle(piece | {"offset": 0}, data[:half])) == ["uploaded"]
+    ((opened, _), *_) = own.handle(piece | {"offset": half}, data[half:])
+    assert (opened["type"], opened["volume"]["size"]) == ("open", (4, 5, 6))
+    assert opened["volume"]["axes"] == "RAS"
+
+
+def test_raw_voxels_ask_for_their_header(volume):
+    data = bytes(range(64))
+    piece = {"type": "upload", "kind": "volume", "name": "x.raw", "size": 64, "offset": 0}
+    own = Session(VolumeApplication(volume))
+    ((question, _),) = own.handle(piece | {"count": 1, "index": 0}, data)
+    assert (question["type"], question["guess"]["size"]) == ("ask_raw", [4, 4, 4])
+    header = {"type": "raw", "size": [4, 4, 4], "dtype": "uint8", "spacing": [1, 1, 2]}
+    ((opened, _), *_) = own.handle(header)
+    assert opened["volume"]["spacing"] == (1, 1, 2)
+
+
+def test_a_damaged_file_is_a_sentence(volume):
+    own = Session(VolumeApplication(volume))
+    piece = {"type": "upload", "kind": "volume", "name": "x.nii", "size": 3, "offset": 0}
+    messages = own.handle(piece | {"count": 1, "index": 0}, b"abc")
+    assert kinds(messages) == ["error", "state"]
+    assert own.application.upload.folder is None
+
+
+def test_the_voxel_under_the_pointer(session, volume):
+    session.handle({"type": "set", "changes": {"renderer": "isosurface", "level": 0.3}})
+    ((message, _),) = session.handle({"type": "probe", "x": 0.5, "y": 0.5})
+    i, j, k = message["voxel"]
+    near = volume.values[max(k - 1, 0) : k + 2, max(j - 1, 0) : j + 2, max(i - 1, 0) : i + 2]
+    assert near.min() <= 0.3 <= near.max()
+    assert f"voxel {i}, {j}, {k}" in message["text"]
+    ((outside, _),) = session.handle({"type": "probe", "x": 0.0, "y": 0.0})
+    assert outside["text"] == ""
+
+
+def test_slices_are_sent_when_they_are_shown_and_moved(session, volume):
+    answers = session.handle({"type": "set", "changes": {"show.slices": True}})
+    assert kinds(answers) == ["state", "slices"]
+    assert [plane["axis"] for plane in answers[1][0]["planes"]] == ["z", "y", "x"]
+    ((probe, _),) = session.handle({"type": "probe_slice", "plane": 0, "x": 0.99, "y": 0.99})
+    assert probe["voxel"] == [15, 0, 8]
+    assert probe["text"].startswith(f"{volume.values[8, 0, 15]:.6g} at voxel 15, 0, 8")
+
+
+def test_an_error_of_the_renderer_is_said_and_pauses(session, monkeypatch):
+    from brdfkit.viewing.render_thread import work_safely
+
+    def fail(*_):
+        raise BrdfkitError("The extinction is too large.")
+
+    monkeypatch.setattr(session.application, "render", fail)
+    messages = work_safely(session)
+    assert kinds(messages) == ["error", "progress"]
+    assert messages[1][0]["paused"]
