@@ -80,6 +80,8 @@ def format_default(setting):
         return setting.default and f"`{setting.default}`"
     if isinstance(setting.default, bool):
         return str(setting.default).lower()
+    if isinstance(setting.default, tuple):
+        return ", ".join(f"{value:g}" for value in setting.default)
     return "" if setting.default is None else f"{setting.default:g}"
 
 

@@ -203,6 +203,24 @@ def test_the_copied_script_and_the_saved_picture_are_the_picture(session, tmp_pa
     assert file["name"] == "smoke.png"
 
 
+def test_a_film_is_rendered_frame_by_frame(session, monkeypatch):
+    import zipfile
+    from io import BytesIO
+
+    from brdfkit.viewing.volumes import saving
+
+    monkeypatch.setattr(saving, "FRAMES", 3)
+    monkeypatch.setattr(saving, "FILM_SAMPLES", 1)
+    session.handle({"type": "set", "changes": {"renderer": "maximum_intensity"}})
+    assert kinds(session.handle({"type": "save", "kind": "film"})) == ["busy"]
+    sent = [message for _ in range(4) for message in session.work()]
+    assert kinds(sent) == ["busy", "busy", "busy", "busy", "file"]
+    archive = zipfile.ZipFile(BytesIO(sent[-1][1][0]))
+    assert archive.namelist() == [f"smoke_{k:03d}.png" for k in range(3)]
+    assert session.work() == []  # the end of the task
+    assert session.has_work()
+
+
 def test_saved_settings_and_functions_come_back(session, tmp_path):
     session.handle({"type": "set", "changes": {"transfer.mode": "bumps2d", "density": 2.0}})
     ((_, (state,)),) = session.handle({"type": "save", "kind": "state"})

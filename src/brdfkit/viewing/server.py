@@ -13,6 +13,7 @@ import json
 import secrets
 import socket
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
@@ -103,7 +104,8 @@ def make_app(make_application: Callable[[], Application], port: int, token: str)
         session = Session(await loop.run_in_executor(None, make_application))
 
         def send(message: Message) -> None:
-            loop.call_soon_threadsafe(outgoing.put_nowait, message)
+            with suppress(RuntimeError):  # the server has ended meanwhile
+                loop.call_soon_threadsafe(outgoing.put_nowait, message)
 
         writer = asyncio.create_task(write_messages(socket, outgoing))
         thread.add(session, send)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Protocol, TypeAlias
 
 from brdfkit.core.array_types import AnyArray
@@ -79,6 +79,7 @@ class Session:
         self.undo_states: list[State] = [dict(state)]
         self.redo_states: list[State] = []
         self.moving, self.number, self.shown = False, 0, 0
+        self.tasks: list[Iterator[list[Message]]] = []
         self.forget_samples()
 
     def forget_samples(self) -> None:
@@ -204,14 +205,31 @@ class Session:
     # Pictures
 
     def has_work(self) -> bool:
-        """Return whether there is a pass to render, and someone who looks."""
-        with self.lock:
+        """Return whether there is a pass to render, and someone who looks.
+
+        False while a message is answered, which may take long, so that other sessions go on.
+        """
+        if not self.lock.acquire(blocking=False):
+            return False
+        try:
+            if self.tasks:
+                return True
             if not self.visible or (self.shown < self.number and (self.moving or self.stale)):
                 return False
             return self.stale or not (self.paused or self.converged or self.moving)
+        finally:
+            self.lock.release()
 
     def work(self) -> list[Message]:
-        """Render a pass of the newest state, and return its pictures if the page waits for them."""
+        """Render a pass of the newest state, and return its pictures if the page waits for them.
+
+        Tasks, such as a film, come first, step by step.
+        """
+        if self.tasks:
+            messages = next(self.tasks[0], None)
+            if messages is None:
+                self.tasks.pop(0)
+            return messages or []
         with self.lock:
             state, moving, number = self.state, self.moving, self.passes
             samples, size = self.accumulated, self._picture_size(moving)

@@ -212,7 +212,7 @@ class LiveScene:
             self.map_name = environment
             self.map_data = np.array(mi.traverse(bitmap)["data"]) * described["scale"]
         factor = ILLUMINANCES[self.kind.renderer] * brightness
-        self.parameters["sky.data"] = mi.TensorXf(np.float32(factor * self.map_data))
+        self.parameters["sky.data"] = mi.TensorXf(np.asarray(factor * self.map_data, np.float32))
         at = mi.Transform4f()
         self.parameters["sky.to_world"] = at.rotate([0, 0, 1], turn) @ at.rotate([1, 0, 0], 90)
 

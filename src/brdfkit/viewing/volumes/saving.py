@@ -7,6 +7,7 @@ import json
 import shlex
 import tempfile
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -67,13 +68,15 @@ def render_state(
 
 
 def make_file(application: Application, session: Session, kind: str) -> Message:
-    """Return the message "file" of a kind of `KINDS`."""
+    """Return the message "file" of a kind of `KINDS`; a film follows when it is finished."""
+    if kind == "film":
+        session.tasks.append(_make_film(application, session.state, session.size))
+        return {"type": "busy", "text": "The orbit is rendered", "fraction": 0.0}, []
     makers = {
         "png": _make_png,
         "exr": _make_exr,
         "state": _make_state,
         "transfer": _make_transfer,
-        "film": _make_film,
     }
     if kind not in makers:
         raise BrdfkitError(f"A view is saved as {', '.join(makers)}, and not as {kind!r:.20}.")
@@ -139,16 +142,21 @@ def to_function(application: Application, state: State) -> TransferFunction:
     )
 
 
-def _make_film(application: Application, session: Session) -> tuple[str, str, bytes]:
-    stream = io.BytesIO()
+def _make_film(
+    application: Application, state: State, size: tuple[int, int]
+) -> Iterator[list[Message]]:
+    """Render an orbit frame by frame; yield messages of the progress, and at last the file."""
+    stream, name = io.BytesIO(), application.volume.name
     with zipfile.ZipFile(stream, "w") as archive:
         for number in range(FRAMES):
-            state = session.state | {"camera.azimuth": 360 * number / FRAMES}
-            frame = render_state(application, state, session.size, FILM_SAMPLES)
-            picture = next(iter(frame.pictures.values()))
-            content = encode_png(application.develop(state, picture))
-            archive.writestr(f"{application.volume.name}_{number:03d}.png", content)
-    return ".orbit.zip", "application/zip", stream.getvalue()
+            turned = state | {"camera.azimuth": 360 * number / FRAMES}
+            frame = render_state(application, turned, size, FILM_SAMPLES)
+            colours = application.develop(turned, next(iter(frame.pictures.values())))
+            archive.writestr(f"{name}_{number:03d}.png", encode_png(colours))
+            text = f"The orbit is rendered: {number + 1} of {FRAMES} frames"
+            yield [({"type": "busy", "text": text, "fraction": (number + 1) / FRAMES}, [])]
+    file = {"type": "file", "name": f"{name}.orbit.zip", "mime": "application/zip"}
+    yield [({"type": "busy", "text": "", "fraction": None}, []), (file, [stream.getvalue()])]
 
 
 def changes_from_first(application: Application, state: State) -> State:
