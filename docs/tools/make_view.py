@@ -1,4 +1,4 @@
-"""Makes docs/view.png: the page of `brdfkit view smoke`, as Chromium shows it."""
+"""Makes docs/view.jpg: the page of `brdfkit view smoke`, as Chromium shows it."""
 
 import threading
 from pathlib import Path
@@ -30,7 +30,7 @@ def make_picture(path: Path) -> None:
         page = browser.new_page(viewport=SIZE)
         page.goto(f"http://{server.HOST}:{port}/picture/")
         page.wait_for_function(ENOUGH, timeout=PATIENCE)
-        page.screenshot(path=path)
+        page.screenshot(path=path, type="jpeg", quality=88)
         browser.close()
     runner.should_exit = True
     thread.join()
@@ -38,4 +38,4 @@ def make_picture(path: Path) -> None:
 
 
 if __name__ == "__main__":
-    make_picture(Path(__file__).parents[1] / "view.png")
+    make_picture(Path(__file__).parents[1] / "view.jpg")
