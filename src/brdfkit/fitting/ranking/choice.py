@@ -1,9 +1,9 @@
 """Chooses the model that a ranking recommends, and explains the choice.
 
 The choice starts from the Pareto set: the models that no other model surpasses in both error and
-picture. It keeps those whose pictures are as good as the best one, then those whose errors are tied
-for the least, and takes the one with the fewest parameters. A model with implausible values at
-grazing angles is only chosen if there is no other.
+picture. It keeps those with pictures as good as the best one, and of these the ones with errors
+tied for the least. From the rest it takes the model with the fewest parameters. A model with
+implausible values at grazing angles is only chosen if there is no other.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ LINES = 3  # number of alternatives to the recommended model that are described
 
 @dataclass(frozen=True)
 class Choice:
-    """The steps in which one row of a `Ranking` was chosen, as lists of the rows that remained.
+    """The steps that chose one row of a `Ranking`: the rows that remained after each step.
 
     `pareto`: rows that no other row surpasses in both error and picture.
     `sound`: those of them whose fits are plausible at grazing angles; if there are none, plausible

@@ -75,7 +75,7 @@ def to_smoothness(value: float | None) -> float | None:
     return None if value is None else to_number("smoothness", value, least=SMALLEST_SMOOTHNESS)
 
 
-def to_shape(capture: Capture, resolution: int | None) -> tuple[int, int]:
+def choose_map_shape(capture: Capture, resolution: int | None) -> tuple[int, int]:
     """Return the shape (height, width) of the maps, whose longer side is `resolution` texels."""
     if resolution is None:
         return capture.default_shape(DEFAULT_LONGEST_SIDE)

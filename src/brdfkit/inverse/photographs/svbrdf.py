@@ -15,8 +15,8 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress, make_step_counter
 from brdfkit.inverse.photographs.arguments import (
     check_variant,
+    choose_map_shape,
     to_capture,
-    to_shape,
     to_smoothness,
     to_texel_parameters,
 )
@@ -112,7 +112,7 @@ def svbrdf(
     name, photographs = to_capture(capture, accept_8_bit)
     parameters = to_texel_parameters(model, anisotropic, fixed)
     smoothness = to_smoothness(smoothness)
-    shape = to_shape(photographs, resolution)
+    shape = choose_map_shape(photographs, resolution)
     clipped = photographs.clipped.mean() if photographs.lost is None else 0.0
     photographs = downsample(photographs, shape)
     observed = Observations.collect(photographs, shape)

@@ -114,8 +114,8 @@ def estimate_concentration(kappa: ArrayLike, n: int) -> AnyArray:
 def _sharpen_lobe(kappa: AnyArray, n: int) -> AnyArray:
     """Return the concentration of a lobe whose kernel density estimate is as wide as a given lobe.
 
-    The estimate uses `n` points of the lobe, which is sharper than the given one, whose
-    concentration is `kappa`.
+    `kappa` is the concentration of the given lobe. The lobe to find is sharper, because the
+    estimate from its `n` points is wider than the lobe itself.
     """
     sharper = kappa * (1 + n ** (-1 / 3))
     for _ in range(10):  # few steps suffice, as `sharper` and its estimate are nearly proportional

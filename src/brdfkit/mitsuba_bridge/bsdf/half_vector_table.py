@@ -31,7 +31,7 @@ class HalfVectorTable:
     relative to the azimuth of wi. `points` is the number of points along each side of a cell at
     which f is evaluated.
 
-    A cell in which f is 0 is never drawn, so that the table has to be mixed with cosine samples.
+    Cells where f is 0 are never drawn, so the table has to be mixed with cosine samples.
     `albedo` is the directional albedo (incidences, channels).
     """
 

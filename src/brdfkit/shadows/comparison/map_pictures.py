@@ -53,9 +53,9 @@ class CompressedArray:
 class MapPictures:
     """Pictures of the shadow maps of one projection and partition, kept compressed.
 
-    checker : `shade`, compressed.
-    parts : `part`, compressed.
-    view : `depths`, compressed.
+    The properties `shade`, `part` and `depths` return the pictures.
+
+    checker, parts, view : these pictures, compressed, in the same order.
     """
 
     checker: CompressedArray
@@ -64,7 +64,7 @@ class MapPictures:
 
     @classmethod
     def from_view(cls, view: LitView, placement: Placement, **settings: Any) -> "MapPictures":
-        """Make shadow maps for a view, by the `settings` of `LightShadow`, and draw them."""
+        """Make shadow maps for a view, with the `settings` of `LightShadow`, and draw them."""
         shadow = LightShadow(view.scene, placement, **settings)
         shade, part = draw_texel_checkerboard(shadow, view)
         depths = arrange_squares([scale_depths(each) for each in shadow.maps])

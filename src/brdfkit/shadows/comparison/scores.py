@@ -68,7 +68,7 @@ def average_scores(scores: Sequence[Scores]) -> Scores:
     Means of dB are means of the decibels themselves, as in [Ergun 2008]. A picture without an error
     has infinite PSNR, which counts as 99 dB. NaN is left out, and so is a PSNR of -∞.
     """
-    return _average_columns(_to_table(scores))
+    return _average_columns(_make_score_array(scores))
 
 
 def average_light_differences(scores: Sequence[Scores]) -> Scores:
@@ -77,7 +77,7 @@ def average_light_differences(scores: Sequence[Scores]) -> Scores:
     scores : the scores of one technique: of the first view in light 1, the first view in light 2,
         the second view in light 1, and so on.
     """
-    table = _to_table(scores)
+    table = _make_score_array(scores)
     first, second = table[::2], table[1::2]
     return _average_columns(np.abs(first[: len(second)] - second))
 
@@ -102,7 +102,7 @@ def format_scores(rows: Mapping[str, Scores]) -> list[tuple[str, ...]]:
     ]
 
 
-def _to_table(scores: Sequence[Scores]) -> FloatArray:
+def _make_score_array(scores: Sequence[Scores]) -> FloatArray:
     """Return scores as an array (scores, attributes), at most 99, with NaN in place of -∞."""
     table = np.array([[getattr(one, name) for name in NAMES] for one in scores])
     return np.where(np.isneginf(table), nan, np.minimum(table, 99.0))

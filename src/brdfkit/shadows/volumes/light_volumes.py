@@ -37,8 +37,8 @@ class LightVolumes:
         and caps behind the point.
     far_plane : `infinite`, or `finite`: faces beyond the camera's far plane do not count.
     pixels : number of pixels along the longer side of the picture; it determines the tiles' size.
-    near_cap : whether `depth_pass` also counts the volumes in which a camera ray begins at the near
-        plane, so that the camera may be in a shadow.
+    near_cap : whether the camera may be in a shadow; `depth_pass` then also counts the volumes
+        that contain the start of a camera ray, at the near plane.
     volume : named arguments of `make_shadow_volume`.
     """
 

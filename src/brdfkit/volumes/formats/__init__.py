@@ -5,8 +5,8 @@ Such a module defines
 - ``NAME``, the format's name in messages, and ``SUFFIXES``, such as ``(".nrrd", ".nhdr")``;
 - ``sniff(head)``, which returns whether the first 4 kB of a file, unpacked from gzip, look like
   the format;
-- ``read_header(file)``, which reads the header of a `VolumeFile`, and returns a `StoredVolume`,
-  from which the voxels are read layer by layer.
+- ``read_header(file)``, which reads the header of a `VolumeFile`. It returns a `StoredVolume`,
+  which then reads the voxels layer by layer.
 
 Several formats share `_volume_file.py` and `_streams.py`. The packages nibabel, pynrrd, pydicom and
 tifffile, each for one format, are imported only when a file needs them.

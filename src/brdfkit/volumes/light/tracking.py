@@ -11,8 +11,8 @@ All functions take
 
 - `extinction(p, active)`: σ [1/unit of length] at a `mitsuba.Point3f`; 0 outside the box;
 - `majorants`: upper bounds of σ in the volume's box;
-- `ray`, `t_min`, `t_max`: rays, and the distances between which light may collide, in units of the
-  length of the ray's direction, which need not be 1;
+- `ray`, `t_min`, `t_max`: rays, and the nearest and farthest distance where light may collide. The
+  unit is the length of the ray's direction, which need not be 1;
 - `sampler`: a `mitsuba.Sampler`, for one or two random numbers per look-up;
 - `active`: a mask of the rays that are followed; all light of the other rays passes.
 

@@ -43,7 +43,7 @@ def find_first_positive_step(
 def find_first_crossing(
     f: Callable[[JitFloat], JitFloat], near: JitFloat, far: JitFloat, steps: int, active: JitMask
 ) -> tuple[JitFloat, JitMask]:
-    """Find the distance at which f first rises above 0, and a mask of the rays on which it does.
+    """Find the distance at which f first rises above 0; return also a mask of rays where it does.
 
     The step before the first value above 0 is halved `HALVINGS` times, then the crossing is
     interpolated linearly. If f is above 0 at `near` already, the distance is `near`.

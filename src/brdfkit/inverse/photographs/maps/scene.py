@@ -66,8 +66,8 @@ def _make_bitmap_texture(values: FloatArray) -> dict[str, Any]:
 def format_scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
     """Return a Mitsuba scene as XML: the sample in the first photograph's light and camera.
 
-    `files` maps the name of each map to its file, which lies beside the scene and whose first row
-    is the sample's upper edge.
+    `files` maps the name of each map to its file beside the scene. The first row of a map is the
+    sample's upper edge.
     """
     width, height = svbrdf.size
     capture = svbrdf.capture
@@ -82,7 +82,8 @@ def format_scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
         turning, end = f'<bsdf type="tangent_rotation">\n        {angle}\n        ', "</bsdf>"
         inner = 'name="bsdf" '
     look = " ".join(
-        f'{name}="{_to_csv(getattr(camera, name))}"' for name in ("origin", "target", "up")
+        f'{name}="{_join_with_commas(getattr(camera, name))}"'
+        for name in ("origin", "target", "up")
     )
     clips = "\n".join(f'    <float name="{n}" value="{v!r}"/>' for n, v in camera.clips().items())
     plugin = _make_plugin_dict(svbrdf.model)
@@ -110,7 +111,7 @@ def format_scene_xml(svbrdf: Any, files: Mapping[str, str]) -> str:
   </sensor>
   <emitter type="point" id="lamp">
     <point name="position" {_format_xyz(capture.positions[0])}/>
-    <rgb name="intensity" value="{_to_csv(capture.intensities[0])}"/>
+    <rgb name="intensity" value="{_join_with_commas(capture.intensities[0])}"/>
   </emitter>
   <shape type="rectangle" id="sample">
     <transform name="to_world"><scale x="{width / 2!r}" y="{height / 2!r}" z="1"/></transform>
@@ -142,7 +143,7 @@ def _name_xml_type(value: float | str) -> str:
     return {int: "integer", float: "float", str: "string"}[type(value)]
 
 
-def _to_csv(numbers: Iterable[float]) -> str:
+def _join_with_commas(numbers: Iterable[float]) -> str:
     """Return numbers as text, separated by commas."""
     return ", ".join(repr(float(number)) for number in numbers)
 

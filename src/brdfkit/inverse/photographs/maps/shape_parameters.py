@@ -1,8 +1,8 @@
 """Converts the shape parameters of a texel to numbers that a least-squares search can step along.
 
-A parameter that is declared logarithmic is searched by its logarithm. The two widths u and v of an
-anisotropic lobe, whose directions are turned about the normal by an angle ψ, become three numbers
-m, p and q, which stay continuous where the angle jumps or, for equal widths, is undefined:
+A parameter that is declared logarithmic is searched by its logarithm. An anisotropic lobe has
+two widths u and v, whose directions are turned about the normal by an angle ψ. They become three
+numbers m, p and q. These stay continuous where ψ jumps, or is undefined because u = v:
 
     m = (log u + log v) / 2,    (p, q) = (log u - log v) / 2 · (cos 2ψ, sin 2ψ)
 """

@@ -124,7 +124,7 @@ class Svbrdf(Shown):
             self.capture.cameras[0].origin if viewer is None else _to_point_above("viewer", viewer)
         )
         place = _to_point_above("position", position)[None]
-        power = _to_intensity(intensity)
+        power = _check_intensity(intensity)
         from brdfkit.inverse.photographs.maps.maps import predict_radiances
 
         to_light, irradiance = illuminate_points(points, place, power)
@@ -177,7 +177,7 @@ def _to_point_above(what: str, point: Any) -> FloatArray:
     return place
 
 
-def _to_intensity(value: Any) -> FloatArray:
+def _check_intensity(value: Any) -> FloatArray:
     """Return a user's intensity of a light, one number or three, as an array (1, 3)."""
     intensity = to_array("intensity", value)
     if (

@@ -181,7 +181,7 @@ def _make_unknown(parameters: MitsubaObject, key: str, bounds: Bounds | None) ->
         # Only a roughness has a lower bound above 0; its logarithm is searched
         is_log, is_linear = low > 0, kind.startswith("Color")
     if bounds is not None:
-        low, high = _to_bounds(key, bounds, *widest)
+        low, high = _check_bounds(key, bounds, *widest)
     elif (numbers < low).any():
         raise BrdfkitError(f"{key}: it begins below 0; give its bounds, as {{name: (low, high)}}.")
     return Unknown(
@@ -203,7 +203,7 @@ def _make_unknown(parameters: MitsubaObject, key: str, bounds: Bounds | None) ->
     )
 
 
-def _to_bounds(key: str, value: Any, lowest: float, highest: float) -> Bounds:
+def _check_bounds(key: str, value: Any, lowest: float, highest: float) -> Bounds:
     """Return a user's bounds (low, high), which must lie within `lowest` to `highest`."""
     low, high = to_number_pair(f"{key}: bounds", value)
     if not lowest <= low < high <= highest:

@@ -105,11 +105,11 @@ def write_scene_values(scene: MitsubaObject, values: Mapping[str, Any]) -> None:
     for name, value in values.items():
         if name not in known:
             raise no_such_error("parameter", name, known)
-        parameters[known[name]] = _to_entry(parameters, known[name], value)
+        parameters[known[name]] = _convert_to_entry_type(parameters, known[name], value)
     parameters.update()
 
 
-def _to_entry(parameters: MitsubaObject, key: str, value: Any) -> MitsubaObject:
+def _convert_to_entry_type(parameters: MitsubaObject, key: str, value: Any) -> MitsubaObject:
     """Convert a float, a tuple or an array to the Mitsuba type of the entry `key`."""
     kind = type(parameters[key])
     if not isinstance(value, np.ndarray):
