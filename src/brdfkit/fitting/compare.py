@@ -166,7 +166,7 @@ def compare(
 
 
 def _compute_albedos(brdf: Any, pixels: Pixels) -> tuple[float, ...]:
-    """Return the albedos of a BRDF at `ANGLES`, as means over the channels, by quadrature."""
+    """Integrate the albedos of a BRDF at `ANGLES`, as means over the channels."""
     if isinstance(brdf, Measured):
         return brdf.albedo.means
     return tuple(pixels.evaluate(brdf.eval).mean(axis=1).tolist())

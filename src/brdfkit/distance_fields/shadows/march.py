@@ -18,9 +18,9 @@ from brdfkit.core.array_types import JitFloat, JitMask
 from brdfkit.distance_fields.shadows.cone import LightCone
 from brdfkit.distance_fields.shadows.field import distance_function, lipschitz_bound
 
-# A function from (t, f, R_C, memory) to the length of a step and the memory for the next step, with
-# the field f at t, a place on the axis, and the limit R_C of ratios; the memory is whatever the
-# function wants to know of earlier steps
+# A function from (t, f, R_C, memory) to the length of a step and the memory for the next step. t is
+# a distance along the axis, f the field there, and R_C the limit of ratios; the memory is whatever
+# the function wants to know of earlier steps
 Step: TypeAlias = Callable[[JitFloat, JitFloat, JitFloat, Any], tuple[JitFloat, Any]]
 # A function from (field, cone) to a step function and its first memory
 Pace: TypeAlias = Callable[[Any, LightCone], tuple[Step, Any]]
@@ -28,10 +28,10 @@ Pace: TypeAlias = Callable[[Any, LightCone], tuple[Step, Any]]
 
 @dataclass(frozen=True)
 class Rule:
-    """The rule by which a march lowers R_T, the smallest ratio so far, and R_C.
+    """How a march lowers R_T, the smallest ratio found so far, and R_C, the limit of ratios.
 
     A ratio is the distance over the cone's radius. The steps of the march are so short that it
-    misses no ratio below R_C. The methods of single-ray shadows differ by their rules.
+    misses no ratio below R_C. The methods of single-ray shadows differ in this rule.
 
     first : R_T and R_C at the start.
     lower : function that takes a ratio below R_T, and R_T, and returns the new R_T and R_C.

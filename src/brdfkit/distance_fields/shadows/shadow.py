@@ -115,7 +115,7 @@ def attach_ratio_derivatives(
     """
 
     def moving_ratio(t: JitFloat) -> JitFloat:
-        # If the axis grows longer, the place t moves with it, at the same share of its length
+        # If the axis grows longer, its point t moves along, at the same share of the length
         return clearance_ratio(field, cone, t / dr.detach(cone.d) * cone.d)
 
     if not dr.grad_enabled(moving_ratio(t)):

@@ -47,7 +47,7 @@ def _check_values(what: str, values: Any, rules: Mapping[str, Any]) -> Any:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class grid(Node):
-    """A field by its values at the corners of the cells of a box, as in Mitsuba's `sdfgrid`.
+    """A field given by values at the corners of the cells of a box, as in Mitsuba's `sdfgrid`.
 
     Outside of the box the field is √(e² + f²), or e + f where f < 0, with the distance e to the box
     and the value f at the nearest point of the box.

@@ -1,8 +1,9 @@
 """Compares a fit with its measured material by a picture, and by its colour at grazing angles.
 
-Measurements end some degrees above the horizon, and beyond these a fit extrapolates by its formula.
-There the colour of a real material approaches grey, because Fresnel reflection at the surface has
-no colour. A fit with a colour that is no mixture of the material's own and grey has a coloured rim.
+Measurements end some degrees above the horizon, and beyond these a fit extrapolates with its
+formula. There the colour of a real material approaches grey, because Fresnel reflection at the
+surface has no colour. A fit with a colour that is no mixture of the material's own and grey has a
+coloured rim.
 """
 
 import math

@@ -19,7 +19,7 @@ from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
 
 class FilteredSampling:
-    """Lights each pixel by `count` directions drawn by its BSDF, shared out among its rays."""
+    """Lights each pixel from `count` directions that its BSDF draws, shared out among its rays."""
 
     def __init__(self, count: int) -> None:
         self.count = count

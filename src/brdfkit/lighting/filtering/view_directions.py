@@ -31,7 +31,7 @@ ADJACENT = 5  # number of adjacent polar angles whose median weight replaces out
 
 
 class ViewDirections:
-    """Directions that a BSDF draws for a grid of views, by which pictures are lit without the BSDF.
+    """Directions that a BSDF draws for a grid of views, to light pictures without the BSDF.
 
     The views see the front of the surface, and the back if the BSDF has one.
     """

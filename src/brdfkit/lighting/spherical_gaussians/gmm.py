@@ -62,8 +62,8 @@ def guess_mixture_around_samples(
 ) -> Mixture:
     """Guess a mixture of `n` lobes at random, to start a fit.
 
-    `n` of the samples `x` (m, 3) are drawn by their `weights`, and the samples nearest to each of
-    them give one lobe.
+    `n` of the samples `x` (m, 3) are drawn in proportion to their `weights`, and the samples
+    nearest to each of them give one lobe.
     """
     drawn = random.choice(len(x), n, p=weights / weights.sum())
     return mixture.make_mixture_from_clusters(x, weights, (x @ x[drawn].T).argmax(axis=1), n)

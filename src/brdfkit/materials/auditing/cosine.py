@@ -1,7 +1,8 @@
 """Tests whether measured values are the BRDF times cos theta_o, in place of the BRDF.
 
-Two tests, by reciprocity and by values near the horizon, estimate the power p for which the values
-are the BRDF times cos^p theta_o. p is 1 if the values contain the cosine, and about 0 if not.
+Two tests estimate the power p for which the values are the BRDF times cos^p theta_o. One looks at
+reciprocity, the other at values near the horizon. p is 1 if the values contain the cosine, and
+about 0 if not.
 """
 
 import numpy as np

@@ -82,7 +82,7 @@ def _apply_to_channels(
 
 
 def _compute_sigma(differences: FloatArray) -> float:
-    """Return a robust estimate of the standard deviation of `differences`, by their median."""
+    """Return a robust estimate of the standard deviation of `differences`, from their median."""
     return TO_SIGMA * _compute_median(np.abs(differences))
 
 

@@ -62,7 +62,8 @@ class Interpolant:
         self.floor = 1e-3 * np.median(positive) if positive.size else 1e-12
         self.guide = _fit_guide(samples, anisotropic)
         wi, wo = samples.wi, samples.wo
-        # Find the maximum of all samples' smaller angles to the normal, and of their larger angles
+        # A sample's two directions have a smaller and a larger angle to the normal. Find the
+        # maximum of the smaller angles over all samples, and that of the larger ones
         self.largest_angles = _sort_angles(wi, wo).max(axis=0)
         ratios = self._take_bounded_logarithm(samples.values) - self._take_bounded_logarithm(
             self.guide(wi, wo)

@@ -32,7 +32,7 @@ class Point:
 
     @cached_property
     def shares(self) -> list[Any]:
-        """The probability of drawing each component, by its energy; None if it is not enabled."""
+        """The probability of drawing each component, from its energy; None if it is not enabled."""
         energies = []
         for group, enabled in zip(self.groups, self.enabled, strict=True):
             parts = (

@@ -208,7 +208,7 @@ def _draw_samples(
 ) -> Samples:
     """Return about `size` of the samples, or all if there are at most twice as many.
 
-    `model`, `space`: the samples are drawn by their influence on a fit of this model.
+    `model`, `space`: samples with much influence on a fit of this model are drawn more often.
     """
     if len(samples.wi) <= 2 * size:
         return samples

@@ -144,8 +144,8 @@ class Problem:
         """Return the residuals at one point and their derivatives, each as a list by channel.
 
         Residuals (n,) are the differences of the loss times the root of the sample's weight; those
-        whose difference has a slope of 0 become 0. Derivatives (shapes + lobes, n) are by the shape
-        parameters themselves, not by their coordinates, and by the weights.
+        whose difference has a slope of 0 become 0. Derivatives (shapes + lobes, n) are with respect
+        to the shape parameters themselves, not to their coordinates, and to the weights.
         """
         _, residuals, jacobians = zip(*self.iterate_jacobians(u, weights), strict=True)
         return [

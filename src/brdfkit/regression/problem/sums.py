@@ -24,7 +24,7 @@ class Sums:
     """Sums over samples from which the squared loss E² and its derivatives follow, at some points.
 
     T are the columns of the model at a sample, d is the difference of the loss, d' its derivative
-    by the model's value, and w the weight of the sample.
+    with respect to the model's value, and w the weight of the sample.
 
     `error`: Σ w d² (points,), which is E²; `moment`: Σ w d d' T (points, channels, columns);
     `gram`: Σ w d'² T Tᵀ (points, channels, columns, columns), or None.

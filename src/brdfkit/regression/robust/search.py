@@ -24,7 +24,8 @@ from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import draw_subset
 from brdfkit.regression.robust.problem import Point, RobustProblem
 
-# Least curvature for a Newton step, as a share of that for an ordinary step; it limits the length
+# Smallest curvature for a Newton step, as a share of the curvature for an ordinary step; it keeps
+# Newton steps from becoming too long
 SMALLEST_CURVATURE = 0.02
 # Largest number of passes
 PASSES = 150

@@ -83,7 +83,7 @@ class UserConstraint:
         return self._call_user_function(problem, join_point(u, weights)[0])
 
     def slopes(self, problem: Problem, u: FloatArray, weights: FloatArray) -> FloatArray:
-        """Return the derivatives (m, n) of the numbers by parameters, by central differences."""
+        """Return the derivatives (m, n) for the parameters, from central differences."""
         z = join_point(u, weights)[0]
         low, high = make_point_limits(u.shape[1], problem.channels, problem.least)
         slopes = []
@@ -142,7 +142,7 @@ class Constraints:
         return np.concatenate([c.values(self.problem, *self._split_point(z)) for c in self.each])
 
     def slopes(self, z: Any) -> Any:
-        """Return the derivatives (m, n) of the constraints' values at a point z by its entries."""
+        """Return the constraints' derivatives (m, n) with respect to the entries of a point z."""
         return np.concatenate([c.slopes(self.problem, *self._split_point(z)) for c in self.each])
 
     def are_met(self, z: FloatArray) -> bool:

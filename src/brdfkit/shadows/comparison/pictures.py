@@ -52,7 +52,7 @@ class Pictures:
 
     @property
     def exact(self) -> BoolArray:
-        """True in pixels (height, width) where the light arrives, by shadow rays."""
+        """True in pixels (height, width) where the light arrives, found with shadow rays."""
         return self.arrives.array
 
     @property

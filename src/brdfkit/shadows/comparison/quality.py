@@ -52,8 +52,8 @@ def aliasing_error(e: Any) -> float:
 def measure_flicker(lit: Any, true: Any) -> float:
     """Return the mean absolute change of a technique's error between successive pictures.
 
-    lit, true : share of the light that arrives at each point (pictures, points), by the technique
-        and exactly. The error is their difference.
+    lit, true : share of the light that arrives at each point (pictures, points): with the
+        technique, and in truth. The error is their difference.
 
     >>> measure_flicker([[1, 0], [0, 0]], [[1, 1], [1, 1]])
     0.5
@@ -67,8 +67,8 @@ def acne(lit: AnyArray, exact: AnyArray, facing: AnyArray, margin: int) -> float
 
     Surfaces that shadow themselves cause this [Ergun 2008, 3.1.2].
 
-    lit : share (height, width) of the light that arrives by the technique.
-    exact : True in pixels (height, width) where the light arrives exactly.
+    lit : share (height, width) of the light that arrives with the technique.
+    exact : True in pixels (height, width) where the light arrives in truth.
     facing : True in pixels (height, width) whose surface faces the light.
     margin : width [pixels] around shadows that does not count, as soft borders may darken it.
     """

@@ -28,7 +28,7 @@ def score_technique(
     tracked: tuple[TrackedPoints, TrackedPoints],
     technique: Callable[[LitView, Placement], Any],
 ) -> tuple[Scores, FloatArray]:
-    """Return the scores of a technique, and the share (pixels,) of the light that arrives by it.
+    """Return a technique's scores, and the share (pixels,) of the light that it lets arrive.
 
     placement : placement of the view's camera and light.
     tracked : points of the view for measuring flicker, as the camera moves and as the light moves.

@@ -50,7 +50,7 @@ def find_visible_surfaces(scene: MitsubaObject, camera: Camera) -> VisibleSurfac
 
 
 def is_lit(scene: MitsubaObject, light: Light, surfaces: VisibleSurfaces) -> BoolArray:
-    """Return whether a light reaches each visible surface point, by shadow rays, (n,)."""
+    """Return whether a light reaches each visible surface point (n,), from shadow rays."""
     import mitsuba as mi
 
     to_light = light.directions_to_light(surfaces.points)

@@ -18,12 +18,13 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray, JitFloat, JitVector
 
-THIN = 0.1  # largest deviation from the moving mean without peaks, as a share of the largest value
+# A table has peaks if it deviates from its moving mean by more than this share of its maximum
+THIN = 0.1
 
 
 @dataclass(init=False, eq=False)  # `dr.freeze` finds the arrays of a dataclass
 class Preintegration:
-    """The integrals of a transfer function's table over values, differentiable by its entries.
+    """The integrals of a transfer function's table over values, differentiable for its entries.
 
     `steps` is the number of steps of the table. `rows` are A·R, A·G, A·B and A at the ends of the
     steps, as a flat array, between which they are linear. `sums`, flat as well, are their integrals

@@ -77,7 +77,7 @@ def refine_through_renderer(
 def correct_maps(
     problem: Problem, rendered: RenderedMaps, is_first: bool, capture: Capture
 ) -> FittedMaps:
-    """Return the maps after one round of correction by their renderings.
+    """Return the maps after one round of correction with their renderings.
 
     The first round adds the whole difference between photographs and renderings. Later ones add
     only what exceeds the noise in each texel, so that noise is not sharpened [Wiener 1949].

@@ -78,8 +78,8 @@ def _to_result_value(unknown: Unknown, numbers: FloatArray) -> Value:
 def estimate_certainty(views: Views, state: Search, noise: ResidualNoise) -> Certainty:
     """Return the covariance of the values, with blocks of pixels as independent samples.
 
-    It is enlarged if the residuals are more than noise, by the correlations in `noise`, and if the
-    search has not converged, by its next step. Tensors have no standard errors.
+    It is enlarged in two cases: by the correlations in `noise` if the residuals are more than
+    noise, and by the next step if the search has not converged. Tensors have no standard errors.
     """
     here, equations = state.residuals, state.equations
     slopes = views.differentiate_values(here.x)
