@@ -110,7 +110,7 @@ def compare(
     max_angle: float = 80.0,
     spectral: bool = False,
 ) -> Comparison:
-    """Compare fits, models or other materials to a measured one: errors by every loss, and albedo.
+    """Compare fits, models or other materials to a measured one: errors in all losses, and albedo.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Draws the figures of a thesis's page by matplotlib, in one style and without pyplot."""
+"""Draws the figures of a thesis's page with matplotlib, in one style and without pyplot."""
 
 from collections.abc import Mapping
 from typing import Any

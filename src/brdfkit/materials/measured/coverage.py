@@ -44,7 +44,7 @@ def compute_coverage(data: Measured, max_angle: float = 90.0) -> Coverage:
 
 
 def compute_coverage_at(data: Measured, wi: FloatArray, wo: FloatArray) -> Coverage:
-    """Return the `Coverage` of the given pairs of directions, (n, 3) each, by scattered samples."""
+    """Return how well scattered samples cover given pairs of directions `wi`, `wo` (n, 3)."""
     low, high = _sort_cosines(wi, wo)
     return _compute_coverage_shares(data, low, high, np.ones(len(wi)), is_near_sample(data, wi, wo))
 

@@ -1,6 +1,6 @@
-"""Light from a scene's emitters, by rays that hit an emitter and by sampled points of emitters.
+"""Estimates the light from a scene's emitters: with rays that hit one, and with sampled points.
 
-Both methods may find the same light, so the power heuristic weights them [Veach & Guibas 1995].
+Both methods find the same light, so the power heuristic weights them [Veach & Guibas 1995].
 """
 
 from typing import Any

@@ -50,7 +50,10 @@ class ShapeParameters:
     def find_limits(self) -> FloatArray:
         """Return the lowest and the highest value of each searched number, as two rows."""
         names = [*self.single_names, *(self.pair or ())[:1]]
-        ends = [self._to_search_number(n, np.array(self.model.parameters[n].bounds)) for n in names]
+        ends = [
+            self._convert_to_search_number(n, np.array(self.model.parameters[n].bounds))
+            for n in names
+        ]
         turning = [(-LARGEST_P, LARGEST_P)] * 2 if self.pair else []
         return np.array([*ends, *turning]).reshape(-1, 2).T
 
@@ -62,7 +65,8 @@ class ShapeParameters:
         """
         single = self.single_names
         values = {
-            n: self._to_parameter_value(n, x, math) for n, x in zip(single, numbers, strict=False)
+            n: self._convert_to_parameter_value(n, x, math)
+            for n, x in zip(single, numbers, strict=False)
         }
         if self.pair:
             middle, p, q = numbers[len(single) :]
@@ -70,7 +74,7 @@ class ShapeParameters:
             half = math.sqrt(p * p + q * q)
             for name, number in zip(self.pair, (middle + half, middle - half), strict=True):
                 low, high = self.model.parameters[name].bounds
-                value = self._to_parameter_value(name, number, math)
+                value = self._convert_to_parameter_value(name, number, math)
                 values[name] = math.minimum(math.maximum(value, low), high)
             arc = np.arctan2 if math is np else math.atan2
             values[ANGLE] = arc(q, p) / 2
@@ -78,9 +82,9 @@ class ShapeParameters:
 
     def to_search_numbers(self, values: Mapping[str, Any]) -> list[AnyArray]:
         """Return an array for each searched number, from the parameters' `values` by name."""
-        numbers = [self._to_search_number(name, values[name]) for name in self.single_names]
+        numbers = [self._convert_to_search_number(name, values[name]) for name in self.single_names]
         if self.pair:
-            u, v = (self._to_search_number(name, values[name]) for name in self.pair)
+            u, v = (self._convert_to_search_number(name, values[name]) for name in self.pair)
             half, angle = (u - v) / 2, 2 * values.get(ANGLE, 0 * u)
             numbers += [(u + v) / 2, half * np.cos(angle), half * np.sin(angle)]
         return numbers
@@ -105,7 +109,7 @@ class ShapeParameters:
             by_name[ANGLE] = np.minimum(across / (2 * half), UNKNOWN_ANGLE_ERROR)
         return by_name
 
-    def _to_search_number(self, name: str, value: AnyArray) -> AnyArray:
+    def _convert_to_search_number(self, name: str, value: AnyArray) -> AnyArray:
         """Return the number that a search uses for a value of the parameter `name`.
 
         It is the logarithm of the value if the parameter is logarithmic, else the value itself.
@@ -113,7 +117,7 @@ class ShapeParameters:
         with np.errstate(divide="ignore"):
             return np.log(value) if self.model.parameters[name].log else value
 
-    def _to_parameter_value(self, name: str, number: Any, math: Any) -> Any:
+    def _convert_to_parameter_value(self, name: str, number: Any, math: Any) -> Any:
         """Return the value of the parameter `name` for the number that a search uses."""
         return math.exp(number) if self.model.parameters[name].log else number
 
