@@ -137,7 +137,10 @@ def define(mi: MitsubaModule) -> type:
         def average_extinction_and_colour(
             self, front: JitVector, back: JitVector
         ) -> tuple[JitFloat, JitColour]:
-            """Return the means of σ_t and of σ_t RGB between two points, from their integrals."""
+            """Return the means of σ_t, and of σ_t times RGB, between two values of the volume.
+
+            `front` and `back` are the function's integrals up to these values.
+            """
             rgb, a = self.lookup.mean_between(front, back)
             return self.lookup.extinction * a, self.lookup.extinction * rgb
 
@@ -148,7 +151,7 @@ def define(mi: MitsubaModule) -> type:
             return self.lookup(self.eval_arguments(it, active), active)
 
         def eval_arguments(self, it: MitsubaObject, active: JitMask = True) -> Sequence[JitFloat]:
-            """Return the function's arguments at a point: value, perhaps gradient magnitude."""
+            """Return the value at a point, and its gradient magnitude if the function needs it."""
             if self.function.gradients is None:
                 return [self.values.eval_1(it, active)]
             return self.values.eval_n(it, active)

@@ -167,9 +167,9 @@ class Fit(Shown):
 
         N is the number of measured values and k the number of parameters.
         Less is better among models fitted to the same data under the same loss. The criterion
-        assumes independent samples with Gaussian noise that is equal in the loss's differences, no
-        robust weights, and no table. It is NaN for a fit to pictures, whose pixels show the same
-        samples.
+        assumes independent samples, Gaussian noise of the same variance in all differences that the
+        loss squares, and no robust weights. It is NaN for a fit to pictures, because several pixels
+        show the same sample and so are not independent.
         """
         return (
             self._sample_certainty.compute_information_criterion(self.loss, 2.0)

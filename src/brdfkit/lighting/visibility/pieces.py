@@ -106,7 +106,7 @@ def _winding_number(points: FloatArray, faces: IntArray, at: FloatArray) -> Floa
 
 
 def _find_hole_loops(faces: IntArray) -> list[list[int]]:
-    """Return the numbers of the corners around each hole, in the order of triangles that close it.
+    """Return the indices of the corners around each hole, in the winding of a face that closes it.
 
     The list is empty if the piece is closed, or if two holes share a corner.
     """

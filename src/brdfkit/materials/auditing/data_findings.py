@@ -203,7 +203,7 @@ def _warn_of_missing_value_mark(samples: Samples) -> str:
 
 
 def _warn_of_wrong_unit(data: Measured) -> str:
-    """Return a warning of a wrong unit, if the albedo is above 1 or nearly 0, or ""."""
+    """Return a warning if an albedo above 1 or near 0 shows a wrong unit, otherwise ""."""
     albedo = data.rgb.albedo
     angles = zip(albedo.theta_i, albedo.means, strict=False)
     shares = {angle: share for angle, share in angles if angle < OBLIQUE and share > 0}

@@ -48,14 +48,15 @@ class Point:
 class RobustProblem:
     """A `Problem` whose samples are weighted by a weight function of their residuals.
 
-    `u` (1, shapes), `weights` (1, channels, lobes): the optimum with equal weights; `name`: the
-    weight function in `WEIGHTS`; `part`, `rows`: a problem on some of the samples, and their
-    indices, from which Hessians are estimated; by default the problem itself.
+    `u` (1, shape parameters) and `weights` (1, channels, lobes): the optimum with equal weights of
+    the samples. `name`: the weight function in `WEIGHTS`. `part`: a problem on fewer samples, from
+    which Hessians are estimated, by default the problem itself; `rows`: the indices of its samples.
 
     A point has k parameters. The methods take `scales`: for each channel the scale of its
     residuals' noise, times the constant of the weight function. A residual is the loss's
-    difference at a sample, times the root √w of its weight. Whether the sample is an outlier
-    depends on the difference alone. So residuals are divided by `levers`, √w √(1 - leverage).
+    difference at a sample, times the root √w of the sample's weight. An outlier should be found by
+    the difference alone. Residuals are therefore divided by `levers`, √w √(1 - leverage), which
+    removes the weight, and the pull of the sample on its own fit.
     """
 
     def __init__(

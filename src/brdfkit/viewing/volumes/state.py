@@ -231,7 +231,10 @@ class VolumeState:
 
 
 def needs_samples_anew(before: State, after: State) -> bool:
-    """Return whether two states differ in more than what is drawn over or made of the samples."""
+    """Return whether a change of the state needs new samples.
+
+    Changes of the tone mapping, and of what is drawn over the picture, do not.
+    """
     changed = [name for name in after if before.get(name) != after[name]]
     return any(not name.startswith(DRAWN_ONLY) for name in changed)
 
