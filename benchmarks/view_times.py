@@ -1,4 +1,4 @@
-"""Times of `brdfkit view`: the first picture, a changed slider, and pictures a second while turning.
+"""Times of `brdfkit view`: the first picture, changed sliders, and pictures a second in turning.
 
 python benchmarks/view_times.py [SIDE]
 

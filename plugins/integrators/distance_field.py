@@ -93,8 +93,8 @@ PARAMETERS = {
     "far": declare_float(0.0, (0, 1e9), "length of rays [unit]; 0: by the size of the field"),
     "precision": declare_float(0.0, (0, 1e3), "radius of the thinnest rays [unit]; 0: by the size"),
 }
-# Defaults of `far` and `precision`, times the radius of a sphere around the field. Small fields have
-# a `far` of 1000 units all the same
+# Defaults of `far` and `precision`, times the radius of a sphere around the field. Small fields
+# have a `far` of 1000 units all the same
 RAY_LENGTH, PRECISION = 1e3, 1e-4
 
 

@@ -65,8 +65,8 @@ def compute_convex_shadow(
     """Return a soft shadow by longer steps towards convex pieces, as exact as the linear march.
 
     Pieces of a union without `is_convex` are approached by the steps of the linear march. `epsilon`
-    bounds the error of the smallest ratio of clearance to the cone's radius. The march begins at the
-    shaded point (`direction` "A") or at the light ("B").
+    bounds the error of the smallest ratio of clearance to the cone's radius. The march begins at
+    the shaded point (`direction` "A") or at the light ("B").
     """
     rule = make_linear_rule(epsilon)
     return trace_shadow(field, cone, rule, epsilon, direction, make_convex_step)

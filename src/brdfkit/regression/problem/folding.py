@@ -38,12 +38,8 @@ LONG_NODE = 1000
 def fold_problem(problem: Problem) -> FoldedProblem | None:
     """Return the `FoldedProblem` of a problem, or None if folding is impossible or too slow."""
     cells = problem.samples.cells
-    one_group = len(problem.groups) == 1  # folded sums are for all channels at once
-    if (
-        not (problem.linear and one_group)
-        or cells is None
-        or not double_precision.has_derivatives()
-    ):
+    single = len(problem.groups) == 1  # folded sums are for all channels at once
+    if not (problem.linear and single) or cells is None or not double_precision.has_derivatives():
         return None
     pairs = _depends_on_cos_d(problem)
     if pairs is None:

@@ -56,7 +56,7 @@ class SearchCheck:
         return np.clip(mean, views.lower_bounds, views.upper_bounds)
 
     def describe_differences(self) -> tuple[str, ...]:
-        """Return a sentence on how a search with twice the samples per pixel differs, if it does."""
+        """Return a sentence on how a search with twice the samples differs, if it does."""
         differences = [
             f"{name} moves by {size:.2g} standard errors"
             for name, size in self.moves.items()
