@@ -52,7 +52,10 @@ def read_notebook(path):
 def test_a_notebook_runs(path, tmp_path, monkeypatch, llvm_variant, no_user_plugins):
     """Each cell runs without an error or a warning, and something is displayed."""
     monkeypatch.chdir(tmp_path)
+    # A shell takes the place of the main module, which processes of later tests need as it is
+    monkeypatch.setitem(sys.modules, "__main__", sys.modules["__main__"])
     shell = InteractiveShell.instance()
+    monkeypatch.setitem(sys.modules, "__main__", shell.user_module)
     shell.reset(new_session=False)
     displayed = 0
     with plt.rc_context():

@@ -96,7 +96,7 @@ def test_turned_by_its_angles_data_has_its_principal_axes():
     import drjit as dr
 
     columns = [dr.llvm.Float64(np.ascontiguousarray(c)) for c in data.T]
-    rotated = module.rotate(columns, module.find_angles(axes.T))
+    rotated = module.rotate_to_axes(columns, module.find_rotation_angles(axes.T))
     covariance = np.cov(np.array([np.array(c) for c in rotated]))
     np.testing.assert_allclose(covariance, np.diag(np.diag(covariance)), atol=1e-10)
 
