@@ -120,7 +120,9 @@ def test_the_end_is_feasible_and_stationary(model, loss):
     assert constraints.values(z).min() >= -1e-8
 
     def error(z):
-        return problem.compute_sums(z[None, : len(u)], z[len(u) :].reshape(1, *weights.shape)).error[0]
+        return problem.compute_sums(
+            z[None, : len(u)], z[len(u) :].reshape(1, *weights.shape)
+        ).error[0]
 
     h = 1e-5 * np.eye(len(z))
     gradient = np.array([error(z + step) - error(z - step) for step in h]) / 2e-5

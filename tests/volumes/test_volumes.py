@@ -188,7 +188,9 @@ def test_gradients_converge_to_those_of_marschner_and_lobb():
     # and the closed form itself, by differences
     step = 1e-6 * np.eye(3)
     for i in range(3):
-        ahead, behind = (marschner_lobb.evaluate_signal(*(points + sign * step[i]).T) for sign in (1, -1))
+        ahead, behind = (
+            marschner_lobb.evaluate_signal(*(points + sign * step[i]).T) for sign in (1, -1)
+        )
         np.testing.assert_allclose((ahead - behind) / 2e-6, true[:, i], atol=1e-7)
 
 
