@@ -196,7 +196,6 @@ def test_fit_and_render(cli):
     assert result.stdout.count("written:") == 3
 
 
-@pytest.mark.quick
 def test_a_folder_may_have_the_name_of_a_material(cli):
     """`fit car_paint --render` makes such a folder; the next `fit car_paint` reads the table."""
     name = next(iter(catalogue.list_materials()))
@@ -206,7 +205,6 @@ def test_a_folder_may_have_the_name_of_a_material(cli):
     assert_fine(cli("render", "ward", *SMALL))
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("words", "names"),
     [
@@ -319,7 +317,6 @@ def test_decimal_comma(cli):
     assert "Decimals take a point: alpha_u=0.3." in result.stderr
 
 
-@pytest.mark.quick
 def test_render_in_another_scene(cli):
     """A scene file keeps its size, unless another is given; the help names every scene."""
     scene = SCENE.format(alpha=0.3).replace('"ward"', '"ward" id="it"')
@@ -333,7 +330,6 @@ def test_render_in_another_scene(cli):
     assert all(name in shown for name in scene_names())
 
 
-@pytest.mark.quick
 def test_render_a_scene_a_fit_and_a_field(cli):
     Path("room.xml").write_text(SCENE.format(alpha=0.3))
     assert_fine(cli("fit", "paint.binary", "-m", "ward", "-o", "."))
@@ -395,7 +391,6 @@ def test_check_fails_with_status_1(cli, monkeypatch):
     assert checks
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     "words",
     [
@@ -855,7 +850,6 @@ def run(*words, cwd=None, program="brdfkit", **environment):
     )
 
 
-@pytest.mark.quick
 def test_help_is_instant_and_fits_a_terminal(tmp_path):
     """At most three times the processor time of Python with click alone, which is 0.04 s here.
 
@@ -943,7 +937,6 @@ def test_python_knows_the_command_line(tmp_path):
     assert done.stderr.startswith("brdfkit: There is no model 'nope'")
 
 
-@pytest.mark.quick
 def test_shape_parameters_are_fixed_bounded_and_tied(cli):
     words = "fit", "paint.binary", "-m", "ggx", "--fixed", "f0=0.04", "--bound", "alpha_u=0.3,0.4"
     result = cli(*words, "--isotropic", "--json")
@@ -968,7 +961,6 @@ def test_shape_parameters_are_fixed_bounded_and_tied(cli):
         assert f"{wrong[0]} {wrong[1]!r} should read {name}=" in result.stderr
 
 
-@pytest.mark.quick
 def test_values_that_gain_light_are_told(cli):
     words = "render", "lambert", *SMALL, "-p"
     assert "reflects" not in cli(*words, "diffuse_reflectance=0.5", "-o", "a.png").stderr

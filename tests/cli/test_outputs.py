@@ -9,8 +9,6 @@ import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.lighting.environments import map_files
 
-pytestmark = pytest.mark.quick
-
 SCENE = """<scene version="3.0.0"><integrator type="path"/><sensor type="perspective">
 <film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/></film>
 </sensor><shape type="sphere"><bsdf type="diffuse"><texture name="reflectance" type="bitmap">
@@ -80,6 +78,7 @@ def test_files_of_others_are_replaced_by_force_only(output, run, tmp_path):
     assert file.read_bytes() != b"precious"
 
 
+@pytest.mark.quick
 def test_another_render_of_the_same_name_asks(run, tmp_path):
     assert run("render", "lambert", *SMALL)[0] == 0
     before = (tmp_path / "lambert.png").read_bytes()
@@ -89,6 +88,7 @@ def test_another_render_of_the_same_name_asks(run, tmp_path):
     assert (tmp_path / "lambert.png").read_bytes() == before
 
 
+@pytest.mark.quick
 def test_a_folder_of_fits(run, tmp_path):
     words = "fit", "grid.csv", "-m", "lambert", "-o", "fits"
     assert run(*words)[0] == 0
@@ -98,6 +98,7 @@ def test_a_folder_of_fits(run, tmp_path):
     assert (tmp_path / "fits" / "lambert.json").read_text() == "{}"
 
 
+@pytest.mark.quick
 def test_without_a_cache_folder_a_command_may_still_write_twice(run, monkeypatch, tmp_path):
     """What it wrote in this run is its own; the next run asks."""
     (tmp_path / "no folder").write_text("")

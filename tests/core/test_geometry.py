@@ -9,8 +9,6 @@ from hypothesis import strategies as st
 from brdfkit.core.geometry.dual_paraboloid import from_disc, solid_angle_per_area, to_disc
 from brdfkit.core.geometry.latitude_rows import projected_solid_angles, solid_angles
 
-pytestmark = pytest.mark.quick
-
 
 @given(st.floats(-1, 1), st.floats(0, 2 * np.pi))
 def test_a_direction_comes_back_from_the_dual_paraboloid(z, phi):
@@ -19,6 +17,7 @@ def test_a_direction_comes_back_from_the_dual_paraboloid(z, phi):
     np.testing.assert_allclose(back, w, atol=4e-16)
 
 
+@pytest.mark.quick
 def test_a_disc_of_the_dual_paraboloid_holds_half_of_the_sphere():
     side = (np.arange(1000) + 0.5) / 500 - 1
     s, t = np.meshgrid(side, side)
@@ -27,6 +26,7 @@ def test_a_disc_of_the_dual_paraboloid_holds_half_of_the_sphere():
     assert solid_angle_per_area(z)[inside].sum() / 500**2 == pytest.approx(2 * np.pi, rel=1e-4)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("height", [1, 2, 5, 8, 129])
 def test_an_even_map_shines_from_everywhere_and_gives_the_irradiance_pi(height):
     for at_poles in (False, True):
@@ -34,6 +34,7 @@ def test_an_even_map_shines_from_everywhere_and_gives_the_irradiance_pi(height):
     assert 3 * projected_solid_angles(height, 3).sum() == pytest.approx(np.pi)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("height", [4, 7])
 def test_rows_weigh_what_mitsuba_s_envmap_makes_of_them(llvm_variant, height):
     """Maps with one lit row, as Mitsuba evaluates them, summed up over 4,096 polar angles."""

@@ -84,7 +84,6 @@ def inside(monkeypatch, llvm_variant):
     return counts
 
 
-@pytest.mark.quick
 def test_renders_of_several_threads_run_one_after_the_other(inside, tmp_path):
     scene = tmp_path / "scene.xml"
     scene.write_text(
@@ -98,7 +97,6 @@ def test_renders_of_several_threads_run_one_after_the_other(inside, tmp_path):
     assert inside == [1] * len(jobs)
 
 
-@pytest.mark.quick
 def test_a_scene_ends_in_its_turn(monkeypatch, llvm_variant):
     """Mitsuba traces through the BSDFs of every scene, also of one that another thread frees."""
     seen = []

@@ -7,8 +7,6 @@ import pytest
 
 import brdfkit as bk
 
-pytestmark = pytest.mark.quick
-
 
 @pytest.fixture(scope="module")
 def make():
@@ -22,6 +20,7 @@ def results(make):
     return json.loads(make.RESULTS.read_text(encoding="utf-8"))
 
 
+@pytest.mark.quick
 def test_the_page_is_what_its_figures_say(make, results, monkeypatch, tmp_path):
     """Otherwise: python docs/tools/make_real_measurements.py --only page"""
     text = make.page.PAGE.read_text(encoding="utf-8")
@@ -33,6 +32,7 @@ def test_the_page_is_what_its_figures_say(make, results, monkeypatch, tmp_path):
     assert again.partition(head)[2] == text.partition(head)[2]
 
 
+@pytest.mark.quick
 def test_wrong_light_is_said(make, results):
     rows = list(make.page.iterate_fits(results["files"]))
     assert len(rows) > 500

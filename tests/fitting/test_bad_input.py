@@ -8,8 +8,6 @@ from test_fit import Undefined, mirrored
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
 
-pytestmark = pytest.mark.quick
-
 UP = np.array([[0.0, 0.0, 1.0]])
 OBLIQUE = np.array([[0.6, 0.0, 0.8]])
 
@@ -37,6 +35,7 @@ def test_fewer_numbers_than_parameters(name, loss):
         bk.fit(data, name, loss=loss, robust="bisquare")
 
 
+@pytest.mark.quick
 def test_a_channel_without_values():
     values = np.full((20, 3), 0.2)
     values[:, 1] = np.nan
@@ -81,6 +80,7 @@ def test_a_black_channel_leaves_the_others_alone(loss, robust):
         assert fit.values["alpha_u"] == pytest.approx(alone.values["alpha_u"], rel=1e-6)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("given", "said"),
     [
@@ -96,6 +96,7 @@ def test_bounds_crossed_or_beyond(given, said):
         bk.fit(of_values(np.full((20, 1), 0.2)), "ward", **given)
 
 
+@pytest.mark.quick
 def test_other_models_go_on_where_one_is_nan(tmp_path, no_user_plugins):
     """On the command line; the model and the direction are named, and the exit status is 2."""
     import json
@@ -117,6 +118,7 @@ def test_other_models_go_on_where_one_is_nan(tmp_path, no_user_plugins):
     assert result.exit_code == 2
 
 
+@pytest.mark.quick
 def test_unknown_names_propose_the_nearest():
     with pytest.raises(BrdfkitError, match="did you mean ward"):
         bk.models()["wrad"]
@@ -127,6 +129,7 @@ def test_unknown_names_propose_the_nearest():
         bk.check({"type": "wrad"})
 
 
+@pytest.mark.quick
 def test_a_loss_that_weighs_nothing_is_refused():
     grey = of_values(np.full((40, 1), 0.2))
     nothing = bk.losses.Loss(
@@ -136,6 +139,7 @@ def test_a_loss_that_weighs_nothing_is_refused():
         bk.fit(grey, "lambert", loss=nothing)
 
 
+@pytest.mark.quick
 def test_sigma_is_a_number():
     grey = of_values(np.full((40, 1), 0.2))
     fit = bk.fit(grey, "koenderink", loss="plain")

@@ -128,7 +128,6 @@ def test_large_tables_end_where_all_cells_say():
     assert again.loss == pytest.approx(found.loss, rel=1e-6)
 
 
-@pytest.mark.quick
 def test_reproducible_to_the_last_digit():
     data = synthetic(bk.models()["ggx"]())
     first, second = (bk.fit(data, "ggx", loss="cbrt") for _ in range(2))
@@ -193,7 +192,6 @@ def test_anisotropy_is_searched_where_it_was_measured():
     assert blasted.values["alpha_u"] == blasted.values["alpha_v"]
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(("c_x", "c_y"), [(0.5, 0.5), (-0.9, 0.4), (-0.6, -0.9)])
 def test_lafortunes_other_lobes_come_back(c_x, c_y):
     """Towards the light and across it, though the default looks the other way."""
@@ -202,7 +200,6 @@ def test_lafortunes_other_lobes_come_back(c_x, c_y):
     assert_same_parameters(found, truth)
 
 
-@pytest.mark.quick
 def test_a_black_material_is_fitted():
     data = synthetic(bk.models()["lambert"](diffuse_reflectance=0.0), n=50)
     for loss in bk.losses.named.by_sample:
@@ -228,7 +225,6 @@ def test_one_sample_is_fitted():
         bk.fit(data, "lambert", loss="kurt")
 
 
-@pytest.mark.quick
 def test_compare_finds_the_light_of_the_fit_and_marks_what_is_wrong():
     """By the quadrature of the fit; of a model, the one that refines."""
     data, light = bk.load("red_plastic"), bk.load("plaster")
@@ -248,7 +244,6 @@ def test_compare_finds_the_light_of_the_fit_and_marks_what_is_wrong():
     assert "kurt" in str(bk.compare(data, bk.fit(data, "lambert", loss="kurt")))
 
 
-@pytest.mark.quick
 def test_print_tells_the_light_its_warnings_and_samples_that_count_little():
     found = bk.fit(bk.load("red_plastic"), "lambert")
     (warning,) = found.warnings
@@ -275,7 +270,6 @@ def test_print_tells_the_light_its_warnings_and_samples_that_count_little():
     assert "; 40 samples, " + said[-1].split(share)[1] in older
 
 
-@pytest.mark.quick
 def test_fixed_parameter_stays():
     data = synthetic(bk.models()["ggx"](f0=0.2))
     found = bk.fit(data, "ggx", fixed={"f0": 0.04})
@@ -283,7 +277,6 @@ def test_fixed_parameter_stays():
     assert found.loss > 0.01
 
 
-@pytest.mark.quick
 def test_metrics_agree_with_the_fit():
     """`compare`, which evaluates in NumPy, finds the loss that the fit reported."""
     data = synthetic(random_model(bk.models()["ggx"], 3))
@@ -316,14 +309,12 @@ class InNoFile(Model):
         return (lambertian(),)
 
 
-@pytest.mark.quick
 def test_a_class_stands_for_its_name():
     data = synthetic(bk.models()["lambert"](), n=50)
     coupled = bk.models()["ashikhmin_shirley"].configured(diffuse="coupled")
     assert bk.fit(data, coupled, starts=1).name == "ashikhmin_shirley:diffuse=coupled"
 
 
-@pytest.mark.quick
 def test_a_class_in_no_file_is_a_model(no_user_plugins, llvm_variant):
     """It is fitted, summed, checked, rendered and pickled; its name is that of the class."""
     data = synthetic(bk.models()["lambert"](), n=200)
@@ -465,7 +456,6 @@ def test_a_formula_that_is_not_finite_is_named(model, said, no_user_plugins):
         bk.fit(mirrored(), model, loss="plain", starts=1)
 
 
-@pytest.mark.quick
 def test_too_few_numbers_are_noted():
     up = [[0.0, 0.0, 1.0]]
     one = bk.Measured.from_samples(up, up, [[0.2, 0.3, 0.4]])

@@ -13,9 +13,8 @@ import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.measured.selection import select_samples
 
-pytestmark = pytest.mark.quick
 
-
+@pytest.mark.quick
 def test_a_fit_remembers_its_data_and_what_made_it(tmp_path):
     data = bk.load("blasted_gold")
     fit = bk.fit(data, "lambert")
@@ -31,6 +30,7 @@ def test_a_fit_remembers_its_data_and_what_made_it(tmp_path):
         assert not [f.name for f in fields(fit) if getattr(fit, f.name) != getattr(again, f.name)]
 
 
+@pytest.mark.quick
 def test_a_fit_of_other_versions_is_read(tmp_path):
     file = tmp_path / "fit.json"
     fit = bk.fit(synthetic(bk.models()["lambert"](), n=50), "lambert")
@@ -90,6 +90,7 @@ def test_residuals_are_measured_less_modelled():
     assert (left.eval(wi, wo) * turned.eval(wi, wo)).max() == 0
 
 
+@pytest.mark.quick
 def test_a_loss_that_standard_errors_weigh_is_told_from_that_of_compare():
     data = synthetic(bk.models()["ward"](), n=200)
     errors = np.linspace(0.01, 0.1, 200)[:, None]
@@ -103,6 +104,7 @@ def test_a_loss_that_standard_errors_weigh_is_told_from_that_of_compare():
     assert f"{weighed.loss_label} {weighed.loss:.6g}" in str(weighed)
 
 
+@pytest.mark.quick
 def test_residuals_keep_what_is_known_of_the_data():
     wi = wo = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.999, 0.0, 0.04]])
     errors = np.full((3, 1), 0.01)
@@ -113,6 +115,7 @@ def test_residuals_keep_what_is_known_of_the_data():
     assert str(left) == "samples - lambert: samples, 2 of 3 valid, channels Y"
 
 
+@pytest.mark.quick
 def test_what_cannot_be_subtracted_is_refused():
     data = synthetic(bk.models()["lambert"](), n=20)
     fit = bk.fit(data, "lambert")
@@ -166,6 +169,7 @@ def test_a_damaged_saved_fit_is_refused_in_a_sentence(tmp_path):
     assert all(sentence.startswith(f"{file}: ") for sentence in refused)
 
 
+@pytest.mark.quick
 def test_a_saved_fit_of_a_later_version_is_refused(tmp_path):
     file = tmp_path / "fit.json"
     bk.save(bk.fit(synthetic(bk.models()["lambert"](), n=20), "lambert"), file)

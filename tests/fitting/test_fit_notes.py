@@ -18,8 +18,6 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.reporting.parameters import describe_fit
 
-pytestmark = pytest.mark.quick
-
 ROOT = Path(__file__).resolve().parents[2]
 GREY = (0.3, 0.3, 0.3)
 
@@ -156,6 +154,7 @@ CASES = {  # the fit, the parameters at their bounds, and the note or None
 }
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("case", CASES)
 def test_a_lobe_that_means_nothing_is_told(case):
     fitted, at_bounds, expected = CASES[case]
@@ -169,6 +168,7 @@ def test_a_lobe_that_means_nothing_is_told(case):
         assert [note for note in notes if note.startswith(expected)], notes
 
 
+@pytest.mark.quick
 def test_colours_of_lobes_are_those_of_a_red_and_blue_material():
     """Where the highlight itself is of one hue, the lobes say so rightly."""
     fitted = two(ggx_1_specular_reflectance=(1, 0, 0), ggx_2_specular_reflectance=(0, 0, 0.9))
@@ -177,6 +177,7 @@ def test_colours_of_lobes_are_those_of_a_red_and_blue_material():
     assert not any("pure colours" in note for note in notes)
 
 
+@pytest.mark.quick
 def test_a_width_at_its_bound_is_told_once():
     """By the step of the samples, or where they are dense, as in a table, by the bound."""
     mirror = model("ggx", alpha_u=0.001)
@@ -187,6 +188,7 @@ def test_a_width_at_its_bound_is_told_once():
         assert expected in note
 
 
+@pytest.mark.quick
 def test_one_bright_sample_makes_no_rim():
     """Every file of Cornell's instrument has one at grazing mirror reflection."""
     data = measure(PAINT)
@@ -197,6 +199,7 @@ def test_one_bright_sample_makes_no_rim():
     assert not any("its colour" in note for note in notes)
 
 
+@pytest.mark.quick
 def test_widths_and_steps_are_those_of_formulas():
     """D of GGX falls to half where tan² θ_h = (√2 - 1) α²; G and F hardly change there."""
     diffuse, lobe = compute_half_widths(model("ggx", alpha_u=0.02))
@@ -226,6 +229,7 @@ def test_all_that_show_a_fit_show_its_notes(tmp_path):
     assert all("".join(n.split()) in "".join(shown.split()) for n in found.notes)
 
 
+@pytest.mark.quick
 def test_the_note_on_azimuths_comes_with_pictures_too():
     """Pixels have no error at one azimuth, by which a least one could be told."""
     from brdfkit.model.samples import Table
@@ -242,6 +246,7 @@ def test_the_note_on_azimuths_comes_with_pictures_too():
 # Extrapolation
 
 
+@pytest.mark.quick
 def test_a_fit_extrapolates_where_little_was_measured():
     (note,) = note_fit_extrapolation(measure(PAINT, largest=45.0), 80.0)
     assert "% of the direction pairs below 80° lie beyond the measured angles, " in note
@@ -314,6 +319,7 @@ def phrases(tree, within=None):
     return {word for word in words if len(word.split()) > 2}
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("file", NOTES)
 def test_every_note_is_on_their_page(file):
     """Otherwise: add it to docs/notes.md."""
@@ -324,6 +330,7 @@ def test_every_note_is_on_their_page(file):
     assert [phrase for phrase in found if phrase not in page] == []
 
 
+@pytest.mark.quick
 def test_a_note_that_is_not_on_the_page_would_be_seen():
     tree = ast.parse(
         'def f(x):\n    """A docstring of words."""\n    return f"{x} is quite new to us"'

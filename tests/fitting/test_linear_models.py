@@ -131,7 +131,6 @@ def test_optima_on_curet(sample, label, measured_data):
     assert bk.fit(data, label, loss="kurt").loss == pytest.approx(OPTIMA[sample, label], abs=1e-5)
 
 
-@pytest.mark.quick
 def test_what_is_clamped_is_said():
     dark = labels.model("koenderink")(a_0_0_0=0.1, a_2_2_0=0.2)
     wi, wo = (from_angles(np.full(50, 0.4), np.zeros(50)), from_angles(np.linspace(0, 1.5, 50), 2))

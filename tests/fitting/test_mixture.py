@@ -73,7 +73,6 @@ def test_a_mixture_is_plain_data(tmp_path):
     assert bk.load(tmp_path / "fit.json").values == found.values
 
 
-@pytest.mark.quick
 def test_a_second_lobe_of_the_same_model_begins_narrower(model):
     """By about a third, seen from above, with all else alike: two alike are a saddle of the fit."""
     name = model.type_name()
@@ -93,7 +92,6 @@ def test_a_second_lobe_of_the_same_model_begins_narrower(model):
         assert both().values[f"{name}_2_{parameter}"] == both().values[f"{name}_1_{parameter}"]
 
 
-@pytest.mark.quick
 def test_what_a_part_takes_from_the_geometry_is_no_search():
     data = bk.load("dusty_gold")
     angles = labels.model("pca_polynomial").determine_parameters(select_samples(data, 80.0))

@@ -34,7 +34,6 @@ def measured(model, n=400, noise=0.0):
     return bk.Measured.from_samples(samples.wi, samples.wo, values, channels=channels)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("loss", ["log", "cosine"])
 def test_known_spectra_come_back(loss):
     """More channels than one kernel evaluates, in no order; E is that of `compare`."""
@@ -50,7 +49,6 @@ def test_known_spectra_come_back(loss):
     assert other.loss > 10 * fit.loss
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("robust", [None, "huber"])
 def test_of_known_shapes_each_wavelength_is_a_fit_of_its_own(robust):
     data = measured(spectral("ward", alpha_u=0.2), noise=0.1)
@@ -65,7 +63,6 @@ def test_of_known_shapes_each_wavelength_is_a_fit_of_its_own(robust):
             np.testing.assert_allclose(*own, rtol=1e-4)
 
 
-@pytest.mark.quick
 def test_its_rgb_is_the_fit_in_rgb():
     """A linear loss: to mix the channels and to fit may change places."""
     data = measured(spectral("ward", alpha_u=0.2), noise=0.1)
@@ -84,7 +81,6 @@ def test_its_rgb_is_the_fit_in_rgb():
     bk.plot([data, fit])
 
 
-@pytest.mark.quick
 def test_standard_errors_count_at_every_wavelength():
     data = measured(spectral("ward"), noise=0.1)
     errors = np.where(np.arange(len(data.values)) % 2, 0.2, 1e-3)[:, None] * np.ones(10)
@@ -121,7 +117,6 @@ def test_it_is_rendered_as_the_measurement(llvm_variant):
             assert bk.check(fit, only=["plugin is formula"])
 
 
-@pytest.mark.quick
 def test_it_is_plain_data(tmp_path):
     """Saved, pickled, changed, printed in a few words."""
     fit = bk.fit(measured(spectral("ward"), noise=0.1), "ward", spectral=True, starts=1)
@@ -148,7 +143,6 @@ def test_files_of_it_have_the_wavelengths(tmp_path):
     np.testing.assert_allclose(back.eval(UP, UP), model.eval(UP, UP), rtol=1e-3)
 
 
-@pytest.mark.quick
 def test_what_has_no_spectrum_is_refused(llvm_variant):
     rgb = synthetic(bk.models()["ward"](diffuse_reflectance=(0.1, 0.2, 0.3)), n=20)
     with pytest.raises(BrdfkitError, match="the channels R G B, not at wavelengths; leave"):

@@ -82,7 +82,6 @@ def tree(folder="."):
 # What comes out
 
 
-@pytest.mark.quick
 def test_rows_and_the_best(here, fitted):
     found = bk.sweep(FILES, LINEAR)
     assert [(r.material, r.model) for r in found.rows] == [(m, n) for m in TRUTHS for n in LINEAR]
@@ -123,7 +122,6 @@ def test_fits_are_judged_where_they_were_not_fitted_and_by_pictures(here, fitted
     assert bk.sweep(["chalk.npz"], models, judge=True, folder="other").found == 0
 
 
-@pytest.mark.quick
 def test_fits_whose_light_is_wrong_are_marked_and_counted(here, fitted):
     found = bk.sweep(["plaster", "red_plastic"], ["lambert", "ggx"], folder="out")
     wrong = [row for row in found.rows if row.fit.warnings]
@@ -146,7 +144,6 @@ def test_fits_whose_light_is_wrong_are_marked_and_counted(here, fitted):
                 assert float(read[f"measured_albedo_{angle}"]) == pytest.approx(sum(known) / 3)
 
 
-@pytest.mark.quick
 def test_settings_are_those_of_a_fit(here, fitted):
     settings = {"loss": "cbrt", "robust": "bisquare", "max_angle": 60, "fixed": {"alpha_u": 0.1}}
     settings |= {"solver": "trust_region"}
@@ -155,7 +152,6 @@ def test_settings_are_those_of_a_fit(here, fitted):
     assert (row.loss, row.parameters) == ("cbrt", 6)
 
 
-@pytest.mark.quick
 def test_what_fails_does_not_stop_the_others(here, fitted):
     Path("short.npz").write_bytes(b"PK")
     bk.save(bk.fit("chalk.npz", "lambert"), "fit.json")
@@ -170,7 +166,6 @@ def test_what_fails_does_not_stop_the_others(here, fitted):
     assert found.problems[0] in str(found)
 
 
-@pytest.mark.quick
 def test_a_name_counts_once_and_names_are_made_unlike(here, fitted):
     Path("old").mkdir()
     Path("old/paint.npz").write_bytes(Path("chalk.npz").read_bytes())
@@ -234,7 +229,6 @@ def test_wrong_options_are_told_before_the_work(here, fitted, options, said):
 # Saved, and resumed
 
 
-@pytest.mark.quick
 def test_a_later_sweep_does_the_rest(here, fitted):
     first = bk.sweep(FILES[:2], "lambert", folder="out")
     assert tree("out") == sorted(
@@ -264,7 +258,6 @@ def test_a_later_sweep_does_the_rest(here, fitted):
     assert "6 of 6 fits, 6 of them saved before" in str(again)
 
 
-@pytest.mark.quick
 def test_what_has_changed_is_fitted_again(here, fitted, monkeypatch):
     def changed(**settings):
         fitted.clear()
@@ -299,7 +292,6 @@ class Felt(Model):
 '''
 
 
-@pytest.mark.quick
 def test_a_model_of_ones_own_is_fitted_again_when_its_file_changes(here, fitted):
     Path("felt.py").write_text(FELT)
     for expected in (["felt"], [], ["felt+ward", "felt"]):
@@ -332,7 +324,6 @@ def test_a_task_is_plain_data_and_is_cut_where_there_are_few(here):
         ]
 
 
-@pytest.mark.quick
 def test_ctrl_c_ends_with_what_is_finished(here, fitted):
     def progress(done, total):
         if done == stop:
@@ -358,7 +349,6 @@ def swept(here, fitted):
     return bk.sweep(["chalk.npz", "<i>&.npz", "missing.npz"], LINEAR, folder="out")
 
 
-@pytest.mark.quick
 def test_the_table(swept):
     with Path("out/table.csv").open(encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
@@ -372,7 +362,6 @@ def test_the_table(swept):
             assert written["error"] == written["seconds"] == written["values"] == ""
 
 
-@pytest.mark.quick
 def test_parquet(swept, monkeypatch):
     parquet = pytest.importorskip("pyarrow.parquet")
     swept.to_parquet("table.parquet")
@@ -408,7 +397,6 @@ class Page(HTMLParser):
         self.text += data
 
 
-@pytest.mark.quick
 def test_the_page(swept):
     text = Path("out/index.html").read_text(encoding="utf-8")
     page = Page(text)
@@ -519,7 +507,6 @@ def cli(here, fitted):
 MODELS = [word for name in LINEAR for word in ("-m", name)]
 
 
-@pytest.mark.quick
 def test_the_command(cli):
     result = cli("fit", *FILES, *MODELS, "-o", "out")
     assert (result.exit_code, result.stderr) == (0, "")
@@ -533,7 +520,6 @@ def test_the_command(cli):
     assert set(record["written"]) == {f"out/{name}" for name in tree("out") if "." in name}
 
 
-@pytest.mark.quick
 def test_the_command_goes_past_bad_files(cli):
     Path("short.npz").write_bytes(b"PK")
     result = cli("fit", "short.npz", *FILES, "missing.npz", *MODELS, "--json")

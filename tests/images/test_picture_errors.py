@@ -16,8 +16,6 @@ from brdfkit.images.errors.noise import Halves, estimate_samples
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.rendering import render
 
-pytestmark = pytest.mark.quick
-
 
 @pytest.fixture
 def rng():
@@ -37,6 +35,7 @@ def scene(rng):
 # -- metrics ----------------------------------------------------------------------------------
 
 
+@pytest.mark.quick
 def test_psnr_is_that_of_the_definition(rng):
     """Of noise with a known deviation; the mean of n squares is off by √(2/n), here 0.02 dB."""
     reference = np.full((128, 128, 3), 0.5)
@@ -50,6 +49,7 @@ def test_psnr_is_that_of_the_definition(rng):
     assert np.isnan(psnr(reference, noisy, ~everywhere))  # nothing of it is seen
 
 
+@pytest.mark.quick
 def test_errors_are_unknown_where_nothing_shows_the_material(scene):
     picture, disc = scene
     errors = compare_pictures({"a": picture, "b": 2 * picture}, picture, disc & False)
@@ -60,6 +60,7 @@ def test_errors_are_unknown_where_nothing_shows_the_material(scene):
     assert errors.remarks == list(errors.notes)
 
 
+@pytest.mark.quick
 def test_ciede2000_is_as_published():
     """G. Sharma, W. Wu and E. N. Dalal, "The CIEDE2000 color-difference formula", Color Research
     and Application 30(1), 2005, Table 1, 1 and 25."""
@@ -74,6 +75,7 @@ def test_ciede2000_is_as_published():
     np.testing.assert_allclose(ciede2000(first, other), [[2.0425, 1.2644, 100, 0]], atol=1e-4)
 
 
+@pytest.mark.quick
 def test_differences_are_those_of_colour_science(rng):
     """The package's, over dark, saturated, grey and bright colours, and those out of the gamut."""
     colour = import_colour_package()
@@ -90,6 +92,7 @@ def test_differences_are_those_of_colour_science(rng):
     np.testing.assert_allclose(delta_e_itp(first, other), expected, rtol=1e-5, atol=1e-4)
 
 
+@pytest.mark.quick
 def test_delta_e_itp_is_that_of_the_recommendations(rng):
     """ITU-R BT.2087 (primaries), BT.2100 (PQ, ICtCp) and BT.2124 (ΔE), written out."""
     to_2020 = [[0.6274, 0.3293, 0.0433], [0.0691, 0.9195, 0.0114], [0.0164, 0.0880, 0.8956]]
@@ -111,6 +114,7 @@ def test_delta_e_itp_is_that_of_the_recommendations(rng):
     assert WHITE == 203
 
 
+@pytest.mark.quick
 def test_flip_is_nothing_for_equal_pictures_and_grows(scene):
     reference, mask = scene
     errors = [flip(reference, reference * (1 + d), mask) for d in (0, 0.1, 0.4)]
@@ -120,6 +124,7 @@ def test_flip_is_nothing_for_equal_pictures_and_grows(scene):
     assert np.isnan(flip(0 * reference, reference, mask))
 
 
+@pytest.mark.quick
 def test_flip_is_not_diluted_by_what_is_between_the_pixels_that_count():
     grey = np.full((64, 64, 3), 0.3, np.float32)
 
@@ -132,6 +137,7 @@ def test_flip_is_not_diluted_by_what_is_between_the_pixels_that_count():
     assert far == pytest.approx(near, rel=0.05)
 
 
+@pytest.mark.quick
 def test_flip_has_the_exposures_of_its_authors(scene):
     """The package's own, where all pixels count and the brightest ones are equal."""
     evaluate = pytest.importorskip("flip_evaluator").evaluate
@@ -144,6 +150,7 @@ def test_flip_has_the_exposures_of_its_authors(scene):
     assert np.ptp(find_exposures(dark, np.full((48, 48), True))) == 8
 
 
+@pytest.mark.quick
 def test_ssim_is_that_of_the_paper(scene, rng):
     """By its definition, with a Gaussian window of σ = 1.5 over what is shown, on black."""
     reference, mask = scene
@@ -165,6 +172,7 @@ def test_ssim_is_that_of_the_paper(scene, rng):
     assert ssim(reference, reference, mask) == pytest.approx(1, abs=1e-12)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("key", METRICS)
 def test_what_is_outside_the_mask_does_not_count(key, scene):
     reference, mask = scene
@@ -180,6 +188,7 @@ def test_what_is_outside_the_mask_does_not_count(key, scene):
 # -- the table --------------------------------------------------------------------------------
 
 
+@pytest.mark.quick
 def test_a_difference_within_the_noise_is_none(scene, rng):
     reference, mask = scene
     noise = rng.standard_normal((2, *reference.shape)).astype(np.float32)
@@ -206,6 +215,7 @@ def test_a_difference_within_the_noise_is_none(scene, rng):
     assert lines[6].startswith("(...) is no difference: not above the noise floor")
 
 
+@pytest.mark.quick
 def test_what_is_unknown_is_said(scene):
     reference, mask = scene
     broken = reference.copy()
@@ -220,6 +230,7 @@ def test_what_is_unknown_is_said(scene):
     assert "none" not in said
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("absent", [["flip_evaluator"], ["flip_evaluator", "skimage.metrics"]])
 def test_metrics_without_their_packages_are_left_out_in_a_sentence(scene, monkeypatch, absent):
     for module in absent:
@@ -236,6 +247,7 @@ def test_metrics_without_their_packages_are_left_out_in_a_sentence(scene, monkey
 # -- noise ------------------------------------------------------------------------------------
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("passes", [(30, 30), (30, 30, 4), (32, 16, 8, 1)])
 def test_the_noise_of_the_halves_is_that_of_two_seeds(passes, rng):
     """Of independent samples with σ = 1, equal halves or not: on average 2σ²/N.
@@ -264,6 +276,7 @@ def test_the_floor_is_that_of_another_seed(llvm_variant):
     assert error < 0.15 * np.mean(true)
 
 
+@pytest.mark.quick
 def test_twice_the_samples_give_three_decibels():
     assert estimate_samples(43, 40, 100) == pytest.approx(200, rel=0.01)
     assert estimate_samples(45, -np.inf, 100) > 1e99

@@ -7,8 +7,6 @@ from hypothesis import strategies as st
 
 from brdfkit.lighting.sampling.tree import CRITERIA, Sums, block_sums, build_tree
 
-pytestmark = pytest.mark.quick
-
 
 def error(values, found):
     """Sum of squared errors about the blocks' means."""
@@ -42,6 +40,7 @@ def greedy(values, count, criterion):
     return sorted(blocks)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("criterion", CRITERIA)
 @pytest.mark.parametrize("seed", range(4))
 def test_many_cuts_at_once_are_those_of_one_after_the_other(criterion, seed):
@@ -52,6 +51,7 @@ def test_many_cuts_at_once_are_those_of_one_after_the_other(criterion, seed):
     assert sorted(map(tuple, found.tolist())) == greedy(values, 13, criterion)
 
 
+@pytest.mark.quick
 def test_an_even_block_is_not_cut():
     values = np.zeros((4, 6))
     values[:, 4:] = 1.0
@@ -84,6 +84,7 @@ def three_lobes():
     return light * np.sin(theta)
 
 
+@pytest.mark.quick
 def test_the_squared_error_reconstructs_best_and_the_relative_one_samples_best():
     """The claim of Ergun 2015 on sse (C1); and what sampling sees is another error."""
     power = three_lobes()
@@ -94,6 +95,7 @@ def test_the_squared_error_reconstructs_best_and_the_relative_one_samples_best()
     assert min(noise, key=noise.get) == "relative"
 
 
+@pytest.mark.quick
 def test_the_relative_error_is_what_a_block_adds_to_the_variance():
     power = three_lobes()
     boxes = build_tree(power, 50).blocks

@@ -10,8 +10,6 @@ from brdfkit.core.colours import RGB
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.loading import load, save
 
-pytestmark = pytest.mark.quick
-
 
 def rotated(w, angle, axis):
     """`w` turned about the axis y or z, right-handed."""
@@ -45,6 +43,7 @@ CASES = {
 }
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("name", CASES)
 def test_parametrisations(tmp_path, name):
     coordinates, (view, light) = CASES[name]
@@ -55,6 +54,7 @@ def test_parametrisations(tmp_path, name):
     assert samples.values == 0.5
 
 
+@pytest.mark.quick
 def test_file(tmp_path):
     material = load(place(tmp_path, "alta"))
     assert material.channels == ("Y",)
@@ -65,6 +65,7 @@ def test_file(tmp_path):
     np.testing.assert_allclose(wo, wi * [-1, -1, 1], atol=1e-12)  # x < 0: across from the light
 
 
+@pytest.mark.quick
 def test_cosine_is_divided_out_except_at_the_horizon(tmp_path):
     rows = [(0.5, 1.0, 0.0, 0.3), (0.5, 0.0, math.pi / 2, 1e-4)]
     data = alta(out="INV_STERADIAN_COSINE_FACTOR", rows=rows)
@@ -75,10 +76,12 @@ def test_cosine_is_divided_out_except_at_the_horizon(tmp_path):
     assert material.info["masked"].startswith("1 rows")
 
 
+@pytest.mark.quick
 def test_values_that_are_not_said_to_be_anything_are_noted(tmp_path):
     assert "not stated" in load(place(tmp_path, "alta", alta(out=None))).info["PARAM_OUT"]
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("vs", "ends", "error"), [("1", (0.02,), 0.02), ("2", (0.2, 0.3), 0.05), ("0", (), None)]
 )
@@ -91,6 +94,7 @@ def test_intervals_are_standard_errors(tmp_path, vs, ends, error):
         np.testing.assert_allclose(material.standard_error, [[error]])
 
 
+@pytest.mark.quick
 def test_three_values_are_rgb_with_an_interval_each(tmp_path):
     data = alta(rows=[(0.5, 0.5, 0.0, 1, 2, 3, 0.1, 0.2, 0.3, 0.4)])
     data = data.replace(b"#DIM 9 1", b"#DIM 3 3").replace(b"#VS 0", b"#VS 1 2 1")
@@ -100,6 +104,7 @@ def test_three_values_are_rgb_with_an_interval_each(tmp_path):
     np.testing.assert_allclose(material.standard_error, [[0.1, 0.05, 0.4]])
 
 
+@pytest.mark.quick
 def test_anisotropic_where_the_light_goes_around(tmp_path):
     rows = [(0.5, phi, 0.5, 3.0, 0.25) for phi in (0.0, 1.0)]
     path = place(tmp_path, "alta", alta("SPHERICAL_TL_PL_TV_PV", rows=rows))
@@ -128,6 +133,7 @@ TRAPS = {
 }
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("trap", TRAPS)
 def test_traps(tmp_path, trap):
     data, match = TRAPS[trap]

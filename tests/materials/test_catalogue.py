@@ -120,7 +120,6 @@ def test_a_changed_or_missing_file_is_refused(copy):
     assert catalogue.find_material_file("dusty_gold").exists()
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("name", NAMES)
 def test_all_above_the_surface_is_known_and_positive(measured, name):
     material = measured[name]
@@ -168,7 +167,6 @@ def test_mirror_symmetric_within_the_errors(measured, name):
         )
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("theta_i", [0, 30, 60, 75, 85])
 def test_albedo_is_at_most_one(measured, name, theta_i):

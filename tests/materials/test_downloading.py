@@ -21,8 +21,6 @@ from brdfkit.materials.collections import public
 from brdfkit.materials.collections.downloading import download
 from brdfkit.materials.loading import load
 
-pytestmark = pytest.mark.quick
-
 TABLE = merl((30, 20, 40))  # more than the 256 kB that are read at once
 OTHER = merl((30, 20, 40), raw=range(72_000))
 
@@ -124,6 +122,7 @@ def files(folder):
 # What works
 
 
+@pytest.mark.quick
 def test_download_and_load_by_name(server, lab):
     place, told = lab(), []
     assert download("lab/grey", lambda *progress: told.append(progress)) == place
@@ -137,12 +136,14 @@ def test_download_and_load_by_name(server, lab):
     assert len(server.asked) == 1
 
 
+@pytest.mark.quick
 def test_nothing_is_downloaded_unasked(server, lab):
     lab()
     assert "run 'brdfkit data get lab/grey'" in fails(call=load)
     assert not server.asked
 
 
+@pytest.mark.quick
 def test_interrupted_then_resumed(server, lab):
     place = lab()
     server.breaks = len(TABLE) // 2
@@ -161,6 +162,7 @@ def test_interrupted_then_resumed(server, lab):
     assert server.sent == len(TABLE) // 2 + len(TABLE) - have
 
 
+@pytest.mark.quick
 def test_ctrl_c_keeps_what_is_there(server, lab):
     place = lab()
 
@@ -174,6 +176,7 @@ def test_ctrl_c_keeps_what_is_there(server, lab):
     assert place.read_bytes() == TABLE
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("case", ["no ranges", "no checksum"])
 def test_starts_anew_where_it_cannot_resume(server, lab, case):
     """The server sends all, or nothing tells whether the halves belong together."""
@@ -186,6 +189,7 @@ def test_starts_anew_where_it_cannot_resume(server, lab, case):
     assert place.read_bytes() == TABLE
 
 
+@pytest.mark.quick
 def test_all_was_there_but_for_the_name(server, lab):
     place = lab()
     place.parent.mkdir(parents=True)
@@ -218,6 +222,7 @@ def test_one_file_of_an_archive(server, lab):
 # What does not
 
 
+@pytest.mark.quick
 def test_the_wrong_file_is_removed(server, lab):
     place = lab()
     server.files["/grey.binary"] = OTHER
@@ -229,6 +234,7 @@ def test_the_wrong_file_is_removed(server, lab):
     assert download("lab/grey").read_bytes() == TABLE
 
 
+@pytest.mark.quick
 def test_halves_that_do_not_belong_together(server, lab):
     place = lab()
     place.parent.mkdir(parents=True)
@@ -238,6 +244,7 @@ def test_halves_that_do_not_belong_together(server, lab):
     assert download("lab/grey").read_bytes() == TABLE
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("status", [404, 429, 503])
 def test_an_error_of_the_server(server, lab, status):
     place = lab()
@@ -251,11 +258,13 @@ def test_an_error_of_the_server(server, lab, status):
     assert not files(place.parent)
 
 
+@pytest.mark.quick
 def test_offline(server, lab):
     lab(url="http://127.0.0.1:1/{file}")  # where nothing listens
     assert "the connection to 127.0.0.1 failed" in fails()
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("case", ["no ranges", "no such member", "no archive", "404"])
 def test_archives_that_do_not_give_it(server, lab, case):
     place = lab(url=f"http://127.0.0.1:{server.server_port}/all.zip#db/{{file}}")
@@ -272,6 +281,7 @@ def test_archives_that_do_not_give_it(server, lab, case):
     assert not files(place.parent)
 
 
+@pytest.mark.quick
 def test_a_cache_that_cannot_be_written(server, lab, cache):
     lab()
     cache.write_text("a file where the folder belongs")
@@ -280,6 +290,7 @@ def test_a_cache_that_cannot_be_written(server, lab, cache):
     assert "cannot be written" in sentence
 
 
+@pytest.mark.quick
 def test_a_file_that_was_changed(server, lab):
     place = lab()
     download("lab/grey")
@@ -294,6 +305,7 @@ def test_a_file_that_was_changed(server, lab):
 # By hand
 
 
+@pytest.mark.quick
 def test_by_hand_the_sentence_says_which_file_from_where_to_where(server, lab):
     place = lab(url="", note="unpacked from all.zip")
     for call in (load, download):
@@ -310,6 +322,7 @@ def test_by_hand_the_sentence_says_which_file_from_where_to_where(server, lab):
     assert not server.asked
 
 
+@pytest.mark.quick
 def test_files_that_the_index_does_not_know(lab, cache):
     lab(files=[])
     assert "lab/mine: is not known; fetch its file from" in fails("lab/mine", load)
@@ -321,6 +334,7 @@ def test_files_that_the_index_does_not_know(lab, cache):
     assert list(public.find_collection("lab").list_files_on_disk()) == ["lab/mine"]
 
 
+@pytest.mark.quick
 def test_a_sample_of_a_file_with_many(lab, cache):
     place = lab(file="abrdf.dat", data=curet(), url="")
     place.parent.mkdir(parents=True)
@@ -329,6 +343,7 @@ def test_a_sample_of_a_file_with_many(lab, cache):
     assert load("lab/abrdf#12").values[0, 0] == pytest.approx(12)
 
 
+@pytest.mark.quick
 def test_names_that_are_none(lab, tmp_path, monkeypatch):
     lab()
     assert "'brdfkit data list lab' names what is known" in fails("lab/nope", load)
@@ -347,6 +362,7 @@ def cli(*words):
     return CliRunner().invoke(main, [str(word) for word in words])
 
 
+@pytest.mark.quick
 def test_commands(server, lab):
     place = lab()
     assert "greys" in cli("data").stdout
@@ -366,6 +382,7 @@ def test_commands(server, lab):
     assert cli("data", "get", "lab/grey", "--quiet").stdout == ""
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -392,6 +409,7 @@ def test_wrong_words(lab, cache, words, said):
 # What the index says
 
 
+@pytest.mark.quick
 def test_the_index_is_complete():
     found = public.list_collections()
     assert {name: len(c.files) for name, c in found.items()} == {
@@ -412,6 +430,7 @@ def test_the_index_is_complete():
     assert folder == "cc_iris_purple_gem"
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("folder", ["rgl", "cornell", "curet"])
 def test_checksums_are_those_of_real_files(measured_data, folder):
     known = {listed.file: listed for listed in public.find_collection(folder).files.values()}

@@ -34,7 +34,6 @@ from brdfkit.materials.formats import list_formats
 from brdfkit.materials.loading import load, save
 from brdfkit.materials.measured import Measured
 
-pytestmark = pytest.mark.quick
 PACKED = {"": bytes, ".gz": gzip.compress, ".xz": lzma.compress}
 
 
@@ -52,6 +51,7 @@ def refused(path, match):
 # -- every format ---------------------------------------------------------------------------
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("suffix", PACKED)
 @pytest.mark.parametrize("kind", FILES)
 def test_reads_plain_and_compressed(tmp_path, kind, suffix):
@@ -63,6 +63,7 @@ def test_reads_plain_and_compressed(tmp_path, kind, suffix):
     assert packed.info["format"]
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("kind", sorted(FILES.keys() - {"utia"}))  # it has no header
 def test_content_decides_and_not_the_suffix(tmp_path, kind):
     right, wrong = place(tmp_path, kind), place(tmp_path, kind, name="misnamed.binary")
@@ -163,18 +164,21 @@ TRAPS = {
 CASES = [(kind, trap) for kind, traps in TRAPS.items() for trap in traps]
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(("kind", "trap"), CASES)
 def test_traps(tmp_path, kind, trap):
     data, match = TRAPS[kind][trap]
     refused(place(tmp_path, kind, data), match)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("kind", FILES)
 def test_empty_and_blank(tmp_path, kind):
     refused(place(tmp_path, kind, b""), "is empty; fetch")
     refused(place(tmp_path, kind, b"\n" * 5), "fetch|header|belong|VARS|#DIM")
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("suffix", [".gz", ".xz"])
 @pytest.mark.parametrize("kind", FILES)
 def test_damaged_compression(tmp_path, kind, suffix):
@@ -187,6 +191,7 @@ def test_damaged_compression(tmp_path, kind, suffix):
     refused(place(tmp_path, kind, PACKED[suffix](b""), name + suffix), "is empty")
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("kind", ["cornell", "astm", "mini_diff"])
 def test_value_that_is_not_finite_is_masked(tmp_path, kind):
     data = FILES[kind][1].replace(b"0.25", b" nan ", 1).replace(b" nan 0000", b" nan", 1)
@@ -199,6 +204,7 @@ def test_value_that_is_not_finite_is_masked(tmp_path, kind):
 # -- MERL -----------------------------------------------------------------------------------
 
 
+@pytest.mark.quick
 def test_merl_scale_order_and_negative_before_scaling(tmp_path):
     raw = 1500.0 + np.arange(72).reshape(3, *MERL_SHAPE)
     raw[1, 2, 1, 3] = -1e-9  # one channel of one cell: measured in none
@@ -215,10 +221,12 @@ def test_merl_scale_order_and_negative_before_scaling(tmp_path):
     assert material.table.phi_d_period == pytest.approx(np.pi)
 
 
+@pytest.mark.quick
 def test_merl_full_circle(tmp_path):
     assert load(place(tmp_path, "merl", merl((3, 2, 8)))).table.phi_d_period == 2 * np.pi
 
 
+@pytest.mark.quick
 def test_merl_theta_h_is_square_root_spaced(tmp_path):
     """θh = 22.5° is a quarter of the right angle and so the border of bin 45 of 90."""
     raw = np.broadcast_to(np.arange(90.0)[:, None, None], (3, 90, 1, 2)) * 1500
@@ -253,6 +261,7 @@ def test_merl_round_trip(drawn):
     assert back.table.phi_d_period == period
 
 
+@pytest.mark.quick
 def test_merl_writes_achromatic_negative_and_unknown(tmp_path):
     values = np.full((2, 2, 4, 1), 0.5)
     values[0, 0, 0], values[1, 1, 1] = np.nan, -0.1
@@ -265,6 +274,7 @@ def test_merl_writes_achromatic_negative_and_unknown(tmp_path):
     assert stored == -1
 
 
+@pytest.mark.quick
 def test_merl_refuses_what_it_cannot_hold(tmp_path):
     flat = Measured.from_table(np.ones((2, 2, 3, 3)), phi_d_period=2 * np.pi)
     for obj, match in ((flat, "cannot say .* resample"), ({}, "not a dict")):
@@ -276,6 +286,7 @@ def test_merl_refuses_what_it_cannot_hold(tmp_path):
 # -- Cornell and ASTM -----------------------------------------------------------------------
 
 
+@pytest.mark.quick
 def test_cornell(tmp_path):
     material = load(place(tmp_path, "cornell"))
     assert material.channels == ("450nm", "550nm", "650nm")
@@ -288,6 +299,7 @@ def test_cornell(tmp_path):
     assert material.values[0, 0] == material.values.max()
 
 
+@pytest.mark.quick
 def test_cornell_lone_point_is_noted_and_kept(tmp_path):
     material = load(place(tmp_path, "cornell", cornell(spike=True)))
     assert "33.0 times" in material.info["suspicious"]
@@ -295,6 +307,7 @@ def test_cornell_lone_point_is_noted_and_kept(tmp_path):
     assert material.values.max() == 99
 
 
+@pytest.mark.quick
 def test_astm_rgb_keeps_negative_values(tmp_path):
     material = load(place(tmp_path, "astm"))
     assert material.channels == RGB
@@ -305,6 +318,7 @@ def test_astm_rgb_keeps_negative_values(tmp_path):
     np.testing.assert_allclose(wo, wi * [-1, -1, 1], atol=1e-6)
 
 
+@pytest.mark.quick
 def test_astm_mini_diff(tmp_path):
     material = load(place(tmp_path, "mini_diff"))
     assert material.channels == RGB
@@ -317,6 +331,7 @@ def test_astm_mini_diff(tmp_path):
     assert "phi_s" in material.info["columns"]
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("columns", "channels", "first"),
     [
@@ -331,6 +346,7 @@ def test_astm_channels_by_name(tmp_path, columns, channels, first):
     np.testing.assert_array_equal(material.values[0], first)
 
 
+@pytest.mark.quick
 def test_astm_columns_in_another_order(tmp_path):
     data = b"VARS BRDF, phi_s,theta_s,phi_i,theta_i\n0.3,3.14159265,0.5,0,0.5\n"
     material = load(place(tmp_path, "astm", data))
@@ -342,6 +358,7 @@ def test_astm_columns_in_another_order(tmp_path):
 # -- CUReT ----------------------------------------------------------------------------------
 
 
+@pytest.mark.quick
 def test_curet_viewing_comes_first(tmp_path):
     path = place(tmp_path, "curet")
     material = load(str(path).replace("#1", "#61"))
@@ -353,6 +370,7 @@ def test_curet_viewing_comes_first(tmp_path):
     np.testing.assert_allclose(material.values[:, 0], 61 + np.arange(205) / 1000)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("sample", ["", "#", "#0", "#62", "#x", "#-1", "#1.0", "#" + "9" * 5000])
 def test_curet_needs_a_sample(tmp_path, sample):
     path = place(tmp_path, "curet")
@@ -360,6 +378,7 @@ def test_curet_needs_a_sample(tmp_path, sample):
     refused(text, r"name one of 1 to 61.* as in 'abrdf\.dat#1'")
 
 
+@pytest.mark.quick
 def test_curet_needs_its_table(tmp_path):
     path = place(tmp_path, "curet")
     table = tmp_path / "table.txt"
@@ -375,6 +394,7 @@ def test_curet_needs_its_table(tmp_path):
 # -- paths, limits, writing -----------------------------------------------------------------
 
 
+@pytest.mark.quick
 def test_sample_of_a_file_that_holds_one(tmp_path):
     path = place(tmp_path, "astm")
     refused(f"{path}#2", "leave '#2' off")
@@ -382,6 +402,7 @@ def test_sample_of_a_file_that_holds_one(tmp_path):
     assert load(hashed).name == "paint#2"
 
 
+@pytest.mark.quick
 def test_paths_that_are_no_file(tmp_path):
     refused(tmp_path, "is a folder")
     refused(tmp_path / "none.binary", "no such file")
@@ -390,11 +411,13 @@ def test_paths_that_are_no_file(tmp_path):
     refused(tmp_path / "pipe.binary", "no regular file")
 
 
+@pytest.mark.quick
 def test_unknown_formats_are_told_the_known_ones(tmp_path):
     (tmp_path / "photo.jpg").write_bytes(b"\xff\xd8\xff\xe0 nothing measured")
     refused(tmp_path / "photo.jpg", r"ASTM \(.astm\).*MERL \(.binary\).*each also as .gz or .xz")
 
 
+@pytest.mark.quick
 def test_every_format_module_offers_the_protocol():
     assert {"MERL", "Cornell", "ASTM", "CUReT"} <= {module.NAME for module in list_formats()}
     for module in list_formats():
@@ -403,6 +426,7 @@ def test_every_format_module_offers_the_protocol():
         assert callable(module.read)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("suffix", PACKED)
 def test_oversize_is_refused(tmp_path, monkeypatch, suffix):
     path = place(tmp_path, "merl", PACKED[suffix](merl()), "grey.binary" + suffix)
@@ -412,6 +436,7 @@ def test_oversize_is_refused(tmp_path, monkeypatch, suffix):
     refused(path, "more than 587 bytes")
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("suffix", PACKED)
 def test_saves_what_it_loads(tmp_path, suffix):
     material = load(place(tmp_path, "merl"))
@@ -425,6 +450,7 @@ def test_saves_what_it_loads(tmp_path, suffix):
     assert load(first).name == "a"
 
 
+@pytest.mark.quick
 def test_save_refuses_other_suffixes(tmp_path):
     material = load(place(tmp_path, "merl"))
     for name in ("x.jpg", "x", "x.gz"):
@@ -437,6 +463,7 @@ def test_save_refuses_other_suffixes(tmp_path):
         save(material, tmp_path / "folder.binary")
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("failure", [KeyboardInterrupt, RuntimeError, BrdfkitError])
 def test_interrupted_writing_leaves_the_old_file(tmp_path, failure):
     target = tmp_path / "copper.json"
@@ -454,6 +481,7 @@ def test_interrupted_writing_leaves_the_old_file(tmp_path, failure):
     assert [path.name for path in tmp_path.iterdir()] == ["copper.json"]
 
 
+@pytest.mark.quick
 def test_written_leaves_the_old_content_to_who_reads_it(tmp_path):
     target = tmp_path / "copper.json"
     target.write_text("old")
@@ -464,6 +492,7 @@ def test_written_leaves_the_old_content_to_who_reads_it(tmp_path):
     assert target.read_text() == "new"
 
 
+@pytest.mark.quick
 def test_written_replaces_and_follows_links(tmp_path):
     (tmp_path / "real").mkdir()
     link = tmp_path / "link.txt"
@@ -475,6 +504,7 @@ def test_written_replaces_and_follows_links(tmp_path):
     assert link.read_text() == "new"
 
 
+@pytest.mark.quick
 def test_links_in_a_circle(tmp_path):
     (tmp_path / "a.txt").symlink_to(tmp_path / "b.txt")
     (tmp_path / "b.txt").symlink_to(tmp_path / "a.txt")
@@ -487,6 +517,7 @@ def test_links_in_a_circle(tmp_path):
     refused(tmp_path / "a.txt", "no such file")
 
 
+@pytest.mark.quick
 def test_disk_that_is_full_is_one_sentence(tmp_path):
     def fill():
         with files.write_safely(tmp_path / "x.txt"):
@@ -497,6 +528,7 @@ def test_disk_that_is_full_is_one_sentence(tmp_path):
     assert not any(tmp_path.iterdir())
 
 
+@pytest.mark.quick
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
 def test_protected_files(tmp_path):
     path = place(tmp_path, "astm")
@@ -514,6 +546,7 @@ def test_protected_files(tmp_path):
 # -- arrays ---------------------------------------------------------------------------------
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("valid", [np.ones(2, bool), np.ones((3, 1), bool), True])
 def test_valid_is_one_for_each_sample(valid):
     w = from_angles(np.array([0.1, 0.2, 0.3]), 0.0)
@@ -521,6 +554,7 @@ def test_valid_is_one_for_each_sample(valid):
         Measured.from_samples(w, w, np.ones((3, 3)), valid=valid, name="grey")
 
 
+@pytest.mark.quick
 @pytest.mark.quick
 def test_values_of_one_channel_need_no_second_axis():
     w = from_angles(np.array([0.1, 0.2, 0.3]), 0.0)
@@ -536,6 +570,7 @@ def test_values_of_one_channel_need_no_second_axis():
         Measured.from_samples(w, w, np.ones((3, 2)), name="grey")
 
 
+@pytest.mark.quick
 def test_what_is_infinite_was_not_measured():
     values = np.ones((3, 2, 4, 3))
     values[1, 1, 2, 0], values[2, 0, 1, 2] = np.inf, -np.inf
@@ -558,6 +593,7 @@ def spectral(reflectance, wavelengths):
     return Measured.from_samples(w, w, reflectance, channels=channels)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     "wavelengths", [np.arange(400, 701, 10), [450, 550, 650], [650, 480.5, 610, 400]]
 )
@@ -569,6 +605,7 @@ def test_white_is_one(wavelengths):
     assert "CIE 1931" in rgb.info["rgb"]
 
 
+@pytest.mark.quick
 def test_order_of_wavelengths_does_not_matter():
     sorted_ = spectral([[0.1, 0.2, 0.7]], [450, 550, 650]).rgb.values
     shuffled = spectral([[0.7, 0.1, 0.2]], [650, 450, 550]).rgb.values
@@ -576,6 +613,7 @@ def test_order_of_wavelengths_does_not_matter():
     assert sorted_[0, 0] > sorted_[0, 1] > sorted_[0, 2]
 
 
+@pytest.mark.quick
 def test_colour_agrees_with_integration_by_colour_science():
     colour = import_colour_package()
 
@@ -591,12 +629,14 @@ def test_colour_agrees_with_integration_by_colour_science():
     np.testing.assert_allclose(spectral(reflectance[None], nm).rgb.values[0], expected, atol=5e-4)
 
 
+@pytest.mark.quick
 def test_saturated_colours_keep_negative_values():
     green = np.exp(-(((np.arange(400, 701, 10) - 520) / 15.0) ** 2))
     red, *rest = spectral(green[None], np.arange(400, 701, 10)).rgb.values[0]
     assert red < 0 < max(rest)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("channels", "match"), [(("X", "Y"), "X, Y .* wavelengths"), (("900nm", "950nm"), "no colour")]
 )
@@ -607,6 +647,7 @@ def test_channels_without_colour(channels, match):
         _ = material.rgb
 
 
+@pytest.mark.quick
 @pytest.mark.quick
 def test_a_saved_fit_runs_no_program(tmp_path):
     """The label in a file is the name of a model, never a Python file to load."""

@@ -146,7 +146,6 @@ def test_the_triangles_cover_the_tile_and_its_margin():
 # What is known exactly
 
 
-@pytest.mark.quick
 def test_a_flat_diffuse_surface():
     wi, wo = draw_direction_pairs(20, most=89)
     mean, error = brdf(Specimen(FLAT, {"type": "diffuse", "reflectance": 0.3}), wi, wo, 100)
@@ -154,7 +153,6 @@ def test_a_flat_diffuse_surface():
     assert error.max() < 1e-5
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("facets", [GOLD, PLASTIC], ids=lambda f: f["type"])
 def test_a_flat_surface_is_its_facets(llvm_variant, facets):
     mi = llvm_variant
@@ -335,7 +333,6 @@ def test_the_errors_come_out_as_asked():
     assert np.median(relative) > 0.02 / 4
 
 
-@pytest.mark.quick
 def test_equal_seeds_give_equal_values():
     first, second, other = (
         measure(tile("woven"), GOLD, shape=(3, 3, 3, 3), seed=s) for s in (4, 4, 5)
@@ -406,7 +403,6 @@ class Interrupt:
             raise KeyboardInterrupt
 
 
-@pytest.mark.quick
 def test_ctrl_c_keeps_what_there_is(monkeypatch):
     monkeypatch.setattr("brdfkit.materials.goniometer.measuring.BATCH", 5_000)
     options = {"surface": tile("gaussian"), "facets": GREY, "shape": (5, 5, 5), "error": 0.02}

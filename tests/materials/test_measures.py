@@ -9,8 +9,6 @@ from brdfkit.core.geometry.directions import from_angles, to_half_difference
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.samples.measures import MEASURES, compute_measure, integrate_measure
 
-pytestmark = pytest.mark.quick
-
 INTEGRALS = [name for name, power in MEASURES.items() if power is not None]
 
 
@@ -73,6 +71,7 @@ def test_what_is_far_from_all_samples_is_unrepresented():
     assert bk.fit(narrow, "lambert").unrepresented > 0.2
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("name", ["paper_white", "cc_ibiza_sunset"])
 def test_the_grid_of_an_rgl_file_stands_for_nearly_all(name, measured_data):
     """Of its eight incidences one stands for 10°: to 10 %."""
@@ -102,6 +101,7 @@ def test_a_model_that_cannot_have_the_light_says_so(measured_data):
     assert any("where the measurement reflects" in note for note in found.notes)
 
 
+@pytest.mark.quick
 def test_an_unknown_measure_is_refused():
     with pytest.raises(bk.BrdfkitError, match="no measure of directions 'solid'"):
         bk.losses.Loss("mine", "mine", lambda m, r, ci, co: m - r, measure="solid")
@@ -134,6 +134,7 @@ def test_samples_that_are_left_out_tell_no_light():
         assert fits[1].values == fits[0].values
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("factor", "said"), [(100.0, "more than arrives"), (1e-4, "blackest paints")]
 )
@@ -151,6 +152,7 @@ def test_a_file_in_another_unit_is_told_so(factor, said):
     assert found.values["alpha_u"] == pytest.approx(0.3, rel=1e-3)
 
 
+@pytest.mark.quick
 def test_marks_of_what_was_not_measured_are_told():
     wi, wo = draw_direction_pairs(300, seed=4, max_degrees=70.0)
     values = bk.models()["ggx"]().eval(wi, wo)
@@ -159,6 +161,7 @@ def test_marks_of_what_was_not_measured_are_told():
     assert any(" values are exactly -9999: probably a mark" in note for note in notes)
 
 
+@pytest.mark.quick
 def test_light_is_not_told_by_noise():
     """Where values are negative, what is interpolated between their logarithms is too low."""
     wi, wo = draw_direction_pairs(2_000, seed=6, max_degrees=75.0)

@@ -14,8 +14,6 @@ from brdfkit.materials.formats import npz
 from brdfkit.materials.loading import load, save
 from brdfkit.materials.measured import Measured
 
-pytestmark = pytest.mark.quick
-
 
 def packed(material=None, **changes):
     """The archive of `material` with some members changed: arrays, bytes, or None to leave out."""
@@ -53,6 +51,7 @@ MEASURED = {name: make for name, make in MATERIALS.items() if name != "fit"}
 MEASURED |= {"errors": with_errors, "brushed samples": lambda: spectrum(anisotropic=True)}
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("name", MEASURED)
 def test_lossless_and_the_same_each_time(tmp_path, name):
     material = MEASURED[name]()
@@ -68,6 +67,7 @@ def test_lossless_and_the_same_each_time(tmp_path, name):
     np.testing.assert_array_equal(back.standard_error, material.standard_error)
 
 
+@pytest.mark.quick
 def test_notes_and_names_become_text(tmp_path):
     some = spectrum().samples
     info = {"T": 21, 7: None, "at": np.arange(3)}
@@ -81,18 +81,21 @@ def test_notes_and_names_become_text(tmp_path):
     assert back.channels == ("R", "G", "B")
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("period", [0, -1, 10, np.nan])
 def test_no_table_has_such_a_period(period):
     with pytest.raises(BrdfkitError, match=r"grey: phi_d_period is .*; give π"):
         Measured.from_table(np.ones((2, 2, 2, 3)), phi_d_period=period, name="grey")
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("shape", [7, (9, 9), (9, 9, 0), (9, 9, 2.5), (1, 2, 3, 4, 5)])
 def test_no_table_has_such_a_shape(shape):
     with pytest.raises(BrdfkitError, match="was asked for; give three numbers of cells"):
         table().resampled(shape)
 
 
+@pytest.mark.quick
 def test_numpy_opens_it(tmp_path):
     save(table(), tmp_path / "paint.npz")
     with np.load(tmp_path / "paint.npz") as arrays:
@@ -114,6 +117,7 @@ def test_a_lookup_is_stored_as_what_it_gives_in_a_table(tmp_path):
     np.testing.assert_allclose(back.table.values[known], material.table.values[known], rtol=1e-9)
 
 
+@pytest.mark.quick
 def test_reads_single_precision(tmp_path):
     values = spectrum().values.astype(np.float32)
     values.view(np.uint32)[0, 0] = 0x7F800001  # a NaN that signals; this row is not valid
@@ -168,6 +172,7 @@ TRAPS = {
 }
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("trap", TRAPS)
 def test_traps(tmp_path, trap):
     data, match = TRAPS[trap]
@@ -184,12 +189,14 @@ def test_traps(tmp_path, trap):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.quick
 def test_refuses_what_is_no_material(tmp_path):
     with pytest.raises(BrdfkitError, match="holds a measured material, not a Fit"):
         save(MATERIALS["fit"](), tmp_path / "fit.npz")
     assert not any(tmp_path.iterdir())
 
 
+@pytest.mark.quick
 def test_brushed_table_is_anisotropic(tmp_path):
     save(brushed(), tmp_path / "brushed.npz.xz")
     assert load(tmp_path / "brushed.npz.xz").table.anisotropic

@@ -17,7 +17,6 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.loading import load, save
 from brdfkit.materials.measured import Measured
 
-pytestmark = pytest.mark.quick
 HALF, ROOT = 0.5, np.sqrt(0.75)  # sin and cos of 30°
 LEFT, RIGHT, BACK = (HALF, 0, ROOT), (-HALF, 0, ROOT), (0, HALF, ROOT)  # 30° from the normal
 UP = (0, 0, 1)
@@ -46,6 +45,7 @@ CONVENTIONS = {
 }
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("case", CONVENTIONS)
 def test_conventions(case):
     columns, wi, wo = CONVENTIONS[case]
@@ -62,6 +62,7 @@ def test_conventions(case):
         assert same.checksum == data.checksum
 
 
+@pytest.mark.quick
 def test_a_grid_of_angles_is_its_samples_one_by_one():
     theta_i, theta_o, phi = [10, 60], [0, 30, 75], [0, 90, 135, 180]
     values = np.random.default_rng(0).random((2, 3, 4, 3))
@@ -74,6 +75,7 @@ def test_a_grid_of_angles_is_its_samples_one_by_one():
     np.testing.assert_array_equal(grid.standard_error, values.reshape(-1, 3) / 9)
 
 
+@pytest.mark.quick
 def test_a_light_that_turns_is_of_an_anisotropic_material_unless_it_is_said():
     turned = {"theta_i": [0, 40, 40], "phi_i": [5, 0, 90], "theta_o": 50, "phi_o": 180, "BRDF": 1}
     assert Measured.from_frame(turned).anisotropic
@@ -151,6 +153,7 @@ TEXTS = {
 }
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("written", TEXTS)
 def test_a_table_is_the_same_in_every_form(tmp_path, written):
     found = load(saved(tmp_path, *TEXTS[written]))
@@ -160,6 +163,7 @@ def test_a_table_is_the_same_in_every_form(tmp_path, written):
     np.testing.assert_array_equal(found.standard_error, TWIN.standard_error)
 
 
+@pytest.mark.quick
 def test_arrays_a_frame_and_a_dictionary_are_the_same():
     numbers = FRAME.set_axis([*ANGLES, 450, 550.5, *VALUES[2:]], axis=1)
     angles = [FRAME[name] for name in ANGLES]
@@ -174,6 +178,7 @@ def test_arrays_a_frame_and_a_dictionary_are_the_same():
         np.testing.assert_array_equal(same.standard_error, TWIN.standard_error)
 
 
+@pytest.mark.quick
 def test_what_is_not_a_number_was_not_measured(tmp_path):
     holes = FRAME.copy()
     holes.iloc[1, 4], holes.iloc[2, 7] = np.nan, np.inf
@@ -186,6 +191,7 @@ def test_what_is_not_a_number_was_not_measured(tmp_path):
     np.testing.assert_array_equal(found.samples.valid, [True, False])
 
 
+@pytest.mark.quick
 def test_what_is_masked_was_not_measured():
     column = np.ma.array([1.0, -999.0], mask=[False, True])
     angles = {"theta_i": 30, "theta_o": [10, 20], "delta_phi": 180}
@@ -195,6 +201,7 @@ def test_what_is_masked_was_not_measured():
     np.testing.assert_array_equal(whole.values, [[1], [2]])
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("theta_i", "phi_i", "turned"),
     [
@@ -217,6 +224,7 @@ def test_a_surface_turns_where_the_azimuth_of_the_light_varies(theta_i, phi_i, t
     assert Measured.from_frame(vectors).anisotropic is turned
 
 
+@pytest.mark.quick
 def test_notes_in_a_file_and_those_that_are_none(tmp_path):
     text = "# anisotropic: Yes\n# format: other\n# lamp: blue\n" + FRAME.to_csv()
     found = load(saved(tmp_path, text))
@@ -227,12 +235,14 @@ def test_notes_in_a_file_and_those_that_are_none(tmp_path):
             Measured.from_frame(FRAME, name="mine", info=info)
 
 
+@pytest.mark.quick
 def test_thousands_in_quotes_are_not_taken_for_decimals(tmp_path):
     text = FRAME.to_csv(index=False) + '10,0,10.5,180,"1,000",1,1,1\n'
     with pytest.raises(BrdfkitError, match=r"has a comma and line . a point in a number"):
         load(saved(tmp_path, text))
 
 
+@pytest.mark.quick
 def test_a_cosine_is_divided_out_where_a_name_says_so(tmp_path):
     angles = {"theta_i": 20, "phi_i": 0, "theta_o": [0, 60, 90], "phi_o": 180}
     text = pd.DataFrame(
@@ -282,6 +292,7 @@ def test_round_trip_to_the_bit(angles, channels, numbers, errors, anisotropic, s
     assert info.items() <= back.info.items()
 
 
+@pytest.mark.quick
 def test_directions_that_are_no_round_angles_come_back_too(tmp_path):
     w = np.random.default_rng(0).normal(size=(2, 5000, 3))
     w[..., 2] = np.abs(w[..., 2])
@@ -296,6 +307,7 @@ def test_directions_that_are_no_round_angles_come_back_too(tmp_path):
     assert frame.checksum == back.checksum
 
 
+@pytest.mark.quick
 def test_a_table_becomes_its_cells(tmp_path):
     values = np.random.default_rng(0).random((3, 4, 8, 3))
     values[0, 0, 0] = np.nan
@@ -365,6 +377,7 @@ WRONG = [
 ]
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(("changes", "said"), WRONG)
 def test_a_frame_that_is_wrong(changes, said):
     frame = {name: column for name, column in (GOOD | changes).items() if column is not None}
@@ -372,6 +385,7 @@ def test_a_frame_that_is_wrong(changes, said):
         Measured.from_frame(frame, name="mine")
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -389,6 +403,7 @@ def test_angles_that_are_wrong(arguments, said):
         Measured.from_angles(*arguments, name="mine")
 
 
+@pytest.mark.quick
 def test_units_and_frames_that_are_none():
     with pytest.raises(BrdfkitError, match=r"^unit = 'grad' should be 'degrees' or 'radians'\.$"):
         Measured.from_angles(30, 0, 30, 180, 1, unit="grad")
@@ -396,17 +411,20 @@ def test_units_and_frames_that_are_none():
         Measured.from_frame([1, 2], name="mine")
 
 
+@pytest.mark.quick
 def test_a_table_of_arrow():
     found = Measured.from_frame(pyarrow.Table.from_pandas(FRAME, preserve_index=False))
     np.testing.assert_array_equal(found.samples.values, Measured.from_frame(FRAME).samples.values)
 
 
+@pytest.mark.quick
 def test_columns_that_come_twice():
     twice = pd.concat([FRAME, FRAME[["phi_o"]]], axis=1)
     with pytest.raises(BrdfkitError, match=r"^mine: the column 'phi_o' comes twice; keep one\.$"):
         Measured.from_frame(twice, name="mine")
 
 
+@pytest.mark.quick
 def test_radians_without_a_word_in_a_file(tmp_path):
     radians = FRAME.assign(**{name: np.radians(FRAME[name]) for name in ANGLES})
     path = saved(tmp_path, radians.to_csv())

@@ -16,8 +16,6 @@ from brdfkit.materials.measured import Measured
 from brdfkit.materials.plotting import plot
 from brdfkit.materials.plotting.plane_of_incidence import compute_lobe
 
-pytestmark = pytest.mark.quick
-
 GREY, RED = (0.2, 0.2, 0.2), (0.5, 0.0, 0.0)
 
 
@@ -63,6 +61,7 @@ def texts(figure):
     return {t: t.get_window_extent(renderer) for t in written if t.get_text() and t.get_visible()}
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("theta_i", [0, 45, 80])
 def test_a_model_is_drawn_as_it_evaluates(theta_i):
     model = models()["ggx"](specular_reflectance=RED, diffuse_reflectance=GREY, alpha_u=0.1)
@@ -76,6 +75,7 @@ def test_a_model_is_drawn_as_it_evaluates(theta_i):
     assert abs(theta_o[np.argmax(values)] - theta_i) < 10
 
 
+@pytest.mark.quick
 def test_luminance():
     assert np.allclose(luminance(np.array([[1.0, 1, 1], [0, 1, 0]])), [1, 0.7152])
     assert luminance(np.array([[3.0]])).tolist() == [3]
@@ -83,6 +83,7 @@ def test_luminance():
         luminance(np.ones((2, 4)))
 
 
+@pytest.mark.quick
 def test_a_table_is_drawn_only_where_it_was_measured():
     material = table(known=lambda theta_h: theta_h < np.radians(20))
     theta_o, values = compute_lobe(material, 30)
@@ -91,6 +92,7 @@ def test_a_table_is_drawn_only_where_it_was_measured():
     assert np.isnan(values[theta_h > 24]).all()
 
 
+@pytest.mark.quick
 def test_scattered_samples_are_drawn_only_near_the_plane():
     rows = [
         (45, 0, 30, 180, 1),  # the mirror's side
@@ -106,6 +108,7 @@ def test_scattered_samples_are_drawn_only_near_the_plane():
     assert values.tolist() == [1, 2, 3]
 
 
+@pytest.mark.quick
 def test_usual_angles_are_those_measured():
     assert titles(plot(Constant(1))) == ["15°", "45°", "75°"]
     material = scattered([(t, 0, 30, 180, 1) for t in (10, 20, 40, 60)] + [(75, 0, 30, 90, 1)])
@@ -118,6 +121,7 @@ def titles(figure):
     return [axes.get_title().split("= ")[1] for axes in figure.axes]
 
 
+@pytest.mark.quick
 def test_legend_and_styles_tell_all_apart():
     things = [table("paint"), scattered([(45, 0, 30, 180, 1)]), table("paint")]
     things += [Constant(0.1 * k, "model") for k in range(1, 9)]
@@ -151,6 +155,7 @@ def test_nothing_overlaps(peak, theta_i):
     assert not any(axes.get_window_extent().overlaps(legend) for axes in figure.axes)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("darkest", [0.0101, 0.014, 0.02, 0.099])
 @pytest.mark.parametrize("decades", [0.1, 1, 2, 4])
 def test_what_is_darkest_stays_off_the_centre(darkest, decades):
@@ -159,6 +164,7 @@ def test_what_is_darkest_stays_off_the_centre(darkest, decades):
     assert Radius([values])(darkest) > 0.15
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("peak", [1e-3, 0.32, 1, 2e3, 1e9])
 def test_the_scale_holds_the_largest_and_its_ticks(peak):
     values = np.geomspace(peak / 1e3, peak, 1000)
@@ -181,6 +187,7 @@ def test_black_uniform_and_infinite_materials(thing):
     FigureCanvasAgg(plot(thing)).draw()
 
 
+@pytest.mark.quick
 def test_spectral_data_is_drawn_in_colour():
     wi, wo = from_angles([0.3, 0.3], 0.0), from_angles([0.3, 0.6], np.pi)
     channels = tuple(f"{w}nm" for w in range(400, 701, 50))
@@ -199,12 +206,14 @@ def test_no_global_state_and_shown_in_notebooks():
     assert figure._repr_png_().startswith(b"\x89PNG")
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("theta_i", [-1, 90, (10, np.nan), (), [[1, 2]]])
 def test_angles_out_of_range(theta_i):
     with pytest.raises(BrdfkitError, match="from 0 to below 90°"):
         plot(Constant(1), theta_i=theta_i)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("things", "named"),
     [

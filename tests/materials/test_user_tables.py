@@ -13,8 +13,6 @@ from brdfkit.cli import main
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import from_angles
 
-pytestmark = pytest.mark.quick
-
 TRUTH = {"diffuse_reflectance": 0.3, "specular_reflectance": 0.6, "alpha_u": 0.25, "f0": 0.5}
 ANGLES = ["theta_i", "theta_o", "delta_phi"]
 MIRRORED = "mirror_azimuth=True (--mirror-azimuth) mends"
@@ -165,6 +163,7 @@ REFUSED = {
 }
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("case", REFUSED)
 def test_a_table_that_is_refused_says_why(case, tmp_path):
     frame, said = REFUSED[case]
@@ -172,6 +171,7 @@ def test_a_table_that_is_refused_says_why(case, tmp_path):
         bk.load(save(frame, tmp_path))
 
 
+@pytest.mark.quick
 def test_decimal_commas_between_commas_are_told(tmp_path):
     path = tmp_path / "mine.csv"
     text = "theta_i,theta_o,delta_phi,BRDF\n30,0,10,5,180,0,0,25\n"
@@ -186,6 +186,7 @@ def test_decimal_commas_between_commas_are_told(tmp_path):
         bk.load(path)
 
 
+@pytest.mark.quick
 def test_rows_of_channels_are_those_of_columns(tmp_path):
     """In any order, with directions that are rounded, errors, a hole and a repeated row."""
     text = """theta_i,theta_o,delta_phi,channel,CCBRDF,CCBRDF_error
@@ -217,6 +218,7 @@ def test_rows_of_channels_are_those_of_columns(tmp_path):
             bk.load(tmp_path / "mine.csv")
 
 
+@pytest.mark.quick
 def test_rows_of_wavelengths_are_those_of_columns():
     """Shuffled; the order of the directions is then another."""
     wide, names = table((15, 45), range(10, 81, 10)).drop(columns="BRDF"), ["450nm", "1064.5nm"]
@@ -232,6 +234,7 @@ def test_rows_of_wavelengths_are_those_of_columns():
     np.testing.assert_array_equal(there, here)
 
 
+@pytest.mark.quick
 def test_what_states_its_convention_is_not_mended():
     for option in ("mirror_azimuth", "divide_by_cos"):
         with pytest.raises(BrdfkitError, match=rf"^plaster: is a table, .* leave out {option} \("):
@@ -251,6 +254,7 @@ def test_what_states_its_convention_is_not_mended():
             assert said in run.output
 
 
+@pytest.mark.quick
 def test_a_grazing_view_does_not_tell_its_brdf():
     wo = from_angles(np.radians([0, 60, 89.99]), 0.0)
     wi = np.broadcast_to([0, 0, 1.0], wo.shape)
@@ -263,6 +267,7 @@ def test_a_grazing_view_does_not_tell_its_brdf():
     assert data.mend() is data
 
 
+@pytest.mark.quick
 def test_many_models_say_what_is_doubtful_once(tmp_path):
     path = str(save(mirrored(table()), tmp_path))
     run = CliRunner().invoke(main, ["fit", path, "-m", "ward", "-m", "lambert"])
@@ -284,6 +289,7 @@ def test_a_mirrored_azimuth_is_told_on_a_grid_of_large_steps(alpha, noise):
         assert any("--mirror-azimuth" in note for note in notes) == told
 
 
+@pytest.mark.quick
 def test_directions_without_all_wavelengths_are_counted():
     rows = pd.DataFrame(
         [(30, theta, 0, nm, 0.1) for theta in range(0, 60, 10) for nm in (450, 550, 650)],

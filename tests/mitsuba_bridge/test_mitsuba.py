@@ -223,7 +223,6 @@ def test_nested(model, llvm_variant):
         np.testing.assert_allclose(found, value, rtol=1e-3, atol=1e-3 * value.max())
 
 
-@pytest.mark.quick
 def test_tilted_by_a_map(model, llvm_variant):
     """A normal map and a bump map show the model in a turned frame."""
     mi = llvm_variant
@@ -247,7 +246,6 @@ def test_tilted_by_a_map(model, llvm_variant):
         np.testing.assert_allclose(found, expected, rtol=2e-3, atol=1e-4 * expected.max())
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("outer", ["twosided", "mask", "bumpmap", "normalmap", "blendbsdf"])
 def test_nested_parameters_are_traversed(model, llvm_variant, outer):
     """An optimiser reaches the parameters inside, and they act."""
@@ -313,7 +311,6 @@ def test_an_instance_is_the_shape(name, llvm_variant):
     np.testing.assert_allclose(other, one, rtol=2e-3, atol=1e-4)
 
 
-@pytest.mark.quick
 def test_albedo(model, llvm_variant):
     """`eval_diffuse_reflectance` is the weight of a Lambertian lobe, and of others about the
     albedo from above; so the aov integrator shows it. Mitsuba's default would show highlights.
@@ -364,7 +361,6 @@ def test_attributes(model, llvm_variant):
     assert not dr.any(bsdf.has_attribute("no_such_parameter"))
 
 
-@pytest.mark.quick
 def test_a_texture_is_held_to_the_bounds(model, llvm_variant):
     """A texture may hold anything; beyond a bound of its parameter it counts as the bound."""
     mi = llvm_variant
@@ -435,7 +431,6 @@ def test_components_sum_to_the_whole(model, llvm_variant):
         np.testing.assert_allclose(sum(found), whole, rtol=1e-5, atol=1e-7)
 
 
-@pytest.mark.quick
 def test_sampling_of_a_component(model, llvm_variant):
     """It reports that component alone, with its pdf, and the mean weight is its albedo."""
     mi = llvm_variant
@@ -600,7 +595,6 @@ def test_a_colour_above_1_is_an_attribute_in_a_spectral_variant(variant):
     np.testing.assert_allclose(np.array(found).ravel(), 3, rtol=1e-3)
 
 
-@pytest.mark.quick
 def test_a_negative_colour_is_refused_where_it_has_no_spectrum():
     """Mitsuba would clip it, and a fitted Koenderink model would render wrong without a word."""
     import mitsuba as mi

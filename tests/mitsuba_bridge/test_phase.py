@@ -119,7 +119,6 @@ def scattered(mi, entries, wi, wo, p):
     return np.array(value).ravel()[0], np.array(pdf).ravel()[0]
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("side", [1, -1])
 def test_the_normal_is_against_the_gradient(side, llvm_variant):
     """A ball, not along an axis; light of both its sides is reflected, none goes through."""
@@ -133,7 +132,6 @@ def test_the_normal_is_against_the_gradient(side, llvm_variant):
     assert scattered(llvm_variant, entries, wi, -wo, 0.6 * n) == (0, 0)
 
 
-@pytest.mark.quick
 def test_even_where_the_gradient_vanishes(llvm_variant):
     entries = {"density": ball(llvm_variant)}
     for density in (entries, {}):  # in the middle of the ball; a constant
@@ -141,7 +139,6 @@ def test_even_where_the_gradient_vanishes(llvm_variant):
         assert found == pytest.approx((1 / (4 * np.pi),) * 2, rel=1e-5)
 
 
-@pytest.mark.quick
 def test_refraction_scales_no_light(llvm_variant):
     """A smooth glass, seen from both sides, scatters what it receives."""
     mi = llvm_variant

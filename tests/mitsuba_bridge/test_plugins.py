@@ -264,7 +264,6 @@ def test_what_defines_nothing_is_named(tmp_path, no_user_plugins, variant, line,
     assert not report
 
 
-@pytest.mark.quick
 def test_a_bsdf_that_is_no_model_is_checked(variant):
     variant("llvm_ad_rgb")
     assert bk.check("measured_table", only=["weights", "finite", "plugin is formula"])
@@ -322,7 +321,6 @@ def test_the_checks_of_phase_functions_notice(wrong, failed, tmp_path, no_user_p
     assert {f.check for f in report.findings if not f.passed} == failed
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("attribute", "failed"),
     [

@@ -113,7 +113,6 @@ def test_no_name_is_a_built_in_plugin():
 # Parameters
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("kind", ["checkerboard", "bitmap"])
 def test_every_parameter_may_be_a_texture(model, llvm_variant, kind):
     """In each half of the texture the BSDF is that of the half's value."""

@@ -9,10 +9,10 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import labels
 from brdfkit.model.fresnel import FresnelModel
 
-pytestmark = pytest.mark.quick
 NAMES = [name for name, model in bk.models().items() if issubclass(model, FresnelModel)]
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("name", NAMES)
 def test_two_colours_of_one_f0_are_the_grey_form(name):
     """Channel by channel k₀ = k_s F₀ and k₉₀ = k_s, and so at the defaults."""
@@ -26,6 +26,7 @@ def test_two_colours_of_one_f0_are_the_grey_form(name):
     np.testing.assert_allclose(found, expected, rtol=1e-12)
 
 
+@pytest.mark.quick
 def test_coupled_ashikhmin_shirley_has_the_rest_in_its_diffuse_weight():
     pairs = draw_direction_pairs(1_000, seed=0)
     grey = labels.model("ashikhmin_shirley:diffuse=coupled")
@@ -51,6 +52,7 @@ def test_a_metals_colours_come_back():
     assert bk.fit(data, "ggx").loss > 0.003
 
 
+@pytest.mark.quick
 def test_the_coloured_form_has_no_f0():
     coloured = labels.model("ggx:fresnel=coloured")
     assert coloured.weights() == ["diffuse_reflectance", "f0_reflectance", "f90_reflectance"]

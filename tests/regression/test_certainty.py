@@ -157,7 +157,6 @@ def test_on_a_bound_is_no_interval():
     assert fit.degrees_of_freedom == fit.samples - 2
 
 
-@pytest.mark.quick
 def test_a_saved_or_pickled_fit_is_equal(tmp_path):
     data = noisy(bk.models()["ggx"](diffuse_reflectance=(0.1, 0.2, 0.3)))
     one = bk.Measured.from_samples(UP, UP, [[0.2, 0.3, 0.4]])
@@ -187,7 +186,6 @@ def test_a_fit_of_an_earlier_version_is_read(tmp_path):
     assert "±" not in str(old)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("loss", ["log", "plain"])
 def test_a_part_is_as_certain_as_the_whole(loss, monkeypatch):
     """Standard errors of 20,000 samples by a sixth of them, to a tenth."""

@@ -151,7 +151,6 @@ def test_slopes_are_those_of_the_values(model):
     np.testing.assert_allclose(slopes, np.transpose(expected), rtol=0, atol=1e-5)
 
 
-@pytest.mark.quick
 def test_a_users_function_is_a_constraint():
     """It ends where the same constraint of brdfkit's does."""
 

@@ -40,7 +40,6 @@ def test_a_loss_tells_itself_whether_it_is_linear():
     assert not bk.losses.Loss("bent", "linear up to 100", bent).linear
 
 
-@pytest.mark.quick
 def test_a_loss_of_ones_own_is_as_good():
     """Written by the user, the log loss gives the same fit, and is named after its function."""
 
@@ -123,7 +122,6 @@ def test_a_sample_that_is_there_twice_counts_once():
             )
 
 
-@pytest.mark.quick
 def test_weights_of_cells_have_the_tables_shape():
     """Of a table, too, they are its cells', in its shape or flat."""
     table = Table(np.random.default_rng(0).uniform(0.1, 1, (8, 6, 10, 3)))
@@ -154,7 +152,6 @@ def test_standard_errors_bring_the_fit_nearer():
     assert squares[True] < squares[False] / 30
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("size", [0.0, 1e-6, 0.3])
 def test_standard_errors_that_say_nothing_change_nothing(size):
     """Equal ones in the loss's differences, and such as are small beside the model's own error."""
@@ -186,7 +183,6 @@ def stopping(after, name="stopped"):
     return bk.losses.Loss(name, log.meaning, difference, log.measure)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(("robust", "after"), [(None, 60), ("bisquare", 300)])
 def test_ctrl_c_keeps_the_best_fit_so_far(robust, after):
     """In an exception, by which loops end; its loss is that of its model."""

@@ -156,7 +156,6 @@ def test_one_sample_of_cayman_makes_its_error(measured_data):
         assert np.sqrt(squares[others].mean()) == pytest.approx(0.4094, abs=2e-3)
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize("robust", ["bisquare", "huber"])
 @pytest.mark.parametrize(
     ("model", "samples", "parameters"), [("koenderink:order=8", 20, 55), ("ggx", 1, 4)]
@@ -171,7 +170,6 @@ def test_more_samples_than_parameters(model, samples, parameters, robust):
         robust_least_squares(DESIGN[:2], Y[:2], robust)
 
 
-@pytest.mark.quick
 def test_one_sample_more_than_parameters():
     wi, wo = draw_direction_pairs(15, seed=1, max_degrees=79)
     values = np.random.default_rng(2).uniform(0.1, 0.2, (15, 1))

@@ -113,7 +113,6 @@ def test_a_saved_fit_knows_its_solver(noisy, tmp_path):
     assert bk.fit(noisy, "lambert", **unconstrained).loss == pytest.approx(found.loss, rel=1e-9)
 
 
-@pytest.mark.quick
 def test_the_solver_that_the_documentation_shows_works(noisy):
     """It is not good, but the loss is the one that it reports."""
     code = textwrap.dedent(solvers.__doc__.partition("a solver::\n\n")[2])
@@ -137,7 +136,6 @@ def test_an_end_that_is_none_is_explained(noisy, end):
         bk.fit(noisy, "ward", solver=Hasty())
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -21,7 +21,6 @@ def comparison(rng, rounds=8, **costs):
     return SamplerComparison("map", "plaster", "ball", noise, seconds, rounds)
 
 
-@pytest.mark.quick
 def test_chance_is_called_significant_in_five_of_a_hundred():
     rng = np.random.default_rng(0)
     wrong = sum(

@@ -241,7 +241,6 @@ def test_a_field_fills_its_picture(size):
     assert np.ptp(other[-1], axis=-1).max() < 0.02
 
 
-@pytest.mark.quick
 def test_an_interrupt_before_the_first_pass_is_raised():
     def stop(done, total):
         raise KeyboardInterrupt
@@ -327,7 +326,6 @@ def test_what_is_as_light_and_red_is_not_green():
     assert below[2 * third + third // 2].sum() < 20
 
 
-@pytest.mark.quick
 def test_a_scene_file_is_rendered(tmp_path):
     scene = """<scene version="3.0.0">
       <sensor type="perspective"><film type="hdrfilm">
@@ -344,7 +342,6 @@ def test_a_scene_file_is_rendered(tmp_path):
         render(tmp_path / "cut.xml")
 
 
-@pytest.mark.quick
 @pytest.mark.parametrize(
     ("sampler", "given", "spp"), [(7, {}, 7), (7, {"spp": None}, 7), (7, {"spp": 3}, 3)]
 )
@@ -361,7 +358,6 @@ def test_a_scene_has_its_own_samples_per_pixel(tmp_path, sampler, given, spp):
     assert (rendering.spp, rendering.requested) == (spp, spp)
 
 
-@pytest.mark.quick
 def test_what_is_larger_than_the_memory_is_refused_before_any_is_taken(monkeypatch, tmp_path):
     def build(bsdf, size):
         raise AssertionError("a scene was made")

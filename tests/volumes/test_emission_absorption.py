@@ -6,7 +6,6 @@ import pytest
 
 from brdfkit.volumes import TransferFunction
 
-pytestmark = pytest.mark.quick
 SPP = 512  # of gradients, whose samples are others
 
 
@@ -38,6 +37,7 @@ def exact(sigma, e, behind=0.5, n=200_000):
     return np.sum(np.exp(-(before + depth) / 2) * e(z)) / n + np.exp(-depth[-1]) * behind
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("sigma", [0.0, 1e-6, 0.3, 20.0])
 def test_an_even_volume_is_exact_in_one_step(llvm_variant, sigma):
     found = picture(llvm_variant, {"extinction": sigma, "emission": 0.8, "steps": 1})
@@ -98,6 +98,7 @@ def test_the_errors_of_a_known_volume(llvm_variant):
     np.testing.assert_allclose(errors, list(known.values()), rtol=0.05, atol=1e-6)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("colour", ["albedo", "emission"])
 def test_a_transfer_function_glows(llvm_variant, colour):
     """An even volume: RGB (1 - exp(-σ)), and light of other emission."""
@@ -110,6 +111,7 @@ def test_a_transfer_function_glows(llvm_variant, colour):
     np.testing.assert_allclose(found, np.broadcast_to(expected, found.shape), rtol=1e-5)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("steps", [1, 7])
 @pytest.mark.parametrize("jitter", [False, True])
 def test_a_peak_that_is_thinner_than_a_step(llvm_variant, steps, jitter):
@@ -213,6 +215,7 @@ def test_gradients_by_a_transfer_function(llvm_variant, points, step):
         assert exact == pytest.approx((means[1] - means[0]) / (2 * step), rel=0.002), name
 
 
+@pytest.mark.quick
 def test_a_surface_in_the_volume_ends_the_ray(llvm_variant):
     """Half of the depth, and what the surface emits behind it."""
     mi = llvm_variant
@@ -223,6 +226,7 @@ def test_a_surface_in_the_volume_ends_the_ray(llvm_variant):
     np.testing.assert_allclose(found, light + 2.0 * np.exp(-0.75), rtol=1e-5)
 
 
+@pytest.mark.quick
 def test_a_ray_beside_the_volume_sees_what_is_behind(llvm_variant):
     mi = llvm_variant
     away = mi.ScalarTransform4f().translate([5, 0, 0])
@@ -260,6 +264,7 @@ def test_gradients_by_a_grid(llvm_variant):
     assert exact == pytest.approx((means[1] - means[0]) / 0.02, rel=0.005)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("wrong", ["dense", [1.0, 2.0], True])
 def test_what_is_no_volume_is_refused(llvm_variant, wrong):
     if not isinstance(wrong, str | bool):
@@ -284,6 +289,7 @@ def test_a_bright_colour_is_not_clipped(llvm_variant, variant, request):
     np.testing.assert_allclose(dim.mean((0, 1)) / dim.mean(), [0.5, 1, 1.5], rtol=0.02)
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize(
     ("name", "value", "said"),
     [

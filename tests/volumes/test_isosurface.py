@@ -142,7 +142,6 @@ def test_of_a_transfer_function_and_an_oblique_box(mi):
     assert (np.array(si.n).T * outwards).sum(axis=1).min() > 0.998
 
 
-@pytest.mark.quick
 def test_a_box_that_cuts_the_solid_shows_its_face(mi):
     loaded = scene(mi, SUN, volume=gridvolume(mi, np.ones((2, 2, 2))))
     o, d = np.array([[0.3, 0.4, 2], [0.3, 2, 0.5]]), -np.eye(3)[[2, 1]]
