@@ -57,7 +57,8 @@ def open_socket(port: int) -> socket.socket:
         listening.bind((HOST, port))
     except (OSError, OverflowError) as error:
         listening.close()
-        raise BrdfkitError(f"Port {port} cannot be used ({error}); give another --port.") from None
+        reason = getattr(error, "strerror", None) or error
+        raise BrdfkitError(f"Port {port} cannot be used ({reason}); give another --port.") from None
     return listening
 
 
