@@ -8,7 +8,8 @@ from collections.abc import Callable
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import TURN
-from brdfkit.viewing.session import Message, Session
+from brdfkit.viewing.application import Message
+from brdfkit.viewing.session import Session
 
 Send = Callable[[Message], None]  # hands a message to a page; it must not wait for the page
 

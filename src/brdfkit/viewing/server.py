@@ -17,9 +17,10 @@ from contextlib import suppress
 from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.front_end import read_module, read_page_file
 from brdfkit.viewing.render_thread import RenderThread
-from brdfkit.viewing.session import Application, Message, Session
+from brdfkit.viewing.session import Session
 
 HOST = "127.0.0.1"
 LARGEST_MESSAGE = 2 << 20  # bytes: the page sends files in pieces of 1 MB

@@ -10,15 +10,13 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Iterator, Mapping
-from typing import Any, Protocol, TypeAlias
+from typing import Any
 
-from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.errors.noise import Accumulated
+from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.encoding import encode_jpeg, encode_png
-
-Message: TypeAlias = tuple[dict[str, Any], list[bytes]]  # JSON, and the bytes beside it
 
 UNDO_STEPS = 100
 LARGEST_SAMPLES = 1024  # per pixel, after which a picture counts as converged
@@ -26,42 +24,6 @@ FIRST_PASSES = 4  # each of which is shown, since every pass is a visible gain
 REST_INTERVAL = 0.25  # seconds between two pictures after the first passes
 SIZE_STEP = 64  # pixels: every size of a picture needs kernels of its own, so there are few
 SMALLEST_SIDE, LARGEST_SIDE = 64, 2048
-
-
-class Application(Protocol):
-    """What a session shows: a volume, or materials."""
-
-    def describe(self) -> Message:
-        """Return the message "open", with the panels, the controls and the data."""
-
-    def first_state(self) -> State:
-        """Return the state with which a view begins."""
-
-    def change(self, state: State, changes: Mapping[str, Any]) -> State:
-        """Return the state after changes; raise `BrdfkitError` if one is not possible."""
-
-    def sides(self, state: State) -> int:
-        """Return the number of pictures beside each other, 1 or 2."""
-
-    def needs_samples_anew(self, before: State, after: State) -> bool:
-        """Return whether the samples of one state are not those of another."""
-
-    def render(
-        self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
-    ) -> AnyArray:
-        """Render a pass: (height, width, 3), linear sRGB."""
-
-    def develop(self, state: State, picture: AnyArray) -> AnyArray:
-        """Return the picture as sRGB in 8 bits."""
-
-    def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
-        """Return what the page draws over the picture."""
-
-    def follow(self, before: State, after: State) -> list[Message]:
-        """Return what a change of the state shows beside the picture, such as slices."""
-
-    def answer(self, session: Session, message: dict[str, Any], data: bytes) -> list[Message]:
-        """Answer a message that is about the application, not about the frame."""
 
 
 class Session:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.front_end import read_module, read_page_file
 from brdfkit.viewing.render_thread import RenderThread
-from brdfkit.viewing.session import Application, Message, Session
+from brdfkit.viewing.session import Session
 
 
 def make_widget(application: Application) -> Any:

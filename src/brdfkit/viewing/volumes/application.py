@@ -10,9 +10,10 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.viewing.application import Message
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.encoding import encode_png
-from brdfkit.viewing.session import Message, Session
+from brdfkit.viewing.session import Session
 from brdfkit.viewing.volumes import saving, slices
 from brdfkit.viewing.volumes.live_scene import LiveScene, SceneKind
 from brdfkit.viewing.volumes.opening import Upload, load_upload

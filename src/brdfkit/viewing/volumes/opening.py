@@ -20,7 +20,8 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes import TransferFunction
 
 if TYPE_CHECKING:
-    from brdfkit.viewing.session import Message, Session
+    from brdfkit.viewing.application import Message
+    from brdfkit.viewing.session import Session
 
     Application = Any  # `VolumeApplication`, which imports this file
 

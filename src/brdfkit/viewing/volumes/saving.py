@@ -24,7 +24,8 @@ from brdfkit.viewing.volumes.live_scene import GRADIENT_ROWS, VALUE_ROWS
 from brdfkit.volumes import TransferFunction
 
 if TYPE_CHECKING:
-    from brdfkit.viewing.session import Message, Session
+    from brdfkit.viewing.application import Message
+    from brdfkit.viewing.session import Session
 
     Application = Any  # `VolumeApplication`, which imports this file
 

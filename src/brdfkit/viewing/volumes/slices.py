@@ -15,7 +15,7 @@ from brdfkit.volumes import Volume
 PLANES = (("z", "x", "y"), ("y", "x", "z"), ("x", "y", "z"))
 LONGEST = 512  # pixels of a slice
 RAY_STEPS = 512  # along which the first visible voxel is sought
-ENOUGH = 0.5  # opacity at which a ray is said to meet matter
+MATTER_OPACITY = 0.5  # of a ray up to the voxel that counts as the first visible one
 
 
 def draw_slices(volume: Volume, at: list[int]) -> tuple[list[dict[str, Any]], list[bytes]]:
@@ -67,9 +67,9 @@ def find_visible_voxel(
 ) -> list[int] | None:
     """Return the first voxel (i, j, k) that a ray through a place of the picture meets.
 
-    It is where the opacity along the ray reaches `ENOUGH`, or the densest voxel if it never does;
-    None if the ray misses the volume or all of it is transparent. `table` (n, 4) is the transfer
-    function over the range of values.
+    It is where the opacity along the ray reaches `MATTER_OPACITY`, or the densest voxel if it never
+    does; None if the ray misses the volume or all of it is transparent. `table` (n, 4) is the
+    transfer function over the range of values.
     """
     origin, direction = camera.cast_ray(place[0], place[1], aspect)
     inverse = np.linalg.inv(volume.cube_to_world)
@@ -87,7 +87,7 @@ def find_visible_voxel(
     passed = np.cumsum(extinction * opacity) * (far - near) / RAY_STEPS
     if not opacity.max() > 0:
         return None
-    reached = np.flatnonzero(1 - np.exp(-passed) >= ENOUGH)
+    reached = np.flatnonzero(1 - np.exp(-passed) >= MATTER_OPACITY)
     first = reached[0] if len(reached) else int(opacity.argmax())
     ijk = np.linalg.inv(volume.to_world) @ [*points[first], 1]
     return np.clip(np.rint(ijk[:3]), 0, np.array(volume.size) - 1).astype(int).tolist()

@@ -1,0 +1,47 @@
+"""`Application`: what a session needs of a volume, or of materials, to show them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol, TypeAlias
+
+from brdfkit.core.array_types import AnyArray
+from brdfkit.viewing.controls import State
+
+Message: TypeAlias = tuple[dict[str, Any], list[bytes]]  # JSON, and the bytes beside it
+
+
+class Application(Protocol):
+    """What a session shows: a volume, or materials."""
+
+    def describe(self) -> Message:
+        """Return the message "open", with the panels, the controls and the data."""
+
+    def first_state(self) -> State:
+        """Return the state with which a view begins."""
+
+    def change(self, state: State, changes: Mapping[str, Any]) -> State:
+        """Return the state after changes; raise `BrdfkitError` if one is not possible."""
+
+    def sides(self, state: State) -> int:
+        """Return the number of pictures beside each other, 1 or 2."""
+
+    def needs_samples_anew(self, before: State, after: State) -> bool:
+        """Return whether the samples of one state are not those of another."""
+
+    def render(
+        self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
+    ) -> AnyArray:
+        """Render a pass: (height, width, 3), linear sRGB."""
+
+    def develop(self, state: State, picture: AnyArray) -> AnyArray:
+        """Return the picture as sRGB in 8 bits."""
+
+    def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
+        """Return what the page draws over the picture."""
+
+    def follow(self, before: State, after: State) -> list[Message]:
+        """Return what a change of the state shows beside the picture, such as slices."""
+
+    def answer(self, session: Any, message: dict[str, Any], data: bytes) -> list[Message]:
+        """Answer a message about the application; `session` is the `Session` that received it."""
