@@ -24,7 +24,6 @@ from brdfkit.viewing.session import Session
 
 HOST = "127.0.0.1"
 LARGEST_MESSAGE = 2 << 20  # bytes: the page sends files in pieces of 1 MB
-QUEUED = 8  # messages for a page that does not read them; later ones replace pictures
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
