@@ -12,6 +12,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.loops import raise_first_cause
+from brdfkit.core.jit.padding import pad
 from brdfkit.rendering.progressive import to_rgb
 from brdfkit.rendering.scene_input.environment import describe_environment
 from brdfkit.rendering.scenes._studio import make_camera
@@ -191,7 +192,7 @@ class LiveScene:
                 value = _rotation_from_z(-np.asarray(value))
             self.parameters[name] = mi.Transform4f(np.asarray(value, np.float32))
         elif name.endswith("table"):
-            self.parameters[name] = mi.TensorXf(np.ascontiguousarray(value, np.float32))
+            self.parameters[name] = _make_tensor(value)
         else:
             kind = type(self.parameters[name])
             coordinates = np.ravel(value).tolist()
@@ -212,7 +213,7 @@ class LiveScene:
             self.map_name = environment
             self.map_data = np.array(mi.traverse(bitmap)["data"]) * described["scale"]
         factor = ILLUMINANCES[self.kind.renderer] * brightness
-        self.parameters["sky.data"] = mi.TensorXf(np.asarray(factor * self.map_data, np.float32))
+        self.parameters["sky.data"] = _make_tensor(factor * self.map_data)
         at = mi.Transform4f()
         self.parameters["sky.to_world"] = at.rotate([0, 0, 1], turn) @ at.rotate([1, 0, 0], 90)
 
@@ -223,6 +224,14 @@ class LiveScene:
         with raise_first_cause():
             picture = self.scene.integrator().render(self.scene, seed=mi.UInt32(seed), spp=1)
             return to_rgb(picture)
+
+
+def _make_tensor(values: AnyArray) -> Any:
+    """Return an array as a tensor of Mitsuba, aligned, so that it needs no kernel of its own."""
+    import mitsuba as mi
+
+    flat = np.asarray(values, np.float32).ravel()
+    return mi.TensorXf(mi.Float(pad(flat)), values.shape)
 
 
 def _placeholder_function(volume: Volume, kind: SceneKind, steepest: float) -> TransferFunction:

@@ -17,6 +17,7 @@ import drjit as dr
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, JitFloat, JitVector
+from brdfkit.core.jit.padding import pad
 
 # A table has peaks if it deviates from its moving mean by more than this share of its maximum
 THIN = 0.1
@@ -103,7 +104,8 @@ def accumulate_rows(flat: JitFloat, way: int = 1) -> JitFloat:
     The reversed sums are the derivative of the sums, for `Cumulative.backward`.
     """
     rows = np.array(flat, float).reshape(-1, 4)
-    return type(flat)(np.cumsum(rows[::way], axis=0)[::way].astype(np.float32).ravel())
+    sums = np.cumsum(rows[::way], axis=0)[::way].astype(np.float32)
+    return type(flat)(pad(sums.ravel()))  # aligned, so that all tables use the same kernels
 
 
 def has_narrow_peaks(table: AnyArray, reach: float) -> bool:
