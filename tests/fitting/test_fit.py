@@ -184,7 +184,7 @@ def test_anisotropy_is_searched_where_it_was_measured():
     found = bk.fit(brushed, "ward_duer")
     assert found.values["alpha_v"] > 2 * found.values["alpha_u"]
     assert found.settings["anisotropic"]
-    log = sample_sum("log")  # without a term for the light, which both would pay for
+    log = sample_sum("log")  # without a term for the albedo, which both would pay for
     found, tied = (bk.fit(brushed, "ward_duer", loss=log, anisotropic=how) for how in (None, False))
     assert tied.values["alpha_u"] == tied.values["alpha_v"]
     assert found.loss < 0.5 * tied.loss

@@ -143,7 +143,7 @@ def compare(
     require_material_first("compare(material, fits)", material)
     data, materials = to_measured(material), to_materials(fits)
     samples = select_samples(data, max_angle, spectral=spectral)
-    light = (data if spectral else data.rgb).albedo
+    measured_albedo = (data if spectral else data.rgb).albedo
     pixels = make_albedo_pixels(
         ANGLES, ANISOTROPIC_AZIMUTHS if data.anisotropic else ISOTROPIC_AZIMUTHS
     )
@@ -162,7 +162,7 @@ def compare(
     shown = choose_losses_to_show(
         *(thing.loss_name for thing in materials if isinstance(thing, Fit))
     )
-    return Comparison(data.name, errors, albedos, light.means, tuple(shown))
+    return Comparison(data.name, errors, albedos, measured_albedo.means, tuple(shown))
 
 
 def _compute_albedos(brdf: Any, pixels: Pixels) -> tuple[float, ...]:

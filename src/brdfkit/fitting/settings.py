@@ -131,8 +131,8 @@ def prepare_refit(fit: Fit, material: MaterialLike) -> Refit:
     samples = select_fitted_samples(fit, material)
     data = to_measured(material)
     data = data if fit.wavelengths else data.rgb
-    light = find_target_albedo(data, None, fit.settings.get("max_angle", 80.0))
-    return Refit(fit, samples, light)
+    target = find_target_albedo(data, None, fit.settings.get("max_angle", 80.0))
+    return Refit(fit, samples, target)
 
 
 def require_material_first(call: str, material: object) -> None:

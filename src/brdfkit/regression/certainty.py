@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.regression.certainty_notes import (
-    ABSENT,
     describe_parameter_trade_offs,
     describe_undetermined_parameters,
 )
 from brdfkit.regression.certainty_scores import (
+    ABSENT,
     SINGULAR,
     compute_scores,
     find_undetermined_at_bounds,

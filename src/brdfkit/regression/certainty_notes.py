@@ -10,9 +10,8 @@ import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.names import join_words
+from brdfkit.regression.certainty_scores import ABSENT
 
-# Along an eigenvector of length 1, parameters with a smaller entry count as constant
-ABSENT = 1e-3
 # Notes mention two parameters whose correlation is larger than this
 HIGH_CORRELATION = 0.99
 # Notes mention parameters whose matrix of correlations has an eigenvalue below this

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray
-from brdfkit.regression.certainty_notes import ABSENT
 from brdfkit.regression.problem.parameter_space import find_channel_entries
 
 # Smaller eigenvalues of a Hessian whose diagonal is 1 are rounding errors, and count as 0
 SINGULAR = 1e-11
+# Along an eigenvector of length 1, parameters with a smaller entry count as constant
+ABSENT = 1e-3
 
 
 def find_undetermined_at_bounds(

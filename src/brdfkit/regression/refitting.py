@@ -89,7 +89,7 @@ class Refit:
         if self.has_corrected_albedo:
             raise BrdfkitError(
                 f"{self.fit.name} was searched again to have the albedo of its data, so that its "
-                "loss is not the least one; use brdfkit.uncertainty.bootstrap in place of profiles."
+                "loss is not the least one; use brdfkit.uncertainty.bootstrap instead."
             )
 
     def make_problem(self, **values: float) -> Problem:

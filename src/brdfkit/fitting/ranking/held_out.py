@@ -111,8 +111,7 @@ class HeldOut:
 
     def sum_by_block(self, values: FloatArray) -> FloatArray:
         """Return the sums (blocks,) of `values` (n,) over each block, weighted by `importance`."""
-        sums: FloatArray = np.bincount(self.blocks, self.importance * values).astype(float)
-        return sums
+        return np.bincount(self.blocks, self.importance * values).astype(float)
 
     def _split_mask(self, rows: BoolArray) -> list[BoolArray]:
         """Split a mask (n,) into the mask of the samples and the mask of the pixels."""
@@ -121,11 +120,7 @@ class HeldOut:
 
 def _find_sample_loss(loss: Loss | Picture) -> Loss:
     """Return the loss of the samples: `loss` itself, or the log loss if `loss` is a `Picture`."""
-    if not isinstance(loss, Picture):
-        return loss
-    log = losses.named["log"]
-    assert isinstance(log, Loss)
-    return log
+    return losses.named.by_sample["log"] if isinstance(loss, Picture) else loss
 
 
 def assign_blocks(wi: FloatArray, wo: FloatArray, anisotropic: bool) -> IntArray:
@@ -192,8 +187,7 @@ def _number_groups(*keys: FloatArray) -> IntArray:
 
     The groups are in the order of their keys.
     """
-    ranks: IntArray = np.unique(np.stack(keys, axis=1), axis=0, return_inverse=True)[1].ravel()
-    return ranks
+    return np.unique(np.stack(keys, axis=1), axis=0, return_inverse=True)[1].ravel()
 
 
 def _find_sector(share: FloatArray, count: float | FloatArray) -> FloatArray:
@@ -201,5 +195,4 @@ def _find_sector(share: FloatArray, count: float | FloatArray) -> FloatArray:
 
     `share`: the angle, as a share of the range that the sectors divide.
     """
-    sector: FloatArray = np.floor(share * count)
-    return sector
+    return np.floor(share * count)

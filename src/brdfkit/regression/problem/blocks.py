@@ -95,7 +95,7 @@ class Block:
         )
 
     def evaluate_difference(
-        self, value: Any, channel: int, clamped: bool = False, extended: bool = False
+        self, value: Any, channel: int, clamped: bool, extended: bool
     ) -> tuple[JitFloat, JitFloat]:
         """Return the loss's difference in a channel, and its derivative with respect to `value`.
 

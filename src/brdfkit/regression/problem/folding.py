@@ -119,7 +119,7 @@ class FoldedProblem:
         lobes = columns.make_model([double_precision.to_scalar(x) for x in middle]).lobes()
         root, constants, differences = dr.sqrt(block.importance), [], []
         for c in range(self.channels):
-            difference, kappa = block.evaluate_difference(0.0, c)
+            difference, kappa = self.problem.evaluate_difference(block, 0.0, c)
             differences.append(root * difference)
         for lobe in lobes:
             constant = lobe.factors[1] if lobe.factors else lobe.eval

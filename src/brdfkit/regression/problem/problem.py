@@ -49,7 +49,7 @@ class Problem:
         bounds = [model.parameters[name].bounds for name in model.weights()]
         self.least = np.array([low for low, _ in bounds])
         self.clamped = not loss.linear and bool((self.least < 0).any())
-        self.clamping = self.clamped, extended
+        self.extended = extended
         self.linear = loss.linear and (self.columns.powers == 1).all()
         self.factors: list[FloatArray] | None = None
 
@@ -79,9 +79,7 @@ class Problem:
         for block in self.blocks(1):
             total = 0
             for group in self.groups:
-                total += sum(
-                    dr.square(block.evaluate_difference(0.0, c, *self.clamping)[0]) for c in group
-                )
+                total += sum(dr.square(self.evaluate_difference(block, 0.0, c)[0]) for c in group)
                 self._evaluate_channel_group(total)
             squares.append(np.asarray(block.importance * total))
         contributions = np.concatenate(squares)
@@ -105,7 +103,7 @@ class Problem:
                 for c in group:
                     value = block.measured[c]
                     value = value if self.loss.linear else dr.maximum(value, 0)
-                    _, slope = block.evaluate_difference(value, c, *self.clamping)
+                    _, slope = self.evaluate_difference(block, value, c)
                     slope = 0 * slope + 1 if evenly else slope
                     weights.append(block.importance * slope * slope)
                     moments.append(-weights[-1] * value)
@@ -179,7 +177,7 @@ class Problem:
                 own = []
                 model = self._evaluate_model(block, columns, weights[:, group])
                 for c, value in zip(group, model, strict=True):
-                    difference, slope = block.evaluate_difference(value, c, *self.clamping)
+                    difference, slope = self.evaluate_difference(block, value, c)
                     importance = block.importance
                     if self.factors is not None:
                         factors = double_precision.to_array(self.factors[c][block.rows])
@@ -210,12 +208,16 @@ class Problem:
             for group in self.groups:
                 model = self._evaluate_model(block, columns, weights[:, group])
                 pairs = zip(group, model, strict=True)
-                parts[-1] += [
-                    root * block.evaluate_difference(m, c, *self.clamping)[0] for c, m in pairs
-                ]
+                parts[-1] += [root * self.evaluate_difference(block, m, c)[0] for c, m in pairs]
                 self._evaluate_channel_group(columns, parts[-1])
             dr.eval(parts[-1])
         return [np.concatenate([np.asarray(p) for p in part]) for part in zip(*parts, strict=True)]
+
+    def evaluate_difference(
+        self, block: Block, value: Any, channel: int
+    ) -> tuple[JitFloat, JitFloat]:
+        """Return the loss's difference of a model's `value` in a channel, and its derivative."""
+        return block.evaluate_difference(value, channel, self.clamped, self.extended)
 
     def _evaluate_channel_group(self, *arrays: Any) -> None:
         """Evaluate the arrays of a group of channels, so that kernels stay small."""
@@ -250,7 +252,7 @@ class Problem:
             if weights is not None:
                 model = self._evaluate_model(block, self._evaluate_columns(block, u), weights)
             for c, value in enumerate(model):
-                both = block.evaluate_difference(value, c, *self.clamping)
+                both = self.evaluate_difference(block, value, c)
                 require_finite_loss(block.loss, block, value, block.measured[c], *both)
 
     def _evaluate_block(

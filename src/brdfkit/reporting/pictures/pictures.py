@@ -100,5 +100,4 @@ def _find_material_pixels(build: BuildScene, size: int) -> BoolArray:
     import mitsuba as mi
 
     material = load_material({"type": "diffuse"}, "material")
-    pixels: BoolArray = find_material_mask(mi.load_dict(build(material, (size, size))), material)
-    return pixels
+    return find_material_mask(mi.load_dict(build(material, (size, size))), material)
