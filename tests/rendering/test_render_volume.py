@@ -92,6 +92,12 @@ def test_behind_a_volume_is_the_background(renderer):
     assert picture[16, 16].max() > 0.1
 
 
+def test_the_background_among_the_settings_is_the_one_that_shows():
+    settings = {"background": 0.07}
+    picture = seen("sphere", "emission_absorption", settings=settings)
+    np.testing.assert_allclose(picture[0, 0], 0.07, rtol=1e-3)
+
+
 def test_the_environment_shows_without_a_background():
     light = {"azimuth": 0, "elevation": 0, "spp": 16, "environment": "sky"}
     around = seen("sphere", "isosurface", background=None, **light)

@@ -2,7 +2,7 @@
 
 There are two ways to make the levels. `make_mips` makes mip levels, in which a texel is the mean of
 four texels of the level before. `convolve_with_lobes` convolves the map with von Mises-Fisher lobes
-of known concentrations κ, so that a look-up has exactly the width of a lobe; there are two levels
+of known concentrations κ, so that a look-up has exactly the width of a lobe; there are four levels
 for each halving of the size. The picture of a hemisphere is a square around a disc. It is larger
 than the disc by the factor `BORDER`, and its border shows the rim of the other hemisphere, so that
 a look-up can interpolate at the disc's rim.
@@ -42,7 +42,9 @@ CUT_OFF = 12.0
 # convolved are sharper by it
 BLUR = 0.03
 COVERAGE = 0.5  # share of a lobe that a texel of its mip level covers, a in [Ergun 2015, eq. 8.9]
-CACHED_PICTURES = 4  # pictures whose levels, a few MB each, are kept for the next call
+# Pictures whose levels are kept for the next call; with a level of 512 texels, the default of
+# `filtered_environment`, the levels take 21 MB, and the picture itself 6 MB
+CACHED_PICTURES = 2
 
 
 def texel_directions(side: int) -> FloatArray:
@@ -112,14 +114,17 @@ def convolve_with_lobes(picture: FloatArray, side: float) -> list[FloatArray]:
     the shape (hemispheres, texels, texels, channels). The last few results are kept, since most
     previews have the same light.
     """
-    pixels = np.asarray(picture, float).tobytes()
+    pixels = np.asarray(picture, np.float32).tobytes()
     return list(_convolve_with_lobes(pixels, picture.shape, side))
 
 
 @lru_cache(CACHED_PICTURES)
 def _convolve_with_lobes(pixels: bytes, shape: tuple[int, ...], side: float) -> list[FloatArray]:
-    """Convolve a picture, given as bytes of doubles so that calls can be cached, with lobes."""
-    picture: FloatArray = np.frombuffer(pixels).reshape(shape)
+    """Convolve a picture, given as bytes of float32 so that calls can be cached, with lobes.
+
+    The levels are float32 as well: they are looked up in single precision.
+    """
+    picture: FloatArray = np.frombuffer(pixels, np.float32).reshape(shape).astype(float)
     kappa, levels = sharpest_kappa(side), []
     while kappa > SMALLEST_KAPPA:
         while len(picture) > ROWS * max(side, SMALLEST_SIDE):
@@ -132,7 +137,8 @@ def _convolve_with_lobes(pixels: bytes, shape: tuple[int, ...], side: float) -> 
         filtered = convolve_on_sphere(
             picture, evaluate_lobe, math.acos(max(1 - CUT_OFF / kappa, -1))
         )
-        levels.append(resample_to_discs(filtered, max(round(side), SMALLEST_SIDE)))
+        discs = resample_to_discs(filtered, max(round(side), SMALLEST_SIDE))
+        levels.append(discs.astype(np.float32))
         kappa, side = kappa / STEP, side / math.sqrt(STEP)
     return levels
 

@@ -46,15 +46,16 @@ def describe_scene(
 
     Without a transfer function the scene shows the surface of one level. `size` is (width, height)
     [pixels], `view` (azimuth, elevation) [degrees], and `light` (environment, background radiance).
-    `settings` are further parameters of the integrator. With `all_around` the camera is so far away
-    that nothing would be cut off at any azimuth.
+    `settings` are further parameters of the integrator; a background among them replaces that of
+    `light`. With `all_around` the camera is so far away that nothing would be cut off at any
+    azimuth.
     """
     towards, (width, height) = camera_direction(volume, *view), size
     environment, background = light
     entries = describe_integrator(volume, transfer, renderer, settings)
     if background is not None:
         rgb = np.broadcast_to(background, 3).tolist()
-        entries["background"] = {"type": "rgb", "value": rgb}
+        entries.setdefault("background", {"type": "rgb", "value": rgb})
     is_visible = defaults.make_visibility_test(transfer, entries.get("level", 0))
     others = TURN_AZIMUTHS if all_around else ()
     sides = [towards, *(camera_direction(volume, azimuth, view[1]) for azimuth in others)]
