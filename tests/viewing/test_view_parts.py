@@ -76,9 +76,7 @@ def test_a_slider_keeps_numbers_within_its_ends():
 def test_the_page_loads_nothing_from_elsewhere_and_evaluates_nothing():
     files = [front_end.read_page_file(n) for n in ("page.html", "page.js", "viewer.css")]
     for text in (front_end.read_module(), *files):
-        assert "http://" not in text.replace("http://www.w3.org/2000/svg", "")
+        assert "http://" not in text
         assert "https://" not in text
         assert "eval(" not in text
-    assert front_end.read_module().rstrip().endswith("export default { render };")
-    parts = {path.name for path in front_end.FOLDER.glob("*.js")} - {"page.js"}
-    assert parts == set(front_end.PARTS)
+    assert "export default { render };" in front_end.read_module()

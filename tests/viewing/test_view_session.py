@@ -1,10 +1,12 @@
 """The state machine behind a page: messages in, messages out, without a browser."""
 
+import io
 import json
 
 import drjit as dr
 import numpy as np
 import pytest
+from PIL import Image
 
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
@@ -59,8 +61,8 @@ def test_a_move_is_small_and_a_rest_converges(session):
     moving = session.handle({"type": "set", "changes": {"camera.azimuth": 50}, "moving": True})
     assert moving == []
     ((picture, (content,)), _) = work(session)
-    assert (picture["width"], picture["mime"], picture["moving"]) == (32, "image/jpeg", True)
-    assert content.startswith(b"\xff\xd8")
+    assert picture["mime"] == "image/jpeg"
+    assert Image.open(io.BytesIO(content)).size == (32, 32)
     assert not session.has_work()
     (state,) = session.handle({"type": "set", "changes": {"camera.azimuth": 51}, "moving": False})
     assert state[0]["state"]["camera.azimuth"] == 51
@@ -194,18 +196,13 @@ def test_the_copied_script_and_the_saved_picture_are_the_picture(session, tmp_pa
     ((file, (png,)),) = session.handle({"type": "save", "kind": "png"})
     (from_script,) = names["picture"].pictures.values()
     application = session.application
-    ((_, (again,)),) = [(0, [application.develop(session.state, from_script)])]
-    from io import BytesIO
-
-    from PIL import Image
-
-    assert (np.asarray(Image.open(BytesIO(png))) == again).all()
+    again = application.develop(session.state, from_script)
+    assert (np.asarray(Image.open(io.BytesIO(png))) == again).all()
     assert file["name"] == "smoke.png"
 
 
 def test_a_film_is_rendered_frame_by_frame(session, monkeypatch):
     import zipfile
-    from io import BytesIO
 
     from brdfkit.viewing.volumes import saving
 
@@ -215,7 +212,7 @@ def test_a_film_is_rendered_frame_by_frame(session, monkeypatch):
     assert kinds(session.handle({"type": "save", "kind": "film"})) == ["busy"]
     sent = [message for _ in range(4) for message in session.work()]
     assert kinds(sent) == ["busy", "busy", "busy", "busy", "file"]
-    archive = zipfile.ZipFile(BytesIO(sent[-1][1][0]))
+    archive = zipfile.ZipFile(io.BytesIO(sent[-1][1][0]))
     assert archive.namelist() == [f"smoke_{k:03d}.png" for k in range(3)]
     assert session.work() == []  # the end of the task
     assert session.has_work()

@@ -214,7 +214,7 @@ class Session:
             if self.shown < self.number or not (urgent or now - self.last_sent > REST_INTERVAL):
                 return []
             self.last_sent = now
-            return self._send(state, samples, size, moving)
+            return self._send(state, samples, moving)
 
     def _picture_size(self, moving: bool) -> tuple[int, int]:
         """Return the size of the picture [pixels], which is smaller while something moves."""
@@ -222,9 +222,7 @@ class Session:
         width, height = (max(round(side * scale / 32) * 32, 32) for side in self.size)
         return width, height
 
-    def _send(
-        self, state: State, samples: dict[int, Accumulated], size: tuple[int, int], moving: bool
-    ) -> list[Message]:
+    def _send(self, state: State, samples: dict[int, Accumulated], moving: bool) -> list[Message]:
         """Return the pictures and the progress as messages."""
         messages: list[Message] = []
         self.number += 1
@@ -237,10 +235,7 @@ class Session:
                 "type": "picture",
                 "number": self.number,
                 "side": side,
-                "width": size[0],
-                "height": size[1],
                 "mime": mime,
-                "moving": moving,
                 "overlay": overlay,
             }
             messages.append((picture, [encode_png(colours) if lossless else encode_jpeg(colours)]))

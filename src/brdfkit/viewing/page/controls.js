@@ -102,22 +102,13 @@ function makeColour(session, { name, label }) {
   return { row: makeRow("colour", label, well), show: (value) => (well.value = value), input: well };
 }
 
-/** Make a line of text, which counts when it is left or Enter is pressed. */
-function makeText(session, { name, label }) {
-  const line = make("input", { type: "text", onchange: () => session.change({ [name]: line.value }) });
-  const show = (value) => line.matches(":focus") || (line.value = value ?? "");
-  return { row: makeRow("text", label, line), show, input: line };
-}
-
 /** Put a label before an input. */
 function makeRow(kind, label, input) {
   return make("div", { class: `control ${kind}` },
     make("label", {}, make("span", { class: "name" }, label), input));
 }
 
-const CONTROL_MAKERS = {
-  slider: makeSlider, choice: makeChoice, flag: makeFlag, colour: makeColour, text: makeText,
-};
+const CONTROL_MAKERS = { slider: makeSlider, choice: makeChoice, flag: makeFlag, colour: makeColour };
 
 /** Let a double click on a control's label, and Delete, set it to its default. */
 function offerDefault(session, control, row) {

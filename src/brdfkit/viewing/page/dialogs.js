@@ -1,7 +1,5 @@
 // Dialogs: a text to copy, the keys, and the form for files of voxels without a header.
 
-const VOXEL_TYPES = ["uint8", "int8", "uint16", "int16", "uint32", "int32", "float32", "float64"];
-
 const KEYS = [
   ["Picture", [
     ["drag, arrow keys", "orbit"],
@@ -86,17 +84,17 @@ function showHelp(root) {
 }
 
 /** Ask how the voxels of a file without a header are stored, and answer Python. */
-function askRaw(session, root, { name, bytes, guess = {}, dtypes = VOXEL_TYPES }) {
+function askRaw(session, root, { name, bytes, guess, dtypes }) {
   const numbers = (label, values, properties) => values.map((value, k) => make("input", {
     type: "number", value, required: true, "aria-label": `${label} ${"xyz"[k]}`, ...properties,
   }));
-  const size = numbers("Voxels along", guess.size || ["", "", ""], { min: 1, step: 1 });
-  const spacing = numbers("Spacing along", guess.spacing || [1, 1, 1], { min: 0, step: "any" });
+  const size = numbers("Voxels along", guess.size, { min: 1, step: 1 });
+  const spacing = numbers("Spacing along", guess.spacing, { min: 0, step: "any" });
   const offset = make("input", {
-    type: "number", min: 0, step: 1, value: guess.offset || 0, required: true,
+    type: "number", min: 0, step: 1, value: 0, required: true,
   });
-  const types = [...new Set([guess.dtype, ...dtypes].filter(Boolean))];
-  const dtype = make("select", {}, ...types.map((type) => make("option", { value: type }, type)));
+  const dtype = make("select", {}, ...dtypes.map((type) => make("option", { value: type }, type)));
+  dtype.value = guess.dtype;
   const sum = make("p", { class: "sum", role: "status" });
   const row = (label, inputs) => make("div", { class: "triple", role: "group", "aria-label": label },
     make("span", { class: "name" }, label), ...inputs);

@@ -82,12 +82,6 @@ function roundNumber(value) {
   return Number.isInteger(value) ? value : Number(Number(value).toPrecision(4));
 }
 
-/** Write a number of bytes: 16.8 MB. */
-function writeBytes(bytes) {
-  const power = clamp(Math.floor(Math.log10(Math.max(bytes, 1)) / 3), 0, 4);
-  return `${writeNumber(bytes / 1000 ** power)} ${["bytes", "kB", "MB", "GB", "TB"][power]}`;
-}
-
 /** Return round numbers from `low` to `high`, about `count` of them, for the ticks of an axis. */
 function chooseTicks(low, high, count) {
   if (!(high > low)) return [low];

@@ -3,6 +3,7 @@
 const NEW_BUMP_COLOURS = ["#e69f00", "#56b4e9", "#009e73", "#d55e00", "#cc79a7", "#f0e442"];
 const NARROWEST = 0.002; // of a bump, as a share of an axis
 const WIDEST = 2;
+const MOST_BUMPS = 64;
 
 /** Return the opacity of a bump at a place; `y` is null where gradients do not count. */
 function fadeBump({ x, y, sx, sy, a }, atX, atY) {
@@ -54,7 +55,7 @@ function makeBumpKind(volume, flat) {
   return {
     name: "transfer.bumps",
     noun: "bump",
-    fewest: 0,
+    allows: (bumps) => bumps.length <= MOST_BUMPS,
     flat,
     place: ({ x, y, a }) => [x, flat ? y : a],
     colour: ({ colour }) => colour,

@@ -34,20 +34,24 @@ function createTransferEditor(session) {
   // ---- Changes ---------------------------------------------------------------------------------
 
   function edit(list, how = "nudge") {
+    if (!kind.allows(list)) return;
     session[how]({ [kind.name]: list });
     if (kind.name === "transfer.points") presetMenu.markEdited();
   }
 
   function add(x, y) {
     const [list, k] = kind.add(items(), x, y);
+    if (!kind.allows(list)) return;
     selected = k;
     edit(list, "change");
     handles.children[k]?.focus();
   }
 
+  const withoutSelected = () => items().filter((_, k) => k !== selected);
+
   function remove() {
-    if (items().length <= kind.fewest || !items()[selected]) return;
-    const list = items().filter((_, k) => k !== selected);
+    const list = withoutSelected();
+    if (list.length === items().length || !kind.allows(list)) return;
     selected = clamp(selected, 0, Math.max(list.length - 1, 0));
     edit(list, "change");
     (handles.children[selected] || addButton).focus();
@@ -167,7 +171,7 @@ function createTransferEditor(session) {
         input.value = field.colour ? value || "#808080" : value === "" ? "" : roundNumber(value);
       }
     }
-    removeButton.disabled = list.length <= kind.fewest;
+    removeButton.disabled = !list.length || !kind.allows(withoutSelected());
   }
 
   function placeHandles(list) {

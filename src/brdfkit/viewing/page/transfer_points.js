@@ -1,5 +1,7 @@
 // A transfer function of points over values: how the editor places, moves, adds and removes them.
 
+const MOST_POINTS = 256;
+
 /** Return the linear mixture of two colours "#rrggbb", as the picture of the curve shows it. */
 function mixColours(first, second, share) {
   const parts = [1, 3, 5].map((at) => {
@@ -39,28 +41,32 @@ function makePresetMenu(session, presets) {
 /**
  * Return what the editor needs to know of points.
  *
- * Places on the plot are shares of its width and height, upwards. All functions that change
- * something return a new list and leave the old one as it is.
+ * Places are shares of the range of values and of the plot's height, upwards. All functions that
+ * change something return a new list and leave the old one as it is; `allows` says whether Python
+ * accepts a list.
  */
 function makePointKind({ range: [low, high], value_unit: unit = "" }) {
   const width = high - low || 1;
+  const grain = chooseStep(0, width) / 100; // of values that are dragged: about the range / 10 000
+  const round = (value) => Number((grain * Math.round(value / grain)).toPrecision(12));
   const replace = (points, k, point) => points.map((old, other) => (other === k ? point : old));
   const moved = (points, k, value, a) => {
     const lowest = k > 0 ? points[k - 1][0] : -Infinity;
     const highest = k < points.length - 1 ? points[k + 1][0] : Infinity;
     const kept = clamp(clamp(value, low, high), lowest, highest);
-    return replace(points, k, [roundNumber(kept), points[k][1], roundNumber(clamp(a, 0, 1))]);
+    return replace(points, k, [kept, points[k][1], roundNumber(clamp(a, 0, 1))]);
   };
   return {
     name: "transfer.points",
     noun: "point",
-    fewest: 1,
+    allows: (points) =>
+      points.length >= 2 && points.length <= MOST_POINTS && points[0][0] < points[points.length - 1][0],
     place: ([value, , a]) => [(value - low) / width, a],
     colour: ([, colour]) => colour,
-    move: (points, k, x, y) => moved(points, k, low + x * width, y),
+    move: (points, k, x, y) => moved(points, k, round(low + x * width), y),
     describe: ([value, , a]) => `${writeNumber(value)} ${unit}, opacity ${writeNumber(a)}`,
     add(points, x, y) {
-      const value = roundNumber(low + x * width);
+      const value = round(low + x * width);
       const above = points.findIndex(([own]) => own > value);
       const k = above < 0 ? points.length : above;
       const [colour] = points.length ? readPoints(points, value) : ["#ffffff"];

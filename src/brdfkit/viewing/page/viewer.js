@@ -38,30 +38,11 @@ function watchTheme(session) {
   return () => queries.forEach((query) => query.removeEventListener("change", tell));
 }
 
-/**
- * Return the function that says hello to Python, with the state that the page has already.
- *
- * The state in an address may be one of another volume, or of another version. If Python refuses
- * it, the view opens without it and says why.
- */
-function makeGreeting(session, stage) {
-  let refused = "";
-
-  function greet() {
-    const linked = session.model.address && !refused ? readAddress(location.hash) : null;
-    const state = session.description ? session.state : linked;
-    session.send({ type: "hello", ...measurePixels(stage), state });
-  }
-  session.on("error", ({ text }) => {
-    if (session.description || refused) return;
-    refused = text;
-    greet();
-  });
-  session.on("open", () => {
-    if (refused) session.emit("error", { text: refused });
-    refused = "";
-  });
-  return greet;
+/** Say hello to Python, with the state that the page has already, or that its address carries. */
+function greet(session, stage) {
+  const linked = session.model.address ? readAddress(location.hash) : null;
+  const state = session.description ? session.state : linked;
+  session.send({ type: "hello", ...measurePixels(stage), state });
 }
 
 /**
@@ -114,14 +95,13 @@ function render({ model, el }) {
   session.on("text", (content) => showText(root, content));
   session.on("ask_raw", (content) => askRaw(session, root, content));
 
-  const greet = makeGreeting(session, stage);
   const lose = () => session.emit("lost");
-  const find = () => greet();
+  const find = () => greet(session, stage);
   model.on("lost", lose);
   model.on("found", find);
 
   const stops = [
-    watchSize(session, stage, greet, picture.draw), watchVisibility(session, stage),
+    watchSize(session, stage, find, picture.draw), watchVisibility(session, stage),
     watchTheme(session), slices.stop, transfer.stop, model.address ? keepAddress(session) : () => {},
   ];
   return () => {

@@ -77,7 +77,7 @@ def load_upload(
     if message["type"] == "raw":
         return _open_raw(application, session, message)
     if not upload.add(message, data):
-        return [({"type": "uploaded", "offset": int(message.get("offset", 0)) + len(data)}, [])]
+        return [({"type": "uploaded"}, [])]
     kind = str(message.get("kind"))
     path = upload.path
     if kind == "volume" and path.suffix.lower() in RAW and not _has_header(path):

@@ -23,16 +23,14 @@ def draw_slices(volume: Volume, at: list[int]) -> tuple[list[dict[str, Any]], li
     planes, pictures = [], []
     low, high = volume.window
     for axis, across, up in PLANES:
-        through, right, above = ("xyz".index(name) for name in (axis, across, up))
+        through = "xyz".index(axis)
         voxels = np.take(volume.values, at[through], axis=2 - through)  # (above, right)
         step = -(-max(voxels.shape) // LONGEST)
         shares = (voxels[::step, ::step].astype(float) - low) / ((high - low) or 1.0)
         grey = np.rint(255 * np.clip(shares, 0, 1)).astype(np.uint8)
         pictures.append(encode_png(grey[::-1]))
-        size = volume.size
-        cross = [(at[right] + 0.5) / size[right], 1 - (at[above] + 0.5) / size[above]]
-        plane = {"axis": axis, "index": at[through], "count": size[through]}
-        planes.append(plane | {"across": across, "up": up, "cross": cross})
+        count = volume.size[through]
+        planes.append({"axis": axis, "count": count, "across": across, "up": up})
     return planes, pictures
 
 
