@@ -35,6 +35,8 @@ def define(mi: MitsubaModule) -> type:
     """Return the plugin's class for Mitsuba's current variant: a `mi.BSDF`."""
     import drjit as dr
 
+    from brdfkit.core.jit.gradients import replace_grad
+
     Base: MitsubaObject = derive_plugin(mi.BSDF, PARAMETERS)
 
     class TangentRotation(Base):
@@ -64,15 +66,13 @@ def define(mi: MitsubaModule) -> type:
             inside, cosine, sine = self.turn_interaction(si, active)
             drawn, weight = self.bsdf.sample(ctx, inside, sample1, sample2, active)
             drawn.wo = dr.detach(turn_direction(drawn.wo, cosine, sine))
-            if not dr.is_diff_v(mi.Float):  # replace_grad of Dr.Jit crashes with plain numbers
+            if not dr.is_diff_v(mi.Float):  # plain numbers
                 return drawn, weight
             # The drawn direction has no derivatives: it stays fixed while the material turns
             smooth = active & (drawn.pdf > 0) & mi.has_flag(drawn.sampled_type, mi.BSDFFlags.Smooth)
             value = self.bsdf.eval(ctx, inside, turn_direction(drawn.wo, cosine, -sine), smooth)
             pdf = dr.select(smooth, dr.detach(drawn.pdf), 1)
-            # Dr.Jit's type stub wrongly declares that replace_grad returns None
-            weight_of_value = dr.replace_grad(weight, value / pdf)  # type: ignore[func-returns-value]
-            return drawn, dr.select(smooth, weight_of_value, weight)
+            return drawn, dr.select(smooth, replace_grad(weight, value / pdf), weight)
 
         def eval(
             self, ctx: MitsubaObject, si: MitsubaObject, wo: JitVector, active: JitMask = True

@@ -47,12 +47,11 @@ from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import (
     declare_bool,
     declare_int,
-    declare_radiance,
     declare_volume,
     derive_plugin,
 )
 from brdfkit.model.numerics import expm1
-from brdfkit.volumes.rays.box import evaluate_light_behind, intersect_box
+from brdfkit.volumes.rays.box import BACKGROUND, evaluate_light_behind, intersect_box
 
 OPAQUE_TRANSMITTANCE = 1e-4
 
@@ -61,7 +60,7 @@ PARAMETERS = {
     "emission": declare_volume(0.0, "e: radiance that is added per unit of length"),
     "steps": declare_int(128, (1, 1_000_000), "parts that a ray is cut into"),
     "jitter": declare_bool(False, "whether the parts are shifted by a random share of one"),
-    "background": declare_radiance("radiance behind the volume, by default the environment's"),
+    "background": BACKGROUND,
 }
 
 
@@ -75,7 +74,7 @@ def define(mi: MitsubaModule) -> type:
             self.has_colours = hasattr(self.extinction, "eval_extinction_and_colour")
             self.uses_means = self.has_colours and self.extinction.misses_peaks(self.steps)
             self.white = make_white_light()
-            self.light: Any = make_rgb_emission() if self.has_colours else None
+            self.light = make_rgb_emission()
 
         def eval_integrals_at_end(self, it: MitsubaObject, active: JitMask) -> JitVector:
             """Return the transfer function's integrals at a part's end, () without `uses_means`."""
@@ -109,7 +108,7 @@ def define(mi: MitsubaModule) -> type:
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             # The part of the ray within the volume is cut into steps
-            end, behind = evaluate_light_behind(scene, ray, active, self.background)
+            end, behind = evaluate_light_behind(scene, ray, active, self.background, self.light)
             near, far = intersect_box(ray, self.extinction)
             far = dr.minimum(far, end)
             inside = active & (far > near)

@@ -36,13 +36,13 @@ from brdfkit.core.array_types import (
     MitsubaModule,
     MitsubaObject,
 )
+from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import (
     declare_bool,
     declare_bsdf,
     declare_int,
     declare_number,
-    declare_radiance,
     declare_volume,
     derive_plugin,
 )
@@ -50,6 +50,7 @@ from brdfkit.mitsuba_bridge.registration.registering import require_vectorised
 from brdfkit.mitsuba_bridge.surface_points import make_interaction
 from brdfkit.volumes.light.surface_light import sample_direct_light
 from brdfkit.volumes.rays.box import (
+    BACKGROUND,
     bend_normal_to_viewer,
     compute_gradient,
     count_voxels_per_length,
@@ -69,7 +70,7 @@ PARAMETERS = {
     "steps": declare_int(256, (1, 1_000_000), "parts that a ray is cut into"),
     "bsdf": declare_bsdf("the material"),
     "shadows": declare_bool(False, "whether the surface hides lights from itself"),
-    "background": declare_radiance("radiance behind the volume, by default the environment's"),
+    "background": BACKGROUND,
 }
 
 
@@ -78,6 +79,10 @@ def define(mi: MitsubaModule) -> type:
     Base: MitsubaObject = derive_plugin(mi.SamplingIntegrator, PARAMETERS)
 
     class Isosurface(Base):
+        def __init__(self, props: MitsubaObject) -> None:
+            super().__init__(props)
+            self.light = make_rgb_emission()
+
         def value_above_level(self, p: JitVector, active: JitMask = True) -> JitFloat:
             """Return F = V(p) - `level`, which is above 0 inside the surface."""
             it = mi.Interaction3f()
@@ -95,7 +100,7 @@ def define(mi: MitsubaModule) -> type:
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
             require_vectorised("isosurface")
-            end, behind = evaluate_light_behind(scene, ray, active, self.background)
+            end, behind = evaluate_light_behind(scene, ray, active, self.background, self.light)
             near, far = intersect_box(ray, self.volume)
             far = dr.minimum(far, end)
             crossed = active & (far > near)

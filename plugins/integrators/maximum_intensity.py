@@ -38,11 +38,10 @@ from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import (
     declare_bool,
     declare_int,
-    declare_radiance,
     declare_volume,
     derive_plugin,
 )
-from brdfkit.volumes.rays.box import evaluate_light_behind, intersect_box
+from brdfkit.volumes.rays.box import BACKGROUND, evaluate_light_behind, intersect_box
 from brdfkit.volumes.rays.search import find_distance_of_maximum
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 
@@ -50,7 +49,7 @@ PARAMETERS = {
     "volume": declare_volume(0.0, "a transfer_function, or any other volume in grey", False),
     "steps": declare_int(256, (1, 1_000_000), "parts that a ray is cut into"),
     "jitter": declare_bool(True, "whether the place in each part is random"),
-    "background": declare_radiance("radiance behind the volume, by default the environment's"),
+    "background": BACKGROUND,
 }
 
 
@@ -83,7 +82,7 @@ def define(mi: MitsubaModule) -> type:
             medium: MitsubaObject = None,
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
-            end, behind = evaluate_light_behind(scene, ray, active, self.background)
+            end, behind = evaluate_light_behind(scene, ray, active, self.background, self.light)
             near, far = intersect_box(ray, self.volume)
             far = dr.minimum(far, end)
             inside = active & (far > near)

@@ -55,14 +55,13 @@ from brdfkit.core.array_types import (
     MitsubaModule,
     MitsubaObject,
 )
-from brdfkit.mitsuba_bridge.channels import make_rgb_emission
+from brdfkit.core.jit.gradients import replace_grad
 from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import (
     declare_choice,
     declare_int,
     declare_number,
     declare_phase_function,
-    declare_radiance,
     declare_volume,
     derive_plugin,
 )
@@ -71,6 +70,7 @@ from brdfkit.volumes.light import emitters
 from brdfkit.volumes.light.medium import Medium
 from brdfkit.volumes.light.path_sampling import apply_roulette, scatter_direct_light
 from brdfkit.volumes.light.vertex import Vertex, make_medium_interaction
+from brdfkit.volumes.rays.box import BACKGROUND
 
 PARAMETERS = {
     "extinction": declare_volume(1.0, "σ: collisions per unit of length", coloured=False),
@@ -82,7 +82,7 @@ PARAMETERS = {
     "majorants": declare_choice(
         ("local", "global"), "bounds of σ: of coarse cells, or one for all"
     ),
-    "background": declare_radiance("radiance behind the volume, by default the environment's"),
+    "background": BACKGROUND,
 }
 
 
@@ -179,8 +179,7 @@ def define(mi: MitsubaModule) -> type:
                 ray, dr.select(in_medium, t, si.t), sampler, active
             )
             log_sigma = dr.log(dr.select(in_medium, sigma, 1))
-            # Dr.Jit's type stub wrongly declares that replace_grad returns None
-            one = dr.replace_grad(mi.Float(1), log_sigma - depth)  # type: ignore[func-returns-value]
+            one = replace_grad(mi.Float(1), log_sigma - depth)
             weight = (collided + passed) * one
             light += dr.select(in_medium, weight * own, 0)
             if self.emits:
@@ -206,7 +205,7 @@ def define(mi: MitsubaModule) -> type:
             light = emitters.evaluate_emitter_hit(scene, ray, si, density, active)
             if self.background is None:
                 return light
-            behind = make_rgb_emission()(self.background, si)
+            behind = self.medium.light(self.background, si)
             return dr.select(active & is_first & ~si.is_valid(), behind, light)
 
         def add_last_segment(

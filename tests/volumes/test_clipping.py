@@ -42,6 +42,17 @@ def test_the_background_is_beside_the_clipped_half_and_lights_nothing(mi, render
         assert covered == pytest.approx(np.full(covered.shape, SKY), rel=0.05)
 
 
+@pytest.mark.parametrize("renderer", RENDERERS)
+def test_the_background_has_its_colour_in_a_spectral_variant(variant, renderer):
+    import mitsuba as mi
+
+    variant("llvm_ad_spectral")
+    half = render_cube(mi, renderer, BACKGROUND, clip_high=[0.5, 1, 1])
+    means = [side.mean(axis=(0, 1)) for side in (half[:, :4], half[:, 4:])]
+    free = min(means, key=lambda mean: abs(mean - BACKGROUND).max())
+    assert free == pytest.approx(BACKGROUND, rel=0.01)
+
+
 @pytest.mark.parametrize("renderer", ["emission_absorption", "single_scattering"])
 @pytest.mark.parametrize("depth", [1.0, 0.25])
 def test_a_clipped_medium_is_as_thick_as_what_is_left(mi, renderer, depth):

@@ -1,1 +1,1 @@
-"""Helpers for Dr.Jit: the choice of LLVM, threads, loops, padded arrays and double precision."""
+"""Helpers for Dr.Jit: the choice of LLVM, threads, loops, padding, derivatives and doubles."""

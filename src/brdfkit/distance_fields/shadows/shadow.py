@@ -14,6 +14,7 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat, JitMask
+from brdfkit.core.jit.gradients import replace_grad
 from brdfkit.distance_fields.shadows.cone import LightCone
 from brdfkit.distance_fields.shadows.field import distance_function
 from brdfkit.distance_fields.shadows.march import (
@@ -100,8 +101,7 @@ def trace_shadow(
     if dr.grad_enabled(minimum):
         # The derivatives are taken at the exact minimum: the march's own ratio r is a little above
         # it, where the slope of `lit_disc_share` is another
-        attach: Any = dr.replace_grad  # Dr.Jit's own annotation says that it returns None
-        visible, r = attach(visible, lit_disc_share(minimum)), attach(r, minimum)
+        visible, r = replace_grad(visible, lit_disc_share(minimum)), replace_grad(r, minimum)
     return Shadow(visible, r, t, walk.evaluations)
 
 

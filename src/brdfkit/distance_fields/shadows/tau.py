@@ -11,6 +11,7 @@ shadow. Nothing is lit below r = -1, and all is above r = 1.
 import drjit as dr
 
 from brdfkit.core.array_types import JitFloat
+from brdfkit.core.jit.gradients import replace_grad
 
 
 def lit_disc_share(r: JitFloat) -> JitFloat:
@@ -24,7 +25,7 @@ def lit_disc_share(r: JitFloat) -> JitFloat:
     r = dr.clip(r, -1, 1)
     fixed = dr.detach(r)  # detached: the slopes of arcsin and of the root at ±1 are infinite
     share = 0.5 + (fixed * dr.sqrt(1 - fixed * fixed) + dr.asin(fixed)) / dr.pi
-    return dr.replace_grad(share, lit_disc_slope(fixed) * r) if dr.grad_enabled(r) else share
+    return replace_grad(share, lit_disc_slope(fixed) * r) if dr.grad_enabled(r) else share
 
 
 def lit_disc_slope(r: JitFloat) -> JitFloat:

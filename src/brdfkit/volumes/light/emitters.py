@@ -3,13 +3,10 @@
 Both methods find the same light, so the power heuristic weights them [Veach & Guibas 1995].
 """
 
-from typing import Any
-
 import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
-
-replace_grad: Any = dr.replace_grad  # Dr.Jit's stub does not type its result
+from brdfkit.core.jit.gradients import replace_grad
 
 
 def evaluate_emitter_hit(

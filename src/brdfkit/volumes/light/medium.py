@@ -20,8 +20,8 @@ import numpy as np
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit.gradients import replace_grad
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission, make_rgb_spectrum, make_white_light
-from brdfkit.volumes.light.emitters import replace_grad
 from brdfkit.volumes.light.majorants import Majorants, compute_majorants
 from brdfkit.volumes.light.tracking import (
     estimate_passed_and_collided_light,

@@ -6,7 +6,7 @@ from typing import Any
 import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
-from brdfkit.volumes.light.emitters import replace_grad
+from brdfkit.core.jit.gradients import replace_grad
 
 
 @dataclass(eq=False)

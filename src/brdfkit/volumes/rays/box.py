@@ -5,8 +5,10 @@ from collections.abc import Callable
 import drjit as dr
 
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
-from brdfkit.mitsuba_bridge.channels import make_rgb_emission
+from brdfkit.mitsuba_bridge.properties.declarations import declare_radiance
 
+# The parameter `background` of integrators of volumes
+BACKGROUND = declare_radiance("radiance behind the volume, by default the environment's")
 SMALLEST_COSINE = 1e-3  # cosine of the angle between a bent normal and the direction to the viewer
 
 
@@ -49,12 +51,14 @@ def evaluate_light_behind(
     scene: MitsubaObject,
     ray: MitsubaObject,
     active: JitMask,
-    background: JitColour | None = None,
+    background: JitColour | None,
+    to_spectrum: Callable[[JitColour, MitsubaObject], JitColour],
 ) -> tuple[JitFloat, JitColour]:
     """Return the distance of the first surface along a ray, and the light emitted from there.
 
-    Where there is no surface, the light is that of the environment map, or else the `background`, a
-    radiance in linear sRGB.
+    Where there is no surface, the light is the `background`, a radiance in linear sRGB, or that of
+    the environment map if the background is None. `to_spectrum` is the result of
+    `make_rgb_emission()`, which the caller makes once.
     """
     import mitsuba as mi
 
@@ -63,7 +67,7 @@ def evaluate_light_behind(
     if emitter is not None:  # in scalar variants; in others a missing emitter evaluates to 0
         light = mi.unpolarized_spectrum(emitter.eval(si, active))
     if background is not None:
-        light = dr.select(si.is_valid(), light, make_rgb_emission()(background, si))
+        light = dr.select(si.is_valid(), light, to_spectrum(background, si))
     return si.t, light
 
 
