@@ -98,6 +98,7 @@ def define(mi: MitsubaModule) -> type:
             self.parameters_changed()
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
+            super().parameters_changed(keys)
             if not mi.variant().startswith("scalar"):
                 self.medium.recompute_majorants(self.majorants == "local")
 

@@ -97,7 +97,7 @@ def define(mi: MitsubaModule) -> type:
             callback.put("extinction", self.lookup.extinction, mi.ParamFlags.Differentiable)
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
-            dr.make_opaque(self.clip_low, self.clip_high)  # or a new number means a new kernel
+            super().parameters_changed(keys)
             self.lookup.recompute_texture()
             self.__dict__.pop("majorants", None)
 

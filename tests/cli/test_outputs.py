@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 import brdfkit as bk
-from brdfkit.cli import main
+from brdfkit.cli import main, outputs
 from brdfkit.lighting.environments import map_files
 
 SCENE = """<scene version="3.0.0"><integrator type="path"/><sensor type="perspective">
@@ -86,6 +86,14 @@ def test_another_render_of_the_same_name_asks(run, tmp_path):
     assert status == 2
     assert "--force" in said
     assert (tmp_path / "lambert.png").read_bytes() == before
+
+
+@pytest.mark.quick
+def test_no_file_of_another_command_is_read_whole(run, monkeypatch):
+    assert run("render", "lambert", *SMALL)[0] == 0
+    monkeypatch.setattr(outputs, "compute_sha256", lambda path: pytest.fail(f"read {path}"))
+    status, said = run("render", "lambert", "--seed", "1", *SMALL)
+    assert status == 2, said
 
 
 @pytest.mark.quick

@@ -77,17 +77,25 @@ def test_the_face_of_a_clipped_surface_has_the_normal_of_the_box(mi):
     assert picture == pytest.approx(np.full(picture.shape, 1 / np.pi), rel=1e-4)
 
 
-def test_moving_the_clipping_box_needs_no_new_kernel(mi):
+@pytest.mark.parametrize(
+    ("name", "numbers"),
+    [
+        ("volume.clip_high", [(1, high, 1) for high in (0.9, 0.7, 0.5)]),
+        ("background", [(0, green, 1) for green in (0.9, 0.7, 0.5)]),
+        ("level", [0.4, 0.5, 0.6]),
+    ],
+)
+def test_new_numbers_need_no_new_kernel(mi, name, numbers):
     import drjit as dr
 
     values = Volume(np.ones((4, 4, 4), np.float32), PLACE).scene_dict("ct_bone")
-    integrator = {"type": "emission_absorption", "extinction": values}
+    integrator = {"type": "isosurface", "volume": values, "background": 0.1}
     scene = mi.load_dict({"type": "scene", "integrator": integrator, "sensor": make_cube_camera()})
     parameters = mi.traverse(scene)
     with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
-        for high in (0.9, 0.7, 0.5):
+        for number in numbers:
             dr.kernel_history_clear()
-            parameters["integrator.extinction.clip_high"] = mi.Point3f(1, high, 1)
+            parameters[f"integrator.{name}"] = number
             parameters.update()
             dr.eval(mi.render(scene, spp=1))
             new = [k for k in dr.kernel_history((dr.KernelType.JIT,)) if not k["cache_hit"]]

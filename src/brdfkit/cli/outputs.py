@@ -88,8 +88,9 @@ def _was_written_by(target: Path, context: click.Context) -> bool:
         return True
     try:
         written = json.loads(_find_record_path(target).read_text(encoding="utf-8"))
-        same_file = written["sha256"] == compute_sha256(target)
-        return same_file and written["origin"] == _describe_command(context)
+        # The command is compared first, because a checksum takes seconds for a large file
+        same_command = written["origin"] == _describe_command(context)
+        return same_command and written["sha256"] == compute_sha256(target)
     except (OSError, ValueError, KeyError, TypeError, BrdfkitError):
         return False
 

@@ -73,6 +73,7 @@ def derive_environment_emitter(mi: MitsubaModule, parameters: dict[str, Setting]
             callback.put("data", self.data, mi.ParamFlags.Differentiable)
 
         def parameters_changed(self, keys: Any = ()) -> None:
+            super().parameters_changed(keys)
             if not keys or "data" in keys:
                 pixels = np.array(dr.detach(self.data), float)
                 require_lit_map(f"{self.name}: data", pixels)

@@ -112,7 +112,7 @@ def declare_bool(default: bool, meaning: str) -> Setting:
 def declare_point(default: tuple[float, float, float], meaning: str) -> Setting:
     """Declare three coordinates; any values of them use the same kernel."""
 
-    def read(value: Any) -> Any:
+    def read_point(value: Any) -> Any:
         import drjit as dr
         import mitsuba as mi
 
@@ -123,13 +123,13 @@ def declare_point(default: tuple[float, float, float], meaning: str) -> Setting:
         dr.make_opaque(point)
         return point
 
-    return Setting(default, None, meaning, read, differentiable=True)
+    return Setting(default, None, meaning, read_point, differentiable=True)
 
 
 def declare_radiance(meaning: str) -> Setting:
     """Declare a radiance, a number or a colour, which is None where the scene gives none."""
 
-    def read(value: Any) -> Any:
+    def read_radiance(value: Any) -> Any:
         import drjit as dr
         import mitsuba as mi
 
@@ -141,7 +141,7 @@ def declare_radiance(meaning: str) -> Setting:
         dr.make_opaque(radiance)
         return radiance
 
-    return Setting(None, None, meaning, read, differentiable=True)
+    return Setting(None, None, meaning, read_radiance, differentiable=True)
 
 
 def declare_picture(meaning: str) -> Setting:
@@ -247,7 +247,8 @@ def read_settings(
 def derive_plugin(base: Any, parameters: Mapping[str, Setting]) -> Any:
     """Derive a class from `base`, one of Mitsuba's, with declared `parameters` by name.
 
-    Each parameter is an attribute of an instance; optimisers see the differentiable ones.
+    Each parameter is an attribute of an instance; optimisers see the differentiable ones. A derived
+    class that defines `parameters_changed` should call that of this class.
     """
 
     class Declared(base):
@@ -262,6 +263,15 @@ def derive_plugin(base: Any, parameters: Mapping[str, Setting]) -> Any:
             for name, setting in parameters.items():
                 if setting.differentiable and getattr(self, name) is not None:
                     callback.put(name, getattr(self, name), mi.ParamFlags.Differentiable)
+
+        def parameters_changed(self, keys: Sequence[str] = ()) -> None:
+            """Make changed numbers opaque again, or each new one would need a new kernel."""
+            import drjit as dr
+
+            for name, setting in parameters.items():
+                value = getattr(self, name)
+                if setting.differentiable and value is not None and dr.is_jit_v(value):
+                    dr.make_opaque(value)
 
         def to_string(self) -> str:
             lines = [f"  {name} = {getattr(self, name)}" for name in parameters]
