@@ -101,7 +101,7 @@ def define(mi: MitsubaModule) -> type:
             medium: MitsubaObject = None,
             active: JitMask = True,
         ) -> tuple[JitColour, JitMask, list[JitFloat]]:
-            environment = _require_one_environment(mi, scene)
+            environment = _require_one_environment(scene)
             unshadowed = self.light.filter_if_changed(environment)
             light: Light = unshadowed
             si = scene.ray_intersect(mi.Ray3f(ray), active)
@@ -138,7 +138,7 @@ def _choose_shading(
     return LobeLight(method, lobes)
 
 
-def _require_one_environment(mi: MitsubaModule, scene: MitsubaObject) -> MitsubaObject:
+def _require_one_environment(scene: MitsubaObject) -> MitsubaObject:
     """Return a scene's environment, or raise `BrdfkitError` without one or with other lights."""
     require_vectorised("filtered_environment")
     if scene.environment() is None:

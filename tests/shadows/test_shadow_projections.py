@@ -53,7 +53,7 @@ def check(projection, placement):
 
 
 def check_slopes(projection, placement):
-    """`along` is the difference quotient of `to_map`."""
+    """Require that `directional_derivative` is the difference quotient of `project`."""
     points, step = points_in(placement.visible_body), 1e-6 * placement.reach
     for axis in np.eye(3):
         slope = np.subtract(

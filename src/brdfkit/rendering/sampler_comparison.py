@@ -91,8 +91,8 @@ class SamplerComparison(Shown):
     @property
     def verdict(self) -> str:
         """A sentence on the sampler to take, what it saves, and whether this may be chance."""
-        p, costs = self.p_values, self.costs
-        alike = [name for name in costs if name != self.best and not p[name] < LEVEL]
+        costs = self.costs
+        alike = [name for name in costs if name != self.best and not self.significant(name)]
         chance = "envmap" in alike
         alike = [name for name in alike if name != "envmap"]
         tied = f"; {', '.join(alike)} may be as good (5 %)" if alike else ""
@@ -112,7 +112,7 @@ class SamplerComparison(Shown):
         rows: list[tuple[str, ...]] = []
         for name, cost in self.costs.items():
             ratio = float(noise[name].mean() / noise["envmap"].mean())
-            said = "worse" if p[name] < LEVEL else "no clear difference"
+            said = "worse" if self.significant(name) else "no clear difference"
             chance = "p < 0.001" if p[name] < 1e-3 else f"p = {p[name]:.2g}"
             beside = "best" if name == self.best else f"{said}, {chance}"
             time_of = 1e3 * float(np.median(self.seconds[name]))

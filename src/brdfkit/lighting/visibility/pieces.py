@@ -82,13 +82,15 @@ def _close_holes(
     [Jacobson et al. 2013] in its middle is then 1, but 1/2 at an opening. A piece is returned
     unchanged if it has an opening, or if two of its holes share a corner.
     """
+    import igl
+
     loops = _find_hole_loops(faces)
     if not loops:
         return points, faces
     middles = np.array([points[loop].mean(axis=0) for loop in loops])
     size = np.ptp(points[mesh], axis=(0, 1)).max()
     wide = np.array([np.ptp(points[loop], axis=0).max() > WIDE_HOLE * size for loop in loops])
-    if wide.any() and _winding_number(points, mesh, middles[wide]).min() < COVERED:
+    if wide.any() and igl.winding_number(points, mesh, middles[wide]).min() < COVERED:
         return points, faces
     fans = [
         [a, b, len(points) + k]
@@ -96,13 +98,6 @@ def _close_holes(
         for a, b in zip(loop, loop[1:] + loop[:1], strict=True)
     ]
     return np.concatenate([points, middles]), np.concatenate([faces, fans])
-
-
-def _winding_number(points: FloatArray, faces: IntArray, at: FloatArray) -> FloatArray:
-    """Return the winding number (n,) of a mesh's `faces` around each of the points `at` (n, 3)."""
-    import igl
-
-    return igl.winding_number(points, faces, at)
 
 
 def _find_hole_loops(faces: IntArray) -> list[list[int]]:

@@ -96,7 +96,7 @@ def is_visible_to_all_cameras(placements: list[Placement], points: FloatArray) -
     return visible
 
 
-def make_light_path(placement: Placement, steps: int = STEPS) -> list[Placement]:
+def make_light_path(placement: Placement) -> list[Placement]:
     """Return placements in which the light moves step by step, to measure flicker.
 
     The steps are equal, and at right angles to the light's rays; the first placement is unchanged.
@@ -104,7 +104,7 @@ def make_light_path(placement: Placement, steps: int = STEPS) -> list[Placement]
     light = placement.light
     way = light.point[:3] - light.point[3] * placement.visible_body.centroid
     step = LIGHT_TURN * unit_perpendicular(way) * (1 if light.is_directional else placement.reach)
-    return [replace(placement, light=move_light(light, k * step)) for k in range(steps)]
+    return [replace(placement, light=move_light(light, k * step)) for k in range(STEPS)]
 
 
 def unit_perpendicular(way: FloatArray) -> FloatArray:

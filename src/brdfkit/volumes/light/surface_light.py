@@ -13,7 +13,7 @@ import drjit as dr
 from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
 from brdfkit.volumes.light.emitters import spawn_ray_to_emitter
 
-IsFree: TypeAlias = Callable[[MitsubaObject, JitMask], JitMask]
+IsUnblocked: TypeAlias = Callable[[MitsubaObject, JitMask], JitMask]
 
 
 def sample_direct_light(
@@ -21,19 +21,19 @@ def sample_direct_light(
     si: MitsubaObject,
     bsdf: MitsubaObject,
     sampler: MitsubaObject,
-    is_free: IsFree,
+    is_unblocked: IsUnblocked,
     active: JitMask,
 ) -> JitColour:
     """Estimate the direct light that a surface reflects towards the viewer, by two shadow rays.
 
     `si` is the surface's point, a `mi.SurfaceInteraction3f`, with the material `bsdf`.
-    `is_free(ray, active)` returns whether the surface itself leaves a shadow ray free up to its
+    `is_unblocked(ray, active)` returns whether the surface itself lets a shadow ray pass up to its
     `maxt`; the scene's shapes are tested here.
     """
     sample = sampler.next_2d(active)
-    by_emitters = _sample_emitters(scene, si, bsdf, sample, is_free, active)
+    by_emitters = _sample_emitters(scene, si, bsdf, sample, is_unblocked, active)
     sample1, sample2 = sampler.next_1d(active), sampler.next_2d(active)
-    return by_emitters + _sample_bsdf(scene, si, bsdf, sample1, sample2, is_free, active)
+    return by_emitters + _sample_bsdf(scene, si, bsdf, sample1, sample2, is_unblocked, active)
 
 
 def _sample_emitters(
@@ -41,7 +41,7 @@ def _sample_emitters(
     si: MitsubaObject,
     bsdf: MitsubaObject,
     sample: JitVector,
-    is_free: IsFree,
+    is_unblocked: IsUnblocked,
     active: JitMask,
 ) -> JitColour:
     """Return the weighted light that is reflected from a direction drawn by the emitters."""
@@ -53,7 +53,7 @@ def _sample_emitters(
     value, pdf = bsdf.eval_pdf(mi.BSDFContext(), si, si.to_local(ds.d), active)
     weight = dr.select(ds.delta, 1, ds.pdf / dr.select(active, ds.pdf + pdf, 1))
     reflected = mi.unpolarized_spectrum(value) * mi.unpolarized_spectrum(light) * weight
-    return dr.select(active & is_free(spawn_ray_to_emitter(si, ds), active), reflected, 0)
+    return dr.select(active & is_unblocked(spawn_ray_to_emitter(si, ds), active), reflected, 0)
 
 
 def _sample_bsdf(
@@ -62,7 +62,7 @@ def _sample_bsdf(
     bsdf: MitsubaObject,
     sample1: JitFloat,
     sample2: JitVector,
-    is_free: IsFree,
+    is_unblocked: IsUnblocked,
     active: JitMask,
 ) -> JitColour:
     """Return the weighted light that is reflected from a direction drawn by the BSDF."""
@@ -88,4 +88,4 @@ def _sample_bsdf(
     by_lamp = scene.pdf_emitter_direction(si, ds, active & ~mirrored)
     weight = dr.select(mirrored, 1, pdf / dr.select(pdf + by_lamp > 0, pdf + by_lamp, 1))
     ray.maxt = far.t
-    return dr.select(active & is_free(ray, active), f * light * weight, 0)
+    return dr.select(active & is_unblocked(ray, active), f * light * weight, 0)
