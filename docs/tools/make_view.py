@@ -1,5 +1,6 @@
 """Makes docs/view.jpg: the page of `brdfkit view smoke`, as Chromium shows it."""
 
+import shutil
 import threading
 from pathlib import Path
 
@@ -26,7 +27,8 @@ def make_picture(path: Path) -> None:
     thread = threading.Thread(target=runner.run, args=([listening],), daemon=True)
     thread.start()
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path="/usr/bin/chromium")
+        chromium = shutil.which("chromium")  # without the system's, Playwright starts its own
+        browser = playwright.chromium.launch(executable_path=chromium)
         page = browser.new_page(viewport=SIZE)
         page.goto(f"http://{server.HOST}:{port}/picture/")
         page.wait_for_function(ENOUGH, timeout=PATIENCE)
