@@ -8,7 +8,11 @@ from brdfkit.core.colours import to_srgb
 from brdfkit.rendering.volumes import defaults
 from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.summary.summary import summarise
-from brdfkit.volumes.transfer.windows import find_window, scale_transfer_to_values
+from brdfkit.volumes.transfer.windows import (
+    find_upper_percentile,
+    find_window,
+    scale_transfer_to_values,
+)
 
 pytestmark = pytest.mark.quick
 RNG = np.random.default_rng(29)
@@ -46,6 +50,14 @@ def test_windows_leave_air_and_outliers_out(name):
     assert high[0] <= found[1] <= high[1]
     scaled = find_window(values * 1e-6)  # data of any size
     np.testing.assert_allclose(scaled, np.array(found) * 1e-6, rtol=1e-3)
+
+
+@pytest.mark.parametrize("name", WINDOWS)
+@pytest.mark.parametrize("percent", [0, 50, 99.9, 100])
+def test_upper_percentiles_are_those_of_all_values(name, percent):
+    values = WINDOWS[name][0]
+    expected = np.percentile(values, percent)
+    np.testing.assert_allclose(find_upper_percentile(values, percent), expected, rtol=1e-10)
 
 
 @pytest.mark.parametrize("name", [n for n in WINDOWS if n != "constant"])

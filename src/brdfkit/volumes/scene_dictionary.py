@@ -59,9 +59,12 @@ def _make_grid_dict(volume: Volume, channels: list[AnyArray]) -> dict[str, Any]:
     """
     import mitsuba as mi
 
+    grid = channels[0][..., None]
+    if len(channels) > 1:
+        grid = np.stack(channels, axis=-1, dtype=np.float32, casting="same_kind")
     return {
         "type": "gridvolume",
-        "grid": mi.VolumeGrid(np.stack(channels, axis=-1).astype(np.float32)),
+        "grid": mi.VolumeGrid(grid.astype(np.float32, copy=False)),
         "raw": True,
         "filter_type": "nearest" if volume.labels else "trilinear",
         "to_world": mi.ScalarTransform4f(volume.cube_to_world.tolist()),

@@ -19,13 +19,14 @@ def require_volume(volume: MitsubaObject, coloured: bool, least: float = 0.0) ->
     for name in parameters.keys():  # noqa: SIM118
         if name.startswith("values.") or not (name == "data" or name.endswith("value")):
             continue
-        values = np.array(parameters[name], float)
+        values = np.asarray(parameters[name])
         channels = values.shape[-1] if values.ndim == 4 else values.size
         if channels > 1 and not coloured:
             raise ValueError("a volume of one channel")
         if channels > 1 and mi.is_spectral:  # coefficients of spectra, no colours
             continue
-        if not np.isfinite(values).all() or values.min() < least:
+        low, high = values.min(), values.max()  # NaN if any value is
+        if not (np.isfinite(low) and np.isfinite(high)) or low < least:
             limit = ", not negative" if least == 0 else ""
             raise ValueError(f"a volume of finite values{limit}")
 

@@ -25,7 +25,7 @@ from brdfkit.viewing.volumes.transfer_table import parse_colour
 from brdfkit.viewing.volumes.volume_controls import make_controls
 from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.files import list_presets
-from brdfkit.volumes.transfer.windows import scale_transfer_to_values
+from brdfkit.volumes.transfer.windows import find_upper_percentile, scale_transfer_to_values
 
 FIRST_BUMP = {"x": 0.5, "y": 0.25, "sx": 0.15, "sy": 0.25, "colour": "#e8a060", "a": 0.5}
 CLIP = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]
@@ -53,7 +53,7 @@ class VolumeState:
         self.volume = volume
         self.level = defaults.choose_surface_level(volume)
         gradients = volume.gradient_magnitude
-        self.steepest = float(np.percentile(gradients, 99.9)) or float(gradients.max()) or 1.0
+        self.steepest = find_upper_percentile(gradients, 99.9) or float(gradients.max()) or 1.0
         self.front = 1 if volume.axes == "RAS" else -1
         self.function = self._scale(defaults.choose_transfer_function(volume, "single_scattering"))
         sides = [camera_direction(volume, azimuth, 20.0) for azimuth in TURN_AZIMUTHS]

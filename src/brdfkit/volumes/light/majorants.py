@@ -152,4 +152,4 @@ def read_grid_values(volume: MitsubaObject) -> AnyArray | None:
     import mitsuba as mi
 
     data = mi.traverse(volume).get("data")
-    return None if data is None else np.array(data)[..., 0]
+    return None if data is None else np.asarray(data)[..., 0]  # no copy: there may be many

@@ -39,8 +39,9 @@ def reduce_blocks(
     edges = np.arange(count + 1) * n / count - 0.5  # voxels have their centres at whole numbers
     first = np.clip(np.floor(edges[:-1] - NEARBY), 0, n - 1).astype(int)
     last = np.clip(np.ceil(edges[1:] + NEARBY), 0, n - 1).astype(int)
-    blocks = (values.take(range(a, b + 1), axis) for a, b in zip(first, last, strict=True))
-    return np.stack([reduce(block, axis) for block in blocks], axis)
+    along = np.moveaxis(values, axis, 0)
+    blocks = (along[a : b + 1] for a, b in zip(first, last, strict=True))
+    return np.stack([reduce(block, 0) for block in blocks], axis)
 
 
 def bound_piecewise_linear(rows: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:

@@ -1,5 +1,7 @@
 """The window of a volume: the range of values of its matter, without the background."""
 
+import math
+
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray
@@ -39,8 +41,10 @@ def scale_transfer_to_values(transfer: TransferFunction, values: AnyArray) -> Tr
     Functions for data without a unit have WINDOW_SHARES or RANGE_SHARES as their `value_unit`;
     any other function is returned unchanged.
     """
+    if transfer.value_unit not in (WINDOW_SHARES, RANGE_SHARES):
+        return transfer
     low, high = float(values.min()), float(values.max())
-    if low == high or transfer.value_unit not in (WINDOW_SHARES, RANGE_SHARES):
+    if low == high:
         return transfer
     if transfer.value_unit == WINDOW_SHARES:
         low, high = find_window(values)
@@ -51,6 +55,22 @@ def sample_values(values: AnyArray) -> FloatArray:
     """Return at most SAMPLED_VOXELS of a volume's `values` (nz, ny, nx) as floats (n,)."""
     step = -(-values.size // SAMPLED_VOXELS)
     return values.reshape(-1)[::step].astype(float)
+
+
+def find_upper_percentile(values: AnyArray, percent: float) -> float:
+    """Return a percentile of `values` as `numpy.percentile`; it is quick if `percent` is near 100.
+
+    Only the values above a bound are sorted. The bound is a percentile of a part of the values.
+    """
+    flat = values.reshape(-1)
+    bound = np.percentile(sample_values(values), max(2 * percent - 100, 0))
+    upper = flat[flat >= bound]
+    place = (flat.size - 1) * percent / 100 - (flat.size - upper.size)
+    if place < 0:
+        return float(np.percentile(flat, percent))
+    k = math.floor(place)
+    upper = np.partition(upper, [k, min(k + 1, upper.size - 1)])[k : k + 2].astype(float)
+    return float(upper[0] + (place - k) * (upper[-1] - upper[0]))
 
 
 def split_background(values: FloatArray) -> tuple[float, FloatArray]:
