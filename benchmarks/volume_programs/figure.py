@@ -1,10 +1,11 @@
-"""Draws the figure of `volume_programs.py`: pictures of programs, and their differences."""
+"""Draws the figure of docs/volume_programs.md: pictures of programs, and their differences."""
 
 import numpy as np
-from volume_programs.case import NAMES, Case
 
 from brdfkit.core.colours import to_srgb
 from brdfkit.theses.drawing import make_figure
+
+from .case import NAMES, Case
 
 TIMES = 10  # factor of the differences
 SHOWN = (

@@ -1,11 +1,11 @@
 # ruff: noqa: I001, for brdfkit comes first: it chooses the LLVM that Dr.Jit loads
 """Renders the conformance set of volumes in several programs, to compare with exact pictures.
 
-    python benchmarks/volume_programs.py          # minutes on two cores
+    python benchmarks/compare_volume_programs.py  # minutes on two cores
 
 It writes docs/volume_programs.md and .png. PyVista, VTK, K3D and Playwright with a Chromium have to
-be installed: `pip install pyvista k3d playwright`. Each file of `volume_programs/` is for one
-program.
+be installed: `pip install pyvista k3d playwright`. Each file `by_NAME.py` of `volume_programs/` is
+for one program.
 """
 
 import brdfkit  # noqa: F401
@@ -13,8 +13,7 @@ import mitsuba as mi
 
 mi.set_variant("llvm_ad_rgb")
 
-import volume_programs_page as page  # noqa: E402
-from volume_programs import by_brdfkit, by_k3d, by_mitsuba, by_pyvista, by_vtk  # noqa: E402
+from volume_programs import by_brdfkit, by_k3d, by_mitsuba, by_pyvista, by_vtk, page  # noqa: E402
 from volume_programs.case import NAMES, Case  # noqa: E402
 
 PROGRAMS = by_brdfkit, by_vtk, by_pyvista, by_k3d, by_mitsuba

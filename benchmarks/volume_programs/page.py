@@ -1,17 +1,19 @@
-"""Writes docs/volume_programs.md and its figure, from the pictures of `volume_programs.py`."""
+"""Writes docs/volume_programs.md and its figure, from the pictures of the programs."""
 
 from pathlib import Path
 
 import numpy as np
-import volume_programs_figure as figure
-from volume_programs.case import INDEX, NAMES, Case
 
-PAGE = Path(__file__).parents[1] / "docs/volume_programs.md"
+from . import figure
+from .case import INDEX, NAMES, Case
+
+PAGE = Path(__file__).parents[2] / "docs/volume_programs.md"
 INTRODUCTION = """# The same volume in every program
 
-Made by `python benchmarks/volume_programs.py`. The [conformance set](../data/conformance/README.md)
-has eleven volumes with exact pictures, by quadrature to 1e-9, of 48² rays through the middles of
-pixels. Here is how far the pictures of five programs are from them, and why.
+Made by `python benchmarks/compare_volume_programs.py`. The
+[conformance set](../data/conformance/README.md) has eleven volumes with exact pictures, by
+quadrature to 1e-9, of 48² rays through the middles of pixels. Here is how far the pictures of five
+programs are from them, and why.
 
 ![Exact pictures, those of the programs, and differences](volume_programs.png)
 
