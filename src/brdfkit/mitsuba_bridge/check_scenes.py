@@ -28,7 +28,7 @@ def make_shadow_scene(integrator: dict[str, Any]) -> tuple[dict[str, Any], AnyAr
     """Return a scene with an integrator, and the radiance (3,) of its ground in the sun.
 
     The sun shines aslant on a wide matt ground; the radiance is albedo × irradiance × cosine / π.
-    The shadow of a ball, which is outside the picture, reaches only the picture's edge.
+    A ball outside the picture casts its shadow beside the picture, so that all pixels are equal.
     """
     import mitsuba as mi
 
@@ -50,6 +50,6 @@ def make_shadow_scene(integrator: dict[str, Any]) -> tuple[dict[str, Any], AnyAr
             "to_world": t().scale(5),
             "bsdf": {"type": "diffuse", "reflectance": {"type": "rgb", "value": albedo}},
         },
-        "ball": {"type": "sphere", "center": [-1, 0, 2], "radius": 0.3},
+        "ball": {"type": "sphere", "center": [-0.8, 0, 2], "radius": 0.3},
     }
     return scene, albedo / np.pi * irradiance * np.sqrt(0.5)
