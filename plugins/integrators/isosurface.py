@@ -3,7 +3,8 @@
     {"type": "isosurface", "volume": {...}, "level": 110.0, "bsdf": {"type": "ggx"}}
 
 The inside of the surface is where F = V - `level` > 0. V is the value of the volume, or for a
-volume of the type `transfer_function` its opacity. A ray is cut into `steps` equal parts within the
+volume of the type `transfer_function` its opacity, with `surface_of` "values" the value that it
+looks up. A ray is cut into `steps` equal parts within the
 box of the volume. The first end of a part that lies inside is refined to the exact crossing, so
 that no picture shows the parts. Without this refinement the surface would lie half a part too deep.
 With N random points on a length D instead of parts, as in [Lesar 2018, eq. 6.2], it would lie
@@ -41,6 +42,7 @@ from brdfkit.mitsuba_bridge.check_scenes import make_cube_camera
 from brdfkit.mitsuba_bridge.properties.declarations import (
     declare_bool,
     declare_bsdf,
+    declare_choice,
     declare_int,
     declare_number,
     declare_volume,
@@ -70,6 +72,9 @@ PARAMETERS = {
     "steps": declare_int(256, (1, 1_000_000), "parts that a ray is cut into"),
     "bsdf": declare_bsdf("the material"),
     "shadows": declare_bool(False, "whether the surface hides lights from itself"),
+    "surface_of": declare_choice(
+        ("opacity", "values"), "what has the level in a transfer_function"
+    ),
     "background": BACKGROUND,
 }
 
@@ -87,9 +92,11 @@ def define(mi: MitsubaModule) -> type:
             """Return F = V(p) - `level`, which is above 0 inside the surface."""
             it = mi.Interaction3f()
             it.p = p
-            if hasattr(self.volume, "eval_rgba"):
-                return self.volume.eval_rgba(it, active)[1] - self.level
-            return self.volume.eval_1(it, active) - self.level
+            if not hasattr(self.volume, "eval_rgba"):
+                return self.volume.eval_1(it, active) - self.level
+            if self.surface_of == "values":
+                return self.volume.eval_arguments(it, active)[0] - self.level
+            return self.volume.eval_rgba(it, active)[1] - self.level
 
         def sample(
             self,

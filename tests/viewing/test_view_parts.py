@@ -8,6 +8,7 @@ from brdfkit.viewing import front_end
 from brdfkit.viewing.controls import Control
 from brdfkit.viewing.volumes import transfer_table
 from brdfkit.viewing.volumes.camera import Camera
+from brdfkit.viewing.volumes.live_volume import LiveVolume
 from brdfkit.volumes.transfer.files import list_presets
 
 
@@ -33,7 +34,8 @@ def test_bumps_lie_over_each_other():
         {"x": 0.4, "y": 0.5, "sx": 0.2, "sy": 0.3, "colour": "#ff0000", "a": 0.6},
         {"x": 0.6, "y": 0.2, "sx": 0.1, "sy": 0.4, "colour": "#00ff00", "a": 0.9},
     ]
-    table = transfer_table.table_of_bumps(bumps, by_gradients=True)
+    volume = LiveVolume(bk.volumes.Volume(np.arange(27.0).reshape(3, 3, 3)))
+    table = transfer_table.table_of_bumps(bumps, volume, by_gradients=True)
     rows, columns = table.shape[:2]
     for row, column in ((0, 0), (20, 2000), (40, 2500)):
         x, y = column / (columns - 1), row / (rows - 1)
@@ -51,18 +53,17 @@ def test_bumps_lie_over_each_other():
 @pytest.mark.parametrize("name", list_presets())
 def test_points_are_the_preset(name):
     function = bk.volumes.TransferFunction.load(name)
-    low, high = function.range
-    points = transfer_table.to_points(function, (low, high))
+    volume = LiveVolume(bk.volumes.Volume(np.linspace(*function.range, 27).reshape(3, 3, 3)))
+    values = np.linspace(*function.range, len(volume.row_values))
+    points = transfer_table.to_points(function, *function.range)
     assert transfer_table.is_points(points)
-    table = transfer_table.table_of_points(points, (low, high))
-    values = np.linspace(low, high, len(table))
+    whole = transfer_table.table_of_function(function, volume)
     if function.gradients is None:
+        table = transfer_table.table_of_points(points, values)
         assert np.abs(table - function(values)).max() < 0.02
-    whole = transfer_table.table_of_function(function, (low, high), 400.0)
-    if function.gradients is None:
         assert (whole == function(values)).all()
     else:  # a row for each of 64 gradient magnitudes
-        row = function(values, np.full_like(values, 400 * 20 / 63))
+        row = function(values, np.full_like(values, volume.steepest * 20 / 63))
         assert whole[20] == pytest.approx(row, abs=1e-12)
 
 

@@ -15,6 +15,7 @@ from brdfkit.volumes import Volume
 VisibilityTest: TypeAlias = Callable[[Volume, int], BoolArray]
 
 FOV = 25.0  # angle of view along the picture's shorter side [degrees]
+STEEPEST = 89.99  # elevation of a camera [degrees]: at 90 "up" would have no direction
 MARGIN = 1.03  # size of the picture, divided by the size of the volume's visible parts in it
 TESTED_VOXELS = 5e4  # approximate largest number of voxels that are tested for visibility
 
@@ -29,8 +30,20 @@ def camera_direction(volume: Volume, azimuth: float, elevation: float) -> FloatA
     >>> camera_direction(volume, 90, 0)    # the patient's left, if the volume is a scan
     array([-1.,  0.,  0.])
     """
-    turn, lift = np.radians([azimuth, min(max(elevation, -89.99), 89.99)])
-    front = 1 if volume.axes == "RAS" else -1
+    return to_direction(azimuth, elevation, find_front(volume))
+
+
+def find_front(volume: Volume) -> int:
+    """Return the sign of the y axis on which a volume's front is: 1 in RAS coordinates, else -1."""
+    return 1 if volume.axes == "RAS" else -1
+
+
+def to_direction(azimuth: float, elevation: float, front: int = -1) -> FloatArray:
+    """Return the unit vector (3,) at an azimuth and an elevation [degrees], see `camera_direction`.
+
+    `front` is the sign of the y axis that has the azimuth 0.
+    """
+    turn, lift = np.radians([azimuth, min(max(elevation, -STEEPEST), STEEPEST)])
     level = np.cos(lift)
     return np.array([-front * level * np.sin(turn), front * level * np.cos(turn), np.sin(lift)])
 

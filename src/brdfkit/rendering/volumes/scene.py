@@ -87,16 +87,26 @@ def describe_integrator(
     """
     if renderer not in RENDERERS:
         raise no_such_error("renderer", renderer, RENDERERS)
-    entries: dict[str, Any] = {"type": renderer}
-    entries[RENDERERS[renderer]] = volume.scene_dict(transfer)
+    steps = max(LEAST_STEPS, *volume.size)
+    entries = describe_renderer(renderer, volume.scene_dict(transfer), steps)
+    if renderer == "isosurface":
+        entries["level"] = defaults.choose_surface_level(volume) if transfer is None else 0.5
+    return entries | {name: _to_plugin_value(name, value) for name, value in settings.items()}
+
+
+def describe_renderer(renderer: str, contents: Any, steps: int) -> dict[str, Any]:
+    """Return the dictionary of a renderer's integrator, with its default settings.
+
+    `contents` is the volume for Mitsuba, and `steps` the number of parts that a ray is cut into.
+    """
+    entries: dict[str, Any] = {"type": renderer, RENDERERS[renderer]: contents}
     if renderer != "single_scattering":
-        entries["steps"] = max(LEAST_STEPS, *volume.size)
+        entries["steps"] = steps
     if renderer == "emission_absorption":
         entries["jitter"] = True
     if renderer == "isosurface":
         entries |= {"bsdf": defaults.CLAY, "shadows": True}
-        entries["level"] = defaults.choose_surface_level(volume) if transfer is None else 0.5
-    return entries | {name: _to_plugin_value(name, value) for name, value in settings.items()}
+    return entries
 
 
 def _to_plugin_value(name: str, value: Any) -> Any:

@@ -57,12 +57,13 @@ class VolumeApplication:
     def describe(self) -> Message:
         """Return the message "open": the panels, the controls, the volume and its histograms."""
         volume = self.volume
-        low, high = self.states.values
+        live = self.states.live
+        low, high = live.low, live.high
         step = -(-volume.values.size // COUNTED_VOXELS)
         values = volume.values.reshape(-1)[::step]
         gradients = volume.gradient_magnitude.reshape(-1)[::step]
         counts = np.histogram(values, BINS, (low, high))[0]
-        ends = (0, self.states.steepest), (low, high)
+        ends = (0, live.steepest), (low, high)
         joint = np.histogram2d(gradients, values, (GRADIENT_BINS, BINS), ends)[0]
         shade = np.log1p(joint) / max(np.log1p(joint.max()), 1e-9)
         return {
@@ -77,7 +78,7 @@ class VolumeApplication:
                 "unit": volume.unit,
                 "value_unit": self.value_unit,
                 "range": [low, high],
-                "steepest": self.states.steepest,
+                "steepest": live.steepest,
                 "axes": volume.axes,
             },
             "histogram": counts.tolist(),
@@ -111,13 +112,12 @@ class VolumeApplication:
         self.scenes[kind] = scene  # the last one is the newest
         while len(self.scenes) > SCENES:
             self.scenes.pop(next(iter(self.scenes)))
-        scene.show(self.states.look(state, side))
+        scene.show(self.states.look(state))
         return scene.render(seed)
 
     def _load(self, kind: SceneKind) -> LiveScene:
         """Load the scene of a kind."""
-        states = self.states
-        return LiveScene(self.volume, kind, states.steepest, states.environments)
+        return LiveScene(self.states.live, kind, self.states.environments)
 
     def develop(self, state: State, picture: AnyArray) -> AnyArray:
         """Return a picture as sRGB in 8 bits."""
@@ -167,16 +167,10 @@ class VolumeApplication:
         place = np.clip([float(message.get("x", 0)), float(message.get("y", 0))], 0, 1)
         state, (width, height) = session.state, session.size
         side = int(bool(state["second"]) and place[0] > state["wipe"])
-        look = self.states.look(state, side)
-        table = look.table if look.table.ndim == 2 else look.table.max(axis=0)
-        if self.states.scene_kind(state, side, (1, 1), False).renderer == "isosurface":
-            low, high = self.states.values
-            table = table.copy()
-            table[:, 3] = 1e6 * (table[:, 3] > (look.level - low) / (high - low))
-        aspect = width / height
-        at = slices.find_visible_voxel(
-            self.volume, table, look.extinction, look.camera, place, aspect
-        )
+        ray = self.states.camera(state).cast_ray(place[0], place[1], width / height)
+        extinction = self.states.find_extinction(state, side)
+        densest = state["second" if side else "renderer"] == "maximum_intensity"
+        at = slices.find_visible_voxel(self.states.live, extinction, state["clip"], ray, densest)
         text = "" if at is None else slices.describe_voxel(self.volume, at, self.value_unit)
         return [({"type": "probe", "text": text, "voxel": at}, [])]
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray
-
-STEEPEST = 89.99  # elevation [degrees]: at 90 "up" would have no direction
+from brdfkit.rendering.volumes.camera import to_direction
 
 
 @dataclass(frozen=True)
@@ -30,10 +29,7 @@ class Camera:
     @property
     def towards(self) -> FloatArray:
         """The unit vector (3,) from the target to the camera."""
-        turn = np.radians(self.azimuth)
-        lift = np.radians(min(max(self.elevation, -STEEPEST), STEEPEST))
-        x, y = -self.front * np.sin(turn), self.front * np.cos(turn)
-        return np.array([np.cos(lift) * x, np.cos(lift) * y, np.sin(lift)])
+        return to_direction(self.azimuth, self.elevation, self.front)
 
     @property
     def axes(self) -> FloatArray:

@@ -16,14 +16,17 @@ from brdfkit.core.jit.padding import pad
 from brdfkit.rendering.progressive import to_rgb
 from brdfkit.rendering.scene_input.environment import describe_environment
 from brdfkit.rendering.scenes._studio import make_camera
-from brdfkit.rendering.volumes.defaults import CLAY
-from brdfkit.rendering.volumes.scene import ILLUMINANCES, RENDERERS, UNLIT
+from brdfkit.rendering.volumes.scene import (
+    ILLUMINANCES,
+    LEAST_STEPS,
+    RENDERERS,
+    UNLIT,
+    describe_renderer,
+)
 from brdfkit.viewing.volumes.camera import Camera
-from brdfkit.volumes import TransferFunction, Volume
+from brdfkit.viewing.volumes.live_volume import LiveVolume
+from brdfkit.volumes import Volume
 
-VALUE_ROWS = 4097  # of the table of a transfer function, as `TransferLookup` makes it
-GRADIENT_ROWS = 64
-LEAST_STEPS = 64  # along a ray
 PHASES: dict[str, dict[str, Any]] = {
     "henyey_greenstein": {"type": "hg", "g": 0.0},
     "rayleigh": {"type": "rayleigh"},
@@ -59,10 +62,10 @@ class SceneKind:
 class Look:
     """The parameters of a `LiveScene`, each of which changes without a new kernel.
 
-    `camera`: the camera. `table`: RGBA of the transfer function (n, 4) or (m, n, 4), see
-    `LiveScene`. `extinction`: σ where A is 1 [1/unit of length]. `level`: the value of the surface.
-    `surface`: its reflectance (3,), linear sRGB. `asymmetry`: g, or Schlick's k, of the phase
-    function. `clip`: the lowest and the highest corner of the visible part (2, 3), in the unit
+    `camera`: the camera. `table`: RGBA of the transfer function, (VALUE_ROWS, 4) or
+    (GRADIENT_ROWS, VALUE_ROWS, 4). `extinction`: σ where A is 1 [1/unit of length]. `level`: the
+    value of the surface. `surface`: its reflectance (3,), linear sRGB. `asymmetry`: g, or Schlick's
+    k, of the phase function. `clip`: the corners (2, 3) of the visible part, in the unit
     cube. `background`: radiance (3,) behind the volume. `environment`: name or file of the map.
     `turn`: its rotation about the vertical axis [degrees]. `brightness`: a factor of its light.
     `sun`: irradiance (3,) of the sun. `sun_direction`: the unit vector (3,) towards the sun.
@@ -86,16 +89,13 @@ class Look:
 class LiveScene:
     """A Mitsuba scene of a volume; `show` changes its parameters, and `render` renders a pass.
 
-    The transfer function is a table of RGBA over `VALUE_ROWS` even steps of the volume's range of
-    values, and over `GRADIENT_ROWS` even steps of gradient magnitudes up to `steepest` if it
-    depends on them. `environments` are maps by name, besides those that brdfkit knows.
+    `environments` are maps by name, besides those that brdfkit knows.
     """
 
     def __init__(
         self,
-        volume: Volume,
+        volume: LiveVolume,
         kind: SceneKind,
-        steepest: float,
         environments: Mapping[str, AnyArray] = MappingProxyType({}),
     ) -> None:
         import mitsuba as mi
@@ -105,25 +105,18 @@ class LiveScene:
         self.prefix = f"integrator.{RENDERERS[kind.renderer]}"
         self.shown: dict[str, Any] = {}  # the parameters as they are
         self.map_name, self.map_data = "", np.zeros(0)  # the environment map as it is
-        self.scene = mi.load_dict(self._describe(steepest))
+        self.scene = mi.load_dict(self._describe())
         self.parameters = mi.traverse(self.scene)
 
-    def _describe(self, steepest: float) -> dict[str, Any]:
+    def _describe(self) -> dict[str, Any]:
         """Return the dictionary of the scene; its parameters are only placeholders."""
         kind = self.kind
-        function = _placeholder_function(self.volume, kind, steepest)
-        entries: dict[str, Any] = {
-            "type": kind.renderer,
-            RENDERERS[kind.renderer]: self.volume.scene_dict(function),
-        }
+        contents = self.volume.describe(kind.by_gradients, kind.colour)
+        entries = describe_renderer(kind.renderer, contents, kind.steps)
         if kind.renderer == "single_scattering":
             entries |= {"phase": PHASES[kind.phase], "max_depth": kind.max_depth}
-        else:
-            entries["steps"] = kind.steps
-        if kind.renderer == "emission_absorption":
-            entries["jitter"] = True
         if kind.renderer == "isosurface":
-            entries |= {"bsdf": CLAY, "shadows": True, "level": 0.5}
+            entries |= {"surface_of": "values", "level": 0.5}
         if not kind.shows_environment or kind.renderer in UNLIT:
             entries["background"] = {"type": "rgb", "value": [0.0, 0.0, 0.0]}
         scene: dict[str, Any] = {
@@ -141,7 +134,7 @@ class LiveScene:
 
     def _clip(self) -> dict[str, float]:
         """Return clipping distances for any view: they are written into the kernels."""
-        low, high = self.volume.bounds
+        low, high = self.volume.volume.bounds
         diagonal = float(np.linalg.norm(high - low))
         return {"near_clip": 1e-4 * diagonal, "far_clip": 1e4 * diagonal}
 
@@ -151,19 +144,18 @@ class LiveScene:
         new: dict[str, Any] = {
             "sensor.to_world": camera.to_world,
             "sensor.x_fov": camera.horizontal_fov(kind.size[0] / kind.size[1]),
-            f"{self.prefix}.table": look.table,
             f"{self.prefix}.clip_low": look.clip[0],
             f"{self.prefix}.clip_high": look.clip[1],
             "integrator.background": look.background,
         }
         if kind.renderer != "isosurface":
+            new[f"{self.prefix}.table"] = look.table
             new[f"{self.prefix}.extinction"] = look.extinction
-        if kind.renderer == "isosurface":
-            low, high = self.volume.range
-            new["integrator.level"] = (look.level - low) / (high - low or 1.0)
+        else:
+            new["integrator.level"] = self.volume.to_shares(look.level)
             new["integrator.bsdf.diffuse_reflectance.value"] = look.surface
         new["integrator.phase.g"] = new["integrator.phase.k"] = look.asymmetry
-        new["sky"] = (look.environment, look.turn, look.brightness)
+        new["sky"], new["sky.turn"] = (look.environment, look.brightness), look.turn
         new["sun.irradiance.value"], new["sun.to_world"] = look.sun, look.sun_direction
         changed = {name: value for name, value in new.items() if self._differs(name, value)}
         for name, value in changed.items():
@@ -174,11 +166,12 @@ class LiveScene:
 
     def _differs(self, name: str, value: Any) -> bool:
         """Return whether a parameter that the scene has differs from `value`."""
-        if name == "sky":
-            return "sky.data" in self.parameters and self.shown.get(name) != value
-        if name not in self.parameters:
+        shown = self.shown.get(name)
+        if name in ("sky", "sky.turn"):
+            return "sky.data" in self.parameters and shown != value
+        if name not in self.parameters or shown is value:
             return False
-        return name not in self.shown or not np.array_equal(self.shown[name], value)
+        return shown is None or not np.array_equal(shown, value)
 
     def _assign(self, name: str, value: Any) -> None:
         """Assign a value to a parameter, in Mitsuba's type."""
@@ -187,6 +180,10 @@ class LiveScene:
 
         if name == "sky":
             self._light(*value)
+        elif name == "sky.turn":
+            at = mi.Transform4f()
+            upright = at.rotate([0, 0, 1], value) @ at.rotate([1, 0, 0], 90)
+            self.parameters["sky.to_world"] = upright
         elif name.endswith("to_world"):
             if name.startswith("sun"):
                 value = _rotation_from_z(-np.asarray(value))
@@ -203,8 +200,8 @@ class LiveScene:
             dr.make_opaque(opaque)
             self.parameters[name] = opaque
 
-    def _light(self, environment: str, turn: float, brightness: float) -> None:
-        """Light the scene by an environment map, turned about the vertical axis [degrees]."""
+    def _light(self, environment: str, brightness: float) -> None:
+        """Light the scene by an environment map."""
         import mitsuba as mi
 
         if self.map_name != environment:
@@ -214,8 +211,6 @@ class LiveScene:
             self.map_data = np.array(mi.traverse(bitmap)["data"]) * described["scale"]
         factor = ILLUMINANCES[self.kind.renderer] * brightness
         self.parameters["sky.data"] = _make_tensor(factor * self.map_data)
-        at = mi.Transform4f()
-        self.parameters["sky.to_world"] = at.rotate([0, 0, 1], turn) @ at.rotate([1, 0, 0], 90)
 
     def render(self, seed: int) -> AnyArray:
         """Render one sample per pixel: (height, width, 3), linear sRGB."""
@@ -232,25 +227,6 @@ def _make_tensor(values: AnyArray) -> Any:
 
     flat = np.asarray(values, np.float32).ravel()
     return mi.TensorXf(mi.Float(pad(flat)), values.shape)
-
-
-def _placeholder_function(volume: Volume, kind: SceneKind, steepest: float) -> TransferFunction:
-    """Return a function with the table's size, and with a narrow peak.
-
-    The peak makes emission and absorption average the function along rays, as any function needs
-    that the user may draw later.
-    """
-    low, high = volume.range
-    high = high if high > low else low + 1
-    middle, step = (low + high) / 2, (high - low) / (VALUE_ROWS - 1)
-    values = np.array([low, middle - step, middle, middle + step, high])
-    rgba = np.zeros((5, 4))
-    rgba[2] = 1.0
-    if not kind.by_gradients:
-        return TransferFunction(values, rgba, 1.0, kind.colour)
-    gradients = np.linspace(0, steepest or 1.0, GRADIENT_ROWS)
-    values, rgba = np.array([low, high]), np.ones((GRADIENT_ROWS, 2, 4))
-    return TransferFunction(values, rgba, 1.0, kind.colour, gradients)
 
 
 def _rotation_from_z(direction: FloatArray) -> FloatArray:

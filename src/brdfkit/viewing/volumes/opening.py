@@ -102,8 +102,8 @@ def _open(
         return [session.describe_view()]
     text = path.read_bytes()
     if kind == "transfer":
-        function = TransferFunction.load(path)
-        session.replace_state(application.states.with_function(session.state, function))
+        function, name = TransferFunction.load(path), path.name.split(".")[0]
+        session.replace_state(application.states.with_function(session.state, function, name))
         return [session.describe_state()]
     try:
         changes = json.loads(text)

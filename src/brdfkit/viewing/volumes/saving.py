@@ -8,6 +8,7 @@ import shlex
 import tempfile
 import zipfile
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,6 @@ from brdfkit.rendering.result import Rendering
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.encoding import encode_png
 from brdfkit.viewing.volumes import transfer_table
-from brdfkit.viewing.volumes.live_scene import GRADIENT_ROWS, VALUE_ROWS
 from brdfkit.volumes import TransferFunction
 
 if TYPE_CHECKING:
@@ -122,22 +122,23 @@ def _make_transfer(application: Application, session: Session) -> tuple[str, str
 
 def to_function(application: Application, state: State) -> TransferFunction:
     """Return the transfer function of a state."""
-    low, high = application.states.values
-    extinction, colour = state["transfer.extinction"] * state["density"], state["transfer.colour"]
-    name, unit = state["transfer.preset"], application.volume.unit
+    states, extinction = application.states, state["transfer.extinction"] * state["density"]
+    name, unit, colour = (
+        state["transfer.preset"],
+        application.volume.unit,
+        state["transfer.colour"],
+    )
+    if state["transfer.mode"] == "preset":
+        return replace(states.load_preset(name), extinction=extinction)
     if state["transfer.mode"] == "points":
         points = state["transfer.points"]
         rgba = np.array([[*transfer_table.parse_colour(c), a] for _, c, a in points])
         values, gradients = np.array([value for value, _, _ in points]), None
     else:
-        rgba = application.states.table(state)
         step = 16  # of the rows over values, which are far finer than any bump
-        rgba, values = (
-            rgba[..., ::step, :],
-            np.linspace(low, high, VALUE_ROWS)[::step],
-        )
-        rows = GRADIENT_ROWS
-        gradients = np.linspace(0, application.states.steepest, rows) if rgba.ndim == 3 else None
+        values, rows = np.unique(states.live.row_values[::step], return_index=True)
+        rgba = states.table(state)[..., ::step, :][..., rows, :]
+        gradients = states.live.row_gradients if rgba.ndim == 3 else None
     return TransferFunction(
         values, rgba, extinction, colour, gradients, application.value_unit, unit, name
     )

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.core.array_types import FloatArray
 from brdfkit.viewing.encoding import encode_png
-from brdfkit.viewing.volumes.camera import Camera
+from brdfkit.viewing.volumes.live_volume import LiveVolume
 from brdfkit.volumes import Volume
 
 # The axis that a plane is across, and the axes to its right and upwards
@@ -56,36 +56,35 @@ def describe_voxel(volume: Volume, at: list[int], unit: str = "") -> str:
 
 
 def find_visible_voxel(
-    volume: Volume,
-    table: AnyArray,
-    extinction: float,
-    camera: Camera,
-    place: FloatArray,
-    aspect: float,
+    volume: LiveVolume,
+    extinction: FloatArray,
+    clip: list[list[float]],
+    ray: tuple[FloatArray, FloatArray],
+    densest: bool = False,
 ) -> list[int] | None:
-    """Return the first voxel (i, j, k) that a ray through a place of the picture meets.
+    """Return the first voxel (i, j, k) that is visible along a `ray`, (origin, unit direction).
 
     It is where the opacity along the ray reaches `MATTER_OPACITY`, or the densest voxel if it never
-    does; None if the ray misses the volume or all of it is transparent. `table` (n, 4) is the
-    transfer function over the range of values.
+    does, or if the view shows the `densest` voxels. None if the ray misses the visible part between
+    the corners `clip` of the unit cube, or if all of it is transparent. `extinction` (VALUE_ROWS,)
+    is that of the transfer function [1/unit of length].
     """
-    origin, direction = camera.cast_ray(place[0], place[1], aspect)
-    inverse = np.linalg.inv(volume.cube_to_world)
+    scan, (origin, direction) = volume.volume, ray
+    inverse = np.linalg.inv(scan.cube_to_world)
     o, d = inverse[:3, :3] @ origin + inverse[:3, 3], inverse[:3, :3] @ direction
+    low, high = np.array(clip, float)
     with np.errstate(divide="ignore", invalid="ignore"):
-        a, b = -o / d, (1 - o) / d
+        a, b = (low - o) / d, (high - o) / d
     near, far = max(np.nanmax(np.minimum(a, b)), 0.0), np.nanmin(np.maximum(a, b))
     if not near < far:
         return None
     t = near + (np.arange(RAY_STEPS) + 0.5) / RAY_STEPS * (far - near)
     points = origin + t[:, None] * direction
-    low, high = volume.range
-    rows = np.clip((volume(points) - low) / ((high - low) or 1.0), 0, 1) * (len(table) - 1)
-    opacity = table[np.rint(rows).astype(int), 3]
-    passed = np.cumsum(extinction * opacity) * (far - near) / RAY_STEPS
-    if not opacity.max() > 0:
+    sigma = extinction[volume.find_rows(scan(points))]
+    if not sigma.max() > 0:
         return None
+    passed = np.cumsum(sigma) * (far - near) / RAY_STEPS
     reached = np.flatnonzero(1 - np.exp(-passed) >= MATTER_OPACITY)
-    first = reached[0] if len(reached) else int(opacity.argmax())
-    ijk = np.linalg.inv(volume.to_world) @ [*points[first], 1]
-    return np.clip(np.rint(ijk[:3]), 0, np.array(volume.size) - 1).astype(int).tolist()
+    first = reached[0] if len(reached) and not densest else int(sigma.argmax())
+    ijk = np.linalg.inv(scan.to_world) @ [*points[first], 1]
+    return np.clip(np.rint(ijk[:3]), 0, np.array(scan.size) - 1).astype(int).tolist()

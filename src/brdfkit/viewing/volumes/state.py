@@ -10,27 +10,35 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.arguments import is_number
-from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.lighting.environments.map_files import load_radiance
 from brdfkit.rendering.volumes import defaults
-from brdfkit.rendering.volumes.camera import camera_direction, place_camera
+from brdfkit.rendering.volumes.camera import (
+    camera_direction,
+    find_front,
+    place_camera,
+    to_direction,
+)
 from brdfkit.rendering.volumes.scene import TURN_AZIMUTHS
 from brdfkit.viewing.controls import Control, State, default_state
 from brdfkit.viewing.volumes import transfer_table
 from brdfkit.viewing.volumes.camera import Camera
-from brdfkit.viewing.volumes.live_scene import VALUE_ROWS, Look, SceneKind, choose_steps
+from brdfkit.viewing.volumes.live_scene import Look, SceneKind, choose_steps
+from brdfkit.viewing.volumes.live_volume import LiveVolume
 from brdfkit.viewing.volumes.transfer_table import parse_colour
 from brdfkit.viewing.volumes.volume_controls import make_controls
 from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.files import list_presets
-from brdfkit.volumes.transfer.windows import find_upper_percentile, scale_transfer_to_values
+from brdfkit.volumes.transfer.windows import scale_transfer_to_values
 
 FIRST_BUMP = {"x": 0.5, "y": 0.25, "sx": 0.15, "sy": 0.25, "colour": "#e8a060", "a": 0.5}
 CLIP = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]
 THINNEST = 1e-3  # edge of the clipping box, as a share of the volume's
 MOVING_STEPS = 0.5  # share of the steps along rays while something moves
+# Presets that are chosen for the volume, as for a renderer
+CHOSEN = {"emission": "emission_absorption", "intensity": "maximum_intensity"}
 # Names whose change does not alter the samples of a picture
 DRAWN_ONLY = (
     "wipe",
@@ -46,15 +54,15 @@ DRAWN_ONLY = (
 class VolumeState:
     """Makes and checks the states of a view of one volume.
 
-    `steepest` is the gradient magnitude at the upper end of two-dimensional transfer functions.
+    `live` is the volume as scenes look it up.
     """
 
     def __init__(self, volume: Volume) -> None:
-        self.volume = volume
+        self.volume, self.live = volume, LiveVolume(volume)
         self.level = defaults.choose_surface_level(volume)
-        gradients = volume.gradient_magnitude
-        self.steepest = find_upper_percentile(gradients, 99.9) or float(gradients.max()) or 1.0
-        self.front = 1 if volume.axes == "RAS" else -1
+        self.front = find_front(volume)
+        self.loaded: dict[str, TransferFunction] = {}  # presets, by name
+        self.last_table: tuple[State, AnyArray] = {}, np.zeros(0)
         self.function = self._scale(defaults.choose_transfer_function(volume, "single_scattering"))
         sides = [camera_direction(volume, azimuth, 20.0) for azimuth in TURN_AZIMUTHS]
         is_visible = defaults.make_visibility_test(self.function, 0.0)
@@ -78,23 +86,17 @@ class VolumeState:
 
     def _describe_function(self, function: TransferFunction) -> State:
         """Return the part of the state that a transfer function is."""
-        by_gradients = function.gradients is not None
+        exact = function.gradients is not None or self.volume.labels
         return {
-            "transfer.mode": "preset" if by_gradients else "points",
-            "transfer.points": transfer_table.to_points(function, self.values),
+            "transfer.mode": "preset" if exact else "points",
+            "transfer.points": transfer_table.to_points(function, self.live.low, self.live.high),
             "transfer.extinction": function.extinction,
             "transfer.colour": function.colour,
         }
 
-    @property
-    def values(self) -> tuple[float, float]:
-        """The range of values, of width 1 if there is one value."""
-        low, high = self.volume.range
-        return (low, high) if low < high else (low, low + 1.0)
-
     def presets(self) -> list[str]:
         """Return the names of the transfer functions that the page offers."""
-        return ["default", "emission", "intensity", *list_presets(), *self.functions]
+        return ["default", *CHOSEN, *list_presets(), *self.functions]
 
     def load_preset(self, name: str) -> TransferFunction:
         """Return a transfer function of `presets`, scaled to the volume."""
@@ -102,12 +104,15 @@ class VolumeState:
             return self.function
         if name in self.functions:
             return self.functions[name]
-        chosen = {"emission": "emission_absorption", "intensity": "maximum_intensity"}
-        if name in chosen:
-            return self._scale(defaults.choose_transfer_function(self.volume, chosen[name]))
-        if name not in list_presets():
-            raise no_such_error("transfer function", name, self.presets())
-        return self._scale(TransferFunction.load(name))
+        if name not in self.loaded:
+            if name in CHOSEN:
+                function = defaults.choose_transfer_function(self.volume, CHOSEN[name])
+            elif name in list_presets():
+                function = TransferFunction.load(name)
+            else:
+                raise no_such_error("transfer function", name, self.presets())
+            self.loaded[name] = self._scale(function)
+        return self.loaded[name]
 
     def _scale(self, function: TransferFunction) -> TransferFunction:
         """Return a function in the volume's values and its unit of length."""
@@ -124,10 +129,12 @@ class VolumeState:
         choices = (*control.choices, (path.name, path.name))
         self.controls[control.name] = replace(control, choices=choices)
 
-    def with_function(self, state: State, function: TransferFunction) -> State:
-        """Return the state with a transfer function of a file, a further preset."""
-        self.functions[function.name] = self._scale(function)
-        return self.change(state, {"transfer.preset": function.name})
+    def with_function(self, state: State, function: TransferFunction, name: str) -> State:
+        """Return the state with the transfer function of a file, a further preset called `name`."""
+        built_in = ("default", *CHOSEN, *list_presets())
+        name = f"{name} (file)" if name in built_in else name
+        self.functions[name] = self._scale(function)
+        return self.change(state, {"transfer.preset": name})
 
     def change(self, state: State, changes: Mapping[str, Any]) -> State:
         """Return the state after `changes`; raise `BrdfkitError` if one is not possible."""
@@ -144,11 +151,21 @@ class VolumeState:
         return new
 
     def table(self, state: State) -> AnyArray:
-        """Return RGBA of a state's transfer function, (n, 4) or over gradients (m, n, 4)."""
+        """Return RGBA of a state's transfer function, (n, 4) or over gradients (m, n, 4).
+
+        Equal functions give the same array, since it is made anew only after a change.
+        """
+        function = {name: value for name, value in state.items() if name.startswith("transfer.")}
+        if self.last_table[0] != function:
+            self.last_table = function, self._make_table(state)
+        return self.last_table[1]
+
+    def _make_table(self, state: State) -> AnyArray:
+        """Return RGBA of a state's transfer function at the rows of a table."""
         if state["transfer.mode"] == "preset":
             function = self.load_preset(state["transfer.preset"])
-            return transfer_table.table_of_function(function, self.values, self.steepest)
-        return transfer_table.to_table(state, self.values)
+            return transfer_table.table_of_function(function, self.live)
+        return transfer_table.to_table(state, self.live)
 
     def _check(self, name: str, value: Any) -> Any:
         """Return the value of a name that no control declares; raise an error if it is wrong."""
@@ -202,13 +219,12 @@ class VolumeState:
             kind = replace(kind, sun=state["light.sun"], shows_environment=shown)
         return kind
 
-    def look(self, state: State, side: int) -> Look:
-        """Return the parameters of a state's scene, left (0) or right (1) of the wipe."""
-        surface = (state["second"] if side else state["renderer"]) == "isosurface"
+    def look(self, state: State) -> Look:
+        """Return the parameters of a state's scenes."""
         sun = state["light.sun_strength"] * parse_colour(state["light.sun_colour"])
         return Look(
             camera=self.camera(state),
-            table=_ramp() if surface else self.table(state),
+            table=self.table(state),
             extinction=state["transfer.extinction"] * state["density"],
             level=state["level"],
             surface=parse_colour(state["surface.colour"]),
@@ -219,8 +235,19 @@ class VolumeState:
             turn=state["light.turn"],
             brightness=state["light.brightness"],
             sun=sun,
-            sun_direction=_direction(state["light.sun_azimuth"], state["light.sun_elevation"]),
+            sun_direction=to_direction(state["light.sun_azimuth"], state["light.sun_elevation"]),
         )
+
+    def find_extinction(self, state: State, side: int) -> AnyArray:
+        """Return what hides light, per unit of length, at each row of a table (VALUE_ROWS,).
+
+        It is infinite within an isosurface. Of gradient magnitudes, the densest counts.
+        """
+        if state["second" if side else "renderer"] == "isosurface":
+            return np.where(self.live.row_values > state["level"], np.inf, 0.0)
+        table = self.table(state)
+        rows = table[..., 3] if table.ndim == 2 else table[..., 3].max(axis=0)
+        return state["transfer.extinction"] * state["density"] * rows
 
     def tone_mapping(self, state: State) -> ToneMapping:
         """Return the tone mapping of a state."""
@@ -242,18 +269,6 @@ def needs_samples_anew(before: State, after: State) -> bool:
 def list_controls(controls: Mapping[str, Control]) -> list[dict[str, Any]]:
     """Return the controls as the page reads them."""
     return [control.to_json() for control in controls.values()]
-
-
-def _ramp() -> FloatArray:
-    """Return a table whose A is the share of the range of values, for an isosurface."""
-    share = np.linspace(0, 1, VALUE_ROWS)
-    return np.column_stack([np.ones((len(share), 3)), share])
-
-
-def _direction(azimuth: float, elevation: float) -> FloatArray:
-    """Return the unit vector (3,) at an azimuth from -y, and an elevation [degrees]."""
-    turn, lift = np.radians([azimuth, elevation])
-    return np.array([np.cos(lift) * np.sin(turn), -np.cos(lift) * np.cos(turn), np.sin(lift)])
 
 
 def _is_numbers(value: Any, count: int) -> bool:

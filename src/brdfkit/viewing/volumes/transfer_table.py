@@ -20,44 +20,48 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.colours import from_srgb, to_srgb
 from brdfkit.viewing.controls import State
-from brdfkit.viewing.volumes.live_scene import GRADIENT_ROWS, VALUE_ROWS
+from brdfkit.viewing.volumes.live_volume import LiveVolume
 from brdfkit.volumes import TransferFunction
 
 POINTS = 24  # control points at most, to which a function is simplified
 TOLERANCE = 0.01  # of RGB and A, by which a simplified function may deviate
 
 
-def to_table(state: State, values: tuple[float, float]) -> AnyArray:
-    """Return RGBA (n, 4) over the range of `values`, or (m, n, 4) over gradients as well."""
+def to_table(state: State, volume: LiveVolume) -> AnyArray:
+    """Return RGBA of a state's points or bumps at the rows of a table.
+
+    It is (VALUE_ROWS, 4), or (GRADIENT_ROWS, VALUE_ROWS, 4) for bumps over gradients.
+    """
     mode = state["transfer.mode"]
     if mode == "points":
-        return table_of_points(state["transfer.points"], values)
-    table = table_of_bumps(state["transfer.bumps"], by_gradients=mode == "bumps2d")
+        return table_of_points(state["transfer.points"], volume.row_values)
+    table = table_of_bumps(state["transfer.bumps"], volume, by_gradients=mode == "bumps2d")
     return table if mode == "bumps2d" else table[0]
 
 
-def table_of_points(points: list[Any], values: tuple[float, float]) -> FloatArray:
-    """Return RGBA (n, 4) of control points [value, "#rrggbb", A]; two at one value are a jump."""
+def table_of_points(points: list[Any], values: FloatArray) -> FloatArray:
+    """Return RGBA (n, 4) of control points [value, "#rrggbb", A] at n values.
+
+    Two points at one value are a jump.
+    """
     at = np.array([point[0] for point in points], float)
     rgba = np.array([[*parse_colour(point[1]), point[2]] for point in points], float)
-    places = np.linspace(*values, VALUE_ROWS)
-    return np.stack([np.interp(places, at, channel) for channel in rgba.T], axis=-1)
+    return np.stack([np.interp(values, at, channel) for channel in rgba.T], axis=-1)
 
 
-def table_of_function(
-    function: TransferFunction, values: tuple[float, float], steepest: float
-) -> FloatArray:
-    """Return RGBA (n, 4) of a function, or (m, n, 4) if it depends on gradient magnitudes."""
-    places = np.linspace(*values, VALUE_ROWS)
+def table_of_function(function: TransferFunction, volume: LiveVolume) -> FloatArray:
+    """Return RGBA of a function at the rows of a table, over gradients if it depends on them."""
     if function.gradients is None:
-        return function(places)
-    return function(places, np.linspace(0, steepest, GRADIENT_ROWS)[:, None])
+        return function(volume.row_values)
+    return function(volume.row_values, volume.row_gradients[:, None])
 
 
-def table_of_bumps(bumps: list[dict[str, Any]], by_gradients: bool) -> FloatArray:
-    """Return RGBA (m, n, 4) of bumps; m is 1 if they do not depend on gradients."""
-    x = np.linspace(0, 1, VALUE_ROWS)
-    y = np.linspace(0, 1, GRADIENT_ROWS)[:, None] if by_gradients else np.zeros((1, 1))
+def table_of_bumps(
+    bumps: list[dict[str, Any]], volume: LiveVolume, by_gradients: bool
+) -> FloatArray:
+    """Return RGBA (m, VALUE_ROWS, 4) of bumps; m is 1 if they do not depend on gradients."""
+    x = (volume.row_values - volume.low) / (volume.high - volume.low)
+    y = (volume.row_gradients / volume.steepest)[:, None] if by_gradients else np.zeros((1, 1))
     premultiplied, alpha = np.zeros((len(y), len(x), 3)), np.zeros((len(y), len(x)))
     for bump in bumps:
         along = np.exp(-(((x - bump["x"]) / bump["sx"]) ** 2))
@@ -80,17 +84,16 @@ def format_colour(rgb: FloatArray) -> str:
     return "#" + "".join(f"{round(255 * channel):02x}" for channel in to_srgb(rgb).tolist())
 
 
-def to_points(function: TransferFunction, values: tuple[float, float]) -> list[list[Any]]:
+def to_points(function: TransferFunction, low: float, high: float) -> list[list[Any]]:
     """Return a function's control points [value, "#rrggbb", A], simplified to at most `POINTS`.
 
-    Of a function of gradient magnitudes it is the largest A over all of them. The points begin and
-    end at the range of `values`.
+    They go from the value `low` to `high`. A function of gradient magnitudes is replaced by its
+    largest A over all of them.
     """
     rgba = function.rgba
     if function.gradients is not None:
         rgba = np.take_along_axis(rgba, rgba[..., 3:].argmax(axis=0)[None], axis=0)[0]
     at = np.asarray(function.values, float)
-    low, high = values
     inside = (at > low) & (at < high)
     ends = np.stack([[np.interp(end, at, c) for c in rgba.T] for end in (low, high)])
     at = np.concatenate([[low], at[inside], [high]])
