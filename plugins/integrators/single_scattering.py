@@ -99,7 +99,8 @@ def define(mi: MitsubaModule) -> type:
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
             super().parameters_changed(keys)
-            if not mi.variant().startswith("scalar"):
+            unchanged = keys and not {"extinction", "scale"} & set(keys)
+            if not mi.variant().startswith("scalar") and not unchanged:
                 self.medium.recompute_majorants(self.majorants == "local")
 
         def sample(

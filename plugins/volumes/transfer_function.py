@@ -98,8 +98,12 @@ def define(mi: MitsubaModule) -> type:
 
         def parameters_changed(self, keys: Sequence[str] = ()) -> None:
             super().parameters_changed(keys)
+            if keys and not {"table", "extinction", "values"} & set(keys):
+                return  # only the clipping box
             self.lookup.recompute_texture()
             self.__dict__.pop("majorants", None)
+            if not keys or "values" in keys:
+                self.__dict__.pop("block_ranges", None)
 
         def eval_extinction_and_colour(
             self, it: MitsubaObject, active: JitMask = True
@@ -185,12 +189,17 @@ def define(mi: MitsubaModule) -> type:
         def majorants(self) -> FloatArray:
             """The upper bounds of σ_t (kz, ky, kx) in equal blocks of the volume's box."""
             rows = self.lookup.reduce_table_to_values()[:, 3] * self.lookup.extinction[0]
-            data = read_grid_values(self.values)
-            if data is None:
+            if self.block_ranges is None:
                 return rows.max(keepdims=True).reshape(1, 1, 1)
             return bound_piecewise_linear(
-                rows, *map(self.lookup.find_table_rows, find_block_ranges(data))
+                rows, *map(self.lookup.find_table_rows, self.block_ranges)
             )
+
+        @cached_property
+        def block_ranges(self) -> tuple[FloatArray, FloatArray] | None:
+            """The smallest and largest values in equal blocks of the box; None without a grid."""
+            data = read_grid_values(self.values)
+            return None if data is None else find_block_ranges(data)
 
     return TransferFunctionVolume
 

@@ -108,8 +108,9 @@ def test_the_surface_of_a_ball(mi):
     assert np.array(outwards).min() > 0.999
 
 
-def test_of_a_transfer_function_and_an_oblique_box(mi):
-    """A ball of A > 0.5 becomes an ellipsoid: its points, and normals by its own gradient."""
+@pytest.mark.parametrize(("surface_of", "level"), [("opacity", 0.5), ("values", 0.0)])
+def test_of_a_transfer_function_and_an_oblique_box(mi, surface_of, level):
+    """A ball of A > 0.5, where values are above 0, becomes an ellipsoid: its points and normals."""
     t = mi.ScalarTransform4f
     cube = t().translate([3, 1, 2]).rotate([0.6, 0, 0.8], 40).scale([2, 3, 4])
     function = TransferFunction([-0.5, 0.5], [[1, 1, 1, 0], [1, 1, 1, 1]])
@@ -124,7 +125,7 @@ def test_of_a_transfer_function_and_an_oblique_box(mi):
     o = o @ matrix[:3, :3].T + matrix[:3, 3]
     d = d @ matrix[:3, :3].T
     d /= np.linalg.norm(d, axis=1, keepdims=True)
-    loaded = scene(mi, SKY, volume=volume, level=0.5)
+    loaded = scene(mi, SKY, volume=volume, level=level, surface_of=surface_of)
     ray, integrator = rays(mi, o, d), loaded.integrator()
     found, there = find_first_crossing(
         lambda t: integrator.value_above_level(ray(t)),

@@ -52,12 +52,11 @@ class Progressive:
         """
         import mitsuba as mi
 
-        number = self.accumulated[name].passes
-        seed = np.random.SeedSequence(self.seed).generate_state(number + 1)[number]
+        seed = mi.UInt32(derive_seed(self.seed, self.accumulated[name].passes))
         scene = self.scenes[name]
         # So that Ctrl-C arrives as KeyboardInterrupt, not in a RuntimeError of mi.render
         with raise_first_cause():
-            return to_rgb(scene.integrator().render(scene, seed=mi.UInt32(int(seed)), spp=spp))
+            return to_rgb(scene.integrator().render(scene, seed=seed, spp=spp))
 
     def pictures(self) -> dict[str, NDArray[np.float32]]:
         """Return the pictures (height, width, 3) by scene name; none before the first pass."""
@@ -68,6 +67,14 @@ class Progressive:
         self.accumulated = {
             name: before.add_pass(generated[name], spp) for name, before in self.accumulated.items()
         }
+
+
+def derive_seed(seed: int, number: int) -> int:
+    """Return the seed of pass `number`, from 0, of a rendering with a `seed`.
+
+    Passes of neighbouring seeds have nothing in common.
+    """
+    return int(np.random.SeedSequence(seed).generate_state(number + 1)[number])
 
 
 def to_rgb(image: Any) -> NDArray[np.float32]:

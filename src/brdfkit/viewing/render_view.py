@@ -8,6 +8,8 @@ from typing import Any
 
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.jit.threads import in_turn
+from brdfkit.core.memory import require_memory
+from brdfkit.rendering.render_materials import to_picture_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.viewing.volumes.application import VolumeApplication
 from brdfkit.viewing.volumes.opening import load_within_memory
@@ -20,7 +22,7 @@ def render_view(
     volume: Volume | str | Path,
     state: Mapping[str, Any] | None = None,
     *,
-    size: tuple[int, int] = (512, 512),
+    size: int | tuple[int, int] = 512,
     spp: int = 64,
     seed: int = 0,
 ) -> Rendering:
@@ -34,8 +36,8 @@ def render_view(
         The volume; or the file, folder or name that `brdfkit.volumes.load` takes.
     state : dict of str to object, optional
         The settings that differ from those with which a view begins, by name.
-    size : (int, int), default (512, 512)
-        Width and height of the picture [pixels].
+    size : int or (int, int), default 512
+        Side of the picture, or its width and height [pixels].
     spp : int, default 64
         Samples per pixel, 1 or more.
     seed : int, default 0
@@ -54,10 +56,11 @@ def render_view(
     Examples
     --------
     >>> view = {"renderer": "maximum_intensity", "camera.azimuth": 90}
-    >>> brdfkit.viewing.render_view("smoke", view, spp=1, size=(64, 64))    # doctest: +SKIP
+    >>> brdfkit.viewing.render_view("smoke", view, spp=1, size=64)    # doctest: +SKIP
     """
     spp, seed = to_whole_number("spp", spp, 1), to_whole_number("seed", seed, 0)
     loaded = volume if isinstance(volume, Volume) else load_within_memory(volume)
+    size = to_picture_size(size)
+    require_memory(size, 1)
     application = VolumeApplication(loaded, changes=dict(state or {}))
-    width, height = (to_whole_number("size", side, 1) for side in size)
-    return render_state(application, application.first_state(), (width, height), spp, seed)
+    return render_state(application, application.first_state(), size, spp, seed)

@@ -14,6 +14,7 @@ from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.errors.noise import Accumulated
+from brdfkit.rendering.progressive import derive_seed
 from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.encoding import encode_jpeg, encode_png
@@ -199,7 +200,7 @@ class Session:
             self.stale = False
         if not developed_anew:
             for side in range(self.application.sides(state)):
-                picture = self.application.render(state, side, size, moving, number)
+                picture = self.application.render(state, side, size, moving, derive_seed(0, number))
                 samples[side] = samples.get(side, Accumulated()).add_pass(picture, 1)
         with self.lock:
             if samples is not self.accumulated and not moving:

@@ -17,6 +17,7 @@ import numpy as np
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.errors.noise import Accumulated
+from brdfkit.rendering.progressive import derive_seed
 from brdfkit.rendering.result import Rendering
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.encoding import encode_png
@@ -52,14 +53,14 @@ def join_sides(pictures: dict[int, AnyArray], wipe: float) -> AnyArray:
 def render_state(
     application: Application, state: State, size: tuple[int, int], spp: int, seed: int = 0
 ) -> Rendering:
-    """Return the picture of a state, of `spp` passes with the seeds `seed`, `seed` + 1 ..."""
+    """Return the picture of a state, of `spp` passes, the same as the page's for the seed 0."""
     import time
 
     start = time.monotonic()
     sums = {side: Accumulated() for side in range(application.sides(state))}
     for number in range(spp):
         for side in sums:
-            picture = application.render(state, side, size, False, seed + number)
+            picture = application.render(state, side, size, False, derive_seed(seed, number))
             sums[side] = sums[side].add_pass(picture, 1)
     joined = join_sides({side: total.picture for side, total in sums.items()}, state["wipe"])
     tone = application.states.tone_mapping(state)
