@@ -140,8 +140,17 @@ function makeCameraKeys(session, moves) {
   };
 }
 
-/** Make the row of buttons for the views along the axes, and for the first view. */
-function makeViewButtons(session, moves) {
+/** Show the picture on the whole screen, or beside the panels again. */
+function switchFullScreen(stage) {
+  if (document.fullscreenElement) document.exitFullscreen();
+  else stage.requestFullscreen?.();
+}
+
+/** Make the row of buttons for the views along the axes, the first view and the whole screen. */
+function makeViewButtons(session, stage, moves) {
+  const full = makeButton("⛶", () => switchFullScreen(stage), {
+    "aria-label": "Picture on the whole screen", title: "Picture on the whole screen (f)",
+  });
   const row = make("div", { class: "views", role: "group", "aria-label": "View from", hidden: true });
   session.on("open", ({ volume }) => {
     row.hidden = !hasCamera(session);
@@ -153,7 +162,7 @@ function makeViewButtons(session, moves) {
     const home = makeButton("⌂", () => session.change(moves.home()), {
       "aria-label": "View as at the start", title: "View as at the start (r)",
     });
-    row.replaceChildren(...buttons, home);
+    row.replaceChildren(...buttons, home, ...(document.fullscreenEnabled ? [full] : []));
   });
   return row;
 }

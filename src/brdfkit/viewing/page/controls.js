@@ -120,9 +120,16 @@ function offerDefault(session, control, row) {
   });
 }
 
-/** Return whether a control's condition, `when`, holds in a state. */
+/**
+ * Return whether a control's condition, `when`, holds in a state.
+ *
+ * What is asked of the renderer may as well hold for the second one, right of the wipe.
+ */
 function isWanted({ when }, state) {
-  return Object.entries(when || {}).every(([name, values]) => values.some((v) => equal(v, state[name])));
+  return Object.entries(when || {}).every(([name, values]) => {
+    const own = name === "renderer" ? [state.renderer, state.second] : [state[name]];
+    return values.some((value) => own.some((other) => equal(value, other)));
+  });
 }
 
 /**

@@ -9,6 +9,8 @@ const KEYS = [
     ["1 … 6", "look along an axis"],
     ["double click, R", "camera as at the start"],
     ["W", "second picture and wipe"],
+    ["C", "slices through the voxel under the pointer"],
+    ["F", "the whole screen"],
     ["Space", "pause, go on"],
   ]],
   ["Transfer function", [
@@ -17,6 +19,8 @@ const KEYS = [
     ["drag, arrow keys", "move it; with Shift in large steps"],
     ["wheel, [ and ]", "width of a bump; with Shift its height"],
     ["Delete", "remove it"],
+    ["Ctrl + wheel, + and −, 0", "fewer or more values, the whole range"],
+    ["drag beside the handles, Shift + wheel", "other values"],
   ]],
   ["Slices", [
     ["drag, arrow keys", "move the cross"],

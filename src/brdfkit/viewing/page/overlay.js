@@ -8,6 +8,7 @@ const EDGES = AXIS_BITS.flatMap((bit) =>
 
 const BOX_COLOURS = ["rgb(255 255 255 / 80%)", "rgb(255 255 255 / 45%)"]; // near and far edges
 const DIM_COLOURS = ["rgb(255 255 255 / 35%)", "rgb(255 255 255 / 25%)"];
+const VIEW_BUTTONS = 46; // pixels at the bottom, where no text is
 const CLIP_COLOURS = ["rgb(255 210 74 / 95%)", "rgb(255 210 74 / 50%)"];
 
 /** Return the middle of some corners, [x, y, depth]. */
@@ -21,13 +22,14 @@ function findFarEdges(corners) {
   return new Set(EDGES.filter((edge) => edge.includes(farthest)));
 }
 
-/** Return the edge along an axis (0 to 2) that is best for a length: far out, and low. */
-function chooseEdge(corners, axis) {
+/** Return the edge along an axis (0 to 2) that is best for a length: far out and low, but in sight. */
+function chooseEdge(corners, axis, { clientWidth, clientHeight }) {
   const bit = AXIS_BITS[axis];
   const middle = findMiddle(corners);
   const score = ([from, to]) => {
     const [x, y] = findMiddle([corners[from], corners[to]]);
-    return Math.hypot(x - middle[0], y - middle[1]) + 0.4 * (y - middle[1]);
+    const hidden = Math.max(-x, x - clientWidth, -y, y - clientHeight, 0);
+    return Math.hypot(x - middle[0], y - middle[1]) + 0.4 * (y - middle[1]) - 4 * hidden;
   };
   const along = EDGES.filter(([from, to]) => from + bit === to);
   return along.reduce((best, edge) => (score(edge) > score(best) ? edge : best));
@@ -123,7 +125,7 @@ function writeOver(context, text, x, y) {
   context.lineWidth = 3;
   context.strokeStyle = "rgb(0 0 0 / 65%)";
   context.fillStyle = "#fff";
-  const place = [clamp(x, half + 4, right - half - 4), clamp(y, 10, bottom - 10)];
+  const place = [clamp(x, half + 4, right - half - 4), clamp(y, 10, bottom - VIEW_BUTTONS)];
   context.strokeText(text, ...place);
   context.fillText(text, ...place);
 }
@@ -132,7 +134,7 @@ function writeOver(context, text, x, y) {
 function drawLengths(context, corners, lengths) {
   const middle = findMiddle(corners);
   lengths.forEach((text, axis) => {
-    const ends = chooseEdge(corners, axis).map((k) => corners[k]);
+    const ends = chooseEdge(corners, axis, context.canvas).map((k) => corners[k]);
     const [x, y] = findMiddle(ends);
     if (Math.hypot(ends[0][0] - ends[1][0], ends[0][1] - ends[1][1]) < 30) return; // seen end on
     const away = Math.hypot(x - middle[0], y - middle[1]) || 1;

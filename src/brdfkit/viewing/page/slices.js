@@ -20,6 +20,14 @@ function makeProbe(session) {
   };
 }
 
+/** Return the function that shows the slices through the voxel whose value was asked for last. */
+function makeCrossKey(session) {
+  let voxel = null;
+  session.on("probe", (answer) => (voxel = answer.voxel));
+  session.on("open", () => (voxel = null));
+  return () => voxel && session.change({ slices: voxel, "show.slices": true });
+}
+
 /** Make the three slices; they show themselves while the state wants them. */
 function createSlices(session, probe) {
   const element = make("div", { class: "slices", role: "group", "aria-label": "Slices", hidden: true });

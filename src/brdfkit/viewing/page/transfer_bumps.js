@@ -67,10 +67,10 @@ function makeBumpKind(volume, flat) {
     /** Return bumps of which one is wider and higher by factors. */
     scale: (bumps, k, right, up) =>
       replace(bumps, k, { sx: spread(bumps[k].sx * right), sy: spread(bumps[k].sy * up) }),
-    add(bumps, x, y) {
+    add(bumps, x, y, shown) {
       const colour = NEW_BUMP_COLOURS[bumps.length % NEW_BUMP_COLOURS.length];
       const [up, a] = flat ? [share(y), 0.5] : [0.25, share(y)];
-      return [[...bumps, { x: share(x), y: up, sx: 0.08, sy: 0.2, colour, a }], bumps.length];
+      return [[...bumps, { x: share(x), y: up, sx: spread(0.08 * shown), sy: 0.2, colour, a }], bumps.length];
     },
     evaluate(bumps, x) {
       const [r, g, b, a] = blendBumps(bumps, x, null);

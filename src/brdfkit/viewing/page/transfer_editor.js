@@ -1,6 +1,6 @@
 // The editor of the transfer function: its plot, its handles, and the boxes of the selected one.
 
-const NUDGE = 0.01; // share of the plot for a press of an arrow key; with shift ten times as much
+const NUDGE = 0.01; // of the plot's width and height for a press of an arrow key; with shift ten times as much
 const BUMP_WHEEL = 0.003; // of the wheel's way, in the exponent of a bump's size
 const BUMP_KEY = 1.1; // factor of a bump's size for a press of a bracket
 const TRANSFER_NAMES = ["transfer.mode", "transfer.preset", "transfer.points", "transfer.bumps"];
@@ -15,12 +15,13 @@ function createTransferEditor(session) {
   const plot = make("div", { class: "plot" }, canvas, handles);
   const head = make("div", { class: "head" });
   const fields = make("div", { class: "fields", role: "group", "aria-label": "Selected handle" });
-  const addButton = makeButton("Add", () => add(0.5, 0.5));
+  const axis = createValueAxis(show);
+  const addButton = makeButton("Add", () => add((axis.from + axis.to) / 2, 0.5));
   const removeButton = makeButton("Remove", () => remove(), { title: "Delete" });
   const tools = make("div", { class: "tools" }, addButton, removeButton,
     makeButton("Load…", () => session.emit("pick", "transfer", ".json")),
     makeButton("Save", () => session.send({ type: "save", kind: "transfer" })));
-  const element = make("div", { class: "transfer", hidden: true }, head, plot, fields, tools);
+  const element = make("div", { class: "transfer", hidden: true }, head, plot, axis.element, fields, tools);
 
   let kind = null;
   let selected = 0;
@@ -40,11 +41,11 @@ function createTransferEditor(session) {
   }
 
   function add(x, y) {
-    const [list, k] = kind.add(items(), x, y);
+    const [list, k] = kind.add(items(), x, y, axis.to - axis.from);
     if (!kind.allows(list)) return;
     selected = k;
     edit(list, "change");
-    handles.children[k]?.focus();
+    focusHandle(k);
   }
 
   const withoutSelected = () => items().filter((_, k) => k !== selected);
@@ -58,8 +59,8 @@ function createTransferEditor(session) {
   }
 
   function select(k) {
-    if (k === selected) return;
     selected = k;
+    axis.reveal(kind.place(items()[k])[0]);
     show();
   }
 
@@ -67,12 +68,14 @@ function createTransferEditor(session) {
 
   function locate(event) {
     const { left, top } = canvas.getBoundingClientRect();
-    const area = findPlotArea(canvas);
+    const area = findPlotArea(canvas, axis);
     return [
-      clamp((event.clientX - left - area.x) / area.width, 0, 1),
+      clamp(area.share(event.clientX - left), 0, 1),
       clamp(1 - (event.clientY - top - area.y) / area.height, 0, 1),
     ];
   }
+
+  const focusHandle = (k) => handles.children[k]?.focus();
 
   /** Make the handle at a place of the list; it serves whatever item is there. */
   function makeHandle(k) {
@@ -98,8 +101,9 @@ function createTransferEditor(session) {
     handle.addEventListener("dblclick", (event) => event.stopPropagation());
     handle.addEventListener("keydown", (event) => pressKey(event, k));
     handle.addEventListener("wheel", (event) => {
-      if (!kind.scale) return;
+      if (!kind.scale || event.ctrlKey) return;
       event.preventDefault();
+      event.stopPropagation();
       // Browsers turn a wheel with shift into a horizontal one
       const factor = Math.exp(-BUMP_WHEEL * (event.deltaY || event.deltaX));
       edit(kind.scale(items(), k, ...(event.shiftKey ? [1, factor] : [factor, 1])));
@@ -114,11 +118,11 @@ function createTransferEditor(session) {
     }[event.key];
     const other = { PageUp: k - 1, PageDown: k + 1, Home: 0, End: items().length - 1 }[event.key];
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (other !== undefined) handles.children[other]?.focus();
+    if (other !== undefined) focusHandle(other);
     else if (way) {
       const step = event.shiftKey ? 10 * NUDGE : NUDGE;
       const [x, y] = kind.place(items()[k]);
-      edit(kind.move(items(), k, x + step * way[0], y + step * way[1]));
+      edit(kind.move(items(), k, x + step * way[0] * (axis.to - axis.from), y + step * way[1]));
     } else if (event.key === "Delete" || event.key === "Backspace") remove();
     else if (factors && kind.scale) edit(kind.scale(items(), k, ...factors));
     else return;
@@ -162,7 +166,7 @@ function createTransferEditor(session) {
     const list = items();
     selected = clamp(selected, 0, Math.max(list.length - 1, 0));
     const { volume, histogram } = session.description;
-    drawPlot(canvas, { kind, items: list, selected, volume, histogram, joint });
+    drawPlot(canvas, { kind, axis, items: list, selected, volume, histogram, joint });
     placeHandles(list);
     for (const [field, input] of boxes) {
       input.disabled = !list.length;
@@ -177,11 +181,13 @@ function createTransferEditor(session) {
   function placeHandles(list) {
     while (handles.children.length < list.length) handles.append(makeHandle(handles.children.length));
     while (handles.children.length > list.length) handles.lastChild.remove();
-    const area = findPlotArea(canvas);
+    const area = findPlotArea(canvas, axis);
     list.forEach((item, k) => {
       const handle = handles.children[k];
       const [x, y] = kind.place(item);
-      handle.style.left = `${area.x + x * area.width}px`;
+      // Handles beside the part that is shown can be reached by keys, which then show theirs
+      handle.classList.toggle("outside", x < axis.from || x > axis.to);
+      handle.style.left = `${area.across(clamp(x, axis.from, axis.to))}px`;
       handle.style.top = `${area.y + (1 - y) * area.height}px`;
       handle.style.backgroundColor = kind.colour(item);
       // One stop of the Tab key for all handles: presets have dozens
@@ -192,6 +198,8 @@ function createTransferEditor(session) {
   }
 
   plot.addEventListener("dblclick", (event) => add(...locate(event)));
+  followAxisGestures(plot, axis, (event) => locate(event)[0],
+    () => (items()[selected] ? kind.place(items()[selected])[0] : undefined));
 
   session.on("open", async ({ volume, controls, presets = [] }, [picture]) => {
     element.hidden = !volume || !("transfer.mode" in session.state);
@@ -202,6 +210,7 @@ function createTransferEditor(session) {
     if (mode) menus.push([mode.name, makeChoice(session, mode)]);
     head.replaceChildren(...menus.map(([, { row }]) => row));
     chooseKind();
+    axis.open(volume);
     joint = picture ? await createImageBitmap(new Blob([picture], { type: "image/png" })) : null;
     show();
   });

@@ -5,13 +5,19 @@ const BAR_HEIGHT = 10; // of the bar of colours below the plot
 const CURVE_STEPS = 256;
 const MAP_SIZE = [128, 64]; // of the picture of bumps over values and gradients
 
-/** Return the rectangle of the plot on its canvas. */
-function findPlotArea(canvas) {
+/**
+ * Return the rectangle of the plot on its canvas, which shows the part of an axis `from` … `to`.
+ *
+ * `across` gives the place of a share of the range of values, and `share` the share at a place.
+ */
+function findPlotArea(canvas, { from, to }) {
   const { left, right, top, bottom } = PLOT_MARGIN;
+  const width = Math.max(canvas.clientWidth - left - right, 1);
   return {
-    x: left, y: top,
-    width: Math.max(canvas.clientWidth - left - right, 1),
+    x: left, y: top, width, from, to,
     height: Math.max(canvas.clientHeight - top - bottom, 1),
+    across: (share) => left + (width * (share - from)) / (to - from),
+    share: (place) => from + ((place - left) / width) * (to - from),
   };
 }
 
@@ -19,11 +25,11 @@ function findPlotArea(canvas) {
  * Draw everything but the handles.
  *
  * `volume` and `histogram` are Python's; `joint` is the picture of the joint histogram or null;
- * `items` are points or bumps, and `kind` says what they mean.
+ * `items` are points or bumps, and `kind` says what they mean; `axis` is the part of the values.
  */
-function drawPlot(canvas, { kind, items, selected, volume, histogram, joint }) {
+function drawPlot(canvas, { kind, axis, items, selected, volume, histogram, joint }) {
   const context = startDrawing(canvas);
-  const area = findPlotArea(canvas);
+  const area = findPlotArea(canvas, axis);
   const colour = readColours(canvas);
   context.font = readFont(canvas, 11);
   context.fillStyle = colour("plot");
@@ -57,7 +63,8 @@ function nameGradients(context, area, { value_unit, unit }, ink) {
 
 /** Draw the grid, and the numbers beside it. */
 function drawTicks(context, area, colour, volume, flat) {
-  const [low, high] = volume.range;
+  const [least, most] = volume.range;
+  const [low, high] = [area.from, area.to].map((share) => least + share * (most - least));
   context.strokeStyle = colour("line");
   context.fillStyle = colour("soft");
   context.lineWidth = 1;
@@ -84,17 +91,21 @@ function drawTicks(context, area, colour, volume, flat) {
   });
 }
 
-/** Fill the histogram, its counts on a logarithmic scale. */
+/** Fill the histogram, its counts on a logarithmic scale up to the most that are shown. */
 function drawHistogram(context, area, counts, colour) {
-  const most = Math.log1p(Math.max(...counts, 1));
+  const first = Math.floor(area.from * counts.length);
+  const shown = counts.slice(first, Math.ceil(area.to * counts.length));
+  const most = Math.log1p(Math.max(...shown, 1));
+  const bottom = area.y + area.height;
+  const edge = (k) => area.across((first + k) / counts.length);
   context.beginPath();
-  context.moveTo(area.x, area.y + area.height);
-  counts.forEach((count, k) => {
-    const y = area.y + area.height * (1 - Math.log1p(count) / most);
-    context.lineTo(area.x + (area.width * k) / counts.length, y);
-    context.lineTo(area.x + (area.width * (k + 1)) / counts.length, y);
+  context.moveTo(edge(0), bottom);
+  shown.forEach((count, k) => {
+    const y = bottom - (area.height * Math.log1p(count)) / most;
+    context.lineTo(edge(k), y);
+    context.lineTo(edge(k + 1), y);
   });
-  context.lineTo(area.x + area.width, area.y + area.height);
+  context.lineTo(edge(shown.length), bottom);
   context.fillStyle = colour;
   context.fill();
 }
@@ -103,7 +114,8 @@ function drawHistogram(context, area, counts, colour) {
 function makeColourGradient(context, area, kind, items) {
   const gradient = context.createLinearGradient(area.x, 0, area.x + area.width, 0);
   for (let k = 0; k <= CURVE_STEPS; k += 2) {
-    gradient.addColorStop(k / CURVE_STEPS, kind.evaluate(items, k / CURVE_STEPS)[0]);
+    const share = area.from + (area.to - area.from) * (k / CURVE_STEPS);
+    gradient.addColorStop(k / CURVE_STEPS, kind.evaluate(items, share)[0]);
   }
   return gradient;
 }
@@ -112,8 +124,8 @@ function makeColourGradient(context, area, kind, items) {
 function drawCurve(context, area, kind, items, ink) {
   const curve = new Path2D();
   for (let k = 0; k <= CURVE_STEPS; k++) {
-    const x = k / CURVE_STEPS;
-    curve.lineTo(area.x + x * area.width, area.y + area.height * (1 - kind.evaluate(items, x)[1]));
+    const place = area.x + (area.width * k) / CURVE_STEPS;
+    curve.lineTo(place, area.y + area.height * (1 - kind.evaluate(items, area.share(place))[1]));
   }
   const below = new Path2D(curve);
   below.lineTo(area.x + area.width, area.y + area.height);
@@ -148,7 +160,8 @@ function drawJointHistogram(context, area, joint, ink) {
   own.globalCompositeOperation = "source-in";
   own.fillStyle = ink;
   own.fillRect(0, 0, joint.width, joint.height);
-  context.drawImage(layer, area.x, area.y, area.width, area.height);
+  const part = [area.from * joint.width, 0, (area.to - area.from) * joint.width, joint.height];
+  context.drawImage(layer, ...part, area.x, area.y, area.width, area.height);
 }
 
 /** Draw bumps over values and gradients, as opaque as they are. */
@@ -159,7 +172,8 @@ function drawBumpMap(context, area, bumps) {
   const pixels = own.createImageData(width, height);
   for (let row = 0; row < height; row++) {
     for (let column = 0; column < width; column++) {
-      const [r, g, b, a] = blendBumps(bumps, (column + 0.5) / width, 1 - (row + 0.5) / height);
+      const share = area.from + ((column + 0.5) / width) * (area.to - area.from);
+      const [r, g, b, a] = blendBumps(bumps, share, 1 - (row + 0.5) / height);
       pixels.data.set([r, g, b, 255 * a], 4 * (row * width + column));
     }
   }
@@ -171,8 +185,8 @@ function drawBumpMap(context, area, bumps) {
 function drawEllipse(context, area, { x, y, sx, sy }, ink) {
   context.beginPath();
   context.ellipse(
-    area.x + x * area.width, area.y + (1 - y) * area.height,
-    sx * area.width, sy * area.height, 0, 0, 2 * Math.PI,
+    area.across(x), area.y + (1 - y) * area.height,
+    area.across(x + sx) - area.across(x), sy * area.height, 0, 0, 2 * Math.PI,
   );
   context.setLineDash([3, 3]);
   context.lineWidth = 1;

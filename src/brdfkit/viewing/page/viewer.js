@@ -1,7 +1,7 @@
 // The viewer: puts the parts together, and connects them to a model of anywidget's kind.
 
 /** Do what a key means to the whole viewer; the picture's own keys come first. */
-function listenForKeys(session, root, stage, { cameraKey, switchWipe, help }) {
+function listenForKeys(session, root, stage, { cameraKey, moveCross, switchWipe, help }) {
   stage.addEventListener("keydown", (event) => {
     if (event.target !== stage) return;
     const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
@@ -9,7 +9,9 @@ function listenForKeys(session, root, stage, { cameraKey, switchWipe, help }) {
     else if (plain && event.key === " ") {
       event.preventDefault();
       session.emit("pause");
-    } else if (plain && event.key === "w") switchWipe();
+    } else if (plain && event.key === "f") switchFullScreen(stage);
+    else if (plain && event.key === "c") moveCross();
+    else if (plain && event.key === "w") switchWipe();
     else if (plain && event.key === "u") session.command("undo");
   });
   root.addEventListener("keydown", (event) => {
@@ -68,14 +70,14 @@ function render({ model, el }) {
   createWipe(session, stage, picture);
   const moves = makeCameraMoves(session, stage);
   followPointers(session, stage, moves);
-  stage.append(makeViewButtons(session, moves));
+  stage.append(makeViewButtons(session, stage, moves));
   createNotices(session, stage);
   probePicture(stage, picture, probe);
 
   const slices = createSlices(session, probe);
   const transfer = createTransferEditor(session);
   const panels = make("div", { class: "panels" });
-  const editors = { transfer: transfer.element, clip: createClipBox(session) };
+  const editors = { transfer: transfer.element, clip: createClipBox(session), camera: createTargetBoxes(session) };
   createPanels(session, panels, editors, new Set(TRANSFER_NAMES));
 
   const pick = acceptFiles(session, root);
@@ -88,7 +90,8 @@ function render({ model, el }) {
   el.append(root);
 
   listenForKeys(session, root, stage, {
-    cameraKey: makeCameraKeys(session, moves), switchWipe: makeWipeSwitch(session), help,
+    cameraKey: makeCameraKeys(session, moves), moveCross: makeCrossKey(session),
+    switchWipe: makeWipeSwitch(session), help,
   });
   session.on("redraw", picture.draw);
   session.on("file", download);

@@ -24,7 +24,8 @@ from brdfkit.volumes import Volume
 SCENES = (
     6  # kept at most, as many as a wipe between two renderers needs at rest and moving, and more
 )
-BINS, GRADIENT_BINS = 256, 128  # of the histograms
+BINS, GRADIENT_BINS = 256, 128  # of the joint histogram
+FINE_BINS = 1024  # at most, of the histogram of values, whose parts the page can enlarge
 COUNTED_VOXELS = 4_000_000  # evenly spread
 ENDS = {"RAS": ["L", "R", "P", "A", "I", "S"]}  # names of the ends of the axes x, y and z
 
@@ -62,7 +63,9 @@ class VolumeApplication:
         step = -(-volume.values.size // COUNTED_VOXELS)
         values = volume.values.reshape(-1)[::step]
         gradients = volume.gradient_magnitude.reshape(-1)[::step]
-        counts = np.histogram(values, BINS, (low, high))[0]
+        # Whole numbers get no finer bins than there are numbers, for every other bin were empty
+        finest = FINE_BINS if np.any(values % 1) else min(max(int(high - low), BINS), FINE_BINS)
+        counts = np.histogram(values, finest, (low, high))[0]
         ends = (0, live.steepest), (low, high)
         joint = np.histogram2d(gradients, values, (GRADIENT_BINS, BINS), ends)[0]
         shade = np.log1p(joint) / max(np.log1p(joint.max()), 1e-9)

@@ -87,7 +87,7 @@ def _picture_controls(low: float, high: float, level: float) -> list[Control]:
             "depth", "Scatterings", default=1, low=1, high=64, step=1, when=SCATTERING, help=more
         ),
         control("background", "Background", default="#262626", kind="colour"),
-        control("show.environment", "Show the environment", default=False, kind="flag", when=LIT),
+        control("show.environment", "Show environment", default=False, kind="flag", when=LIT),
         control("show.box", "Bounding box", default=True, kind="flag"),
         control("show.axes", "Axes", default=True, kind="flag"),
         control("view.scale", "Resolution", default=1.0, low=0.25, high=2, step=0.25, help=pixels),
