@@ -1,7 +1,8 @@
-"""A view that is served in a thread, for the tests of its server and of its page."""
+"""A view that is served in a thread, and its page in a browser that reaches nothing else."""
 
 import threading
 import time
+from contextlib import contextmanager
 
 import pytest
 
@@ -27,3 +28,45 @@ def address(module_in_llvm):
     thread.join(20)
     app.state.thread.stop()
     listening.close()
+
+
+@contextmanager
+def open_page(browser, address):
+    """A page; afterwards the console is empty, and no other host was asked for anything."""
+    messages, requests = [], []
+    cut = {"server": "http://127.0.0.1:9", "bypass": "127.0.0.1"}  # nothing listens there
+    context = browser.new_context(viewport={"width": 900, "height": 640}, proxy=cut)
+    tab = context.new_page()
+    tab.on("console", lambda message: messages.append(message.text))
+    tab.on("pageerror", lambda error: messages.append(str(error)))
+    tab.on("request", lambda request: requests.append(request.url))
+    tab.goto(address)
+    tab.get_by_text("samples ·").wait_for(timeout=90_000)
+    yield tab
+    context.close()
+    assert messages == []
+    host = address.split("/")[2]
+    assert [url for url in requests if not url.startswith(("blob:", f"http://{host}/"))] == []
+
+
+@pytest.fixture(scope="module")
+def shared_page(browser, address):
+    """A page for all tests of a file."""
+    with open_page(browser, address) as tab:
+        yield tab
+
+
+@pytest.fixture
+def page(shared_page):
+    """The page of all tests of a file, with its first settings."""
+    shared_page.get_by_role("button", name="Reset").click()
+    shared_page.wait_for_timeout(300)
+    shared_page.get_by_text("samples ·").wait_for()
+    return shared_page
+
+
+@pytest.fixture
+def new_page(browser, address):
+    """A page of its own, for a test that opens another volume."""
+    with open_page(browser, address) as tab:
+        yield tab

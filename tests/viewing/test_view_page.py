@@ -7,23 +7,15 @@ import numpy as np
 import pytest
 from PIL import Image
 
-
-@pytest.fixture
-def page(browser, address):
-    """The page; afterwards the console is empty, and no other host was asked for anything."""
-    messages, requests = [], []
-    context = browser.new_context(viewport={"width": 900, "height": 640})
-    tab = context.new_page()
-    tab.on("console", lambda message: messages.append(message.text))
-    tab.on("pageerror", lambda error: messages.append(str(error)))
-    tab.on("request", lambda request: requests.append(request.url))
-    tab.goto(address)
-    tab.get_by_text("samples ·").wait_for(timeout=90_000)
-    yield tab
-    context.close()
-    assert messages == []
-    host = address.split("/")[2]
-    assert [url for url in requests if not url.startswith(("blob:", f"http://{host}/"))] == []
+DROP = """async ([name, letters]) => {
+    const bytes = Uint8Array.from(atob(letters), (letter) => letter.charCodeAt(0));
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([bytes], name));
+    for (const type of ["dragenter", "dragover", "drop"]) {
+        document.querySelector(".stage").dispatchEvent(
+            new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+    }
+}"""
 
 
 def pixels(page):
@@ -42,40 +34,149 @@ def wait_for_change(page, before, least=1.0):
     raise AssertionError("the picture does not change")
 
 
+def drag(page, start, end, **options):
+    """Drag from one place to another, in steps."""
+    page.mouse.move(*start)
+    page.mouse.down(**options)
+    page.mouse.move(*end, steps=8)
+    page.mouse.up(**options)
+
+
+def number(page, name):
+    """The number in a number box."""
+    return float(page.get_by_role("spinbutton", name=name, exact=True).input_value())
+
+
+def type_number(page, name, value):
+    """Type a number into its box."""
+    box = page.get_by_role("spinbutton", name=name, exact=True)
+    box.fill(str(value))
+    box.press("Enter")
+
+
+def choose(page, label, text):
+    """Choose an entry of a menu."""
+    page.get_by_role("combobox", name=label, exact=True).select_option(label=text)
+
+
 def test_a_drag_turns_the_volume_and_undo_turns_it_back(page):
+    page.wait_for_timeout(500)
     first = pixels(page)
     assert first.std() > 5  # something is visible
-    page.mouse.move(200, 300)
-    page.mouse.down()
-    for step in range(8):
-        page.mouse.move(200 + 12 * step, 300)
-    page.mouse.up()
+    drag(page, (200, 300), (284, 300))
     wait_for_change(page, first)
     assert "state=" in page.url
-    page.get_by_role("button", name="Undo").click()
-    page.get_by_role("button", name="Undo").wait_for(state="attached")
-    page.wait_for_function("() => document.querySelector('button[disabled]') !== null")
+    undo = page.get_by_role("button", name="Undo")
+    undo.click()
+    page.get_by_text("Camera", exact=True).click()
+    assert number(page, "Azimuth [°]") == 30
 
 
 def test_a_renderer_is_chosen_and_a_number_is_typed(page):
     before = pixels(page)
-    page.get_by_label("Renderer").select_option(label="Isosurface")
+    choose(page, "Renderer", "Isosurface")
     surface = wait_for_change(page, before)
-    level = page.get_by_role("spinbutton", name="Surface's value")
-    level.fill("0.8")
-    level.press("Enter")
+    type_number(page, "Surface's value", 0.8)
     wait_for_change(page, surface, 0.3)
 
 
-def test_a_volume_is_opened_from_a_file(page, tmp_path):
-    path = tmp_path / "two_blocks.nii.gz"
-    values = np.zeros((6, 7, 8), np.float32)
-    values[1:3], values[4:] = 1, 2
-    nibabel.save(nibabel.Nifti1Image(values, np.diag([2, 2, 2, 1])), path)
-    with page.expect_file_chooser() as chooser:
-        page.get_by_role("button", name="Open").click()
-    chooser.value.set_files(path)
-    page.get_by_text("6 × 7 × 8 voxels of 2").wait_for(timeout=60_000)
+def test_a_bump_is_dragged_typed_widened_and_removed(page):
+    choose(page, "Renderer", "Emission and absorption")
+    choose(page, "Drawn by", "bumps over values and gradients")
+    page.wait_for_timeout(1000)
+    before = pixels(page)
+    handle = page.get_by_role("button", name="bump 1 of 1")
+    handle.scroll_into_view_if_needed()
+    box, plot = handle.bounding_box(), page.locator(".plot canvas").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    drag(page, (x, y), (x + 60, y - 20))
+    after = wait_for_change(page, before)
+    low, high = 0.0, 1.0  # of the values of smoke
+    shift = 60 / (plot["width"] - 40)  # the plot has margins for its numbers
+    assert number(page, "Value") == pytest.approx(0.5 + (high - low) * shift, abs=0.005)
+    assert "bump 1 of 1" in handle.get_attribute("aria-label")
+    type_number(page, "Opacity", 0)
+    dark = wait_for_change(page, after)
+    assert dark.std() < after.std()
+    width = number(page, "Width")
+    handle.focus()
+    page.keyboard.press("]")
+    assert number(page, "Width") == pytest.approx(1.1 * width, rel=2e-3)
+    page.keyboard.press("Delete")
+    page.get_by_role("button", name="Add bump").click()
+    assert number(page, "Opacity") == 0.5
+    wait_for_change(page, dark)
+
+
+def test_two_points_stay(page):
+    remove = page.get_by_role("button", name="Remove", exact=True)
+    while remove.is_enabled():
+        remove.click()
+    assert page.get_by_role("button", name="point 2 of 2").count() == 1
+    page.get_by_role("button", name="point 1 of 2").focus()
+    type_number(page, "Value", 1)  # where the other one is, too
+    assert number(page, "Value") < 1
+    assert page.get_by_role("alert").count() == 0
+
+
+def test_the_plot_shows_a_part_of_the_values(page):
+    plot = page.locator(".plot canvas")
+    plot.scroll_into_view_if_needed()
+    box = plot.bounding_box()
+    ends = "The plot shows values from", "The plot shows values to"
+    page.mouse.move(box["x"] + 30 + (box["width"] - 40) / 4, box["y"] + 60)
+    page.keyboard.down("Control")
+    page.mouse.wheel(0, -500)
+    page.keyboard.up("Control")
+    page.wait_for_timeout(200)
+    low, high = (number(page, end) for end in ends)
+    assert high - low == pytest.approx(np.exp(-1), abs=1e-3)
+    assert low + (high - low) / 4 == pytest.approx(0.25, abs=4e-3)  # to a pixel, it stays
+    drag(page, (box["x"] + 100, box["y"] + 12), (box["x"] + 80, box["y"] + 12))
+    moved = 20 / (box["width"] - 40) * (high - low)
+    assert number(page, ends[0]) == pytest.approx(low + moved, abs=2e-3)
+    type_number(page, ends[0], 0.5)
+    handle = page.locator(".handle").first
+    assert "outside" in handle.get_attribute("class")
+    handle.focus()
+    assert "outside" not in handle.get_attribute("class")
+    page.keyboard.press("0")
+    assert [number(page, end) for end in ends] == [0, 1]
+
+
+def test_the_second_renderer_has_its_controls_and_the_wipe_its_keys(page):
+    choose(page, "Renderer", "Maximum intensity")
+    level = page.get_by_role("spinbutton", name="Surface's value")
+    level.wait_for(state="hidden")
+    choose(page, "Right of the wipe", "Isosurface")
+    level.wait_for()
+    page.wait_for_timeout(1500)
+    before = pixels(page)
+    page.get_by_role("slider", name="Wipe between the two pictures").focus()
+    page.keyboard.press("Home")
+    wait_for_change(page, before)
+    assert number(page, "Wipe") == 0
+
+
+def test_the_target_and_the_slices(page):
+    before = pixels(page)
+    panel = page.locator("details", has_text="Field of view")
+    panel.evaluate("(own) => (own.open = true)")
+    type_number(page, "Target z", 0.4)
+    wait_for_change(page, before)
+    page.locator("details", has_text="Show slices").evaluate("(own) => (own.open = true)")
+    page.get_by_label("Show slices").check()
+    slice_ = page.get_by_label("z slice")
+    slice_.wait_for()
+    box = slice_.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    grey = np.asarray(Image.open(io.BytesIO(slice_.screenshot())).convert("L"), float).mean()
+    white = number(page, "White at")
+    drag(page, (x, y), (x, y - 40), button="right")
+    assert number(page, "White at") < white
+    page.wait_for_timeout(500)
+    brighter = np.asarray(Image.open(io.BytesIO(slice_.screenshot())).convert("L"), float).mean()
+    assert brighter > grey + 5
 
 
 def test_the_picture_is_saved_as_a_file(page):
@@ -85,3 +186,27 @@ def test_the_picture_is_saved_as_a_file(page):
     content = Image.open(download.value.path())
     assert download.value.suggested_filename == "smoke.png"
     assert np.asarray(content).std() > 5
+
+
+@pytest.fixture
+def scan(tmp_path):
+    """A file with a volume of 6 × 7 × 8 voxels."""
+    path = tmp_path / "two_blocks.nii.gz"
+    values = np.zeros((6, 7, 8), np.float32)
+    values[1:3], values[4:] = 1, 2
+    nibabel.save(nibabel.Nifti1Image(values, np.diag([2, 2, 2, 1])), path)
+    return path
+
+
+@pytest.mark.parametrize("way", ["dialog", "drop"])
+def test_a_volume_is_opened_from_a_file(new_page, scan, way):
+    if way == "drop":
+        import base64
+
+        new_page.evaluate(DROP, [scan.name, base64.b64encode(scan.read_bytes()).decode()])
+    else:
+        with new_page.expect_file_chooser() as chooser:
+            new_page.get_by_role("button", name="Open").click()
+        chooser.value.set_files(scan)
+    new_page.get_by_text("6 × 7 × 8 voxels of 2").wait_for(timeout=60_000)
+    assert number(new_page, "The plot shows values to") == 2

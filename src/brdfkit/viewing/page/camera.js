@@ -148,7 +148,7 @@ function switchFullScreen(stage) {
 
 /** Make the row of buttons for the views along the axes, the first view and the whole screen. */
 function makeViewButtons(session, stage, moves) {
-  const full = makeButton("⛶", () => switchFullScreen(stage), {
+  const full = makeButton("⤢", () => switchFullScreen(stage), {
     "aria-label": "Picture on the whole screen", title: "Picture on the whole screen (f)",
   });
   const row = make("div", { class: "views", role: "group", "aria-label": "View from", hidden: true });

@@ -25,6 +25,7 @@ const KEYS = [
   ["Slices", [
     ["drag, arrow keys", "move the cross"],
     ["wheel, Page Up and Page Down", "next slice"],
+    ["Shift + drag, right drag", "contrast and brightness"],
   ]],
   ["Panels", [
     ["double click on a name, Delete", "the default of a setting"],

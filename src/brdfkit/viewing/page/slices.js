@@ -1,6 +1,8 @@
 // Three slices through the volume, with a cross that is dragged to the voxel of interest.
 
 const PLANE_NAMES = { x: "Sagittal", y: "Coronal", z: "Axial" }; // of a patient (RAS)
+const WINDOW_DRAG = 0.005; // of the window, for a pixel of a drag
+const WINDOW_LEAST = 0.002; // of the range of values
 const PROBE_INTERVAL = 100; // ms between two questions for a voxel's value, at least
 
 /** Return a function that asks for values, not more often than Python likes, the latest last. */
@@ -52,6 +54,36 @@ function createSlices(session, probe) {
   observer.observe(element);
   session.on("theme", () => views.forEach((view) => view.draw()));
   return { element, stop: () => observer.disconnect() };
+}
+
+/**
+ * Change the values that are black and white by a drag with shift or the right button.
+ *
+ * To the right the range between them grows, upwards everything becomes brighter.
+ */
+function followWindowDrag(session, canvas) {
+  let before = null; // the pointer's last place
+  canvas.addEventListener("pointerdown", (event) => {
+    if (!event.shiftKey && event.button !== 2) return;
+    canvas.setPointerCapture(event.pointerId);
+    before = [event.clientX, event.clientY];
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    if (!before) return;
+    const [right, down] = [event.clientX - before[0], event.clientY - before[1]];
+    before = [event.clientX, event.clientY];
+    const { "slices.low": low, "slices.high": high } = session.state;
+    const [least, most] = session.description.volume.range;
+    const pixel = Math.max(high - low, WINDOW_LEAST * (most - least)) * WINDOW_DRAG;
+    const width = Math.max(high - low + 2 * pixel * right, WINDOW_LEAST * (most - least));
+    const middle = (low + high) / 2 + pixel * down;
+    session.drag({
+      "slices.low": clamp(middle - width / 2, least, most),
+      "slices.high": clamp(middle + width / 2, least, most),
+    });
+  });
+  canvas.addEventListener("lostpointercapture", () => (before = null));
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
 }
 
 /** Make the slice number `number`, with the box for its index. */
@@ -123,15 +155,16 @@ function createSlice(session, number, probe) {
   }
   const step = (axis, way) => session.nudge(setIndices({ [axis]: indexOf(axis) + way }));
 
+  followWindowDrag(session, canvas);
   canvas.addEventListener("pointerdown", (event) => {
-    if (event.button !== 0 || !plane) return;
+    if (event.button !== 0 || event.shiftKey || !plane) return;
     canvas.setPointerCapture(event.pointerId);
     moveCross(event);
   });
   canvas.addEventListener("pointermove", (event) => {
     if (!plane) return;
     const [x, y] = locate(event);
-    if (canvas.hasPointerCapture(event.pointerId)) moveCross(event);
+    if (event.buttons & 1 && !event.shiftKey && canvas.hasPointerCapture(event.pointerId)) moveCross(event);
     else if (x >= 0 && x <= 1 && y >= 0 && y <= 1) probe({ type: "probe_slice", plane: number, x, y });
   });
   canvas.addEventListener("lostpointercapture", session.finish);

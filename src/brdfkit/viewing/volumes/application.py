@@ -142,10 +142,11 @@ class VolumeApplication:
 
     def follow(self, before: State, after: State) -> list[Message]:
         """Return the slices if they are shown and have changed."""
-        names = "show.slices", "slices"
+        names = "show.slices", "slices", "slices.low", "slices.high"
         if not after["show.slices"] or all(before.get(n) == after[n] for n in names):
             return []
-        planes, pictures = slices.draw_slices(self.volume, after["slices"])
+        window = after["slices.low"], after["slices.high"]
+        planes, pictures = slices.draw_slices(self.volume, after["slices"], window)
         return [({"type": "slices", "planes": planes}, pictures)]
 
     def answer(self, session: Session, message: dict[str, Any], data: bytes) -> list[Message]:

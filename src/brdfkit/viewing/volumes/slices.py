@@ -18,10 +18,15 @@ RAY_STEPS = 512  # along which the first visible voxel is sought
 MATTER_OPACITY = 0.5  # of a ray up to the voxel that counts as the first visible one
 
 
-def draw_slices(volume: Volume, at: list[int]) -> tuple[list[dict[str, Any]], list[bytes]]:
-    """Return the planes through the voxel `at` (i, j, k), and their pictures as PNGs."""
+def draw_slices(
+    volume: Volume, at: list[int], window: tuple[float, float]
+) -> tuple[list[dict[str, Any]], list[bytes]]:
+    """Return the planes through the voxel `at` (i, j, k), and their pictures as PNGs.
+
+    `window` are the values that are black and white.
+    """
     planes, pictures = [], []
-    low, high = volume.window
+    low, high = window
     for axis, across, up in PLANES:
         through = "xyz".index(axis)
         voxels = np.take(volume.values, at[through], axis=2 - through)  # (above, right)

@@ -50,7 +50,18 @@ def make_controls(volume: Volume, level: float, distance: float) -> list[Control
         *_light_controls(),
         *_tone_controls(),
         *_camera_controls(distance, volume.unit),
-        Control("show.slices", "Show the slices", "slices", False, "flag"),
+        *_slice_controls(*volume.range, volume.window),
+    ]
+
+
+def _slice_controls(low: float, high: float, window: tuple[float, float]) -> list[Control]:
+    """Return the controls of the slices, for values from `low` to `high`; `window` is shown."""
+    control = partial(Control, panel="slices")
+    shown: dict[str, Any] = {"low": low, "high": high, "when": {"show.slices": (True,)}}
+    return [
+        control("show.slices", "Show slices", default=False, kind="flag"),
+        control("slices.low", "Black at", default=window[0], **shown),
+        control("slices.high", "White at", default=window[1], **shown),
     ]
 
 
