@@ -1,8 +1,7 @@
 """A view that is served in a thread, and its page in a browser that reaches nothing else."""
 
-import threading
-import time
 from contextlib import contextmanager
+from functools import partial
 
 import pytest
 
@@ -14,20 +13,10 @@ from brdfkit.viewing.volumes.application import VolumeApplication
 @pytest.fixture(scope="module")
 def address(module_in_llvm):
     """The address of a view that is served in a thread."""
-    volume = bk.volumes.load("smoke", size=16)
-    listening = server.open_socket(0)
-    port = listening.getsockname()[1]
-    app = server.make_app(lambda: VolumeApplication(volume, "smoke"), port, "the-token")
-    runner = server.make_runner(app)
-    thread = threading.Thread(target=runner.run, args=([listening],), daemon=True)
-    thread.start()
-    while not runner.started:
-        time.sleep(0.02)
-    yield f"http://127.0.0.1:{port}/the-token/"
-    runner.should_exit = True
-    thread.join(20)
-    app.state.thread.stop()
-    listening.close()
+    volume, listening = bk.volumes.load("smoke", size=16), server.open_socket(0)
+    make = partial(VolumeApplication, volume, "smoke")
+    with server.serve(make, listening, "the-token") as address:
+        yield address
 
 
 @contextmanager

@@ -69,15 +69,17 @@ def test_the_pointer_finds_what_the_clipping_box_leaves():
     assert slices.find_visible_voxel(volume, extinction, [[0, 0.7, 0], [1, 0.75, 1]], ray) is None
 
 
-def test_a_saved_function_is_the_one_that_was_shown(mi):
+def test_a_saved_function_is_the_one_that_was_shown(mi, tmp_path):
     """A function that is loaded again gives the same table, though another one has its name."""
     application = VolumeApplication(bk.volumes.load("smoke", size=8))
     states = application.states
     state = states.change(
         states.first(), {"transfer.points": [[0, "#ff0000", 0], [1, "#00ff00", 1]]}
     )
-    loaded = states.with_function(states.first(), to_function(application, state), "default")
-    assert loaded["transfer.preset"] == "default (file)"
+    path = tmp_path / "default.json"
+    to_function(application, state).save(path)
+    states.add_function(path)
+    loaded = states.change(states.first(), {"transfer.preset": path.name})
     # The colours of points have 8 bits
     assert states.table(loaded) == pytest.approx(states.table(state), abs=0.01)
     assert states.load_preset("default") is states.function

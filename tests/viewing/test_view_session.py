@@ -2,6 +2,8 @@
 
 import io
 import json
+import threading
+import time
 
 import drjit as dr
 import numpy as np
@@ -10,6 +12,8 @@ from PIL import Image
 
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.viewing import session as session_file
+from brdfkit.viewing.render_thread import work_safely
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.volumes.application import VolumeApplication
 from brdfkit.viewing.volumes.volume_controls import LABELS
@@ -218,6 +222,100 @@ def test_a_film_is_rendered_frame_by_frame(session, monkeypatch):
     assert session.has_work()
 
 
+def test_a_film_of_the_last_volume_is_given_up(session, application):
+    """The list of tasks was empty when the step that was rendered meanwhile ended."""
+
+    def step():
+        session.open(application.first_state())  # as after a dropped file
+        yield [({"type": "file"}, [])]
+
+    session.tasks.append(step())
+    assert session.work() == []
+    assert session.tasks == []
+
+
+def test_another_volume_takes_no_word_on_the_last_picture_for_its_own(session, application):
+    ((old, _), _) = session.work()
+    session.open(application.first_state())
+    assert not session.has_work()  # before the page has drawn the old one
+    session.handle({"type": "shown", "number": old["number"]})
+    ((new, _), _) = session.work()
+    assert new["number"] == old["number"] + 1
+    session.handle({"type": "shown", "number": old["number"]})
+    assert session.shown < session.number
+    session.handle({"type": "shown", "number": 10**9})
+    assert session.shown == session.number
+
+
+def test_the_last_picture_is_sent_without_loss_when_the_page_is_ready(session, monkeypatch):
+    monkeypatch.setattr(session_file, "LARGEST_SAMPLES", 3)
+    ((first, _), _) = session.work()
+    assert session.work() == session.work() == []  # it converges while the page draws
+    assert session.converged
+    assert not session.has_work()
+    session.handle({"type": "shown", "number": first["number"]})
+    assert session.has_work()
+    ((last, (content,)), _) = session.work()
+    assert (last["mime"], content[:4]) == ("image/png", b"\x89PNG")
+    session.handle({"type": "shown", "number": last["number"]})
+    assert not session.has_work()
+
+
+def test_rendering_stops_when_the_page_says_nothing_more(session, monkeypatch):
+    session.work()
+    assert session.has_work()
+    monkeypatch.setattr(session_file, "PATIENCE", 0.0)
+    assert not session.has_work()
+    session.handle({"type": "shown", "number": session.number})
+    assert session.has_work()
+
+
+def test_messages_and_pictures_do_not_wait_for_each_other_for_ever(application, monkeypatch):
+    """The thread that rendered held the lock of the kernels, and waited for the session's."""
+    from brdfkit.core.jit.threads import in_turn
+
+    own, rendering = Session(application), threading.Event()
+
+    def render(*_):
+        rendering.set()
+        time.sleep(0.1)
+        return np.zeros((32, 32, 3), np.float32)
+
+    def answer(*_):
+        in_turn(lambda: None)()  # as after a dropped environment map
+        return []
+
+    monkeypatch.setattr(application, "render", in_turn(render))
+    monkeypatch.setattr(application, "answer", answer)
+    thread = threading.Thread(target=work_safely, args=[own], daemon=True)
+    thread.start()
+    rendering.wait()
+    with own.lock:
+        time.sleep(0.2)
+        assert own.handle({"type": "save"}) == []
+    thread.join(5)
+    assert not thread.is_alive()
+
+
+def test_a_long_answer_to_one_page_does_not_hold_up_the_others(session):
+    held = threading.Event()
+
+    def answer():
+        with session.lock:
+            held.wait()
+
+    thread = threading.Thread(target=answer, daemon=True)
+    thread.start()
+    while session.lock.acquire(blocking=False):
+        session.lock.release()
+    start = time.monotonic()
+    assert session.work() == []
+    assert time.monotonic() - start < 5
+    held.set()
+    thread.join()
+    assert session.has_work()
+
+
 def test_saved_settings_and_functions_come_back(session, tmp_path):
     session.handle({"type": "set", "changes": {"transfer.mode": "bumps2d", "density": 2.0}})
     ((_, (state,)),) = session.handle({"type": "save", "kind": "state"})
@@ -290,9 +388,17 @@ def test_slices_are_sent_when_they_are_shown_and_moved(session, volume):
     assert probe["text"].startswith(f"{volume.values[8, 0, 15]:.6g} at voxel 15, 0, 8")
 
 
-def test_an_error_of_the_renderer_is_said_and_pauses(session, monkeypatch):
-    from brdfkit.viewing.render_thread import work_safely
+def test_only_the_slices_that_change_are_sent(session):
+    shown = {"show.slices": True, "slices": [3, 8, 8]}
+    session.handle({"type": "set", "changes": shown})
+    moved = session.handle({"type": "set", "changes": {"slices": [4, 8, 8]}})
+    ((_, _), (message, pictures)) = moved
+    assert [plane["axis"] for plane in message["planes"]] == ["x"]
+    assert len(pictures) == 1
+    assert kinds(session.handle({"type": "set", "changes": {"slices": [4, 8, 8]}})) == ["state"]
 
+
+def test_an_error_of_the_renderer_is_said_and_pauses(session, monkeypatch):
     def fail(*_):
         raise BrdfkitError("The extinction is too large.")
 

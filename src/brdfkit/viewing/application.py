@@ -45,3 +45,6 @@ class Application(Protocol):
 
     def answer(self, session: Any, message: dict[str, Any], data: bytes) -> list[Message]:
         """Answer a message about the application; `session` is the `Session` that received it."""
+
+    def close(self) -> None:
+        """Forget the files of the page, which is gone."""

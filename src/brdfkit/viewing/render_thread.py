@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import threading
-import traceback
 from collections.abc import Callable
 
-from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.jit.threads import TURN
 from brdfkit.viewing.application import Message
+from brdfkit.viewing.pictures import describe_error
 from brdfkit.viewing.session import Session
 
 Send = Callable[[Message], None]  # hands a message to a page; it must not wait for the page
@@ -63,13 +61,8 @@ class RenderThread:
 def work_safely(session: Session) -> list[Message]:
     """Return the messages of a pass; an error becomes a message, and pauses the view."""
     try:
-        with TURN:
-            return session.work()
-    except BrdfkitError as error:
-        text = str(error)
+        return session.work()
     except Exception as error:  # a defect of ours must not end the thread in silence
-        traceback.print_exc()
-        text = f"The picture failed: {error}"
-    with session.lock:
-        session.paused = True
-    return [({"type": "error", "text": text}, []), session.describe_progress()]
+        with session.lock:
+            session.paused = True
+        return [describe_error(error), session.describe_progress()]

@@ -12,8 +12,8 @@ from brdfkit.core.memory import require_memory
 from brdfkit.rendering.render_materials import to_picture_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.viewing.volumes.application import VolumeApplication
-from brdfkit.viewing.volumes.opening import load_within_memory
 from brdfkit.viewing.volumes.saving import render_state
+from brdfkit.viewing.volumes.source import load_within_memory
 from brdfkit.volumes import Volume
 
 
@@ -59,7 +59,7 @@ def render_view(
     >>> brdfkit.viewing.render_view("smoke", view, spp=1, size=64)    # doctest: +SKIP
     """
     spp, seed = to_whole_number("spp", spp, 1), to_whole_number("seed", seed, 0)
-    loaded = volume if isinstance(volume, Volume) else load_within_memory(volume)
+    loaded = volume if isinstance(volume, Volume) else load_within_memory(volume)[0]
     size = to_picture_size(size)
     require_memory(size, 1)
     application = VolumeApplication(loaded, changes=dict(state or {}))

@@ -12,9 +12,10 @@ import hmac
 import json
 import secrets
 import socket
-from collections.abc import Callable
-from contextlib import suppress
-from typing import Any
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, TypeVar, cast
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing.application import Application, Message
@@ -22,8 +23,10 @@ from brdfkit.viewing.front_end import read_module, read_page_file
 from brdfkit.viewing.render_thread import RenderThread
 from brdfkit.viewing.session import Session
 
+R = TypeVar("R")
 HOST = "127.0.0.1"
 LARGEST_MESSAGE = 2 << 20  # bytes: the page sends files in pieces of 1 MB
+LONGEST_END = 0.5  # seconds for which the end waits for the server
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
@@ -55,10 +58,13 @@ def open_socket(port: int) -> socket.socket:
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         listening.bind((HOST, port))
+        listening.listen()  # only now a port that another program listens to is an error
     except (OSError, OverflowError) as error:
         listening.close()
         reason = getattr(error, "strerror", None) or error
-        raise BrdfkitError(f"Port {port} cannot be used ({reason}); give another --port.") from None
+        raise BrdfkitError(
+            f"Port {port} of {HOST} cannot be used ({reason}); give another --port."
+        ) from None
     return listening
 
 
@@ -102,18 +108,19 @@ def make_app(make_application: Callable[[], Application], port: int, token: str)
         await socket.accept()
         loop = asyncio.get_running_loop()
         outgoing: asyncio.Queue[Message] = asyncio.Queue()
-        session = Session(await loop.run_in_executor(None, make_application))
 
         def send(message: Message) -> None:
             with suppress(RuntimeError):  # the server has ended meanwhile
                 loop.call_soon_threadsafe(outgoing.put_nowait, message)
 
+        session = Session(await run_aside(make_application))
         writer = asyncio.create_task(write_messages(socket, outgoing))
         thread.add(session, send)
         try:
             await read_messages(socket, session, thread, outgoing)
         finally:
             thread.remove(session)
+            threading.Thread(target=session.close, daemon=True).start()  # it may wait for an answer
             writer.cancel()
 
     routes = [
@@ -126,35 +133,59 @@ def make_app(make_application: Callable[[], Application], port: int, token: str)
     return app
 
 
+async def run_aside(function: Callable[..., R], *arguments: Any) -> R:
+    """Return the result of a function that takes long, from a thread of its own.
+
+    The program's end does not wait for it, as it would for asyncio's own threads.
+    """
+    loop = asyncio.get_running_loop()
+    done: asyncio.Future[R] = loop.create_future()
+
+    def finish(result: R | None, error: BaseException | None) -> None:
+        if done.cancelled():
+            return
+        if error is None:
+            done.set_result(cast(R, result))
+        else:
+            done.set_exception(error)
+
+    def work() -> None:
+        outcome: tuple[R | None, BaseException | None]
+        try:
+            outcome = function(*arguments), None
+        except BaseException as error:
+            outcome = None, error
+        with suppress(RuntimeError):  # the server has ended meanwhile
+            loop.call_soon_threadsafe(finish, *outcome)
+
+    threading.Thread(target=work, daemon=True).start()
+    return await done
+
+
 async def read_messages(socket: Any, session: Session, thread: RenderThread, outgoing: Any) -> None:
     """Answer the messages of a page until it is gone."""
-    from starlette.websockets import WebSocketDisconnect
+    header: dict[str, Any] = {}  # a message whose bytes come next
+    while (event := await socket.receive())["type"] == "websocket.receive":
+        data = event.get("bytes")
+        if data is not None:
+            message, header = header, {}
+        else:
+            message = parse_message(event.get("text") or "")
+            if isinstance(message.get("bytes"), list):
+                header = message
+                continue
+        for answer in await run_aside(session.handle, message, data or b""):
+            outgoing.put_nowait(answer)
+        thread.wake()
 
-    loop, header = asyncio.get_running_loop(), None
+
+def parse_message(text: str) -> dict[str, Any]:
+    """Return a message of JSON; one without a type, which a session refuses, if it is none."""
     try:
-        while True:
-            event = await socket.receive()
-            if event["type"] != "websocket.receive":
-                return
-            data = event.get("bytes")
-            if data is None:
-                try:
-                    message = json.loads(event.get("text") or "")
-                except ValueError:
-                    return
-                if not isinstance(message, dict):
-                    return
-                if isinstance(message.get("bytes"), list):  # which come next
-                    header = message
-                    continue
-            else:
-                message, header = header or {}, None
-            answers = await loop.run_in_executor(None, session.handle, message, data or b"")
-            for answer in answers:
-                outgoing.put_nowait(answer)
-            thread.wake()
-    except WebSocketDisconnect:
-        return
+        message = json.loads(text)
+    except (ValueError, RecursionError):
+        return {}
+    return message if isinstance(message, dict) else {}
 
 
 async def write_messages(socket: Any, outgoing: Any) -> None:
@@ -170,10 +201,18 @@ async def write_messages(socket: Any, outgoing: Any) -> None:
             return
 
 
-def make_runner(app: Any) -> Any:
-    """Return the `uvicorn.Server` that runs an ASGI application."""
+@contextmanager
+def serve(
+    make_application: Callable[[], Application], listening: socket.socket, token: str = ""
+) -> Iterator[str]:
+    """Serve a view within the block, which gets its address.
+
+    `make_application` is called for each page. Without a `token` the address gets a random one.
+    """
     import uvicorn
 
+    port, token = listening.getsockname()[1], token or secrets.token_urlsafe(16)
+    app = make_app(make_application, port, token)
     config = uvicorn.Config(
         app,
         log_level="critical",
@@ -182,20 +221,13 @@ def make_runner(app: Any) -> Any:
         ws_max_size=LARGEST_MESSAGE,
         timeout_graceful_shutdown=0,
     )
-    return uvicorn.Server(config)
-
-
-def serve(
-    make_application: Callable[[], Application],
-    listening: socket.socket,
-    ready: Callable[[str], None],
-) -> None:
-    """Serve a view until Ctrl-C; `ready` is called with its address."""
-    port, token = listening.getsockname()[1], secrets.token_urlsafe(16)
-    app = make_app(make_application, port, token)
-    ready(f"http://{HOST}:{port}/{token}/")
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run, args=([listening],), daemon=True)
+    thread.start()
     try:
-        make_runner(app).run([listening])
+        yield f"http://{HOST}:{port}/{token}/"
     finally:
+        server.should_exit = True
         app.state.thread.stop()
+        thread.join(LONGEST_END)
         listening.close()

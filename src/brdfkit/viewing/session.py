@@ -10,14 +10,17 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
 
+from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.errors.noise import Accumulated
 from brdfkit.rendering.progressive import derive_seed
 from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.controls import State
-from brdfkit.viewing.encoding import encode_jpeg, encode_png
+from brdfkit.viewing.pictures import describe_error, describe_noise, make_pictures
 
 UNDO_STEPS = 100
 LARGEST_SAMPLES = 1024  # per pixel, after which a picture counts as converged
@@ -25,6 +28,25 @@ FIRST_PASSES = 4  # each of which is shown, since every pass is a visible gain
 REST_INTERVAL = 0.25  # seconds between two pictures after the first passes
 SIZE_STEP = 64  # pixels: every size of a picture needs kernels of its own, so there are few
 SMALLEST_SIDE, LARGEST_SIDE = 64, 2048
+SIDES = "width", "height"
+PATIENCE = 10.0  # seconds without a word on the last picture, after which nobody seems to look
+LONGEST_WAIT = 0.2  # seconds for which a pass waits for a message that is answered meanwhile
+
+
+@dataclass(frozen=True, eq=False)
+class Pass:
+    """A pass when it begins: what it shows, and the samples by side to which it adds its own.
+
+    `number` is that of the passes before it. With `anew` no sample is missing, and the picture is
+    only developed anew.
+    """
+
+    state: State
+    moving: bool
+    size: tuple[int, int]
+    number: int
+    samples: dict[int, Accumulated]
+    anew: bool
 
 
 class Session:
@@ -32,18 +54,25 @@ class Session:
 
     def __init__(self, application: Application) -> None:
         self.application = application
-        self.lock = threading.RLock()
-        self.open(application.first_state())
+        self.lock = threading.RLock()  # no function that runs kernels takes it
         self.size, self.visible, self.paused = (512, 512), True, False
+        self.number, self.shown = 0, 0  # of the last picture that was sent, and that is shown
+        self.open(application.first_state())
 
     def open(self, state: State) -> None:
         """Begin anew with a state, as for another volume."""
         self.state, self.first = dict(state), dict(state)
         self.undo_states: list[State] = [dict(state)]
         self.redo_states: list[State] = []
-        self.moving, self.number, self.shown = False, 0, 0
+        self.moving = False
         self.tasks: list[Iterator[list[Message]]] = []
         self.forget_samples()
+
+    def close(self) -> None:
+        """End what goes on, because the page is gone."""
+        with self.lock:
+            self.tasks = []
+            self.application.close()
 
     def forget_samples(self) -> None:
         """Begin the picture anew."""
@@ -58,8 +87,8 @@ class Session:
         with self.lock:
             try:
                 return self._answer(message, data)
-            except BrdfkitError as error:
-                return [({"type": "error", "text": str(error)}, []), self.describe_state()]
+            except Exception as error:  # the page must hear of a defect of ours, too
+                return [describe_error(error), self.describe_state()]
 
     def _answer(self, message: dict[str, Any], data: bytes) -> list[Message]:
         kind = message.get("type")
@@ -78,7 +107,8 @@ class Session:
             self._resize(message)
             return []
         if kind == "shown":
-            self.shown = max(self.shown, int(message.get("number", 0)))
+            number = to_whole_number("number", message.get("number"), 0)
+            self.shown = max(self.shown, min(number, self.number))
             return []
         if kind in ("pause", "visible"):
             self.paused = bool(message.get("paused", self.paused))
@@ -91,7 +121,7 @@ class Session:
         if not isinstance(state, dict):
             return []
         try:
-            self._change(state, moving=False)
+            self.change(state, moving=False)
         except BrdfkitError as error:
             return [({"type": "error", "text": f"The address has another state: {error}"}, [])]
         return []
@@ -111,11 +141,11 @@ class Session:
         if not isinstance(changes, dict):
             raise BrdfkitError("The page sent a message without changes; load it again.")
         before, expected = self.state, self.state | changes
-        self._change(changes, moving)
+        self.change(changes, moving)
         state = [self.describe_state()] if not moving or self.state != expected else []
         return [*state, *self.application.follow(before, self.state)]
 
-    def _change(self, changes: Mapping[str, Any], moving: bool) -> None:
+    def change(self, changes: Mapping[str, Any], moving: bool = False) -> None:
         """Change the state; the end of a move makes an undo step."""
         self._show(self.application.change(self.state, changes), moving)
         if not moving and self.state != self.undo_states[-1]:
@@ -128,11 +158,6 @@ class Session:
             self.moving = moving
             self.forget_samples()
         self.state, self.stale = dict(state), True
-
-    def replace_state(self, state: State) -> None:
-        """Show a state that the application made, as another undo step."""
-        self._show(state, moving=False)
-        self._remember()
 
     def _remember(self) -> None:
         """Make the state an undo step."""
@@ -150,16 +175,13 @@ class Session:
             self._show(self.undo_states[-1], moving=False)
 
     def _reset(self) -> None:
-        self._change(self.first, moving=False)
+        self.change(self.first, moving=False)
 
     def _resize(self, message: Mapping[str, Any]) -> None:
         """Take over the size of the page's canvas [pixels], in steps."""
-        size = [message.get("width", self.size[0]), message.get("height", self.size[1])]
-        if not all(isinstance(side, int) and side > 0 for side in size):
-            raise BrdfkitError("The page sent no size of its picture; load it again.")
         width, height = (
-            min(max(round(side / SIZE_STEP) * SIZE_STEP, SMALLEST_SIDE), LARGEST_SIDE)
-            for side in size
+            max(round(min(side, LARGEST_SIDE) / SIZE_STEP) * SIZE_STEP, SMALLEST_SIDE)
+            for side in (to_whole_number(name, message.get(name), 1) for name in SIDES)
         )
         if (width, height) != self.size:
             self.size = width, height
@@ -177,7 +199,9 @@ class Session:
         try:
             if self.tasks:
                 return True
-            if not self.visible or (self.shown < self.number and (self.moving or self.stale)):
+            waits = self.shown < self.number  # for the page, which is slow or gone
+            gone = waits and time.monotonic() - self.last_sent > PATIENCE
+            if not self.visible or gone or (waits and (self.moving or self.stale)):
                 return False
             return self.stale or not (self.paused or self.converged or self.moving)
         finally:
@@ -186,36 +210,92 @@ class Session:
     def work(self) -> list[Message]:
         """Render a pass of the newest state, and return its pictures if the page waits for them.
 
-        Tasks, such as a film, come first, step by step.
+        Tasks, such as a film, come first, step by step. Pictures are rendered and encoded outside
+        of the lock, so that messages are answered meanwhile.
         """
-        if self.tasks:
-            messages = next(self.tasks[0], None)
-            if messages is None:
-                self.tasks.pop(0)
-            return messages or []
-        with self.lock:
-            state, moving, number = self.state, self.moving, self.passes
-            samples, size = self.accumulated, self._picture_size(moving)
-            developed_anew = self.stale and bool(samples)  # no sample is missing
-            self.stale = False
-        if not developed_anew:
-            for side in range(self.application.sides(state)):
-                picture = self.application.render(state, side, size, moving, derive_seed(0, number))
-                samples[side] = samples.get(side, Accumulated()).add_pass(picture, 1)
-        with self.lock:
-            if samples is not self.accumulated and not moving:
-                return []  # the state has changed, and this picture is of the old one
-            if samples is self.accumulated:
-                self.passes += not developed_anew
-                self.converged = not moving and self.passes >= LARGEST_SAMPLES
-                if moving:
-                    self.accumulated = {}
-            now = time.monotonic()
-            urgent = moving or developed_anew or self.converged or number < FIRST_PASSES
-            if self.shown < self.number or not (urgent or now - self.last_sent > REST_INTERVAL):
+        with self._lock_briefly() as locked:
+            if not locked:
                 return []
-            self.last_sent = now
-            return self._send(state, samples, moving)
+            task = self.tasks[0] if self.tasks else None
+            begun = None if task else self._begin_pass()
+        return self._continue_task(task) if begun is None else self._render_pass(begun)
+
+    @contextmanager
+    def _lock_briefly(self) -> Iterator[bool]:
+        """Take the lock for the block, which gets False if a long answer, as to a file, has it.
+
+        The thread that renders waits for no answer, because it works for other pages, too.
+        """
+        locked = self.lock.acquire(timeout=LONGEST_WAIT)
+        try:
+            yield locked
+        finally:
+            if locked:
+                self.lock.release()
+
+    def _continue_task(self, task: Iterator[list[Message]] | None) -> list[Message]:
+        """Return the messages of the next step of a task, unless it is needed no more."""
+        messages = None if task is None else next(task, None)
+        with self.lock:
+            if task not in self.tasks:
+                return []
+            if messages is None:
+                self.tasks.remove(task)
+            return messages or []
+
+    def _begin_pass(self) -> Pass:
+        moving, samples = self.moving, self.accumulated
+        anew, self.stale = self.stale and bool(samples), False
+        size = self._picture_size(moving)
+        return Pass(self.state, moving, size, self.passes, samples, anew)
+
+    def _render_pass(self, begun: Pass) -> list[Message]:
+        """Render a pass, and return its pictures if it is time to send them."""
+        try:
+            samples = begun.samples if begun.anew else self._add_samples(begun)
+        except BrdfkitError:
+            if begun.samples is self.accumulated:
+                raise
+            return []  # an old state need not be possible any more, as with another volume
+        with self._lock_briefly() as locked:
+            number = self._end_pass(begun, samples) if locked else None
+            self.stale = self.stale or not locked  # what was rendered in vain is rendered again
+            lossless = self.converged and not begun.moving
+        if number is None:
+            return []
+        overlay = self.application.overlay(begun.state, self.size)
+        common = {"number": number, "overlay": overlay}
+        pictures = make_pictures(self.application, begun.state, samples, common, lossless)
+        return [*pictures, self.describe_progress()]
+
+    def _add_samples(self, begun: Pass) -> dict[int, Accumulated]:
+        """Render a pass of each side, and return the samples with it."""
+        state, samples, app = begun.state, begun.samples, self.application
+        seed = derive_seed(0, begun.number)
+        return {
+            side: samples.get(side, Accumulated()).add_pass(
+                app.render(state, side, begun.size, begun.moving, seed), 1
+            )
+            for side in range(app.sides(state))
+        }
+
+    def _end_pass(self, begun: Pass, samples: dict[int, Accumulated]) -> int | None:
+        """Keep the samples of a pass; return the number of its picture if it is sent."""
+        if begun.samples is self.accumulated:
+            self.passes += not begun.anew
+            self.converged = not begun.moving and self.passes >= LARGEST_SAMPLES
+            self.accumulated = {} if begun.moving else samples
+        elif not begun.moving:
+            return None  # the state has changed, and this picture is of the old one
+        now = time.monotonic()
+        first = begun.number < FIRST_PASSES
+        urgent = begun.moving or begun.anew or self.converged or first
+        if self.shown < self.number or not (urgent or now - self.last_sent > REST_INTERVAL):
+            self.stale = self.stale or self.converged  # the last picture is sent later
+            return None
+        self.last_sent = now
+        self.number += 1
+        return self.number
 
     def _picture_size(self, moving: bool) -> tuple[int, int]:
         """Return the size of the picture [pixels], which is smaller while something moves."""
@@ -223,42 +303,14 @@ class Session:
         width, height = (max(round(side * scale / 32) * 32, 32) for side in self.size)
         return width, height
 
-    def _send(self, state: State, samples: dict[int, Accumulated], moving: bool) -> list[Message]:
-        """Return the pictures and the progress as messages."""
-        messages: list[Message] = []
-        self.number += 1
-        overlay = self.application.overlay(state, self.size)
-        for side, accumulated in sorted(samples.items()):
-            colours = self.application.develop(state, accumulated.picture)
-            lossless = self.converged and not moving
-            mime = "image/png" if lossless else "image/jpeg"
-            picture = {
-                "type": "picture",
-                "number": self.number,
-                "side": side,
-                "mime": mime,
-                "overlay": overlay,
-            }
-            messages.append((picture, [encode_png(colours) if lossless else encode_jpeg(colours)]))
-        return [*messages, self.describe_progress()]
-
     def describe_progress(self) -> Message:
         """Return the message "progress"."""
         seconds = time.monotonic() - self.started
-        accumulated = self.accumulated.get(0)
         return {
             "type": "progress",
             "samples": self.passes,
             "per_second": round(self.passes / seconds, 1) if seconds > 0 else 0.0,
-            "noise": describe_noise(accumulated),
+            "noise": describe_noise(self.accumulated.get(0)),
             "paused": self.paused,
             "converged": self.converged,
         }, []
-
-
-def describe_noise(accumulated: Accumulated | None) -> str:
-    """Return the mean standard error of the pixels over their mean value, in words."""
-    error = None if accumulated is None else accumulated.standard_error
-    if accumulated is None or error is None or not accumulated.picture.mean() > 0:
-        return ""
-    return f"{100 * float(error.mean() / accumulated.picture.mean()):.2g} % noise"

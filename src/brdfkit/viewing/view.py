@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from brdfkit.viewing.volumes.application import VolumeApplication
-from brdfkit.viewing.volumes.opening import load_within_memory
+from brdfkit.viewing.volumes.source import load_within_memory
 from brdfkit.viewing.widget import make_widget
 from brdfkit.volumes import Volume
 
@@ -42,6 +42,5 @@ def view(volume: Volume | str | Path, state: Mapping[str, Any] | None = None) ->
     --------
     >>> bk.view("smoke")    # doctest: +SKIP
     """
-    loaded = volume if isinstance(volume, Volume) else load_within_memory(volume)
-    source = None if isinstance(volume, Volume) else str(volume)
-    return make_widget(VolumeApplication(loaded, source, dict(state or {})))
+    loaded, source = (volume, None) if isinstance(volume, Volume) else load_within_memory(volume)
+    return make_widget(VolumeApplication(loaded, source, state))

@@ -27,6 +27,17 @@ LARGEST_DOWNSAMPLE = 64  # the largest `downsample` that an error about memory p
 MEMORY_FACTOR = 1.2  # ratio of the memory that loading needs to that of the arrays of voxels
 
 
+class TooLargeError(BrdfkitError):
+    """The error for a file whose voxels need more memory than there is.
+
+    `downsample` is the smallest one with which they fit, or None.
+    """
+
+    def __init__(self, message: str, downsample: int | None) -> None:
+        super().__init__(message)
+        self.downsample = downsample
+
+
 def load(
     path: str | os.PathLike[str],
     *,
@@ -194,7 +205,7 @@ def _choose_loaded_dtype(stored: StoredVolume, downsample: int) -> np.dtype[Any]
 
 
 def _require_memory(file: VolumeFile, stored: StoredVolume, downsample: int) -> None:
-    """Raise `BrdfkitError` if loading the voxels needs more memory than is available."""
+    """Raise `TooLargeError` if loading the voxels needs more memory than is available."""
     available = psutil.virtual_memory().available
     needed = _estimate_memory(stored, downsample)
     if needed <= available:
@@ -202,11 +213,12 @@ def _require_memory(file: VolumeFile, stored: StoredVolume, downsample: int) -> 
     larger = range(downsample + 1, LARGEST_DOWNSAMPLE + 1)
     fits = next((n for n in larger if _estimate_memory(stored, n) <= available), None)
     size = "×".join(map(str, stored.shape[::-1]))
-    raise file.error(
+    error = file.error(
         f"its {size} voxels would take about {needed / 1e9:,.2g} GB of memory, of which "
         f"{available / 1e9:,.2g} GB are available; "
         + (f"load it with downsample={fits}" if fits else "check that it is the right file")
     )
+    raise TooLargeError(str(error), fits)
 
 
 def _require_memory_to_make(name: str, size: tuple[int, int, int]) -> None:

@@ -8,29 +8,29 @@ from typing import Any
 import click
 
 from brdfkit.cli.console import Console
-from brdfkit.cli.options import writing_options
+from brdfkit.cli.options import output_option, writing_options
 from brdfkit.core.errors import BrdfkitError
 
 
 @click.command()
 @click.argument("volume", metavar="VOLUME")
+@output_option("Picture to write instead of showing a page: .png, or .exr with a .png beside it.")
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=0, help="Port of the page; 0 is any."
 )
 @click.option("--no-browser", is_flag=True, help="Print the address, and open no browser.")
 @click.option("--downsample", type=click.IntRange(1), metavar="N", help="Make N³ voxels one.")
 @click.option("--state", metavar="JSON", help="Settings to begin with, as the page copies them.")
-@click.option("--save", type=click.Path(path_type=Path), help="Write this picture, show no page.")
-@click.option("--size", default="512x512", show_default=True, help="Size of the saved picture.")
-@click.option("--spp", type=click.IntRange(1), default=64, help="Samples of the saved picture.")
+@click.option("--size", default="512x512", show_default=True, help="Size of the written picture.")
+@click.option("--spp", type=click.IntRange(1), default=64, help="Samples of the written picture.")
 @writing_options
 def view(
     volume: str,
+    output: Path | None,
     port: int,
     no_browser: bool,
     downsample: int | None,
     state: str | None,
-    save: Path | None,
     size: str,
     spp: int,
     console: Console,
@@ -41,31 +41,12 @@ def view(
     orbits it, edits its transfer function, exchanges renderers, light and tone mapping, and shows
     slices. It is served to this computer alone; over SSH, forward the port that is printed.
     """
-    from brdfkit.viewing.volumes.opening import load_within_memory
-
-    changes = _parse_state(state)
     settings = {} if downsample is None else {"downsample": downsample}
-    if save is not None:
-        _save_picture(load_within_memory(volume, **settings), changes, save, size, spp, console)
-        return
-    from brdfkit.viewing import server
-    from brdfkit.viewing.volumes.application import VolumeApplication
-
-    server.require_server()
-    listening = server.open_socket(port)
-    loaded = load_within_memory(volume, **settings)
-
-    def make_application() -> VolumeApplication:
-        return VolumeApplication(loaded, volume, changes)
-
-    make_application()  # an impossible state is an error before the page opens
-
-    def announce(address: str) -> None:
-        click.echo(f"{loaded.name}: {address}  (Ctrl-C ends it)")
-        if not no_browser:
-            _open_browser(address)
-
-    server.serve(make_application, listening, announce)
+    changes = _parse_state(state)
+    if output is None:
+        _show_page(volume, settings, changes, port, no_browser, console)
+    else:
+        _write_picture(volume, settings, changes, output, _parse_size(size), spp, console)
 
 
 def _parse_state(state: str | None) -> dict[str, Any]:
@@ -90,28 +71,106 @@ def _parse_state(state: str | None) -> dict[str, Any]:
     return changes
 
 
-def _save_picture(
-    volume: Any, changes: dict[str, Any], path: Path, size: str, spp: int, console: Console
+def _parse_size(size: str) -> tuple[int, int]:
+    """Return the numbers of --size."""
+    width, _, height = size.lower().partition("x")
+    if not (width.isdecimal() and height.isdecimal() and int(width) and int(height)):
+        raise BrdfkitError(f"--size {size} should be width and height, as 640x480.")
+    return int(width), int(height)
+
+
+def _write_picture(
+    volume: str,
+    settings: dict[str, Any],
+    changes: dict[str, Any],
+    output: Path,
+    size: tuple[int, int],
+    spp: int,
+    console: Console,
 ) -> None:
     """Render the picture of a state, and write it."""
-    from brdfkit.viewing import render_view
+    from brdfkit.cli.arguments import check_picture_path
+    from brdfkit.cli.picture_output import write_result
+    from brdfkit.viewing.volumes.saving import render_state
 
-    try:
-        width, height = (int(side) for side in size.lower().split("x"))
-    except ValueError:
-        raise BrdfkitError(f"--size {size} should be width and height, as 640x480.") from None
-    picture = render_view(volume, changes, size=(width, height), spp=spp)
-    picture.write(path)
-    console.print_written([path])
+    path = check_picture_path(output)
+    application = _make_application(volume, settings, changes, console)
+    with console.progress("render") as progress:
+        first = application.first_state()
+        picture = render_state(application, first, size, spp, progress=progress)
+    write_result(picture, path, picture.tone_mapping, console)
 
 
-def _open_browser(address: str) -> None:
-    """Open the page in the user's browser, if there is one."""
+def _make_application(
+    volume: str, settings: dict[str, Any], changes: dict[str, Any], console: Console
+) -> Any:
+    """Load the volume, and return the view of it."""
+    from brdfkit.viewing.volumes.application import VolumeApplication
+    from brdfkit.viewing.volumes.source import load_within_memory
+
+    with console.progress(f"read {volume}"):
+        loaded, source = load_within_memory(volume, **settings)
+    return VolumeApplication(loaded, source, changes)
+
+
+def _show_page(
+    volume: str,
+    settings: dict[str, Any],
+    changes: dict[str, Any],
+    port: int,
+    no_browser: bool,
+    console: Console,
+) -> None:
+    """Serve the page until Ctrl-C, and open it in the browser."""
+    import time
+
+    from brdfkit.viewing import server
+
+    server.require_server()
+    listening = server.open_socket(port)
+    first = _make_application(volume, settings, changes, console)
+    waiting = [first]  # for the first page; each other page gets a view of its own
+
+    def make_application() -> Any:
+        try:
+            return waiting.pop()
+        except IndexError:
+            return type(first)(first.volume, first.source, changes)
+
+    with server.serve(make_application, listening) as address:
+        opened = not no_browser and _open_browser(address)
+        click.echo(_describe_page(first.volume.name, address, opened))
+        while True:  # until Ctrl-C
+            time.sleep(3600)
+
+
+def _describe_page(name: str, address: str, opened: bool) -> str:
+    """Return the sentence that says where the page is."""
+    import os
+    from urllib.parse import urlsplit
+
+    if opened:
+        return f"{name} is shown at {address} until Ctrl-C."
+    if "SSH_CONNECTION" in os.environ:
+        port = urlsplit(address).port
+        here = os.environ["SSH_CONNECTION"].split()[2:3] or ["HOST"]
+        forward = f"ssh -L {port}:127.0.0.1:{port} {here[0]}"
+        return f"{name}: forward its port by '{forward}', and open {address} (until Ctrl-C)."
+    return f"{name}: open {address} in a browser (until Ctrl-C)."
+
+
+def _open_browser(address: str) -> bool:
+    """Open the page in the user's browser; return whether there is one with a window."""
+    import os
+    import sys
     import webbrowser
 
+    windows = sys.platform in ("win32", "darwin") or {"DISPLAY", "WAYLAND_DISPLAY"} & set(
+        os.environ
+    )
+    if not windows or "SSH_CONNECTION" in os.environ:
+        return False  # `webbrowser` would open one of text in this terminal
     try:
-        opened = webbrowser.open(address)
+        return webbrowser.open(address)
     except webbrowser.Error:
-        opened = False
-    if not opened:
-        click.echo("No browser was found: open the address in one.", err=True)
+        return False

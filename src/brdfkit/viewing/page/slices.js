@@ -43,7 +43,8 @@ function createSlices(session, probe) {
     const bitmaps = await Promise.all(
       pictures.map((bytes) => createImageBitmap(new Blob([bytes], { type: "image/png" }))),
     );
-    planes.forEach((plane, k) => views[k].show(plane, bitmaps[k]));
+    // All three at first, and then only those that change
+    planes.forEach((plane, k) => views["zyx".indexOf(plane.axis)].show(plane, bitmaps[k]));
   });
 
   session.on("state", (names) => {

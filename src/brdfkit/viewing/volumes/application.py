@@ -2,31 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from brdfkit.core.arguments import to_number, to_whole_number
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.colours import to_srgb
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit.threads import in_turn
 from brdfkit.viewing.application import Message
 from brdfkit.viewing.controls import State
-from brdfkit.viewing.encoding import encode_png
 from brdfkit.viewing.session import Session
-from brdfkit.viewing.volumes import saving, slices
+from brdfkit.viewing.volumes import saving, scripts, slices
+from brdfkit.viewing.volumes.histograms import make_histograms
 from brdfkit.viewing.volumes.live_scene import LiveScene, SceneKind
-from brdfkit.viewing.volumes.opening import Upload, load_upload
+from brdfkit.viewing.volumes.opening import load_raw, load_upload
+from brdfkit.viewing.volumes.source import Source
 from brdfkit.viewing.volumes.state import VolumeState, list_controls, needs_samples_anew
+from brdfkit.viewing.volumes.uploads import Upload
 from brdfkit.viewing.volumes.volume_controls import PANELS
 from brdfkit.volumes import Volume
 
 SCENES = (
     6  # kept at most, as many as a wipe between two renderers needs at rest and moving, and more
 )
-BINS, GRADIENT_BINS = 256, 128  # of the joint histogram
-FINE_BINS = 1024  # at most, of the histogram of values, whose parts the page can enlarge
-COUNTED_VOXELS = 4_000_000  # evenly spread
 ENDS = {"RAS": ["L", "R", "P", "A", "I", "S"]}  # names of the ends of the axes x, y and z
 
 
@@ -34,22 +37,53 @@ class VolumeApplication:
     """A view of a volume.
 
     `source` is what `brdfkit.volumes.load` read it from, for the scripts that are copied; None for
-    a volume that was made in Python. `changes` are settings that differ from the first ones.
-    Raises `BrdfkitError` if one of them is not possible.
+    a volume that was made in Python. `changes` are settings that differ from the first ones; the
+    environment map and the preset among them may be files. Raises `BrdfkitError` if one of them is
+    not possible.
     """
 
     def __init__(
-        self, volume: Volume, source: str | None = None, changes: State | None = None
+        self,
+        volume: Volume,
+        source: Source | str | None = None,
+        changes: Mapping[str, Any] | None = None,
     ) -> None:
-        self.show(volume, source, changes)
+        self.upload = Upload()
+        self.show(volume, Source(source) if isinstance(source, str) else source, changes)
 
-    def show(self, volume: Volume, source: str | None, changes: State | None = None) -> None:
+    @in_turn
+    def show(
+        self, volume: Volume, source: Source | None, changes: Mapping[str, Any] | None = None
+    ) -> None:
         """Show another volume."""
         self.volume, self.source = volume, source
         self.states = VolumeState(volume)
         self.scenes: dict[SceneKind, LiveScene] = {}
-        self.upload = Upload()
-        self.first = self.change(self.states.first(), changes or {})
+        self.first = self.change(self.states.first(), self._read_files(changes or {}))
+
+    def _read_files(self, changes: Mapping[str, Any]) -> State:
+        """Return changes with the names of their files, after they were read."""
+        readers = {
+            "light.environment": self.states.add_environment,
+            "transfer.preset": self.states.add_function,
+        }
+        read = dict(changes)
+        for name in readers.keys() & changes.keys():
+            path = Path(str(changes[name]))
+            if path.is_file():
+                readers[name](path)
+                read[name] = path.name
+        return read
+
+    @in_turn
+    def add_environment(self, path: Path) -> None:
+        """Offer the environment map of a file; scenes with an older one of its name are closed."""
+        self.states.add_environment(path)
+        self.scenes.clear()
+
+    def close(self) -> None:
+        """Forget the files of the page, which is gone."""
+        self.upload.clear()
 
     def first_state(self) -> State:
         """Return the state with which a view begins."""
@@ -57,18 +91,8 @@ class VolumeApplication:
 
     def describe(self) -> Message:
         """Return the message "open": the panels, the controls, the volume and its histograms."""
-        volume = self.volume
-        live = self.states.live
-        low, high = live.low, live.high
-        step = -(-volume.values.size // COUNTED_VOXELS)
-        values = volume.values.reshape(-1)[::step]
-        gradients = volume.gradient_magnitude.reshape(-1)[::step]
-        # Whole numbers get no finer bins than there are numbers, for every other bin were empty
-        finest = FINE_BINS if np.any(values % 1) else min(max(int(high - low), BINS), FINE_BINS)
-        counts = np.histogram(values, finest, (low, high))[0]
-        ends = (0, live.steepest), (low, high)
-        joint = np.histogram2d(gradients, values, (GRADIENT_BINS, BINS), ends)[0]
-        shade = np.log1p(joint) / max(np.log1p(joint.max()), 1e-9)
+        volume, live = self.volume, self.states.live
+        counts, joint = make_histograms(volume, (live.low, live.high), live.steepest)
         return {
             "title": volume.name,
             "panels": [
@@ -80,14 +104,14 @@ class VolumeApplication:
                 "spacing": volume.spacing,
                 "unit": volume.unit,
                 "value_unit": self.value_unit,
-                "range": [low, high],
+                "range": [live.low, live.high],
                 "steepest": live.steepest,
                 "axes": volume.axes,
             },
-            "histogram": counts.tolist(),
+            "histogram": counts,
             "presets": self.states.presets(),
             "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
-        }, [encode_png(np.rint(255 * shade[::-1]).astype(np.uint8))]
+        }, [joint]
 
     @property
     def value_unit(self) -> str:
@@ -106,6 +130,7 @@ class VolumeApplication:
         """Return whether the samples of one state are not those of another."""
         return needs_samples_anew(before, after)
 
+    @in_turn
     def render(
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
     ) -> AnyArray:
@@ -142,23 +167,27 @@ class VolumeApplication:
 
     def follow(self, before: State, after: State) -> list[Message]:
         """Return the slices if they are shown and have changed."""
-        names = "show.slices", "slices", "slices.low", "slices.high"
-        if not after["show.slices"] or all(before.get(n) == after[n] for n in names):
+        if not after["show.slices"]:
             return []
-        window = after["slices.low"], after["slices.high"]
-        planes, pictures = slices.draw_slices(self.volume, after["slices"], window)
-        return [({"type": "slices", "planes": planes}, pictures)]
+        drawn_by = "show.slices", "slices.low", "slices.high"
+        drawn = all(before.get(name) == after[name] for name in drawn_by)
+        window, shown = (after["slices.low"], after["slices.high"]), before.get("slices")
+        planes, pictures = slices.draw_slices(
+            self.volume, after["slices"], window, shown if drawn else None
+        )
+        return [({"type": "slices", "planes": planes}, pictures)] if planes else []
 
     def answer(self, session: Session, message: dict[str, Any], data: bytes) -> list[Message]:
         """Answer a message that is about the volume."""
-        answers = {
+        answers: dict[str, Callable[[Session, dict[str, Any]], list[Message]]] = {
             "probe": self._probe,
             "probe_slice": self._probe_slice,
             "save": self._save,
             "copy": self._copy,
+            "raw": partial(load_raw, self),
         }
         kind = str(message.get("type"))
-        if kind in ("upload", "raw"):
+        if kind == "upload":
             return load_upload(self, session, message, data)
         if kind not in answers:
             raise BrdfkitError(
@@ -168,7 +197,7 @@ class VolumeApplication:
 
     def _probe(self, session: Session, message: dict[str, Any]) -> list[Message]:
         """Return the value of the first voxel that is visible under the pointer."""
-        place = np.clip([float(message.get("x", 0)), float(message.get("y", 0))], 0, 1)
+        place = np.clip([to_number(name, message.get(name)) for name in "xy"], 0, 1)
         state, (width, height) = session.state, session.size
         side = int(bool(state["second"]) and place[0] > state["wipe"])
         ray = self.states.camera(state).cast_ray(place[0], place[1], width / height)
@@ -180,8 +209,8 @@ class VolumeApplication:
 
     def _probe_slice(self, session: Session, message: dict[str, Any]) -> list[Message]:
         """Return the value of the voxel under the pointer in a slice."""
-        plane = min(max(int(message.get("plane", 0)), 0), 2)
-        x, y = float(message.get("x", 0)), float(message.get("y", 0))
+        plane = to_whole_number("plane", message.get("plane"), 0, len(slices.PLANES) - 1)
+        x, y = (to_number(name, message.get(name)) for name in "xy")
         at = slices.move_crosshair(self.volume, session.state["slices"], plane, x, y)
         text = slices.describe_voxel(self.volume, at, self.value_unit)
         return [({"type": "probe", "text": text, "voxel": at}, [])]
@@ -193,6 +222,6 @@ class VolumeApplication:
     def _copy(self, session: Session, message: dict[str, Any]) -> list[Message]:
         """Return the view as a script or a command."""
         kind = str(message.get("kind"))
-        write = saving.write_command if kind == "command" else saving.write_script
+        write = scripts.write_command if kind == "command" else scripts.write_script
         title = "The same picture from a command" if kind == "command" else "The same from Python"
         return [({"type": "text", "title": title, "text": write(self, session)}, [])]

@@ -1,10 +1,9 @@
-"""Files of a view, such as its picture and its settings, and scripts that repeat it."""
+"""Files of a view, such as its picture, its settings and an orbit."""
 
 from __future__ import annotations
 
 import io
 import json
-import shlex
 import tempfile
 import zipfile
 from collections.abc import Iterator
@@ -16,6 +15,7 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.progress_bar import Progress
 from brdfkit.images.errors.noise import Accumulated
 from brdfkit.rendering.progressive import derive_seed
 from brdfkit.rendering.result import Rendering
@@ -38,7 +38,6 @@ KINDS = {
     "film": "Orbit (PNG frames)",
 }
 FRAMES, FILM_SAMPLES = 36, 8  # of an orbit
-SAMPLES = 64  # per pixel in a copied script, if the page has fewer
 
 
 def join_sides(pictures: dict[int, AnyArray], wipe: float) -> AnyArray:
@@ -51,7 +50,12 @@ def join_sides(pictures: dict[int, AnyArray], wipe: float) -> AnyArray:
 
 
 def render_state(
-    application: Application, state: State, size: tuple[int, int], spp: int, seed: int = 0
+    application: Application,
+    state: State,
+    size: tuple[int, int],
+    spp: int,
+    seed: int = 0,
+    progress: Progress | None = None,
 ) -> Rendering:
     """Return the picture of a state, of `spp` passes, the same as the page's for the seed 0."""
     import time
@@ -62,6 +66,8 @@ def render_state(
         for side in sums:
             picture = application.render(state, side, size, False, derive_seed(seed, number))
             sums[side] = sums[side].add_pass(picture, 1)
+        if progress:
+            progress(number + 1, spp)
     joined = join_sides({side: total.picture for side, total in sums.items()}, state["wipe"])
     tone = application.states.tone_mapping(state)
     name = application.volume.name
@@ -72,6 +78,8 @@ def render_state(
 def make_file(application: Application, session: Session, kind: str) -> Message:
     """Return the message "file" of a kind of `KINDS`; a film follows when it is finished."""
     if kind == "film":
+        if session.tasks:
+            raise BrdfkitError("An orbit is being rendered already; wait for its file.")
         session.tasks.append(_make_film(application, session.state, session.size))
         return {"type": "busy", "text": "The orbit is rendered", "fraction": 0.0}, []
     makers = {
@@ -160,40 +168,3 @@ def _make_film(
             yield [({"type": "busy", "text": text, "fraction": (number + 1) / FRAMES}, [])]
     file = {"type": "file", "name": f"{name}.orbit.zip", "mime": "application/zip"}
     yield [({"type": "busy", "text": "", "fraction": None}, []), (file, [stream.getvalue()])]
-
-
-def changes_from_first(application: Application, state: State) -> State:
-    """Return what of a state differs from the first one."""
-    first = application.states.first()
-    return {name: value for name, value in state.items() if value != first[name]}
-
-
-def write_script(application: Application, session: Session) -> str:
-    """Return a Python script that makes the session's picture."""
-    changes = changes_from_first(application, session.state)
-    lines = [f"    {name!r}: {value!r}," for name, value in changes.items()]
-    state = "{\n" + "\n".join(lines) + "\n}" if lines else "{}"
-    source = application.source
-    volume = "volume" if source is None else f"brdfkit.volumes.load({source!r})"
-    samples = max(session.passes, SAMPLES)
-    return (
-        "import brdfkit\n\n"
-        f"state = {state}\n"
-        f"picture = brdfkit.viewing.render_view({volume}, state, size={session.size}, "
-        f"spp={samples})\n"
-        f"picture.write({application.volume.name + '.png'!r})\n"
-    )
-
-
-def write_command(application: Application, session: Session) -> str:
-    """Return a command that makes the session's picture."""
-    if application.source is None:
-        raise BrdfkitError(
-            "This volume was made in Python, and no command can load it; copy Python."
-        )
-    changes = changes_from_first(application, session.state)
-    width, height = session.size
-    samples = max(session.passes, SAMPLES)
-    words = ["brdfkit", "view", application.source, "--state", json.dumps(changes)]
-    words += ["--size", f"{width}x{height}", "--spp", str(samples)]
-    return shlex.join([*words, "--save", f"{application.volume.name}.png"])

@@ -19,16 +19,18 @@ MATTER_OPACITY = 0.5  # of a ray up to the voxel that counts as the first visibl
 
 
 def draw_slices(
-    volume: Volume, at: list[int], window: tuple[float, float]
+    volume: Volume, at: list[int], window: tuple[float, float], shown: list[int] | None = None
 ) -> tuple[list[dict[str, Any]], list[bytes]]:
     """Return the planes through the voxel `at` (i, j, k), and their pictures as PNGs.
 
-    `window` are the values that are black and white.
+    `window` are the values that are black and white. Planes through the voxel `shown` are left out.
     """
     planes, pictures = [], []
     low, high = window
     for axis, across, up in PLANES:
         through = "xyz".index(axis)
+        if shown is not None and shown[through] == at[through]:
+            continue
         voxels = np.take(volume.values, at[through], axis=2 - through)  # (above, right)
         step = -(-max(voxels.shape) // LONGEST)
         shares = (voxels[::step, ::step].astype(float) - low) / ((high - low) or 1.0)

@@ -126,15 +126,14 @@ class VolumeState:
         _, rgb = load_radiance(path)
         self.environments[path.name] = rgb
         control = self.controls["light.environment"]
-        choices = (*control.choices, (path.name, path.name))
-        self.controls[control.name] = replace(control, choices=choices)
+        choices = dict.fromkeys([*control.choices, (path.name, path.name)])
+        self.controls[control.name] = replace(control, choices=tuple(choices))
 
-    def with_function(self, state: State, function: TransferFunction, name: str) -> State:
-        """Return the state with the transfer function of a file, a further preset called `name`."""
-        built_in = ("default", *CHOSEN, *list_presets())
-        name = f"{name} (file)" if name in built_in else name
-        self.functions[name] = self._scale(function)
-        return self.change(state, {"transfer.preset": name})
+    def add_function(self, path: Path) -> None:
+        """Offer the transfer function of a file as a preset with the file's name."""
+        function = replace(TransferFunction.load(path), name=path.name)
+        self.functions[path.name] = self._scale(function)
+        self.last_table = {}, np.zeros(0)  # of an older function of this name
 
     def change(self, state: State, changes: Mapping[str, Any]) -> State:
         """Return the state after `changes`; raise `BrdfkitError` if one is not possible."""
@@ -145,9 +144,10 @@ class VolumeState:
             control = self.controls.get(name)
             new[name] = control.check(value) if control else self._check(name, value)
         if "transfer.preset" in changes and "transfer.points" not in changes:
-            new |= self._describe_function(self.load_preset(new["transfer.preset"]))
+            filled = self._describe_function(self.load_preset(new["transfer.preset"]))
+            new |= {name: value for name, value in filled.items() if name not in changes}
         elif "transfer.points" in changes and state["transfer.mode"] == "preset":
-            new["transfer.mode"] = "points"
+            new |= {"transfer.mode": "points"} if "transfer.mode" not in changes else {}
         return new
 
     def table(self, state: State) -> AnyArray:

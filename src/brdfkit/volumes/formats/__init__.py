@@ -48,6 +48,12 @@ def is_image_series(folder: Path) -> bool:
     )
 
 
+def is_recognised(path: Path) -> bool:
+    """Return whether the first bytes of a file are those of a format."""
+    head = _volume_file.read_first_bytes(path, HEAD)
+    return any(module.sniff(head) for module in list_formats())
+
+
 def read_header(file: VolumeFile) -> StoredVolume:
     """Recognise a file's format, and read its header by the module of this format."""
     stored: StoredVolume = _choose_format(file).read_header(file)

@@ -1,0 +1,320 @@
+"""Files that are dropped on a page: what they open, and that nothing of them stays."""
+
+import json
+import shutil
+from functools import partial
+
+import nibabel
+import numpy as np
+import psutil
+import pytest
+
+import brdfkit as bk
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.lighting.environments.map_files import write_map
+from brdfkit.rendering.progressive import derive_seed
+from brdfkit.viewing.session import Session
+from brdfkit.viewing.volumes import source, uploads
+from brdfkit.viewing.volumes.application import VolumeApplication
+
+GRID = np.arange(4 * 5 * 6, dtype=np.uint8).reshape(6, 5, 4)  # (nz, ny, nx)
+MHD = "ObjectType = Image\nNDims = 3\nDimSize = 4 5 6\nElementType = MET_UCHAR\n"
+NHDR = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 5 6\nencoding: raw\n"
+HEADER = {"type": "raw", "size": [4, 5, 6], "dtype": "uint8", "spacing": [1, 1, 2], "offset": 0}
+
+
+@pytest.fixture(scope="module")
+def volume():
+    return bk.volumes.load("smoke", size=16)
+
+
+@pytest.fixture
+def session(mi, volume, tmp_path, monkeypatch):
+    """A session whose uploads lie in `tmp_path`."""
+    monkeypatch.setattr(
+        uploads, "TemporaryDirectory", partial(uploads.TemporaryDirectory, dir=tmp_path)
+    )
+    session = Session(VolumeApplication(volume, "smoke"))
+    session.handle({"type": "hello", "width": 64, "height": 64, "state": None})
+    yield session
+    session.close()
+    assert list(tmp_path.glob("brdfkit-view-*")) == []
+
+
+def kinds(messages):
+    return [message["type"] for message, _ in messages]
+
+
+def pieces(files, kinds):
+    """The messages by which the page sends files, by name, and their bytes."""
+    for index, (name, content) in enumerate(files.items()):
+        message = {"type": "upload", "name": name, "size": len(content), "count": len(files)}
+        message |= {"kind": kinds.get(name, "volume"), "index": index}
+        half = len(content) // 2
+        yield message | {"offset": 0}, content[:half]
+        yield message | {"offset": half}, content[half:]
+
+
+def drop(session, files, **kinds):
+    """Drop files, by name; return Python's answers to the last piece."""
+    for message, data in pieces(files, kinds):
+        answers = session.handle(message, data)
+    return [message for message, _ in answers]
+
+
+def nifti_pair(folder):
+    """The bytes of a NIfTI pair."""
+    nibabel.save(nibabel.Nifti1Pair(GRID.T, np.diag([2, 2, 3, 1])), folder / "head.img")
+    return {name: (folder / name).read_bytes() for name in ("head.hdr", "head.img")}
+
+
+def radiance(folder):
+    """The bytes of an environment map of Radiance's."""
+    rows = b"".join(bytes([128, 128, 128, 129]) for _ in range(4 * 2))
+    return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n" + rows
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+@pytest.mark.parametrize("kind", ["mhd", "nhdr", "elsewhere", "nifti"])
+def test_a_header_and_its_voxels_are_one_volume(session, tmp_path, kind, reverse):
+    files = {
+        "mhd": {"a.mhd": f"{MHD}ElementDataFile = a.raw\n".encode(), "a.raw": GRID.tobytes()},
+        "elsewhere": {
+            "a.mhd": f"{MHD}ElementDataFile = data/a.raw".encode(),
+            "a.raw": GRID.tobytes(),
+        },
+        "nhdr": {"a.nhdr": f"{NHDR}data file: ./a.raw\n".encode(), "a.raw": GRID.tobytes()},
+    }.get(kind) or nifti_pair(tmp_path)
+    names = sorted(files, reverse=reverse)
+    opened = drop(session, {n: files[n] for n in names}, **{"head.hdr": "environment"})[0]
+    assert (opened["type"], opened["volume"]["size"]) == ("open", (4, 5, 6))
+    assert (session.application.volume.values == GRID).all()
+
+
+def test_a_header_names_no_file_of_another_folder(session, tmp_path):
+    secret = tmp_path / "secret.raw"
+    secret.write_bytes(GRID.tobytes())
+    for header in (f"{MHD}ElementDataFile = {secret}\n", f"{MHD}ElementDataFile=../secret.raw"):
+        assert drop(session, {"a.mhd": header.encode()})[0]["type"] == "error"
+    for key in ("data file", "datafile"):
+        header = f"{NHDR}{key}: {secret}\n\n"
+        assert drop(session, {"a.nhdr": header.encode()})[0]["type"] == "error"
+        header = header.replace("\n", "\n" + 10_000 * "# long\n", 1)
+        (error, _) = drop(session, {"a.nhdr": header.encode()})
+        assert "its header is too long" in error["text"]
+
+
+def test_a_hdr_is_an_environment_map_if_it_is_radiance(session, tmp_path):
+    opened = drop(session, {"lamp.hdr": radiance(tmp_path)}, **{"lamp.hdr": "environment"})[0]
+    assert opened["state"]["light.environment"] == "lamp.hdr"
+    assert session.application.volume.name == "smoke"
+
+
+def test_a_volume_and_a_map_in_one_drop(session, tmp_path):
+    files = {"lamp.hdr": radiance(tmp_path)} | nifti_pair(tmp_path)
+    opened = drop(session, files, **{"lamp.hdr": "environment", "head.hdr": "environment"})
+    assert (opened[-1]["title"], opened[-1]["state"]["light.environment"]) == ("head", "lamp.hdr")
+
+
+def test_another_map_of_the_same_name_replaces_the_first(session, tmp_path):
+    pictures = []
+    for colour in ((1, 0, 0), (0, 0, 1)):
+        path = write_map(np.full((2, 4, 3), colour, np.float32), tmp_path / "lamp.exr")
+        drop(session, {"lamp.exr": path.read_bytes()}, **{"lamp.exr": "environment"})
+        assert session.has_work()
+        session.work()
+        session.handle({"type": "shown", "number": session.number})
+        pictures.append(session.accumulated[0].picture)
+    assert session.passes == 1
+    assert np.abs(pictures[1] - pictures[0]).max() > 0.1
+    names = [value for value, _ in session.application.states.controls["light.environment"].choices]
+    assert names.count("lamp.exr") == 1
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [HEADER, HEADER | {"size": None}, HEADER | {"dtype": "U8"}, HEADER | {"size": [4, 5]}, None],
+    ids=str,
+)
+def test_raw_voxels_leave_nothing_behind(session, tmp_path, answer):
+    """Whether their header is given, wrong or cancelled, or the page goes."""
+    question = drop(session, {"tissue_4x5x6_uint8.raw": GRID.tobytes()})[0]
+    assert (question["type"], question["guess"]["size"]) == ("ask_raw", [4, 5, 6])
+    assert len(list(tmp_path.iterdir())) == 1
+    if answer is not None:
+        session.handle(answer)
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_another_drop_and_an_error_leave_nothing_behind(session, tmp_path):
+    drop(session, {"a.raw": GRID.tobytes()})
+    drop(session, {"b.raw": GRID.tobytes()})
+    assert len(list(tmp_path.iterdir())) == 1
+    error = drop(session, {"x.nii": b"abc"})[0]
+    assert error["text"].startswith("x.nii: ")  # without the folder, which is gone
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"offset": 3},
+        {"offset": -1},
+        {"index": 1},
+        {"index": 7},
+        {"count": 0},
+        {"count": -2},
+        {"count": 10**9},
+        {"size": 10},
+        {"size": "many"},
+        {"size": float("nan")},
+        {"offset": None},
+    ],
+    ids=str,
+)
+def test_a_piece_in_a_wrong_place_is_a_sentence(session, tmp_path, wrong):
+    piece = {"type": "upload", "kind": "volume", "name": "x.raw", "size": 64, "offset": 0}
+    piece |= {"index": 0, "count": 2}
+    session.handle(piece, b"x" * 32)
+    (error, _), _ = session.handle(piece | {"offset": 32} | wrong, b"x" * 32)
+    assert error["type"] == "error"
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("room", ["memory", "disk", "limit"])
+def test_too_large_a_file_is_refused_before_it_is_sent(session, tmp_path, monkeypatch, room):
+    memory, disk = psutil.virtual_memory(), shutil.disk_usage(tmp_path)
+    monkeypatch.setattr(
+        psutil, "virtual_memory", lambda: memory._replace(available=room != "memory" and 2**40)
+    )
+    monkeypatch.setattr(
+        shutil, "disk_usage", lambda _: disk._replace(free=room != "disk" and 2**40)
+    )
+    size = uploads.LARGEST_UPLOAD + 1 if room == "limit" else 1000
+    piece = {"type": "upload", "kind": "volume", "name": "x.raw", "offset": 0, "index": 0}
+    (error, _), _ = session.handle(piece | {"size": size, "count": 1}, b"x")
+    assert "too many to send" in error["text"]
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "name", ["", "..", "/", "a\0b.raw", "é" * 300 + ".raw", "\ud800.raw", 3, None]
+)
+def test_any_name_of_a_file_is_one_in_the_folder(session, tmp_path, name):
+    upload = session.application.upload
+    piece = {"type": "upload", "kind": "volume", "name": name, "size": 2, "offset": 0}
+    assert kinds(session.handle(piece | {"index": 0, "count": 1}, b"x")) == ["uploaded"]
+    ((path, _),) = upload.files
+    assert path.is_file()
+    assert path.parent.parent == tmp_path
+    assert path.suffix == (".raw" if str(name).endswith(".raw") else "")
+
+
+def test_slices_of_one_name_in_two_folders_are_kept_both(session, tmp_path):
+    upload = session.application.upload
+    for index in (0, 1):
+        piece = {"type": "upload", "kind": "volume", "name": f"{index}/1.dcm", "size": 1}
+        upload.add(piece | {"offset": 0, "index": index, "count": 3}, bytes([index]))
+    assert [path.read_bytes() for path, _ in upload.files] == [b"\0", b"\1"]
+
+
+# Memory
+
+
+def test_a_file_that_is_too_large_is_averaged_as_it_says(tmp_path, monkeypatch, volume):
+    path = tmp_path / "a.nii"
+    nibabel.save(nibabel.Nifti1Image(np.ones((40, 40, 40), np.int16), np.eye(4)), path)
+    memory = psutil.virtual_memory()
+
+    def have(available):
+        monkeypatch.setattr(psutil, "virtual_memory", lambda: memory._replace(available=available))
+
+    have(1_000_000)
+    with pytest.warns(UserWarning, match="and 2³ voxels become one"):
+        loaded, where = source.load_within_memory(path)
+    assert (loaded.size, where.settings) == ((20, 20, 20), {"downsample": 2})
+    have(100_000)  # too little for loading it whole
+    with pytest.warns(UserWarning, match=r"and \d³ voxels become one"):
+        loaded, where = source.load_within_memory(path, downsample=2)
+    factor = where.settings["downsample"]
+    assert loaded.size == (-(-40 // factor),) * 3
+    assert source.VOXEL_BYTES * loaded.values.size <= 100_000
+    have(1000)
+    with pytest.raises(BrdfkitError, match="check that it is the right file"):
+        source.load_within_memory(path)
+
+
+def test_a_downsampling_that_suffices_is_taken(tmp_path, recwarn):
+    loaded, where = source.load_within_memory("smoke", downsample=2, size=16)
+    assert (loaded.size, where.settings) == ((8, 8, 8), {"size": 16, "downsample": 2})
+    assert not recwarn.list
+
+
+# Scripts
+
+
+def run_script(session, folder, **replaced):
+    """Run the copied script with one sample, in a folder; return its picture and its text."""
+    ((message, _),) = session.handle({"type": "copy", "kind": "python"})
+    text = message["text"]
+    for old, new in ({"spp=64": "spp=1", "picture.write": "str"} | replaced).items():
+        text = text.replace(old, new)
+    names = {}
+    exec(text, names)
+    (picture,) = names["picture"].pictures.values()
+    return picture, message["text"]
+
+
+def render(session):
+    """The picture of the session's state with one sample."""
+    return session.application.render(session.state, 0, session.size, False, derive_seed(0, 0))
+
+
+def test_the_script_of_uploaded_raw_voxels_loads_them_alike(session, tmp_path, monkeypatch):
+    (tmp_path / "a.raw").write_bytes(GRID.tobytes())
+    drop(session, {"a.raw": GRID.tobytes()})
+    session.handle(HEADER)
+    session.handle({"type": "set", "changes": {"renderer": "maximum_intensity"}})
+    picture, text = run_script(session, tmp_path, **{"'a.raw'": repr(str(tmp_path / "a.raw"))})
+    assert text.startswith("# Write the folder of a.raw before its name")
+    np.testing.assert_allclose(picture, render(session), rtol=1e-5, atol=1e-6)
+    ((error, _), _) = session.handle({"type": "copy", "kind": "command"})
+    assert "copy Python" in error["text"]
+
+
+def test_the_script_of_uploaded_light_and_functions_loads_them_alike(session, tmp_path):
+    write_map(np.full((2, 4, 3), 0.2, np.float32), tmp_path / "lamp.exr")
+    session.application.states.load_preset("emission").save(tmp_path / "own.json")
+    for name, kind in (("lamp.exr", "environment"), ("own.json", "transfer")):
+        drop(session, {name: (tmp_path / name).read_bytes()}, **{name: kind})
+    session.handle({"type": "set", "changes": {"transfer.mode": "preset"}})
+    named = {f"'{n}'": repr(str(tmp_path / n)) for n in ("lamp.exr", "own.json")}
+    picture, text = run_script(
+        session, tmp_path, **named, **{"load('smoke')": "load('smoke', size=16)"}
+    )
+    assert text.count("# Write the folder of") == 2
+    np.testing.assert_allclose(picture, render(session), rtol=1e-5, atol=1e-6)
+    session.handle({"type": "set", "changes": {"transfer.mode": "points"}})
+    picture, text = run_script(
+        session, tmp_path, **named, **{"load('smoke')": "load('smoke', size=16)"}
+    )
+    assert "own.json" not in text  # its points say all
+    np.testing.assert_allclose(picture, render(session), rtol=1e-5, atol=1e-6)
+
+
+def test_the_script_keeps_what_was_changed_of_a_preset(session, tmp_path):
+    """Such as its colour, which loading the preset reset."""
+    session.handle({"type": "set", "changes": {"transfer.preset": "emission"}})
+    session.handle({"type": "set", "changes": {"transfer.mode": "preset"}})
+    session.handle({"type": "set", "changes": {"transfer.colour": "albedo"}})
+    picture, _ = run_script(session, tmp_path, **{"load('smoke')": "load('smoke', size=16)"})
+    np.testing.assert_allclose(picture, render(session), rtol=1e-5, atol=1e-6)
+
+
+def test_the_command_has_the_downsampling(mi):
+    volume = bk.volumes.load("smoke", size=8)
+    own = Session(VolumeApplication(volume, source.Source("smoke", {"downsample": 2})))
+    ((message, _),) = own.handle({"type": "copy", "kind": "command"})
+    assert message["text"].startswith("brdfkit view smoke --downsample 2 --state '{")
+    assert message["text"].endswith("-o smoke.png")
+    assert json.loads(message["text"].split("'")[1]) == {}
