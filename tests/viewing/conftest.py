@@ -14,7 +14,8 @@ from brdfkit.viewing.volumes.application import VolumeApplication
 def address(module_in_llvm):
     """The address of a view that is served in a thread."""
     volume, listening = bk.volumes.load("smoke", size=16), server.open_socket(0)
-    make = partial(VolumeApplication, volume, "smoke")
+    quick = {"view.scale": 0.5}  # pictures of fewer pixels
+    make = partial(VolumeApplication, volume, "smoke", quick)
     with server.serve(make, listening, "the-token") as address:
         yield address
 
@@ -49,8 +50,12 @@ def shared_page(browser, address):
 def page(shared_page):
     """The page of all tests of a file, with its first settings."""
     shared_page.get_by_role("button", name="Reset").click()
-    shared_page.wait_for_timeout(300)
-    shared_page.get_by_text("samples ·").wait_for()
+    samples = shared_page.locator(".samples")
+    for _ in range(2):  # the first pass may still be one of the settings before
+        text = samples.inner_text()
+        shared_page.wait_for_function(
+            "(text) => document.querySelector('.samples').textContent !== text", arg=text
+        )
     return shared_page
 
 

@@ -1,6 +1,7 @@
 """The page of a view in a browser: what is dragged, typed and chosen changes the picture."""
 
 import io
+import re
 
 import nibabel
 import numpy as np
@@ -60,7 +61,6 @@ def choose(page, label, text):
 
 
 def test_a_drag_turns_the_volume_and_undo_turns_it_back(page):
-    page.wait_for_timeout(500)
     first = pixels(page)
     assert first.std() > 5  # something is visible
     drag(page, (200, 300), (284, 300))
@@ -177,6 +177,27 @@ def test_the_target_and_the_slices(page):
     page.wait_for_timeout(500)
     brighter = np.asarray(Image.open(io.BytesIO(slice_.screenshot())).convert("L"), float).mean()
     assert brighter > grey + 5
+
+
+def test_the_slices_go_to_the_voxel_under_the_pointer(page):
+    choose(page, "Renderer", "Isosurface")
+    box = page.locator(".stage").bounding_box()
+    page.mouse.move(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    value = page.locator(".status .value", has_text="at voxel")
+    value.wait_for()
+    voxel = [int(n) for n in re.search(r"voxel (\d+), (\d+), (\d+)", value.inner_text()).groups()]
+    page.locator(".stage").press("c")
+    page.get_by_label("z slice").wait_for()
+    boxes = page.locator(".slice input")
+    assert [int(boxes.nth(k).input_value()) for k in (2, 1, 0)] == voxel
+
+
+def test_the_picture_fills_the_screen_and_leaves_it(page):
+    for whole in (True, False):
+        page.locator(".stage").press("f")
+        page.wait_for_function(
+            "(whole) => Boolean(document.fullscreenElement) === whole", arg=whole
+        )
 
 
 def test_the_picture_is_saved_as_a_file(page):

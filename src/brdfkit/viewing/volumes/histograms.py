@@ -39,7 +39,7 @@ def _count_voxels(
     joint = np.histogram2d(gradients, voxels, (GRADIENT_BINS, BINS), ends)[0]
     shade = np.log1p(joint) / max(np.log1p(joint.max()), 1e-9)
     picture = encode_png(np.rint(255 * shade[::-1]).astype(np.uint8))
-    # Whole numbers get no finer bins than there are numbers, for every other bin were empty
+    # Bins of whole numbers are not finer than the numbers, because some would always be empty
     whole = not np.any(voxels % 1)
     count = min(max(int(values[1] - values[0]), BINS), FINE_BINS) if whole else FINE_BINS
     return np.histogram(voxels, count, values)[0].tolist(), picture

@@ -134,7 +134,7 @@ def _light_controls() -> list[Control]:
     sun = partial(Control, panel="light", when=LIT | {"light.sun": (True,)})
     return [
         control("light.environment", "Environment", **environment),
-        control("light.turn", "Turn it", default=0.0, **turn),
+        control("light.turn", "Rotation", default=0.0, **turn),
         control("light.brightness", "Brightness", default=1.0, low=0.01, high=10, log=True),
         control("light.sun", "Sun", default=False, kind="flag"),
         sun("light.sun_colour", "Sun's colour", default="#fff4e0", kind="colour"),
