@@ -38,6 +38,9 @@ def session(application):
     return session
 
 
+BUMP = {"x": 0.5, "y": 0.5, "sx": 0.1, "sy": 0.1, "colour": "#ffffff", "a": 1}
+
+
 def work(session):
     """Let the session render once, and confirm its pictures."""
     messages = session.work()
@@ -126,7 +129,13 @@ def test_what_changes_no_sample_keeps_the_samples(session):
         {"clip": 3},
         {"transfer.points": [[0, "#000000", 0]]},
         {"transfer.points": [[1, "#000000", 0], [0, "#ffffff", 1]]},
+        {"transfer.points": [[0, "#000000", 0], [10**400, "#ffffff", 1]]},
+        {"transfer.points": [["0", "#000000", 0], ["1", "#ffffff", 1]]},
+        {"transfer.points": [[0, "#-1-1-1", 0], [1, "#ffffff", 1]]},
         {"transfer.bumps": [{"x": 0}]},
+        {"transfer.bumps": {}},
+        {"transfer.bumps": [BUMP | {"a": 10**400}]},
+        {"transfer.bumps": [BUMP | {"x": "0"}]},
         {"transfer.preset": "ct_bones"},
         {"camera.target": ["a", 0, 0]},
         {"slices": None},
