@@ -11,16 +11,17 @@ import numpy as np
 
 from brdfkit.core.arguments import to_number, to_whole_number
 from brdfkit.core.array_types import AnyArray
+from brdfkit.core.colours import to_srgb
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.viewing.application import Message
 from brdfkit.viewing.controls import State
-from brdfkit.viewing.encoding import to_bytes, to_bytes_quickly
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.volumes import saving, scripts, slices
 from brdfkit.viewing.volumes.histograms import make_histograms
 from brdfkit.viewing.volumes.live_scene import LiveScene, SceneKind
 from brdfkit.viewing.volumes.opening import load_raw, load_upload
+from brdfkit.viewing.volumes.painting import paint
 from brdfkit.viewing.volumes.source import Source
 from brdfkit.viewing.volumes.state import VolumeState, list_controls, needs_samples_anew
 from brdfkit.viewing.volumes.uploads import Upload
@@ -147,17 +148,10 @@ class VolumeApplication:
         """Load the scene of a kind."""
         return LiveScene(self.states.live, kind, self.states.environments)
 
-    def develop(
-        self, state: State, pictures: dict[int, AnyArray], moving: bool = False
-    ) -> dict[int, AnyArray]:
-        """Return the pictures of all sides as sRGB in 8 bits, with the exposure of both together.
-
-        With `moving`, bytes may be one level off, so that it takes less time.
-        """
-        tone = self.states.tone_mapping(state)
-        brightest = tone.brightest_of(saving.join_sides(pictures, state["wipe"]))
-        convert = to_bytes_quickly if moving else to_bytes
-        return {side: convert(tone(picture, brightest)) for side, picture in pictures.items()}
+    def develop(self, state: State, picture: AnyArray) -> AnyArray:
+        """Return a picture as sRGB in 8 bits."""
+        tone_mapped = self.states.tone_mapping(state)(picture)
+        return np.rint(255 * to_srgb(np.nan_to_num(tone_mapped))).astype(np.uint8)
 
     def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
         """Return the places of the box's corners, its size and the names of its ends."""
@@ -192,6 +186,7 @@ class VolumeApplication:
             "save": self._save,
             "copy": self._copy,
             "raw": partial(load_raw, self),
+            "paint": self._paint,
         }
         kind = str(message.get("type"))
         if kind == "upload":
@@ -213,6 +208,13 @@ class VolumeApplication:
         at = slices.find_visible_voxel(self.states.live, extinction, state["clip"], ray, densest)
         text = "" if at is None else slices.describe_voxel(self.volume, at, self.value_unit)
         return [({"type": "probe", "text": text, "voxel": at}, [])]
+
+    def _paint(self, session: Session, message: dict[str, Any]) -> list[Message]:
+        """Change the transfer function by a stroke, as one undo step."""
+        width, height = session.size
+        hide = bool(message.get("hide"))
+        changes = paint(self.states, session.state, message.get("stroke"), width / height, hide)
+        return session.handle({"type": "set", "changes": changes, "moving": False})
 
     def _probe_slice(self, session: Session, message: dict[str, Any]) -> list[Message]:
         """Return the value of the voxel under the pointer in a slice."""

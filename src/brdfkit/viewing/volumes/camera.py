@@ -61,13 +61,17 @@ class Camera:
         y = 0.5 - seen[:, 1] / depth / (2 * half * max(1 / aspect, 1.0))
         return np.stack([x, y, seen[:, 2]], axis=1)
 
-    def cast_ray(self, x: float, y: float, aspect: float) -> tuple[FloatArray, FloatArray]:
-        """Return the origin and the unit direction, (3,) each, of the ray through a place.
+    def cast_ray(
+        self, x: FloatArray | float, y: FloatArray | float, aspect: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return the origin (3,) and the unit direction (3,) of the ray through a place.
 
-        `x` and `y` are 0 to 1 from the picture's top left.
+        `x` and `y` are 0 to 1 from the picture's top left. If they are arrays (n,), the directions
+        are (n, 3).
         """
         half = np.tan(np.radians(self.fov / 2))
-        across = (0.5 - x) * 2 * half * max(aspect, 1.0)
-        up = (0.5 - y) * 2 * half * max(1 / aspect, 1.0)
-        direction = np.array([across, up, 1.0]) @ self.axes
-        return self.to_world[:3, 3], direction / np.linalg.norm(direction)
+        across = (0.5 - np.asarray(x)) * 2 * half * max(aspect, 1.0)
+        up = (0.5 - np.asarray(y)) * 2 * half * max(1 / aspect, 1.0)
+        direction = np.stack([across, up, np.ones_like(up)], axis=-1) @ self.axes
+        length = np.linalg.norm(direction, axis=-1, keepdims=True)
+        return self.to_world[:3, 3], direction / length

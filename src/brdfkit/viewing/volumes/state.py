@@ -156,9 +156,10 @@ class VolumeState:
         Equal functions give the same array, since it is made anew only after a change.
         """
         function = {name: value for name, value in state.items() if name.startswith("transfer.")}
-        if self.last_table[0] != function:
-            self.last_table = function, self._make_table(state)
-        return self.last_table[1]
+        last = self.last_table  # another thread may exchange it meanwhile
+        if last[0] != function:
+            last = self.last_table = function, self._make_table(state)
+        return last[1]
 
     def _make_table(self, state: State) -> AnyArray:
         """Return RGBA of a state's transfer function at the rows of a table."""

@@ -17,19 +17,14 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.arguments import is_number
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.colours import from_srgb, to_srgb
-from brdfkit.viewing.controls import State, is_colour
+from brdfkit.viewing.controls import State
 from brdfkit.viewing.volumes.live_volume import LiveVolume
 from brdfkit.volumes import TransferFunction
-from brdfkit.volumes.volume import LARGEST_VALUE
 
 POINTS = 24  # control points at most, to which a function is simplified
 TOLERANCE = 0.01  # of RGB and A, by which a simplified function may deviate
-LARGEST_POINTS, LARGEST_BUMPS = 256, 64
-# The ends of a bump's numbers
-BUMP_ENDS = {"a": (0, 1), "x": (-1, 2), "y": (-1, 2), "sx": (1e-4, 4), "sy": (1e-4, 4)}
 
 
 def to_table(state: State, volume: LiveVolume) -> AnyArray:
@@ -103,14 +98,42 @@ def to_points(function: TransferFunction, low: float, high: float) -> list[list[
     ends = np.stack([[np.interp(end, at, c) for c in rgba.T] for end in (low, high)])
     at = np.concatenate([[low], at[inside], [high]])
     rgba = np.concatenate([ends[:1], rgba[inside], ends[1:]])
-    kept = _simplify(at, rgba)
+    return _simplify(at, rgba)
+
+
+def change_points(
+    points: list[Any], at: FloatArray, weights: FloatArray, reduce: bool, most: int = POINTS
+) -> list[list[Any]]:
+    """Return control points with A raised by `weights`, or reduced by these shares of itself.
+
+    The weights (n,) are those at the values `at`, and linear between them. The points are
+    simplified to at most `most`.
+    """
+    own = np.array([point[0] for point in points], float)
+    rgba = np.array([[*parse_colour(point[1]), point[2]] for point in points], float)
+    new = at[~np.isin(at, own) & (at > own[0]) & (at < own[-1])]
+    between = np.stack([np.interp(new, own, channel) for channel in rgba.T], axis=1)
+    values, rgba = np.concatenate([own, new]), np.concatenate([rgba, between])
+    order = np.argsort(values, kind="stable")
+    values, rgba = values[order], rgba[order]
+    weight = np.interp(values, at, weights)
+    a = rgba[:, 3] * (1 - weight) if reduce else rgba[:, 3] + weight
+    rgba[:, 3] = np.clip(a, 0, 1)
+    return _simplify(values, rgba, most)
+
+
+def _simplify(at: FloatArray, rgba: FloatArray, most: int = POINTS) -> list[list[Any]]:
+    """Return the control points of a polyline, at most `most`; A counts by its largest value."""
+    largest = max(float(rgba[:, 3].max()), 1e-9)
+    scaled = np.column_stack([rgba[:, :3], rgba[:, 3] / largest])
+    kept = _choose_points(at, scaled, most)
     return [[float(at[k]), format_colour(rgba[k, :3]), float(rgba[k, 3])] for k in kept]
 
 
-def _simplify(at: FloatArray, rgba: FloatArray) -> list[int]:
+def _choose_points(at: FloatArray, rgba: FloatArray, most: int) -> list[int]:
     """Return the points to keep of a polyline: always the one next that deviates most."""
     kept = [0, len(at) - 1]
-    while len(kept) < min(POINTS, len(at)):
+    while len(kept) < min(most, len(at)):
         kept.sort()
         line = np.stack([np.interp(at, at[kept], channel[kept]) for channel in rgba.T], axis=1)
         deviation = np.abs(line - rgba).max(axis=1)
@@ -123,30 +146,26 @@ def _simplify(at: FloatArray, rgba: FloatArray) -> list[int]:
 
 def is_points(points: Any) -> bool:
     """Return whether a value is a list of two or more control points, rising."""
-    if not isinstance(points, list) or not 2 <= len(points) <= LARGEST_POINTS:
+    try:
+        at = [float(value) for value, _, _ in points]
+        fine = all(isinstance(c, str) and len(parse_colour(c)) == 3 for _, c, _ in points)
+        opacities = [float(a) for _, _, a in points]
+    except (TypeError, ValueError, IndexError):
         return False
-    if not all(isinstance(point, list) and len(point) == 3 for point in points):
-        return False
-    if not all(_is_between(v, -LARGEST_VALUE, LARGEST_VALUE) for v, _, _ in points):
-        return False
-    rising = all(a[0] <= b[0] for a, b in pairwise(points)) and points[0][0] < points[-1][0]
-    return rising and all(is_colour(c) and _is_between(a, 0, 1) for _, c, a in points)
+    rising = all(a <= b for a, b in pairwise(at))
+    finite = all(np.isfinite(at)) and all(0 <= a <= 1 for a in opacities)
+    return fine and rising and finite and 2 <= len(points) <= 256 and at[0] < at[-1]
 
 
 def is_bumps(bumps: Any) -> bool:
     """Return whether a value is a list of bumps."""
-    return (
-        isinstance(bumps, list)
-        and len(bumps) <= LARGEST_BUMPS
-        and all(
-            isinstance(bump, dict)
-            and all(_is_between(bump.get(name), *ends) for name, ends in BUMP_ENDS.items())
-            and is_colour(bump.get("colour"))
-            for bump in bumps
+    try:
+        return len(bumps) <= 64 and all(
+            0 <= float(b["a"]) <= 1
+            and all(-1 <= float(b[k]) <= 2 for k in ("x", "y"))
+            and all(1e-4 <= float(b[k]) <= 4 for k in ("sx", "sy"))
+            and len(parse_colour(b["colour"])) == 3
+            for b in bumps
         )
-    )
-
-
-def _is_between(value: Any, low: float, high: float) -> bool:
-    """Return whether a value is a number from `low` to `high`."""
-    return is_number(value) and low <= value <= high
+    except (TypeError, ValueError, KeyError, IndexError):
+        return False
