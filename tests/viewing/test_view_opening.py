@@ -318,3 +318,12 @@ def test_the_command_has_the_downsampling(mi):
     assert message["text"].startswith("brdfkit view smoke --downsample 2 --state '{")
     assert message["text"].endswith("-o smoke.png")
     assert json.loads(message["text"].split("'")[1]) == {}
+
+
+def test_bumps_of_vpt_are_shown(session):
+    bump = {"position": {"x": 0.3, "y": 0.6}, "size": {"x": 0.2, "y": 0.1}}
+    files = {"tf.json": json.dumps([bump | {"color": {"r": 1, "g": 0.5, "b": 0, "a": 0.7}}])}
+    (message,) = drop(session, {n: t.encode() for n, t in files.items()}, **{"tf.json": "transfer"})
+    (shown,) = message["state"]["transfer.bumps"]
+    assert shown == {"x": 0.3, "y": 0.6, "sx": 0.2, "sy": 0.1, "a": 0.7, "colour": "#ff8000"}
+    assert message["state"]["transfer.mode"] == "bumps2d"

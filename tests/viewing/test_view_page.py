@@ -108,6 +108,18 @@ def test_a_bump_is_dragged_typed_widened_and_removed(page):
     wait_for_change(page, dark)
 
 
+def test_the_menu_says_when_the_points_are_no_longer_those_of_the_preset(page):
+    preset = page.get_by_role("combobox", name="Preset")
+    shown = "([own, text]) => own.selectedOptions[0].textContent === text"
+    choose(page, "Preset", "intensity")
+    page.wait_for_timeout(600)  # until the page takes over what Python says of it
+    page.locator(".handle").last.focus()
+    page.keyboard.press("ArrowDown")
+    for text, button in (("edited", "Undo"), ("intensity", "Undo"), ("default", "Redo")):
+        page.wait_for_function(shown, arg=[preset.element_handle(), text])
+        page.get_by_role("button", name=button).click()
+
+
 def test_two_points_stay(page):
     remove = page.get_by_role("button", name="Remove", exact=True)
     while remove.is_enabled():

@@ -6,6 +6,7 @@ import pytest
 import brdfkit as bk
 from brdfkit.viewing import front_end
 from brdfkit.viewing.controls import Control
+from brdfkit.viewing.encoding import to_bytes, to_bytes_quickly
 from brdfkit.viewing.volumes import transfer_table
 from brdfkit.viewing.volumes.camera import Camera
 from brdfkit.viewing.volumes.live_volume import LiveVolume
@@ -81,3 +82,11 @@ def test_the_page_loads_nothing_from_elsewhere_and_evaluates_nothing():
         assert "https://" not in text
         assert "eval(" not in text
     assert "export default { render };" in front_end.read_module()
+
+
+@pytest.mark.quick
+def test_bytes_that_are_made_quickly_are_at_most_one_level_off():
+    linear = np.linspace(0, 1, 20001)
+    exact, quick = to_bytes(linear).astype(int), to_bytes_quickly(linear)
+    assert abs(quick - exact).max() <= 1
+    assert to_bytes_quickly(np.array([np.nan]))[0] == 0

@@ -1,14 +1,19 @@
 """The server of a view: who is let in, what it sends, and that nothing of a request is a path."""
 
-import contextlib
 import json
+import threading
+from functools import partial
 from urllib.error import HTTPError
 from urllib.request import Request, urlopen
 
 import pytest
 
+import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing import server
+from brdfkit.viewing.render_thread import RenderThread
+from brdfkit.viewing.session import Session
+from brdfkit.viewing.volumes.application import VolumeApplication
 
 
 def status(address, **headers):
@@ -79,20 +84,55 @@ def test_three_pages_at_once_one_slow_one_gone(address):
             slow.recv(timeout=0.5)
 
 
-@pytest.mark.parametrize("text", ["no JSON", "[1]", '{"type": "set"}', '{"bytes": "x"}'])
-def test_a_message_that_is_none_harms_nobody(address, text):
+LONG_NUMBER = f'{{"type": {10**4000}{10**4000}}}'  # longer than Python reads
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["no JSON", "[1]", '{"type": "set"}', '{"bytes": "x"}', "[" * 10**6, LONG_NUMBER, b"\xff", ""],
+    ids=lambda text: str(text)[:16],
+)
+def test_a_message_that_is_none_is_answered_by_a_sentence(address, text):
+    with connect(address) as socket:
+        socket.send(text)
+        assert receive(socket)[0]["type"] == "error"
+        assert receive(socket)[0]["type"] == "state"
+        socket.send('{"type": "undo"}')
+        assert receive(socket)[0]["type"] == "state"
+
+
+def test_too_long_a_message_is_not_read(address):
     from websockets.exceptions import ConnectionClosed
 
     with connect(address) as socket:
-        socket.send(text)
-        with contextlib.suppress(ConnectionClosed):
-            assert receive(socket)[0]["type"] in ("error", "state")
+        socket.send(bytes(server.LARGEST_MESSAGE + 1))
+        with pytest.raises(ConnectionClosed, match="1009"):
+            socket.recv(timeout=60)
     assert status(address) == 200
+
+
+def test_a_page_that_is_gone_is_rendered_no_more(module_in_llvm, monkeypatch):
+    threads, closed = [], threading.Event()
+    monkeypatch.setattr(Session, "close", lambda _: closed.set())
+
+    class Watched(RenderThread):
+        def __init__(self):
+            super().__init__()
+            threads.append(self)
+
+    monkeypatch.setattr(server, "RenderThread", Watched)
+    make = partial(VolumeApplication, bk.volumes.load("smoke", size=8), "smoke")
+    with server.serve(make, server.open_socket(0)) as address:
+        with connect(address) as socket:
+            socket.send('{"type": "undo"}')
+            receive(socket)
+            assert len(threads[0].sessions) == 1
+        assert closed.wait(60)
+        assert threads[0].sessions == {}
 
 
 def test_a_taken_port_is_a_sentence():
     taken = server.open_socket(0)
-    taken.listen()
     with pytest.raises(BrdfkitError, match="cannot be used"):
         server.open_socket(taken.getsockname()[1])
     taken.close()

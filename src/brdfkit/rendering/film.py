@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,21 +78,8 @@ class Film:
         >>> render_orbit("smoke", frames=24).write("smoke.gif")    # doctest: +SKIP
         """
         kind = SUFFIXES[find_film_suffix(path)]
-        images = self._to_images()
-        if kind == "GIF":
-            images = _reduce_to_one_palette(images)
-        duration = max(SHORTEST_FRAME, 10 * round(100 * TURN / self.requested))
-        options: dict[str, Any] = {"quality": 90} if kind == "WEBP" else {}
         with write_safely(Path(path)) as beside:
-            images[0].save(
-                beside,
-                kind,
-                save_all=True,
-                append_images=images[1:],
-                duration=duration,
-                loop=0,
-                **options,
-            )
+            write_animation(beside, kind, self._to_images(), self.requested)
 
     def _to_images(self) -> list[PillowImage]:
         """Return the frames as 8-bit sRGB images, tone-mapped with one exposure."""
@@ -101,6 +88,27 @@ class Film:
         brightest = max(map(self.tone_mapping.brightest_of, self.frames))
         shown = (np.nan_to_num(self.tone_mapping(f, brightest)) for f in self.frames)
         return [Image.fromarray((255 * to_srgb(s) + 0.5).astype(np.uint8)) for s in shown]
+
+
+def write_animation(
+    file: Path | BinaryIO, kind: str, images: list[PillowImage], requested: int
+) -> None:
+    """Write images as an animation that repeats endlessly.
+
+    `kind` is a value of `SUFFIXES`, and `requested` the number of images of a whole turn.
+    """
+    if kind == "GIF":
+        images = _reduce_to_one_palette(images)
+    options: dict[str, Any] = {"quality": 90} if kind == "WEBP" else {}
+    images[0].save(
+        file,
+        kind,
+        save_all=True,
+        append_images=images[1:],
+        duration=max(SHORTEST_FRAME, 10 * round(100 * TURN / requested)),
+        loop=0,
+        **options,
+    )
 
 
 def find_film_suffix(path: str | Path) -> str:

@@ -34,8 +34,10 @@ class Application(Protocol):
     ) -> AnyArray:
         """Render a pass: (height, width, 3), linear sRGB."""
 
-    def develop(self, state: State, picture: AnyArray) -> AnyArray:
-        """Return the picture as sRGB in 8 bits."""
+    def develop(
+        self, state: State, pictures: dict[int, AnyArray], moving: bool
+    ) -> dict[int, AnyArray]:
+        """Return the pictures of all sides as sRGB in 8 bits, with one exposure."""
 
     def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
         """Return what the page draws over the picture."""

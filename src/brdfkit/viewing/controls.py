@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, TypeGuard
 
 from brdfkit.core.arguments import is_number
 from brdfkit.core.errors import BrdfkitError
@@ -52,7 +52,7 @@ class Control:
             return value
         if self.kind == "choice" and value in [choice for choice, _ in self.choices]:
             return value
-        if self.kind == "colour" and isinstance(value, str) and COLOUR.fullmatch(value):
+        if self.kind == "colour" and is_colour(value):
             return value.lower()
         if self.kind == "slider" and is_number(value) and math.isfinite(value):
             number = min(max(float(value), self.low), self.high)
@@ -73,6 +73,11 @@ class Control:
         """Return the control as the page reads it."""
         record = asdict(self) | {"when": {k: list(v) for k, v in self.when.items()}}
         return record | {"choices": [list(pair) for pair in self.choices]}
+
+
+def is_colour(value: Any) -> TypeGuard[str]:
+    """Return whether a value is a colour such as "#ff8800"."""
+    return isinstance(value, str) and bool(COLOUR.fullmatch(value))
 
 
 def default_state(controls: Iterable[Control]) -> State:

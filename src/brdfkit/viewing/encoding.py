@@ -6,8 +6,20 @@ import numpy as np
 from PIL import Image
 
 from brdfkit.core.array_types import AnyArray
+from brdfkit.core.colours import to_srgb
 
 QUALITY = 85  # of a JPEG
+LEVELS = 4096  # of brightness, that `to_bytes_quickly` distinguishes
+
+
+def to_bytes(linear: AnyArray) -> AnyArray:
+    """Convert linear brightness, 0 to 1, to sRGB in 8 bits; nan becomes 0."""
+    return np.rint(255 * to_srgb(np.nan_to_num(linear))).astype(np.uint8)
+
+
+def to_bytes_quickly(linear: AnyArray) -> AnyArray:
+    """Convert linear brightness, 0 to 1, to sRGB in 8 bits by a table, at most one level off."""
+    return SRGB_LEVELS[np.nan_to_num(linear * (LEVELS - 1) + 0.5).astype(np.uint16)]
 
 
 def encode_jpeg(colours: AnyArray) -> bytes:
@@ -25,3 +37,6 @@ def _encode(colours: AnyArray, kind: str, **options: int) -> bytes:
     stream = io.BytesIO()
     Image.fromarray(np.ascontiguousarray(colours)).save(stream, kind, **options)
     return stream.getvalue()
+
+
+SRGB_LEVELS = to_bytes(np.linspace(0, 1, LEVELS))

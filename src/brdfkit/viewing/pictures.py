@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from typing import Any
 
+from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.errors.noise import Accumulated
 from brdfkit.viewing.application import Application, Message
@@ -15,14 +16,14 @@ from brdfkit.viewing.encoding import encode_jpeg, encode_png
 def make_pictures(
     application: Application,
     state: State,
-    samples: dict[int, Accumulated],
+    pictures: dict[int, AnyArray],
     common: dict[str, Any],
+    moving: bool,
     lossless: bool,
 ) -> list[Message]:
     """Return a message "picture" for each side, with what all of them have in `common`."""
     messages: list[Message] = []
-    for side, accumulated in sorted(samples.items()):
-        colours = application.develop(state, accumulated.picture)
+    for side, colours in sorted(application.develop(state, pictures, moving).items()):
         mime = "image/png" if lossless else "image/jpeg"
         picture = {"type": "picture", "side": side, "mime": mime}
         content = encode_png(colours) if lossless else encode_jpeg(colours)

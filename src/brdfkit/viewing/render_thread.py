@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 
 from brdfkit.viewing.application import Message
@@ -11,6 +12,8 @@ from brdfkit.viewing.session import Session
 
 Send = Callable[[Message], None]  # hands a message to a page; it must not wait for the page
 
+NAME = "brdfkit view"  # of the threads
+LONGEST_END = 0.3  # seconds for which the end waits
 IDLE = 0.5  # seconds after which the thread looks for work without being woken
 
 
@@ -21,7 +24,7 @@ class RenderThread:
         self.sessions: dict[Session, Send] = {}
         self.changed = threading.Condition()
         self.stopped = False
-        self.thread = threading.Thread(target=self._run, name="brdfkit view", daemon=True)
+        self.thread = threading.Thread(target=self._run, name=NAME, daemon=True)
         self.thread.start()
 
     def add(self, session: Session, send: Send) -> None:
@@ -41,10 +44,19 @@ class RenderThread:
             self.changed.notify()
 
     def stop(self) -> None:
-        """End the thread after the pass that it renders."""
+        """End the thread after the pass that it renders, for which this waits only shortly.
+
+        The files of the pages are deleted.
+        """
         with self.changed:
-            self.stopped = True
+            self.stopped, sessions = True, list(self.sessions)
             self.changed.notify()
+        closing = [threading.Thread(target=s.close, daemon=True) for s in sessions]
+        for thread in closing:  # of which one may wait for a long answer
+            thread.start()
+        end = time.monotonic() + LONGEST_END
+        for thread in (*closing, self.thread):
+            thread.join(max(end - time.monotonic(), 0))
 
     def _run(self) -> None:
         while not self.stopped:
@@ -56,6 +68,11 @@ class RenderThread:
             for session, send in waiting:
                 for message in work_safely(session):
                     send(message)
+
+
+def is_rendering() -> bool:
+    """Return whether a thread that was told to stop still renders."""
+    return any(thread.name == NAME for thread in threading.enumerate())
 
 
 def work_safely(session: Session) -> list[Message]:

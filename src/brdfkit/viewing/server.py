@@ -26,7 +26,7 @@ from brdfkit.viewing.session import Session
 R = TypeVar("R")
 HOST = "127.0.0.1"
 LARGEST_MESSAGE = 2 << 20  # bytes: the page sends files in pieces of 1 MB
-LONGEST_END = 0.5  # seconds for which the end waits for the server
+LONGEST_END = 0.3  # seconds for which the end waits for the server
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.errors.noise import Accumulated
 from brdfkit.rendering.progressive import derive_seed
@@ -252,31 +253,30 @@ class Session:
     def _render_pass(self, begun: Pass) -> list[Message]:
         """Render a pass, and return its pictures if it is time to send them."""
         try:
-            samples = begun.samples if begun.anew else self._add_samples(begun)
+            passes = {} if begun.anew else self._render_sides(begun)
         except BrdfkitError:
             if begun.samples is self.accumulated:
                 raise
             return []  # an old state need not be possible any more, as with another volume
+        samples = {} if begun.moving else add_passes(begun.samples, passes)
         with self._lock_briefly() as locked:
             number = self._end_pass(begun, samples) if locked else None
             self.stale = self.stale or not locked  # what was rendered in vain is rendered again
             lossless = self.converged and not begun.moving
         if number is None:
             return []
-        overlay = self.application.overlay(begun.state, self.size)
-        common = {"number": number, "overlay": overlay}
-        pictures = make_pictures(self.application, begun.state, samples, common, lossless)
-        return [*pictures, self.describe_progress()]
+        app, state = self.application, begun.state
+        common = {"number": number, "overlay": app.overlay(state, self.size)}
+        pictures = passes if begun.moving else {side: a.picture for side, a in samples.items()}
+        messages = make_pictures(app, state, pictures, common, begun.moving, lossless)
+        return [*messages, self.describe_progress()]
 
-    def _add_samples(self, begun: Pass) -> dict[int, Accumulated]:
-        """Render a pass of each side, and return the samples with it."""
-        state, samples, app = begun.state, begun.samples, self.application
-        seed = derive_seed(0, begun.number)
+    def _render_sides(self, begun: Pass) -> dict[int, AnyArray]:
+        """Render a pass of each side."""
+        state, seed = begun.state, derive_seed(0, begun.number)
         return {
-            side: samples.get(side, Accumulated()).add_pass(
-                app.render(state, side, begun.size, begun.moving, seed), 1
-            )
-            for side in range(app.sides(state))
+            side: self.application.render(state, side, begun.size, begun.moving, seed)
+            for side in range(self.application.sides(state))
         }
 
     def _end_pass(self, begun: Pass, samples: dict[int, Accumulated]) -> int | None:
@@ -284,7 +284,7 @@ class Session:
         if begun.samples is self.accumulated:
             self.passes += not begun.anew
             self.converged = not begun.moving and self.passes >= LARGEST_SAMPLES
-            self.accumulated = {} if begun.moving else samples
+            self.accumulated = samples
         elif not begun.moving:
             return None  # the state has changed, and this picture is of the old one
         now = time.monotonic()
@@ -314,3 +314,14 @@ class Session:
             "paused": self.paused,
             "converged": self.converged,
         }, []
+
+
+def add_passes(
+    samples: dict[int, Accumulated], passes: dict[int, AnyArray]
+) -> dict[int, Accumulated]:
+    """Return the samples of each side with a further pass of each, if there is one."""
+    added = {
+        side: samples.get(side, Accumulated()).add_pass(picture, 1)
+        for side, picture in passes.items()
+    }
+    return samples | added

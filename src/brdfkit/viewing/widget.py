@@ -45,7 +45,6 @@ def make_widget(application: Application) -> Any:
         def close(self) -> None:
             """Stop to render, and remove the widget."""
             self.thread.stop()
-            self.session.close()
             super().close()
 
     return View()

@@ -122,14 +122,27 @@ def _show_page(
     console: Console,
 ) -> None:
     """Serve the page until Ctrl-C, and open it in the browser."""
+    from brdfkit.viewing import server
+    from brdfkit.viewing.render_thread import is_rendering
+
+    server.require_server()
+    try:
+        with server.open_socket(port) as listening:  # before the volume, which takes longer
+            application = _make_application(volume, settings, changes, console)
+            _serve_page(listening, application, changes, no_browser)
+    except KeyboardInterrupt:
+        if is_rendering():
+            _exit_at_once()
+        raise
+
+
+def _serve_page(listening: Any, first: Any, changes: dict[str, Any], no_browser: bool) -> None:
+    """Serve the view `first` to the first page, and views of the same volume to others."""
     import time
 
     from brdfkit.viewing import server
 
-    server.require_server()
-    listening = server.open_socket(port)
-    first = _make_application(volume, settings, changes, console)
-    waiting = [first]  # for the first page; each other page gets a view of its own
+    waiting = [first]
 
     def make_application() -> Any:
         try:
@@ -142,6 +155,17 @@ def _show_page(
         click.echo(_describe_page(first.volume.name, address, opened))
         while True:  # until Ctrl-C
             time.sleep(3600)
+
+
+def _exit_at_once() -> None:
+    """End the program without its clean-up, which would wait for kernels that run, or crash."""
+    import os
+
+    from brdfkit.cli.errors import print_message
+    from brdfkit.core.interrupts import find_exit_status
+
+    print_message("interrupted.")
+    os._exit(find_exit_status())
 
 
 def _describe_page(name: str, address: str, opened: bool) -> str:

@@ -143,7 +143,7 @@ function makeCameraKeys(session, moves) {
 /** Show the picture on the whole screen, or beside the panels again. */
 function switchFullScreen(stage) {
   if (document.fullscreenElement) document.exitFullscreen();
-  else stage.requestFullscreen?.();
+  else if (document.fullscreenEnabled) stage.requestFullscreen();
 }
 
 /** Make the row of buttons for the views along the axes, the first view and the whole screen. */

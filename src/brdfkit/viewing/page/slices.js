@@ -34,8 +34,10 @@ function makeCrossKey(session) {
 function createSlices(session, probe) {
   const element = make("div", { class: "slices", role: "group", "aria-label": "Slices", hidden: true });
   const views = [];
+  let received = 0; // messages; pictures need not be decoded in their order
 
   session.on("slices", async ({ planes }, pictures) => {
+    const number = ++received;
     while (views.length < planes.length) {
       views.push(createSlice(session, views.length, probe));
       element.append(views[views.length - 1].element);
@@ -44,7 +46,7 @@ function createSlices(session, probe) {
       pictures.map((bytes) => createImageBitmap(new Blob([bytes], { type: "image/png" }))),
     );
     // All three at first, and then only those that change
-    planes.forEach((plane, k) => views["zyx".indexOf(plane.axis)].show(plane, bitmaps[k]));
+    planes.forEach((plane, k) => views["zyx".indexOf(plane.axis)].show(plane, bitmaps[k], number));
   });
 
   session.on("state", (names) => {
@@ -96,6 +98,7 @@ function createSlice(session, number, probe) {
   const element = make("div", { class: "slice" }, canvas, make("label", {}, name, box, count));
   let plane = null;
   let bitmap = null;
+  let shown = 0; // number of the message that the bitmap is of
   let place = { x: 0, y: 0, width: 1, height: 1 };
 
   const sizeAlong = (axis) => session.description.volume.size["xyz".indexOf(axis)];
@@ -192,9 +195,10 @@ function createSlice(session, number, probe) {
     box.value = indexOf(plane.axis);
   });
 
-  function show(newPlane, newBitmap) {
+  function show(newPlane, newBitmap, newNumber) {
+    if (newNumber < shown) return;
     bitmap?.close();
-    [plane, bitmap] = [newPlane, newBitmap];
+    [plane, bitmap, shown] = [newPlane, newBitmap, newNumber];
     const { axes } = session.description.volume;
     name.textContent = axes === "RAS" ? PLANE_NAMES[plane.axis] : plane.axis;
     canvas.setAttribute("aria-label",

@@ -26,8 +26,8 @@ function createTransferEditor(session) {
   let kind = null;
   let selected = 0;
   let joint = null;
-  let menus = []; // of [name, its menu]
   let presetMenu = null;
+  let modeMenu = null;
   let boxes = []; // of [field, input]
 
   const items = () => session.state[kind.name] || [];
@@ -37,7 +37,6 @@ function createTransferEditor(session) {
   function edit(list, how = "nudge") {
     if (!kind.allows(list)) return;
     session[how]({ [kind.name]: list });
-    if (kind.name === "transfer.points") presetMenu.markEdited();
   }
 
   function add(x, y) {
@@ -206,9 +205,8 @@ function createTransferEditor(session) {
     if (element.hidden) return;
     const mode = controls.find(({ name }) => name === "transfer.mode");
     presetMenu = makePresetMenu(session, presets);
-    menus = [["transfer.preset", presetMenu]];
-    if (mode) menus.push([mode.name, makeChoice(session, mode)]);
-    head.replaceChildren(...menus.map(([, { row }]) => row));
+    modeMenu = makeChoice(session, mode);
+    head.replaceChildren(presetMenu.row, modeMenu.row);
     chooseKind();
     axis.open(volume);
     joint = picture ? await createImageBitmap(new Blob([picture], { type: "image/png" })) : null;
@@ -218,11 +216,12 @@ function createTransferEditor(session) {
   session.on("state", (names) => {
     if (!session.description?.volume || !kind) return;
     const mode = session.description.controls.find(({ name }) => name === "transfer.mode");
-    element.hidden = Boolean(mode) && !isWanted(mode, session.state);
-    if (names.has("transfer.mode")) chooseKind();
-    for (const [name, { show: showMenu }] of menus) {
-      if (names.has(name)) showMenu(session.state[name]);
+    element.hidden = !isWanted(mode, session.state);
+    if (names.has("transfer.mode")) {
+      chooseKind();
+      modeMenu.show(session.state["transfer.mode"]);
     }
+    if (names.has("transfer.preset") || names.has("transfer.points")) presetMenu.show(names);
     if (TRANSFER_NAMES.some((name) => names.has(name)) || names.has("renderer")) show();
   });
 

@@ -24,18 +24,29 @@ function readPoints(points, value) {
 /**
  * Make the menu of presets. Choosing one makes Python fill the points.
  *
- * `markEdited` shows that the points are no longer the preset's: so it can be chosen again.
+ * Where they are no longer the preset's, the menu says "edited": so it can be chosen again.
  */
 function makePresetMenu(session, presets) {
+  const filled = new Map(); // preset → the points with which Python filled it
+  let chosen = session.state["transfer.preset"]; // whose points are still to come
   const select = make("select", {
-    onchange: () => session.change({ "transfer.preset": presets[select.selectedIndex] }),
+    onchange: () => {
+      chosen = presets[select.selectedIndex];
+      session.change({ "transfer.preset": chosen });
+    },
   }, ...presets.map((name) => make("option", {}, name.replace(/_/g, " "))));
   select.append(make("option", { hidden: true }, "edited"));
-  return {
-    row: makeRow("choice", "Preset", select),
-    show: (name) => (select.selectedIndex = presets.indexOf(name)),
-    markEdited: () => (select.selectedIndex = presets.length),
-  };
+
+  function show(names) {
+    const { "transfer.preset": name, "transfer.points": points } = session.state;
+    if (chosen && names.has("transfer.points")) {
+      filled.set(chosen, points);
+      chosen = "";
+    }
+    const edited = filled.has(name) && !chosen && !equal(filled.get(name), points);
+    select.selectedIndex = edited ? presets.length : presets.indexOf(name);
+  }
+  return { row: makeRow("choice", "Preset", select), show };
 }
 
 /**

@@ -8,6 +8,8 @@ function createWipe(session, stage, picture) {
     class: "wipe", tabIndex: 0, role: "slider", hidden: true, "aria-label": "Wipe between the two pictures",
     "aria-valuemin": "0", "aria-valuemax": "100", "aria-orientation": "horizontal",
   }, make("span", { class: "grip", "aria-hidden": "true" }));
+  const names = ["left", "right"].map((side) => make("span", { class: `side ${side}`, "aria-hidden": "true" }));
+  handle.append(...names);
   stage.append(handle);
 
   function place() {
@@ -20,6 +22,7 @@ function createWipe(session, stage, picture) {
     const percent = Math.round(100 * (state.wipe ?? 0.5));
     handle.setAttribute("aria-valuenow", percent);
     handle.setAttribute("aria-valuetext", `${percent} % of the first picture`);
+    [state.renderer, state.second].forEach((value, k) => (names[k].textContent = nameRenderer(session, value)));
   }
 
   handle.addEventListener("pointerdown", (event) => {
@@ -49,6 +52,12 @@ function createWipe(session, stage, picture) {
     session.nudge({ wipe: Math.round(1000 * clamp(target, 0, 1)) / 1000 });
   });
   session.on("drawn", place);
+}
+
+/** Return the label of a renderer, as the menus show it. */
+function nameRenderer(session, value) {
+  const menu = session.description?.controls.find(({ name }) => name === "second");
+  return menu?.choices.find(([own]) => own === value)?.[1] ?? "";
 }
 
 /** Switch the second picture on and off: the key w of the picture. */

@@ -154,7 +154,11 @@ def _open_environment(application: Application, session: Session, path: Path) ->
 
 
 def _open_transfer(application: Application, session: Session, path: Path) -> list[Message]:
-    """Show the volume with a transfer function."""
+    """Show the volume with a transfer function, brdfkit's or the bumps of the program VPT."""
+    bumps = read_vpt_bumps(path)
+    if bumps is not None:
+        session.change({"transfer.mode": "bumps2d", "transfer.bumps": bumps})
+        return [session.describe_state()]
     application.states.add_function(path)
     session.change({"transfer.preset": path.name})
     session.forget_samples()
@@ -170,3 +174,24 @@ def _open_state(application: Application, session: Session, path: Path) -> list[
             f"{path.name}: is no JSON ({error}); choose settings of a view."
         ) from None
     return session.handle({"type": "set", "changes": changes, "moving": False})
+
+
+def read_vpt_bumps(path: Path) -> list[dict[str, Any]] | None:
+    """Read the bumps that the program VPT [Lesar 2018] saved, or None for another file.
+
+    Such a file is a list of {position: {x, y}, size: {x, y}, color: {r, g, b, a}}, from 0 to 1.
+    """
+    try:
+        records = json.loads(path.read_bytes())
+        if not isinstance(records, list):
+            return None
+        return [
+            {
+                **{"x": r["position"]["x"], "y": r["position"]["y"]},
+                **{"sx": r["size"]["x"], "sy": r["size"]["y"], "a": r["color"]["a"]},
+                "colour": "#" + "".join(f"{round(255 * r['color'][c]):02x}" for c in "rgb"),
+            }
+            for r in records
+        ]
+    except (ValueError, RecursionError, TypeError, KeyError):
+        return None

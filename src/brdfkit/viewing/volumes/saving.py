@@ -12,15 +12,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from PIL import Image
 
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.progress_bar import Progress
 from brdfkit.images.errors.noise import Accumulated
+from brdfkit.rendering.film import write_animation
 from brdfkit.rendering.progressive import derive_seed
 from brdfkit.rendering.result import Rendering
 from brdfkit.viewing.controls import State
-from brdfkit.viewing.encoding import encode_png
+from brdfkit.viewing.encoding import encode_png, to_bytes
 from brdfkit.viewing.volumes import transfer_table
 from brdfkit.volumes import TransferFunction
 
@@ -35,7 +37,8 @@ KINDS = {
     "exr": "Picture (EXR, linear)",
     "state": "Settings (JSON)",
     "transfer": "Transfer function (JSON)",
-    "film": "Orbit (PNG frames)",
+    "film": "Orbit (GIF)",
+    "frames": "Orbit (PNG frames)",
 }
 FRAMES, FILM_SAMPLES = 36, 8  # of an orbit
 
@@ -77,10 +80,10 @@ def render_state(
 
 def make_file(application: Application, session: Session, kind: str) -> Message:
     """Return the message "file" of a kind of `KINDS`; a film follows when it is finished."""
-    if kind == "film":
+    if kind in ("film", "frames"):
         if session.tasks:
             raise BrdfkitError("An orbit is being rendered already; wait for its file.")
-        session.tasks.append(_make_film(application, session.state, session.size))
+        session.tasks.append(_make_orbit(application, session.state, session.size, kind))
         return {"type": "busy", "text": "The orbit is rendered", "fraction": 0.0}, []
     makers = {
         "png": _make_png,
@@ -89,7 +92,7 @@ def make_file(application: Application, session: Session, kind: str) -> Message:
         "transfer": _make_transfer,
     }
     if kind not in makers:
-        raise BrdfkitError(f"A view is saved as {', '.join(makers)}, and not as {kind!r:.20}.")
+        raise BrdfkitError(f"A view is saved as {', '.join(KINDS)}, and not as {kind!r:.20}.")
     suffix, mime, content = makers[kind](application, session)
     name = f"{application.volume.name}{suffix}"
     return {"type": "file", "name": name, "mime": mime}, [content]
@@ -104,8 +107,8 @@ def _current_picture(session: Session) -> AnyArray:
 
 
 def _make_png(application: Application, session: Session) -> tuple[str, str, bytes]:
-    colours = application.develop(session.state, _current_picture(session))
-    return ".png", "image/png", encode_png(colours)
+    colours = application.develop(session.state, {0: _current_picture(session)})
+    return ".png", "image/png", encode_png(colours[0])
 
 
 def _make_exr(application: Application, session: Session) -> tuple[str, str, bytes]:
@@ -153,18 +156,45 @@ def to_function(application: Application, state: State) -> TransferFunction:
     )
 
 
-def _make_film(
-    application: Application, state: State, size: tuple[int, int]
+def _make_orbit(
+    application: Application, state: State, size: tuple[int, int], kind: str
 ) -> Iterator[list[Message]]:
-    """Render an orbit frame by frame; yield messages of the progress, and at last the file."""
-    stream, name = io.BytesIO(), application.volume.name
-    with zipfile.ZipFile(stream, "w") as archive:
-        for number in range(FRAMES):
-            turned = state | {"camera.azimuth": 360 * number / FRAMES}
-            frame = render_state(application, turned, size, FILM_SAMPLES)
-            colours = application.develop(turned, next(iter(frame.pictures.values())))
-            archive.writestr(f"{name}_{number:03d}.png", encode_png(colours))
-            text = f"The orbit is rendered: {number + 1} of {FRAMES} frames"
-            yield [({"type": "busy", "text": text, "fraction": (number + 1) / FRAMES}, [])]
-    file = {"type": "file", "name": f"{name}.orbit.zip", "mime": "application/zip"}
+    """Render a turn, frame by frame, from the view of a state on.
+
+    Yields messages of the progress, and at last the file: one animation, or an archive of frames.
+    """
+    name, tone = application.volume.name, application.states.tone_mapping(state)
+    images: list[Any] = []
+    brightest = 0.0  # of the first frame, which all frames are exposed by
+    for number in range(FRAMES):
+        azimuth = state["camera.azimuth"] + 360 * number / FRAMES
+        frame = render_state(
+            application, state | {"camera.azimuth": azimuth}, size, FILM_SAMPLES
+        ).pictures[name]
+        brightest = brightest or tone.brightest_of(frame)
+        images.append(Image.fromarray(to_bytes(tone(frame, brightest))))
+        text = f"The orbit is rendered: {number + 1} of {FRAMES} frames"
+        yield [({"type": "busy", "text": text, "fraction": (number + 1) / FRAMES}, [])]
+    write, suffix, mime = ORBITS[kind]
+    stream = io.BytesIO()
+    write(stream, images)
+    file = {"type": "file", "name": f"{name}.orbit{suffix}", "mime": mime}
     yield [({"type": "busy", "text": "", "fraction": None}, []), (file, [stream.getvalue()])]
+
+
+def _write_frames(stream: io.BytesIO, images: list[Any]) -> None:
+    """Write images as an archive of PNGs."""
+    with zipfile.ZipFile(stream, "w") as archive:
+        for number, image in enumerate(images):
+            archive.writestr(f"{number:03d}.png", encode_png(np.asarray(image)))
+
+
+def _write_gif(stream: io.BytesIO, images: list[Any]) -> None:
+    """Write images as an animation."""
+    write_animation(stream, "GIF", images, len(images))
+
+
+ORBITS = {
+    "film": (_write_gif, ".gif", "image/gif"),
+    "frames": (_write_frames, ".zip", "application/zip"),
+}

@@ -17,14 +17,19 @@ from typing import Any
 
 import numpy as np
 
+from brdfkit.core.arguments import is_number
 from brdfkit.core.array_types import AnyArray, FloatArray
 from brdfkit.core.colours import from_srgb, to_srgb
-from brdfkit.viewing.controls import State
+from brdfkit.viewing.controls import State, is_colour
 from brdfkit.viewing.volumes.live_volume import LiveVolume
 from brdfkit.volumes import TransferFunction
+from brdfkit.volumes.volume import LARGEST_VALUE
 
 POINTS = 24  # control points at most, to which a function is simplified
 TOLERANCE = 0.01  # of RGB and A, by which a simplified function may deviate
+LARGEST_POINTS, LARGEST_BUMPS = 256, 64
+# The ends of a bump's numbers
+BUMP_ENDS = {"a": (0, 1), "x": (-1, 2), "y": (-1, 2), "sx": (1e-4, 4), "sy": (1e-4, 4)}
 
 
 def to_table(state: State, volume: LiveVolume) -> AnyArray:
@@ -146,26 +151,30 @@ def _choose_points(at: FloatArray, rgba: FloatArray, most: int) -> list[int]:
 
 def is_points(points: Any) -> bool:
     """Return whether a value is a list of two or more control points, rising."""
-    try:
-        at = [float(value) for value, _, _ in points]
-        fine = all(isinstance(c, str) and len(parse_colour(c)) == 3 for _, c, _ in points)
-        opacities = [float(a) for _, _, a in points]
-    except (TypeError, ValueError, IndexError):
+    if not isinstance(points, list) or not 2 <= len(points) <= LARGEST_POINTS:
         return False
-    rising = all(a <= b for a, b in pairwise(at))
-    finite = all(np.isfinite(at)) and all(0 <= a <= 1 for a in opacities)
-    return fine and rising and finite and 2 <= len(points) <= 256 and at[0] < at[-1]
+    if not all(isinstance(point, list) and len(point) == 3 for point in points):
+        return False
+    if not all(_is_between(v, -LARGEST_VALUE, LARGEST_VALUE) for v, _, _ in points):
+        return False
+    rising = all(a[0] <= b[0] for a, b in pairwise(points)) and points[0][0] < points[-1][0]
+    return rising and all(is_colour(c) and _is_between(a, 0, 1) for _, c, a in points)
 
 
 def is_bumps(bumps: Any) -> bool:
     """Return whether a value is a list of bumps."""
-    try:
-        return len(bumps) <= 64 and all(
-            0 <= float(b["a"]) <= 1
-            and all(-1 <= float(b[k]) <= 2 for k in ("x", "y"))
-            and all(1e-4 <= float(b[k]) <= 4 for k in ("sx", "sy"))
-            and len(parse_colour(b["colour"])) == 3
-            for b in bumps
+    return (
+        isinstance(bumps, list)
+        and len(bumps) <= LARGEST_BUMPS
+        and all(
+            isinstance(bump, dict)
+            and all(_is_between(bump.get(name), *ends) for name, ends in BUMP_ENDS.items())
+            and is_colour(bump.get("colour"))
+            for bump in bumps
         )
-    except (TypeError, ValueError, KeyError, IndexError):
-        return False
+    )
+
+
+def _is_between(value: Any, low: float, high: float) -> bool:
+    """Return whether a value is a number from `low` to `high`."""
+    return is_number(value) and low <= value <= high
