@@ -16,7 +16,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing import session as session_file
 from brdfkit.viewing.render_thread import work_safely
 from brdfkit.viewing.session import Session
-from brdfkit.viewing.volumes import saving
+from brdfkit.viewing.volumes import histograms, saving
 from brdfkit.viewing.volumes.application import VolumeApplication
 from brdfkit.viewing.volumes.volume_controls import LABELS
 
@@ -405,6 +405,15 @@ def test_slices_are_sent_when_they_are_shown_and_moved(session, volume):
     ((probe, _),) = session.handle({"type": "probe_slice", "plane": 0, "x": 0.99, "y": 0.99})
     assert probe["voxel"] == [15, 0, 8]
     assert probe["text"].startswith(f"{volume.values[8, 0, 15]:.6g} at voxel 15, 0, 8")
+
+
+def test_pages_of_a_volume_share_its_grid_and_its_histograms(application, volume, monkeypatch):
+    other = VolumeApplication(volume, "smoke")
+    assert other.states.live is application.states.live
+    first = application.describe()
+    monkeypatch.setattr(histograms, "_count_voxels", None)  # which is not called again
+    assert other.describe() == first
+    assert VolumeApplication(volume.resized(2)).states.live is not application.states.live
 
 
 def test_only_the_slices_that_change_are_sent(session):

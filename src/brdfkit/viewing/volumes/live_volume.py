@@ -1,14 +1,15 @@
 """`LiveVolume`: a volume as the scenes of a view look it up, its values as shares of their range.
 
-All scenes of a view share one grid of Mitsuba. The values in it go from 0 to 1, so that tables of
-`VALUE_ROWS` even steps suit every volume. The labels of a volume of labels become even steps,
-because labels that are thousands apart would otherwise share rows of the table.
+All scenes of all views of a volume share one grid of Mitsuba. Its values go from 0 to 1, so that
+tables of `VALUE_ROWS` even steps suit every volume. The labels of a volume of labels become even
+steps, because labels that are thousands apart would otherwise share rows of the table.
 """
 
 from __future__ import annotations
 
 from functools import cached_property
 from typing import Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +26,7 @@ STEEPEST_PERCENTILE = 99.9  # of the gradient magnitudes, up to which tables go
 
 
 class LiveVolume:
-    """A volume, its range of values, and the grids that all scenes of a view share.
+    """A volume, its range of values, and the grids that all scenes of it share.
 
     `labels` are the labels that occur, rising, or None. `low` and `high` are the ends of the range
     of values, `high` = `low` + 1 if there is only one value. `steepest` is the gradient magnitude
@@ -102,6 +103,18 @@ class LiveVolume:
             }
             self.grids[channels] = mi.load_dict(described)
         return self.grids[channels]
+
+
+# Without the volumes that no view shows any more
+_shared: WeakValueDictionary[int, LiveVolume] = WeakValueDictionary()
+
+
+def get_live_volume(volume: Volume) -> LiveVolume:
+    """Return the `LiveVolume` of a volume, the same one for all pages that show it."""
+    live = _shared.get(id(volume))
+    if live is None:
+        live = _shared[id(volume)] = LiveVolume(volume)
+    return live
 
 
 def make_placeholder(colour: str, gradients: FloatArray | None) -> TransferFunction:

@@ -26,7 +26,7 @@ from brdfkit.viewing.controls import Control, State, default_state
 from brdfkit.viewing.volumes import transfer_table
 from brdfkit.viewing.volumes.camera import Camera
 from brdfkit.viewing.volumes.live_scene import Look, SceneKind, choose_steps
-from brdfkit.viewing.volumes.live_volume import LiveVolume
+from brdfkit.viewing.volumes.live_volume import get_live_volume
 from brdfkit.viewing.volumes.transfer_table import parse_colour
 from brdfkit.viewing.volumes.volume_controls import make_controls
 from brdfkit.volumes import TransferFunction, Volume
@@ -58,7 +58,7 @@ class VolumeState:
     """
 
     def __init__(self, volume: Volume) -> None:
-        self.volume, self.live = volume, LiveVolume(volume)
+        self.volume, self.live = volume, get_live_volume(volume)
         self.level = defaults.choose_surface_level(volume)
         self.front = find_front(volume)
         self.loaded: dict[str, TransferFunction] = {}  # presets, by name
