@@ -57,7 +57,7 @@ function createPicture(session, stage) {
         numbers[side] = number;
         picture.described = content;
         picture.draw();
-      }
+      } else bitmap.close();
     } finally {
       session.send({ type: "shown", number });
     }
@@ -73,7 +73,10 @@ function createPicture(session, stage) {
   session.on("picture", show);
   session.on("state", (names) => {
     if (names.has("background")) stage.style.backgroundColor = session.state.background;
-    if (names.has("second") && !session.state.second) latest[1] = null;
+    if (names.has("second") && !session.state.second) {
+      latest[1]?.close();
+      latest[1] = null;
+    }
     if (names.has("second") || names.has("wipe")) picture.draw();
   });
   session.on("open", () => numbers.fill(-1));

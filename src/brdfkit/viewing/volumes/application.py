@@ -104,7 +104,7 @@ class VolumeApplication:
                 "size": volume.size,
                 "spacing": volume.spacing,
                 "unit": volume.unit,
-                "value_unit": self.value_unit,
+                "value_unit": self.states.value_unit,
                 "range": [live.low, live.high],
                 "steepest": live.steepest,
                 "axes": volume.axes,
@@ -113,11 +113,6 @@ class VolumeApplication:
             "presets": self.states.presets(),
             "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
         }, [joint]
-
-    @property
-    def value_unit(self) -> str:
-        """The unit of the volume's values, "HU" for a scan that has them; empty if unknown."""
-        return self.states.function.value_unit if self.states.function.value_unit == "HU" else ""
 
     def change(self, state: State, changes: Mapping[str, Any]) -> State:
         """Return the state after changes; raise `BrdfkitError` if one is not possible."""
@@ -213,7 +208,7 @@ class VolumeApplication:
         extinction = self.states.find_extinction(state, side)
         densest = state["second" if side else "renderer"] == "maximum_intensity"
         at = slices.find_visible_voxel(self.states.live, extinction, state["clip"], ray, densest)
-        text = "" if at is None else slices.describe_voxel(self.volume, at, self.value_unit)
+        text = "" if at is None else slices.describe_voxel(self.volume, at, self.states.value_unit)
         return [({"type": "probe", "text": text, "voxel": at}, [])]
 
     def _paint(self, session: Session, message: dict[str, Any]) -> list[Message]:
@@ -228,7 +223,7 @@ class VolumeApplication:
         plane = to_whole_number("plane", message.get("plane"), 0, len(slices.PLANES) - 1)
         x, y = (to_number(name, message.get(name)) for name in "xy")
         at = slices.move_crosshair(self.volume, session.state["slices"], plane, x, y)
-        text = slices.describe_voxel(self.volume, at, self.value_unit)
+        text = slices.describe_voxel(self.volume, at, self.states.value_unit)
         return [({"type": "probe", "text": text, "voxel": at}, [])]
 
     def _save(self, session: Session, message: dict[str, Any]) -> list[Message]:

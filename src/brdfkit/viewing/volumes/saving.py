@@ -152,7 +152,7 @@ def to_function(application: Application, state: State) -> TransferFunction:
         rgba = states.table(state)[..., ::step, :][..., rows, :]
         gradients = states.live.row_gradients if rgba.ndim == 3 else None
     return TransferFunction(
-        values, rgba, extinction, colour, gradients, application.value_unit, unit, name
+        values, rgba, extinction, colour, gradients, application.states.value_unit, unit, name
     )
 
 

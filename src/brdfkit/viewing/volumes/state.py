@@ -69,9 +69,15 @@ class VolumeState:
         origin, target = place_camera(volume, is_visible, sides, 1.0)
         self.home = tuple(float(x) for x in target)
         distance = float(np.linalg.norm(origin - target))
-        self.controls = {c.name: c for c in make_controls(volume, self.level, distance)}
+        controls = make_controls(volume, self.level, distance, self.value_unit)
+        self.controls = {control.name: control for control in controls}
         self.environments: dict[str, AnyArray] = {}  # maps from the page, by name
         self.functions: dict[str, TransferFunction] = {}  # those from the page, by name
+
+    @property
+    def value_unit(self) -> str:
+        """The unit of the volume's values, "HU" for a scan that has them; empty if unknown."""
+        return self.function.value_unit if self.function.value_unit == "HU" else ""
 
     def first(self) -> State:
         """Return the state with which a view begins: the default transfer function, home."""

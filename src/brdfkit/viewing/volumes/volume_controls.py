@@ -39,34 +39,26 @@ MODES = (
 )
 
 
-def make_controls(volume: Volume, level: float, distance: float) -> list[Control]:
+def make_controls(volume: Volume, level: float, distance: float, value_unit: str) -> list[Control]:
     """Return the controls for a volume, with its range of values and its size.
 
-    `level` is the default value of the surface, `distance` that of the camera.
+    `level` is the default value of the surface, `distance` that of the camera; `value_unit` is the
+    unit of the volume's values.
     """
+    low, high = volume.range
+    values = {"low": low, "high": high, "unit": value_unit}
     return [
-        *_picture_controls(*volume.range, level),
+        *_picture_controls(level, values),
         *_transfer_controls(),
         *_light_controls(),
         *_tone_controls(),
         *_camera_controls(distance, volume.unit),
-        *_slice_controls(*volume.range, volume.window),
+        *_slice_controls(volume.window, values),
     ]
 
 
-def _slice_controls(low: float, high: float, window: tuple[float, float]) -> list[Control]:
-    """Return the controls of the slices, for values from `low` to `high`; `window` is shown."""
-    control = partial(Control, panel="slices")
-    shown: dict[str, Any] = {"low": low, "high": high, "when": {"show.slices": (True,)}}
-    return [
-        control("show.slices", "Show slices", default=False, kind="flag"),
-        control("slices.low", "Black at", default=window[0], **shown),
-        control("slices.high", "White at", default=window[1], **shown),
-    ]
-
-
-def _picture_controls(low: float, high: float, level: float) -> list[Control]:
-    """Return the controls of the renderers, for values from `low` to `high`."""
+def _picture_controls(level: float, values: dict[str, Any]) -> list[Control]:
+    """Return the controls of the renderers; `level` is the default value of the surface."""
     control = partial(Control, panel="picture")
     renderers = tuple(LABELS.items())
     seconds = (("", "nothing"), *renderers)
@@ -82,7 +74,7 @@ def _picture_controls(low: float, high: float, level: float) -> list[Control]:
         control("renderer", "Renderer", **first),
         control("second", "Right of the wipe", default="", kind="choice", choices=seconds),
         control("wipe", "Wipe", default=0.5, when={"second": tuple(LABELS)}),
-        control("level", "Surface's value", default=level, low=low, high=high, when=SURFACE),
+        control("level", "Surface's value", default=level, when=SURFACE, **values),
         control("surface.colour", "Surface", default="#ddcbbb", kind="colour", when=SURFACE),
         control("phase", "Phase function", **phase, when=SCATTERING),
         control(
@@ -168,4 +160,15 @@ def _camera_controls(distance: float, unit: str) -> list[Control]:
         control("camera.elevation", "Elevation", default=20.0, low=-90, high=90, unit="°"),
         control("camera.distance", "Distance", default=distance, **reach),
         control("camera.fov", "Field of view", default=25.0, low=2, high=120, unit="°"),
+    ]
+
+
+def _slice_controls(window: tuple[float, float], values: dict[str, Any]) -> list[Control]:
+    """Return the controls of the slices, whose defaults are the ends of the `window`."""
+    control = partial(Control, panel="slices")
+    shown = values | {"when": {"show.slices": (True,)}}
+    return [
+        control("show.slices", "Show slices", default=False, kind="flag"),
+        control("slices.low", "Black at", default=window[0], **shown),
+        control("slices.high", "White at", default=window[1], **shown),
     ]
