@@ -57,17 +57,20 @@ def split_component_types(mi: MitsubaModule) -> tuple[int, int]:
 def has_separate_diffuse_part(bsdf: MitsubaObject) -> bool:
     """Return whether the diffuse components of a BSDF are constant, and can be evaluated alone.
 
-    Some BSDFs evaluate all components even if only the diffuse ones are requested.
+    The BSDF of a model knows it, whatever the values of its parameters. Others are tested, because
+    some evaluate all components even if only the diffuse ones are requested.
     """
     import mitsuba as mi
 
+    known = getattr(bsdf, "has_constant_diffuse_part", None)
+    if known is not None:
+        return known
     wi, wo = PAIRS
     matte, others = (eval_bsdf(bsdf, wi, wo, types) for types in split_component_types(mi))
     whole = eval_bsdf(bsdf, wi, wo)
-    allowed = TOLERANCE * matte.max()
     return bool(
         matte.max() > 0
-        and np.ptp(matte, axis=0).max() < allowed
+        and np.ptp(matte, axis=0).max() < TOLERANCE * matte.max()
         and np.abs(whole - matte - others).max() < TOLERANCE * whole.max()
     )
 

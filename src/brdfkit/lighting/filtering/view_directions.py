@@ -6,12 +6,14 @@ view, and reflects its own view about the half vectors. Pictures do not evaluate
 are as fast with a measured table as with a formula.
 """
 
+from dataclasses import dataclass
+from functools import lru_cache
+
 import numpy as np
 
 from brdfkit.core.array_types import (
-    AnyArray,
-    FloatArray,
     JitColour,
+    JitFloat,
     JitInt,
     JitMask,
     JitVector,
@@ -21,7 +23,11 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.vectors import reflect
 from brdfkit.lighting.filtering.bsdf_directions import Directions, split_off_constant
 from brdfkit.lighting.filtering.filtered_light import Light
-from brdfkit.lighting.filtering.scene_bsdfs import has_separate_diffuse_part, is_isotropic
+from brdfkit.lighting.filtering.scene_bsdfs import (
+    has_separate_diffuse_part,
+    is_isotropic,
+    split_component_types,
+)
 from brdfkit.mitsuba_bridge.arrays import Rows, find_cell
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
@@ -33,7 +39,8 @@ ADJACENT = 5  # number of adjacent polar angles whose median weight replaces out
 class ViewDirections:
     """Directions that a BSDF draws for a grid of views, to light pictures without the BSDF.
 
-    The views see the front of the surface, and the back if the BSDF has one.
+    The views see the front of the surface, and the back if the BSDF has one. Kernels do not depend
+    on the grid, so that a BSDF may become anisotropic without a new one.
     """
 
     def __init__(self, bsdf: MitsubaObject, directions: Directions) -> None:
@@ -41,46 +48,62 @@ class ViewDirections:
         import mitsuba as mi
 
         self.directions = directions
-        self.angles, self.azimuths = ISOTROPIC if is_isotropic(bsdf) else ANISOTROPIC
         self.has_back = mi.has_flag(bsdf.flags(), mi.BSDFFlags.BackSide)
+        angles, azimuths = ISOTROPIC if is_isotropic(bsdf) else ANISOTROPIC
+        views = _load_views(str(mi.variant()), angles, azimuths, self.has_back)
+        self.angles, self.azimuths = mi.UInt32(angles), mi.UInt32(azimuths)
+        self.angles_per_radian = mi.Float(2 / np.pi * angles)
+        dr.make_opaque(self.angles, self.azimuths, self.angles_per_radian)
 
-        si = _make_surface_points(np.repeat(self.make_views(), directions.count, axis=0))
-        c, types, constant = split_off_constant(bsdf, si, True, has_separate_diffuse_part(bsdf))
-        index = dr.arange(mi.UInt32, dr.width(si)) % directions.count
-        wo, kappa, weight = directions.draw_direction(index, bsdf, si, types, constant)
-        self.constants = Rows(_append_number(c, 0, len(index))[:: directions.count])
-        self.lobes = Rows(_append_number(dr.normalize(si.wi + wo), kappa, len(index)))
-        self.weights = Rows(self._remove_weight_outliers(_append_number(weight, 0, len(index))))
+        index = dr.arange(mi.UInt32, views.count * directions.count)
+        view, number = index // directions.count, index % directions.count
+        si = _make_surface_points(views.directions.at(view, mi.Vector3f))
+        # Without other components there is nothing to separate, and one kernel serves all values
+        has_others = int(bsdf.flags()) & split_component_types(mi)[1] != 0
+        separate = has_others and has_separate_diffuse_part(bsdf)
+        c, types, constant = split_off_constant(bsdf, si, True, separate)
+        wo, kappa, weight = directions.draw_direction(number, bsdf, si, types, constant)
+        h = dr.normalize(si.wi + wo)
+        self.lobes = dr.ravel(mi.Vector4f(h.x, h.y, h.z, kappa))
+        self.weights = dr.ravel(_append_zero(weight, len(index)))
+        self.constants = dr.ravel(_append_zero(c, len(index)))
+        dr.eval(self.lobes, self.weights, self.constants)
+        self.weights = self._remove_weight_outliers(self.weights, index)
+        dr.eval(self.weights)
 
-    def _remove_weight_outliers(self, weights: FloatArray) -> FloatArray:
+    def _remove_weight_outliers(self, weights: JitFloat, index: JitInt) -> JitFloat:
         """Replace `weights` (views · directions, 4) by each direction's median in adjacent views.
 
-        The first three columns are the colour of a weight, the fourth one is not used.
-        Weights change little from view to view, except where a measured table's cell is drawn too
-        rarely: then a single view would be too bright, and show as a ring in pictures.
+        The first three columns are the colour of a weight, the fourth one is not used. `index`
+        counts the rows. Weights change little from view to view, except where a measured table's
+        cell is drawn too rarely: then a single view would be too bright, and show as a ring in
+        pictures.
         """
-        from scipy.ndimage import median_filter
+        import drjit as dr
+        import mitsuba as mi
 
-        views = weights.reshape(-1, self.angles, self.azimuths, self.directions.count, 4)
-        return median_filter(views, (1, ADJACENT, 1, 1, 1)).reshape(weights.shape)
-
-    def make_views(self) -> FloatArray:
-        """Return the views' directions (n, 3): azimuth fastest, then polar angle, then side."""
-        theta = (np.arange(self.angles) + 0.5) / self.angles * np.pi / 2
-        phi = np.arange(self.azimuths) / self.azimuths * 2 * np.pi
-        front = from_angles(theta[:, None], phi).reshape(-1, 3)
-        return np.concatenate([front, front * [1, 1, -1]]) if self.has_back else front
+        step = self.azimuths * self.directions.count  # rows from one polar angle to the next
+        angle, last = mi.Int32((index // step) % self.angles), mi.Int32(self.angles) - 1
+        rest = mi.Int32(index) - angle * mi.Int32(step)
+        adjacent = []
+        for offset in range(-(ADJACENT // 2), ADJACENT // 2 + 1):
+            at = angle + offset  # reflected at both ends, where the end itself counts twice
+            at = dr.select(at < 0, -at - 1, dr.select(at > last, 2 * last + 1 - at, at))
+            row = mi.UInt32(rest + at * mi.Int32(step))
+            adjacent.append(dr.gather(mi.Vector4f, weights, row))
+        return dr.ravel(_median(adjacent))
 
     def find_nearest_view(self, wi: JitVector) -> JitInt:
         """Return the number of the stored view that is nearest to the direction `wi`."""
         import drjit as dr
         import mitsuba as mi
 
-        row = find_cell(dr.safe_acos(dr.abs(wi.z)) * (2 / dr.pi * self.angles), self.angles)
-        turn = dr.atan2(wi.y, wi.x) / (2 * dr.pi) * self.azimuths + 0.5
-        turn -= self.azimuths * dr.floor(turn / self.azimuths)
-        view = row * self.azimuths + find_cell(turn, self.azimuths)
-        return view + dr.select(wi.z < 0, mi.UInt32(self.angles * self.azimuths), 0)
+        azimuths = mi.Float(self.azimuths)
+        row = find_cell(dr.safe_acos(dr.abs(wi.z)) * self.angles_per_radian, mi.Float(self.angles))
+        turn = dr.atan2(wi.y, wi.x) / (2 * dr.pi) * azimuths + 0.5
+        turn -= azimuths * dr.floor(turn / azimuths)
+        view = row * self.azimuths + find_cell(turn, azimuths)
+        return view + dr.select(wi.z < 0, self.angles * self.azimuths, 0)
 
     def radiance(self, si: MitsubaObject, light: Light, active: JitMask) -> JitColour:
         """Return the radiance that the points `si` reflect towards `si.wi`, as a spectrum."""
@@ -89,12 +112,14 @@ class ViewDirections:
 
         active = mi.Bool(active) if self.has_back else active & (si.wi.z > 0)
         directions, view = self.directions, self.find_nearest_view(si.wi)
-        sin, cos = dr.sincos(dr.atan2(si.wi.y, si.wi.x) if self.azimuths == 1 else mi.Float(0))
+        # An isotropic BSDF has views of one azimuth alone
+        turn = dr.select(self.azimuths == 1, dr.atan2(si.wi.y, si.wi.x), 0)
+        sin, cos = dr.sincos(turn)
 
         def add_direction(i: JitInt, total: JitColour) -> tuple[JitInt, JitColour]:
             index = view * directions.count + directions.find_direction_index(i, si)
             lobe, weight = (
-                rows.at(index, mi.Vector4f, active) for rows in (self.lobes, self.weights)
+                dr.gather(mi.Vector4f, rows, index, active) for rows in (self.lobes, self.weights)
             )
             h = mi.Vector3f(cos * lobe.x - sin * lobe.y, sin * lobe.x + cos * lobe.y, lobe.z)
             mean = light.mean_radiance_over_lobe(si.to_world(reflect(si.wi, h)), lobe.w)
@@ -105,24 +130,59 @@ class ViewDirections:
             lambda i, total: active & (i < directions.per_ray),
             add_direction,
         )
-        c = self.constants.at(view, mi.Vector4f, active)
+        c = dr.gather(mi.Vector4f, self.constants, view * directions.count, active)
         received = light.irradiance(si.to_world(mi.Vector3f(0, 0, dr.sign(si.wi.z))))
         total = total / directions.per_ray + dr.pi * mi.Color3f(c.x, c.y, c.z) * received
         return make_rgb_emission()(dr.maximum(dr.select(active, total, 0), 0), si)
 
 
-def _make_surface_points(views: FloatArray) -> MitsubaObject:
-    """Return a `mi.SurfaceInteraction3f` of points with the normal z, seen from `views` (n, 3)."""
+@dataclass(frozen=True)
+class Views:
+    """The `count` directions of a grid of views: azimuth fastest, then polar angle, then side."""
+
+    directions: Rows
+    count: int
+
+
+@lru_cache(maxsize=8)
+def _load_views(variant: str, angles: int, azimuths: int, has_back: bool) -> Views:
+    """Return the views of a grid; the `variant` of Mitsuba is a key of the cache only."""
+    theta = (np.arange(angles) + 0.5) / angles * np.pi / 2
+    phi = np.arange(azimuths) / azimuths * 2 * np.pi
+    front = from_angles(theta[:, None], phi).reshape(-1, 3)
+    views = np.concatenate([front, front * [1, 1, -1]]) if has_back else front
+    return Views(Rows(views), len(views))
+
+
+def _make_surface_points(wi: JitVector) -> MitsubaObject:
+    """Return a `mi.SurfaceInteraction3f` of points with the normal z, seen from `wi`."""
     import drjit as dr
     import mitsuba as mi
 
-    si = dr.zeros(mi.SurfaceInteraction3f, len(views))
-    si.wi, si.n = mi.Vector3f(views.T.astype(np.float32)), mi.Normal3f(0, 0, 1)
+    si = dr.zeros(mi.SurfaceInteraction3f, dr.width(wi))
+    si.wi, si.n = wi, mi.Normal3f(0, 0, 1)
     si.sh_frame = mi.Frame3f(mi.Vector3f(0, 0, 1))
     return si
 
 
-def _append_number(vector: JitVector, number: AnyArray | float, count: int) -> FloatArray:
-    """Append a number to a vector or colour (grey in mono variants): an array (count, 4)."""
-    three = np.broadcast_to(np.array(vector), (3, count))
-    return np.column_stack([*three, np.broadcast_to(np.array(number), count)])
+def _append_zero(colour: JitColour, count: int) -> JitVector:
+    """Return a colour (grey in mono variants), of `count` points or of all, and 0 as a vector."""
+    import drjit as dr
+    import mitsuba as mi
+
+    parts = [colour[k] for k in range(len(colour))]
+    wide = dr.zeros(mi.Float, count)
+    return mi.Vector4f(*(part + wide for part in (parts * 3)[:3]), wide)
+
+
+def _median(five: list[JitVector]) -> JitVector:
+    """Return the median of five vectors, component by component."""
+    import drjit as dr
+
+    a, b, c, d, e = five
+    a, b = dr.minimum(a, b), dr.maximum(a, b)
+    c, d = dr.minimum(c, d), dr.maximum(c, d)
+    # The least and the greatest of the first four are not the median of all
+    low, high = dr.maximum(a, c), dr.minimum(b, d)
+    low, high = dr.minimum(low, high), dr.maximum(low, high)
+    return dr.maximum(low, dr.minimum(high, e))

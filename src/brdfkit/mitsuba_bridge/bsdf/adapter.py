@@ -11,9 +11,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import drjit as dr
+import numpy as np
 
 from brdfkit.core.array_types import JitColour, JitMask, JitVector, MitsubaModule, MitsubaObject
 from brdfkit.core.geometry.quadrature import make_cosine_directions
+from brdfkit.core.jit import double_precision
 from brdfkit.mitsuba_bridge.bsdf.signed_sum import tabulate_lobe_sum
 from brdfkit.mitsuba_bridge.bsdf.surface_response import Point
 from brdfkit.mitsuba_bridge.bsdf.textures import define_textured_bsdf
@@ -34,6 +36,8 @@ def define_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
     Base: Any = define_textured_bsdf(mi, model)
 
     class Plugin(Base):
+        has_constant_diffuse_part = has_constant_diffuse_lobes(model)
+
         def __init__(self, props: MitsubaObject) -> None:
             super().__init__(props)
             self.tables: dict[int, Any] = {}
@@ -71,6 +75,17 @@ def define_bsdf(mi: MitsubaModule, model: type[Model]) -> Any:
             return mi.Spectrum(dr.select(active, total / len(DIRECTIONS), 0))
 
     return Plugin
+
+
+def has_constant_diffuse_lobes(model: type[Model]) -> bool:
+    """Return whether a model has diffuse lobes, and all of them are constant, as Lambert's is.
+
+    A sum that is clamped at 0 has no lobes of its own.
+    """
+    up = double_precision.to_vector(np.array([[0.0, 0.0, 1.0]]))
+    values = [lobe.eval(up, up) for lobe in model().lobes() if lobe.diffuse]
+    constant = bool(values) and all(isinstance(value, float) for value in values)
+    return constant and not model.has_signed_weights()
 
 
 def find_signed_components(model: type[Model], groups: list[list[int]]) -> list[int]:
