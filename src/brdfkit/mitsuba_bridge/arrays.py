@@ -56,7 +56,7 @@ class Integers:
         return int(self.values[index]) if active else 0
 
 
-def find_cell(x: JitFloat, n: int) -> JitInt:
+def find_cell(x: JitFloat, n: JitFloat) -> JitInt:
     """Return the index of the cell around `x` among `n` cells of length 1, clamped at the ends."""
     import drjit as dr
     import mitsuba as mi
