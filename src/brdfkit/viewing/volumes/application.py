@@ -131,11 +131,14 @@ class VolumeApplication:
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
     ) -> AnyArray:
         """Render a pass of one sample per pixel: (height, width, 3), linear sRGB."""
+        import drjit as dr
+
         kind = self.states.scene_kind(state, side, size, moving)
         scene = self.scenes.pop(kind, None) or self._load(kind)
         self.scenes[kind] = scene  # the last one is the newest
-        while len(self.scenes) > SCENES:
+        if len(self.scenes) > SCENES:
             self.scenes.pop(next(iter(self.scenes)))
+            dr.flush_malloc_cache()  # which keeps the memory of every size of a picture
         scene.show(self.states.look(state))
         return scene.render(seed)
 

@@ -105,7 +105,8 @@ class LiveScene:
         self.prefix = f"integrator.{RENDERERS[kind.renderer]}"
         self.shown: dict[str, Any] = {}  # the parameters as they are
         self.map_name, self.map_data = "", np.zeros(0)  # the environment map as it is
-        self.scene = mi.load_dict(self._describe())
+        # In parallel, Mitsuba 3.9 keeps 0.3 MB of each scene for ever
+        self.scene = mi.load_dict(self._describe(), parallel=False)
         self.parameters = mi.traverse(self.scene)
 
     def _describe(self) -> dict[str, Any]:
