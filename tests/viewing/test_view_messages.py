@@ -57,6 +57,7 @@ FIELDS = {
         "offset": NUMBERS,
     },
     "save": {"kind": st.sampled_from(["png", "exr", "state", "transfer", "film"])},
+    "paint": {"stroke": st.lists(st.lists(SHARES, min_size=2, max_size=2)), "hide": st.booleans()},
     "copy": {"kind": st.sampled_from(["python", "command"])},
 }
 

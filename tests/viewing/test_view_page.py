@@ -243,3 +243,30 @@ def test_a_volume_is_opened_from_a_file(new_page, scan, way):
         chooser.value.set_files(scan)
     new_page.get_by_text("6 × 7 × 8 voxels of 2").wait_for(timeout=60_000)
     assert number(new_page, "The plot shows values to") == 2
+
+
+def test_a_stroke_hides_and_shows_instead_of_orbiting(page):
+    before = pixels(page)
+    page.get_by_role("button", name="Paint", exact=True).click()
+    stage, preset = page.locator(".stage"), page.get_by_role("combobox", name="Preset")
+    shown = "([own, text]) => own.selectedOptions[0].textContent === text"
+    box = stage.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.keyboard.down("Shift")
+    drag(page, (x - 20, y), (x + 20, y))
+    page.keyboard.up("Shift")
+    page.wait_for_function(shown, arg=[preset.element_handle(), "edited"])
+    wait_for_change(page, before)
+    page.get_by_role("button", name="Undo").click()
+    page.wait_for_function(shown, arg=[preset.element_handle(), "default"])
+    stage.focus()
+    page.keyboard.press("Shift+Enter")
+    page.wait_for_function(shown, arg=[preset.element_handle(), "edited"])
+    drag(page, (box["x"] + 30, box["y"] + 60), (box["x"] + 40, box["y"] + 60))
+    notice = page.get_by_role("alert")
+    assert "stroke" in notice.inner_text()
+    notice.get_by_role("button", name="Close").click()
+    page.keyboard.press("p")
+    assert page.get_by_role("button", name="Paint", pressed=False).count() == 1
+    page.locator("details", has_text="Field of view").evaluate("(own) => (own.open = true)")
+    assert number(page, "Azimuth [°]") == 30

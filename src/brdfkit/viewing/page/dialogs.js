@@ -9,6 +9,7 @@ const KEYS = [
     ["1 … 6", "look along an axis"],
     ["double click, R", "camera as at the start"],
     ["W", "second picture and wipe"],
+    ["P", "paint: drag or Enter shows what is there, with Shift hides it"],
     ["C", "slices through the voxel under the pointer"],
     ["F", "the whole screen"],
     ["Space", "pause, go on"],

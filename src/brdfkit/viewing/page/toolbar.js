@@ -47,8 +47,8 @@ function makePauseButton(session) {
   return button;
 }
 
-/** Make the toolbar; `pick` opens the file dialog, `help` the help. */
-function createToolbar(session, pick, help) {
+/** Make the toolbar; `pick` opens the file dialog, `paint` is a button, `help` opens the help. */
+function createToolbar(session, pick, paint, help) {
   const save = makeMenu("Save");
   const group = (...buttons) => make("div", { class: "group" }, ...buttons);
   const title = make("span", { class: "title" });
@@ -65,6 +65,7 @@ function createToolbar(session, pick, help) {
       makeButton("Copy as command", () => session.send({ type: "copy", kind: "command" })),
     ),
     group(...makeHistoryButtons(session)),
+    group(paint),
     group(makePauseButton(session), makeButton("Help", help, { title: "?" })),
     title);
 }

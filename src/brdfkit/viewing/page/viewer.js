@@ -1,11 +1,11 @@
 // The viewer: puts the parts together, and connects them to a model of anywidget's kind.
 
 /** Do what a key means to the whole viewer; the picture's own keys come first. */
-function listenForKeys(session, root, stage, { cameraKey, moveCross, switchWipe, help }) {
+function listenForKeys(session, root, stage, { cameraKey, paintKey, moveCross, switchWipe, help }) {
   stage.addEventListener("keydown", (event) => {
     if (event.target !== stage) return;
     const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
-    if (cameraKey(event)) event.preventDefault();
+    if (cameraKey(event) || paintKey(event)) event.preventDefault();
     else if (plain && event.key === " ") {
       event.preventDefault();
       session.emit("pause");
@@ -68,6 +68,7 @@ function render({ model, el }) {
   const picture = createPicture(session, stage);
   createOverlay(session, stage);
   createWipe(session, stage, picture);
+  const paint = createPaint(session, stage, picture);
   const moves = makeCameraMoves(session, stage);
   followPointers(session, stage, moves);
   stage.append(makeViewButtons(session, stage, moves));
@@ -83,14 +84,14 @@ function render({ model, el }) {
   const pick = acceptFiles(session, root);
   const views = make("div", { class: "views-area" }, stage, slices.element);
   root.append(
-    createToolbar(session, pick, help),
+    createToolbar(session, pick, paint.button, help),
     make("div", { class: "main-area" }, views, panels),
     createStatus(session),
   );
   el.append(root);
 
   listenForKeys(session, root, stage, {
-    cameraKey: makeCameraKeys(session, moves), moveCross: makeCrossKey(session),
+    cameraKey: makeCameraKeys(session, moves), paintKey: paint.key, moveCross: makeCrossKey(session),
     switchWipe: makeWipeSwitch(session), help,
   });
   session.on("redraw", picture.draw);
