@@ -316,6 +316,21 @@ def test_messages_and_pictures_do_not_wait_for_each_other_for_ever(application, 
     assert not thread.is_alive()
 
 
+def test_messages_are_answered_while_a_picture_is_encoded(session, monkeypatch):
+    develop, answered = session.application.develop, []
+
+    def develop_slowly(*arguments, **settings):
+        thread = threading.Thread(target=session.handle, args=[{"type": "undo"}], daemon=True)
+        thread.start()
+        thread.join(5)
+        answered.append(not thread.is_alive())
+        return develop(*arguments, **settings)
+
+    monkeypatch.setattr(session.application, "develop", develop_slowly)
+    session.work()
+    assert answered == [True]
+
+
 def test_a_long_answer_to_one_page_does_not_hold_up_the_others(session):
     held = threading.Event()
 

@@ -35,7 +35,8 @@ def render_view(
     volume : Volume, str or Path
         The volume; or the file, folder or name that `brdfkit.volumes.load` takes.
     state : dict of str to object, optional
-        The settings that differ from those with which a view begins, by name.
+        The settings that differ from those with which a view begins, by name. "light.environment"
+        and "transfer.preset" may be files.
     size : int or (int, int), default 512
         Side of the picture, or its width and height [pixels].
     spp : int, default 64

@@ -11,7 +11,6 @@ import threading
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import Any
 
 from brdfkit.core.arguments import to_whole_number
@@ -21,9 +20,10 @@ from brdfkit.images.errors.noise import Accumulated
 from brdfkit.rendering.progressive import derive_seed
 from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.controls import State
+from brdfkit.viewing.passes import Pass, add_passes
 from brdfkit.viewing.pictures import describe_error, describe_noise, make_pictures
+from brdfkit.viewing.undo import UndoSteps
 
-UNDO_STEPS = 100
 LARGEST_SAMPLES = 1024  # per pixel, after which a picture counts as converged
 FIRST_PASSES = 4  # each of which is shown, since every pass is a visible gain
 REST_INTERVAL = 0.25  # seconds between two pictures after the first passes
@@ -32,22 +32,6 @@ SMALLEST_SIDE, LARGEST_SIDE = 64, 2048
 SIDES = "width", "height"
 PATIENCE = 10.0  # seconds without a word on the last picture, after which nobody seems to look
 LONGEST_WAIT = 0.2  # seconds for which a pass waits for a message that is answered meanwhile
-
-
-@dataclass(frozen=True, eq=False)
-class Pass:
-    """A pass when it begins: what it shows, and the samples by side to which it adds its own.
-
-    `number` is that of the passes before it. With `anew` no sample is missing, and the picture is
-    only developed anew.
-    """
-
-    state: State
-    moving: bool
-    size: tuple[int, int]
-    number: int
-    samples: dict[int, Accumulated]
-    anew: bool
 
 
 class Session:
@@ -63,9 +47,7 @@ class Session:
     def open(self, state: State) -> None:
         """Begin anew with a state, as for another volume."""
         self.state, self.first = dict(state), dict(state)
-        self.undo_states: list[State] = [dict(state)]
-        self.redo_states: list[State] = []
-        self.moving = False
+        self.steps, self.moving = UndoSteps(state), False
         self.tasks: list[Iterator[list[Message]]] = []
         self.forget_samples()
 
@@ -101,9 +83,7 @@ class Session:
         if kind == "set":
             return self._set(message)
         if kind in ("undo", "redo", "reset"):
-            before = self.state
-            getattr(self, f"_{kind}")()
-            return [self.describe_state(), *self.application.follow(before, self.state)]
+            return self._step(kind)
         if kind == "resize":
             self._resize(message)
             return []
@@ -134,8 +114,7 @@ class Session:
 
     def describe_state(self) -> Message:
         """Return the message "state"."""
-        steps = {"can_undo": len(self.undo_states) > 1, "can_redo": bool(self.redo_states)}
-        return {"type": "state", "state": self.state} | steps, []
+        return {"type": "state", "state": self.state} | self.steps.describe(), []
 
     def _set(self, message: dict[str, Any]) -> list[Message]:
         changes, moving = message.get("changes"), bool(message.get("moving"))
@@ -149,8 +128,8 @@ class Session:
     def change(self, changes: Mapping[str, Any], moving: bool = False) -> None:
         """Change the state; the end of a move makes an undo step."""
         self._show(self.application.change(self.state, changes), moving)
-        if not moving and self.state != self.undo_states[-1]:
-            self._remember()
+        if not moving:
+            self.steps.remember(self.state)
 
     def _show(self, state: State, moving: bool) -> None:
         """Show another state."""
@@ -160,23 +139,14 @@ class Session:
             self.forget_samples()
         self.state, self.stale = dict(state), True
 
-    def _remember(self) -> None:
-        """Make the state an undo step."""
-        self.undo_states = [*self.undo_states, dict(self.state)][-UNDO_STEPS:]
-        self.redo_states = []
-
-    def _undo(self) -> None:
-        if len(self.undo_states) > 1:
-            self.redo_states.append(self.undo_states.pop())
-            self._show(self.undo_states[-1], moving=False)
-
-    def _redo(self) -> None:
-        if self.redo_states:
-            self.undo_states.append(self.redo_states.pop())
-            self._show(self.undo_states[-1], moving=False)
-
-    def _reset(self) -> None:
-        self.change(self.first, moving=False)
+    def _step(self, kind: str) -> list[Message]:
+        """Undo, redo, or go back to the first state."""
+        before = self.state
+        if kind == "reset":
+            self.change(self.first)
+        else:
+            self._show(self.steps.undo() if kind == "undo" else self.steps.redo(), moving=False)
+        return [self.describe_state(), *self.application.follow(before, self.state)]
 
     def _resize(self, message: Mapping[str, Any]) -> None:
         """Take over the size of the page's canvas [pixels], in steps."""
@@ -314,14 +284,3 @@ class Session:
             "paused": self.paused,
             "converged": self.converged,
         }, []
-
-
-def add_passes(
-    samples: dict[int, Accumulated], passes: dict[int, AnyArray]
-) -> dict[int, Accumulated]:
-    """Return the samples of each side with a further pass of each, if there is one."""
-    added = {
-        side: samples.get(side, Accumulated()).add_pass(picture, 1)
-        for side, picture in passes.items()
-    }
-    return samples | added
