@@ -31,7 +31,11 @@ SMALLER = {  # smaller pictures and shorter searches, of which the notebooks' as
     r"spp=256,\n": "spp=64,\n",
     r"spp=1024": "spp=512",
 }
-IN_A_KERNEL = "first_render"  # alone, because a kernel takes as long to start as a notebook to run
+WITH_A_WIDGET = "look_into_a_volume"
+# Only these, because a kernel takes as long to start as a notebook to run
+IN_A_KERNEL = "first_render", WITH_A_WIDGET
+WIDGET_VIEW = "application/vnd.jupyter.widget-view+json"
+WIDGET_STATE = "application/vnd.jupyter.widget-state+json"
 # a notebook has as many threads as a test (conftest.py): more would wait for the other tests'
 SHARE_THE_CORES = (
     f"import brdfkit.core.jit.threads as t; t.set_thread_count({dr.thread_count()}); del t"
@@ -47,7 +51,7 @@ def read_notebook(path):
 
 
 @pytest.mark.parametrize(
-    "path", [p for p in NOTEBOOKS if p.stem != IN_A_KERNEL], ids=lambda path: path.stem
+    "path", [p for p in NOTEBOOKS if p.stem not in IN_A_KERNEL], ids=lambda path: path.stem
 )
 def test_a_notebook_runs(path, tmp_path, monkeypatch, llvm_variant, no_user_plugins):
     """Each cell runs without an error or a warning, and something is displayed."""
@@ -71,10 +75,12 @@ def test_a_notebook_runs(path, tmp_path, monkeypatch, llvm_variant, no_user_plug
     assert not list(tmp_path.iterdir()), "it leaves files behind"
 
 
-def test_a_notebook_runs_in_a_kernel(tmp_path):
+@pytest.mark.parametrize("name", IN_A_KERNEL)
+def test_a_notebook_runs_in_a_kernel(name, tmp_path):
+    """Without a warning; a widget that it shows is in it with its state, as viewers load it."""
     import nbclient  # only here: it takes seconds
 
-    notebook = read_notebook(TOP / "notebooks" / f"{IN_A_KERNEL}.md")
+    notebook = read_notebook(TOP / "notebooks" / f"{name}.md")
     client = nbclient.NotebookClient(
         notebook,
         timeout=300,
@@ -86,6 +92,14 @@ def test_a_notebook_runs_in_a_kernel(tmp_path):
     assert outputs
     assert not [output for output in outputs if output.get("name") == "stderr"]
     assert not list(tmp_path.iterdir()), "it leaves files behind"
+    shown = [
+        output["data"][WIDGET_VIEW] for output in outputs if WIDGET_VIEW in output.get("data", ())
+    ]
+    assert len(shown) == (name == WITH_A_WIDGET)
+    for view in shown:
+        kept = notebook.metadata["widgets"][WIDGET_STATE]["state"][view["model_id"]]
+        assert kept["model_module"] == "anywidget"
+        assert "export default { render };" in kept["state"]["_esm"]
 
 
 def test_the_index_names_every_notebook():
