@@ -34,7 +34,8 @@ def draw_case(case, setting):
     """Return a picture (height, width, 4) with only the opacity; RGB is NaN."""
     if case.renderer != "emission_absorption" or "gradients" in case.transfer:
         return None  # others are lit, too, and opaque; there is no function of gradients
-    black, white = (take_screenshot(make_plot(case, setting, colour)) for colour in (0, 0xFFFFFF))
+    plots = (make_plot(case, setting, colour) for colour in (0, 0xFFFFFF))
+    black, white = (take_screenshot(plot.get_snapshot()) for plot in plots)
     found = np.full((PIXELS, PIXELS, 4), np.nan)
     found[..., 3] = 1 - (white - black).mean(axis=-1)
     return found
@@ -43,10 +44,12 @@ def draw_case(case, setting):
 def make_plot(case, setting, background):
     v, rgb, sigma = case.sample_transfer(512)
     a, settings = np.interp(v, case.values, case.rgba[:, 3]), {}
-    if setting == "right unit":
+    if setting != "typed in":
         unit = 1 / sigma.max()
         a = -np.expm1(-sigma * unit)
-        settings = {"alpha_coef": EDGE / unit, "samples": 2048}
+        settings = {"alpha_coef": EDGE / unit}
+    if setting == "right unit":
+        settings["samples"] = 2048
     low, high = case.values[[0, -1]]
     shares = (v - low) / (high - low)
     volume = k3d.volume(
@@ -73,7 +76,7 @@ def make_plot(case, setting, background):
     towards, _, up = case.view_axes
     distance = case.entry["half"] / np.tan(np.radians(FIELD_OF_VIEW / 2))
     page.camera = [*(-distance * towards), 0, 0, 0, *up]
-    return page.get_snapshot()
+    return page
 
 
 def take_screenshot(html):

@@ -25,6 +25,14 @@ def draw_case(case, setting):
     """Return RGB (height, width, 4); the opacity is NaN."""
     if case.renderer == "isosurface" or "gradients" in case.transfer:
         return None  # PyVista leaves isosurfaces to VTK, and has no gradient opacity
+    plotter = make_plotter(case, setting, PIXELS)
+    shown = plotter.screenshot(return_img=True)[..., :3] / 255
+    plotter.close()
+    return np.concatenate([shown, np.full((PIXELS, PIXELS, 1), np.nan)], axis=-1)
+
+
+def make_plotter(case, setting, pixels):
+    """Return a plotter that shows a case off the screen."""
     low, high = case.values[[0, -1]]
     at = np.linspace(low, high, COLOURS)
     v, rgb, sigma = case.sample_transfer()
@@ -34,7 +42,7 @@ def draw_case(case, setting):
         unit = 1 / sigma.max()
         a = -np.expm1(-np.interp(at, v, sigma) * unit)
     colours = np.stack([np.interp(at, v, column) for column in rgb.T], axis=-1)
-    plotter = pyvista.Plotter(off_screen=True, window_size=(PIXELS, PIXELS))
+    plotter = pyvista.Plotter(off_screen=True, window_size=(pixels, pixels))
     plotter.set_background([BEHIND] * 3)
     actor = plotter.add_volume(
         pyvista.wrap(make_image_data(case.voxels, case.spacing)),
@@ -49,6 +57,4 @@ def draw_case(case, setting):
         actor.prop.interpolation_type = "linear"
     aim_camera(plotter.camera, case)
     plotter.render_window.SetMultiSamples(0)
-    shown = plotter.screenshot(return_img=True)[..., :3] / 255
-    plotter.close()
-    return np.concatenate([shown, np.full((PIXELS, PIXELS, 1), np.nan)], axis=-1)
+    return plotter

@@ -140,21 +140,32 @@ def make_isosurface(image, case):
 
 def render_actor(actor, case, background):
     """Return the picture (height, width, 3) of an actor before a grey `background`."""
+    window = make_window(actor, case, background, PIXELS)
+    found = read_picture(window, PIXELS)
+    window.Finalize()
+    return found
+
+
+def make_window(actor, case, background, pixels):
+    """Return a square window off the screen that shows an actor before a grey `background`."""
     renderer = vtk.vtkRenderer()
     renderer.AddViewProp(actor)
     renderer.SetBackground([background] * 3)
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(True)
     window.SetMultiSamples(0)
-    window.SetSize(PIXELS, PIXELS)
+    window.SetSize(pixels, pixels)
     window.AddRenderer(renderer)
     aim_camera(renderer.GetActiveCamera(), case)
+    return window
+
+
+def read_picture(window, pixels):
+    """Render a window, and return its picture (height, width, 3)."""
     window.Render()
-    pixels = vtk.vtkUnsignedCharArray()
-    window.GetPixelData(0, 0, PIXELS - 1, PIXELS - 1, 0, pixels, 0)
-    found = vtk_to_numpy(pixels).reshape(PIXELS, PIXELS, 3)[::-1] / 255
-    window.Finalize()
-    return found
+    found = vtk.vtkUnsignedCharArray()
+    window.GetPixelData(0, 0, pixels - 1, pixels - 1, 0, found, 0)
+    return vtk_to_numpy(found).reshape(pixels, pixels, 3)[::-1] / 255
 
 
 def aim_camera(camera, case):
