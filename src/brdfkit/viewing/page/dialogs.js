@@ -123,7 +123,8 @@ function askRaw(session, root, { name, bytes, guess, dtypes }) {
     };
   } },
   row("Voxels", size), row("Spacing", spacing), makeField("Type", dtype),
-  makeField("Header", offset, "bytes"), sum, makeAnswers(make("button", { type: "submit", class: "main" }, "Open"),
+  makeField("Header", offset, "bytes"), sum,
+  makeAnswers(make("button", { type: "submit", class: "main" }, "Open"),
     makeButton("Cancel", () => dialog.close())));
   const dialog = openDialog(root, `How are the voxels stored in ${name}?`, form);
   dialog.addEventListener("close", () => session.send({

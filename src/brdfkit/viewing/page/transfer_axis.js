@@ -15,13 +15,15 @@ function createValueAxis(show) {
   const toValue = (share) => range[0] + share * (range[1] - range[0]);
   const toShare = (value) => (value - range[0]) / (range[1] - range[0] || 1);
 
+  function write(box) {
+    box.value = roundNumber(toValue(box === boxes[0] ? axis.from : axis.to));
+  }
+
   function set(from, to) {
     const width = clamp(to - from, NARROWEST_SPAN, 1);
     axis.from = clamp(from, 0, 1 - width);
     axis.to = axis.from + width;
-    [axis.from, axis.to].forEach((share, k) => {
-      if (!boxes[k].matches(":focus")) boxes[k].value = roundNumber(toValue(share));
-    });
+    boxes.filter((box) => !box.matches(":focus")).forEach(write);
     whole.disabled = width === 1;
     show();
   }
@@ -45,17 +47,20 @@ function createValueAxis(show) {
 
   const boxes = ["from", "to"].map((end) => make("input", {
     type: "number", "aria-label": `The plot shows values ${end}`,
-    oninput: (event) => {
+    oninput: () => {
       const [from, to] = boxes.map(readNumber);
       if (from !== null && to !== null && from < to) set(toShare(from), toShare(to));
     },
-    onchange: () => [axis.from, axis.to].forEach((share, k) => (boxes[k].value = roundNumber(toValue(share)))),
+    onchange: () => boxes.forEach(write),
   }));
-  const whole = makeButton("All", () => set(0, 1), { "aria-label": "Show all values", title: "Show all values (0)" });
+  const word = (text) => make("span", { "aria-hidden": "true" }, text);
+  const button = (text, key, label, onclick) =>
+    makeButton(text, onclick, { "aria-label": label, title: `${label} (${key})` });
+  const whole = button("All", "0", "Show all values", () => set(0, 1));
   axis.element = make("div", { class: "axis", role: "group", "aria-label": "Values that the plot shows" },
-    make("span", { "aria-hidden": "true" }, "From"), boxes[0], make("span", { "aria-hidden": "true" }, "to"), boxes[1],
-    makeButton("−", () => axis.zoom(SPAN_STEP), { "aria-label": "Show more values", title: "Show more values (−)" }),
-    makeButton("+", () => axis.zoom(1 / SPAN_STEP), { "aria-label": "Show fewer values", title: "Show fewer values (+)" }),
+    word("From"), boxes[0], word("to"), boxes[1],
+    button("−", "−", "Show more values", () => axis.zoom(SPAN_STEP)),
+    button("+", "+", "Show fewer values", () => axis.zoom(1 / SPAN_STEP)),
     whole);
   return axis;
 }

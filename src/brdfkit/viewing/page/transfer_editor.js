@@ -1,6 +1,6 @@
 // The editor of the transfer function: its plot, its handles, and the boxes of the selected one.
 
-const NUDGE = 0.01; // of the plot's width and height for a press of an arrow key; with shift ten times as much
+const NUDGE = 0.01; // of the plot for a press of an arrow key; with shift ten times as much
 const BUMP_WHEEL = 0.003; // of the wheel's way, in the exponent of a bump's size
 const BUMP_KEY = 1.1; // factor of a bump's size for a press of a bracket
 const TRANSFER_NAMES = ["transfer.mode", "transfer.preset", "transfer.points", "transfer.bumps"];
@@ -135,7 +135,8 @@ function createTransferEditor(session) {
   function chooseKind() {
     const { volume } = session.description;
     const mode = session.state["transfer.mode"];
-    kind = mode === "points" || mode === "preset" ? makePointKind(volume) : makeBumpKind(volume, mode === "bumps2d");
+    const flat = mode === "bumps2d";
+    kind = flat || mode === "bumps" ? makeBumpKind(volume, flat) : makePointKind(volume);
     boxes = kind.fields.map((field) => [field, makeBox(field)]);
     fields.replaceChildren(...boxes.map(([field, input]) => makeField(field.label, input, field.unit)));
     addButton.textContent = `Add ${kind.noun}`;

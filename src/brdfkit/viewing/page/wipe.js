@@ -5,7 +5,8 @@ const WIPE_STEP = 0.02; // for a press of an arrow key
 /** Put the wipe on a stage. It is there if the state has a second picture. */
 function createWipe(session, stage, picture) {
   const handle = make("div", {
-    class: "wipe", tabIndex: 0, role: "slider", hidden: true, "aria-label": "Wipe between the two pictures",
+    class: "wipe", tabIndex: 0, role: "slider", hidden: true,
+    "aria-label": "Wipe between the two pictures",
     "aria-valuemin": "0", "aria-valuemax": "100", "aria-orientation": "horizontal",
   }, make("span", { class: "grip", "aria-hidden": "true" }));
   const names = ["left", "right"].map((side) => make("span", { class: `side ${side}`, "aria-hidden": "true" }));
@@ -22,7 +23,8 @@ function createWipe(session, stage, picture) {
     const percent = Math.round(100 * (state.wipe ?? 0.5));
     handle.setAttribute("aria-valuenow", percent);
     handle.setAttribute("aria-valuetext", `${percent} % of the first picture`);
-    [state.renderer, state.second].forEach((value, k) => (names[k].textContent = nameRenderer(session, value)));
+    names[0].textContent = nameRenderer(session, state.renderer);
+    names[1].textContent = nameRenderer(session, state.second);
   }
 
   handle.addEventListener("pointerdown", (event) => {
