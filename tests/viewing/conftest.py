@@ -1,5 +1,6 @@
 """A view that is served in a thread, and its page in a browser that reaches nothing else."""
 
+import time
 from contextlib import contextmanager
 from functools import partial
 
@@ -7,6 +8,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.viewing import server
+from brdfkit.viewing.render_thread import is_rendering
 from brdfkit.viewing.volumes.application import VolumeApplication
 
 
@@ -18,6 +20,9 @@ def address(module_in_llvm):
     make = partial(VolumeApplication, volume, "smoke", quick)
     with server.serve(make, listening, "the-token") as address:
         yield address
+    end = time.monotonic() + 20
+    while is_rendering() and time.monotonic() < end:  # Python's end would break off the last pass
+        time.sleep(0.02)
 
 
 @contextmanager
