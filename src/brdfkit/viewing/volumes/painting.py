@@ -13,8 +13,9 @@ as much of it. A is raised by the smallest multiple of w that changes the stroke
 To hide something, s and r are means of what v contributes to the opacity, and A is reduced by a
 share of itself.
 
-In trials, the weights s - r, which are the gradient itself, and differences of the histograms of
-values changed the rest of the picture more, and failed at thin and at faint things.
+A stroke should raise its opacity by 0.15 and change the rest at most half as much. Of trial strokes
+over places that were not opaque yet, 93 % did with these weights, 75 % with s - r, which is the
+gradient itself, and 80 % with differences of the histograms of values.
 """
 
 from __future__ import annotations
@@ -91,7 +92,7 @@ class _Stroke:
             raise BrdfkitError(
                 "Nothing is visible under the stroke."
                 if hide
-                else "The picture is opaque under the stroke; hide what is in front first."
+                else "The picture is opaque under the stroke; hide what is in front, with Shift."
             )
         self.wanted = min(CHANGE, SHARE * possible)
 
