@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
 import numpy as np
@@ -56,18 +56,39 @@ class FilteredLight:
         self.kind, self.side = kind, side
         # the filtered emitter, and a digest of its parameters
         self.source: tuple[MitsubaObject, bytes] | None = None
+        # The emitter's axes, when it was filtered and now
+        self.filtered_axes: FloatArray = np.eye(3)
+        self.axes: FloatArray = np.eye(3)
         self.directions: LightDirections | None = None
 
     def filter_if_changed(self, emitter: MitsubaObject) -> FilteredLight:
-        """Filter the `emitter` unless it is unchanged since the last call; return this object."""
-        source = emitter, _digest_parameters(emitter)
-        if self.source != source:
+        """Filter the `emitter` unless it is unchanged since the last call; return this object.
+
+        If it has only turned, look-ups are turned instead, without a new kernel.
+        """
+        import mitsuba as mi
+
+        parameters = mi.traverse(emitter)
+        axes, source = _find_axes(parameters), (emitter, _digest_parameters(parameters))
+        turn = np.eye(3) if self.source is None else _find_turn(self.filtered_axes, axes)
+        if self.source != source or turn is None:
             radiance = make_radiance_function(emitter)
             picture = make_latlong_picture(radiance, self.side)
             self.lobes = self.kind(radiance, picture)
             self.irradiances = FilteredMap([filter_irradiance(picture)])
-            self.source, self.directions = source, None
+            self.source, self.filtered_axes, turn = source, axes, np.eye(3)
+            self._turn_look_ups(axes, turn)
+        elif not np.array_equal(axes, self.axes):
+            self._turn_look_ups(axes, turn)
         return self
+
+    def _turn_look_ups(self, axes: FloatArray, turn: FloatArray) -> None:
+        """Turn the directions of look-ups by a matrix (3, 3), for an emitter with these axes."""
+        import drjit as dr
+        import mitsuba as mi
+
+        self.axes, self.turn, self.directions = axes, mi.Matrix3f(turn.tolist()), None
+        dr.make_opaque(self.turn)
 
     def get_light_directions(self, rays: int) -> LightDirections:
         """Return directions drawn by the emitter, shared by the `rays` of a pixel, for shadows."""
@@ -78,11 +99,11 @@ class FilteredLight:
 
     def mean_radiance_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
         """Return the mean radiance, in linear sRGB, over a lobe of concentration `kappa`."""
-        return self.lobes.mean_over_lobe(axis, kappa)
+        return self.lobes.mean_over_lobe(self.turn @ axis, kappa)
 
     def irradiance(self, normal: JitVector) -> JitColour:
         """Return the irradiance for this `normal` divided by π, in linear sRGB."""
-        return self.irradiances.interpolate_bilinearly(normal, 0)
+        return self.irradiances.interpolate_bilinearly(self.turn @ normal, 0)
 
 
 class LightDirections:
@@ -164,13 +185,33 @@ def _integrate_spectrum(emitter: MitsubaObject, si: MitsubaObject) -> FloatArray
     return total * (last - first) / (WAVELENGTHS // each)
 
 
-def _digest_parameters(emitter: MitsubaObject) -> bytes:
-    """Return a digest of an emitter's parameters, by which changes of them are noticed."""
-    import mitsuba as mi
+def _find_axes(parameters: Mapping[str, Any]) -> FloatArray:
+    """Return the axes (3, 3) of an emitter in the scene, as columns, from its parameters."""
+    if "to_world" not in parameters:
+        return np.eye(3)
+    return np.array(parameters["to_world"].matrix, float).reshape(4, 4)[:3, :3]
 
-    parameters = mi.traverse(emitter)
+
+def _find_turn(before: FloatArray, after: FloatArray) -> FloatArray | None:
+    """Return the matrix (3, 3) by which look-ups turn if axes change from `before` to `after`.
+
+    It is None if the axes are not only turned.
+    """
+    if np.array_equal(before, after):
+        return np.eye(3)
+    turn: FloatArray = before @ np.linalg.inv(after)
+    return turn if np.allclose(turn @ turn.T, np.eye(3), atol=1e-5) else None
+
+
+def _digest_parameters(parameters: Mapping[str, Any]) -> bytes:
+    """Return a digest of an emitter's parameters, by which changes are noticed, but turns are not.
+
+    `parameters` are what `mitsuba.traverse` finds.
+    """
     digest = hashlib.blake2b()
     for name in sorted(parameters.keys()):
+        if name == "to_world":
+            continue
         value = parameters[name]
         text = np.array(value).tobytes() if hasattr(value, "__len__") else str(value).encode()
         digest.update(name.encode() + text)

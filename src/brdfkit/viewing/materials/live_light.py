@@ -57,10 +57,10 @@ class LiveLight:
             dr.make_opaque(place, colour)
             self.parameters["position"], self.parameters["intensity.value"] = place, colour
         else:
-            at = mi.Transform4f()
-            turned = at.rotate([0, 0, 1], mi.Float(turn)) @ at.rotate([1, 0, 0], 90)
-            dr.make_opaque(turned)
-            self.parameters["to_world"] = turned
+            at = mi.ScalarTransform4f()
+            turned = at.rotate([0, 0, 1], new) @ at.rotate([1, 0, 0], 90)
+            matrix = np.array(turned.matrix, np.float32)
+            self.parameters["to_world"] = mi.Transform4f(matrix)
         self.parameters.update()
         self.shown = new
 

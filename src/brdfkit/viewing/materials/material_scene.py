@@ -77,13 +77,13 @@ class MaterialScene:
     def render(self, look: Look, seed: int) -> AnyArray:
         """Render a pass: (height, width, 3), linear sRGB.
 
-        It has `RAYS` samples per pixel while something moves, whatever the seed, otherwise one.
+        While something moves it has `RAYS` samples per pixel, whatever the seed, otherwise one.
         """
         import mitsuba as mi
 
         self.light.show(look.turn, np.asarray(look.lamp))
         self._place(look.camera)
-        spp = RAYS if self.kind.moving else 1
+        seed, spp = (0, RAYS) if self.kind.moving else (seed, 1)
         with raise_first_cause():
             integrator = self.scene.integrator()
             return to_rgb(integrator.render(self.scene, seed=mi.UInt32(seed), spp=spp))
