@@ -111,6 +111,7 @@ def test_strokes_again_and_again_leave_a_simple_function(balls):
         ([], (0.1, 0.1), {}, False, "no stroke"),
         ([[0.5, "a"]], (0.1, 0.1), {}, False, "no stroke"),
         ([[0.5, float("nan")]], (0.1, 0.1), {}, False, "no stroke"),
+        ([[0.5, 10**400]], (0.1, 0.1), {}, False, "no stroke"),
         ([[0.5, 0.5]] * 2000, (0.1, 0.1), {}, False, "too long"),
     ],
 )

@@ -175,7 +175,7 @@ def _check_stroke(stroke: Any) -> FloatArray:
     """Return the places (n, 2) of a stroke; raise `BrdfkitError` if it is none."""
     try:
         places = np.asarray(stroke, float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         places = np.zeros(0)
     if places.ndim != 2 or places.shape[1] != 2 or not np.isfinite(places).all():
         raise BrdfkitError("The page sent no stroke; draw it again.")
