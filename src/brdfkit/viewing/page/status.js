@@ -58,8 +58,11 @@ function createNotices(session, stage) {
     const notice = make("div", { class: "notice", role: "alert" }, make("p", {}, text), ...buttons);
     notices.replaceChildren(notice);
   }
-  session.on("error", ({ text }) =>
-    show(text, makeButton("Close", () => notices.replaceChildren())));
+  function close() {
+    notices.replaceChildren();
+    stage.focus(); // which the button had, and would lose
+  }
+  session.on("error", ({ text }) => show(text, makeButton("Close", close)));
   session.on("open", () => notices.replaceChildren());
   session.on("lost", () => {
     const { reconnect } = session.model;
