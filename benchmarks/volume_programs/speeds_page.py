@@ -24,10 +24,10 @@ STEPS = {"turning": 64, "at rest": 128}  # along a ray through 128³ voxels, in 
 HEAD = "", "first picture", "256²", "512²", "PSNR", "worst case"
 INTRODUCTION = """# The speed of a view, in every program
 
-Made by `python benchmarks/compare_view_programs.py`, in one run{machine}. All programs show
-{side}³ voxels of smoke by emission and absorption, by the same transfer function, on processors
-alone: VTK and PyVista by Mesa, K3D by WebGL in Chromium with SwiftShader. They are made for
-graphics cards, and are faster with one; brdfkit needs none.
+Made by `python benchmarks/compare_view_programs.py`, in one run{machine}.
+All programs show {side}³ voxels of smoke by emission and absorption, by the same transfer function,
+on processors alone: VTK and PyVista by Mesa, K3D by WebGL in Chromium with SwiftShader. They are
+made for graphics cards, and are faster with one; brdfkit needs none.
 
 """
 NOTES = """
@@ -57,7 +57,9 @@ def write_page(found: dict, side: int) -> None:
     table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
     notes = NOTES.format(busy=f": {os.getloadavg()[2]:.0f} wanted to run at a time")
     machine = f" on {platform.machine()} with {count_cores()} cores"
-    PAGE.write_text(INTRODUCTION.format(side=side, machine=machine) + table + notes, "utf-8")
+    PAGE.write_text(
+        INTRODUCTION.format(side=side, machine=machine) + table + notes, encoding="utf-8"
+    )
 
 
 def count_cores() -> int:
@@ -67,13 +69,13 @@ def count_cores() -> int:
 
 def format_row(program: str, setting: str, times: dict) -> list[str]:
     """Return the row of a program and a setting."""
+    errors = [f"{psnr:.0f} dB" for psnr in measure_psnr(program, setting)]
     name = f"{program}, {setting}"
     if "error" in times:
-        return [name, f"cannot be run here: {times['error']}", "", "", "", ""]
-    mean, worst = measure_psnr(program, setting)
+        return [name, f"not measured: {times['error']}", "", "", *errors]
     rates = [f"{1 / wall:.2g} / s ({1e3 * cpu:.0f} ms)" for wall, cpu in map(times.get, SIZES)]
     wall, cpu = times["first"]
-    return [name, f"{wall:.1f} s ({cpu:.1f} s)", *rates, f"{mean:.0f} dB", f"{worst:.0f} dB"]
+    return [name, f"{wall:.1f} s ({cpu:.1f} s)", *rates, *errors]
 
 
 def measure_psnr(program: str, setting: str) -> tuple[float, float]:

@@ -12,7 +12,7 @@ BELOW = {
     "five_minutes": ["notebooks/README", "notes", "glossary"],
     "environments": ["environment_samplers"],
     "distance_fields": ["single_ray_shadows"],
-    "volumes": ["volume_programs"],
+    "volumes": ["volume_programs", "view_programs"],
     "validation": [
         *("leaderboard", "losses", "real_measurements", "measured", "goniometer", "refining"),
         "shadow_map_gradients",
