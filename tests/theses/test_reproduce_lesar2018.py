@@ -13,6 +13,7 @@ if llvm.find_loaded_version() < llvm.OLDEST:
 
 from brdfkit.theses.lesar2018 import (
     against_volpath,
+    application,
     convergence,
     four_renderers,
     free_paths,
@@ -169,6 +170,22 @@ def test_times_beside_the_printed(monkeypatch):
     assert verdicts("iteration_times") == ["confirmed"] * 3 + ["not confirmed"]
     monkeypatch.setattr(iteration_times, "measure_iteration", lambda name, v, f: f**2 / len(name))
     assert verdicts("iteration_times") == ["not confirmed"] * 4
+
+
+def test_the_application_at_a_small_size(monkeypatch):
+    """By one renderer: its parts, its samples and its convergence; and a part that does nothing."""
+    small = {"VOXELS": 12, "SIZE": 64, "REFERENCE": 20, "RENDERERS": ["maximum_intensity"]}
+    change(monkeypatch, {application: small})
+    for moving, same in ((1.0, "confirmed"), (3.0, "not confirmed")):
+        monkeypatch.setattr(application, "measure_response", lambda *_, m=moving: (2.0, m))
+        found = verdicts("application")
+        assert found == [
+            same if moving > 2 else "confirmed",
+            *["confirmed"] * 2,
+            same,
+            "not confirmed",
+        ]
+        monkeypatch.setattr(application, "PARTS", {"camera": ({}, application.RENDERERS)})
 
 
 @pytest.mark.quick

@@ -37,4 +37,5 @@ PARTS = (
     "tone_mappers",
     "convergence",
     "iteration_times",
+    "application",
 )
