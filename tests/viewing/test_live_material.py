@@ -108,8 +108,11 @@ def test_a_mesh_is_shown_from_both_sides(lights, tmp_path):
     material = make_materials()["isotropic"]
     (expected,) = bk.preview(material, size=SIZE, scene=f"{mesh}#y").pictures.values()
     live = LiveMaterial(material, lights)
-    shown = live.render(replace(MOVING, shape=f"{mesh}#y"), STUDIO)
-    assert shown == pytest.approx(expected, abs=2e-4)
+    kind = replace(MOVING, shape=f"{mesh}#y")
+    assert live.render(kind, STUDIO) == pytest.approx(expected, abs=2e-4)
+    for change in ({"alpha_u": 0.1}, {"alpha_v": 0.4}):
+        count_new_kernels(live, change, kinds=[kind])
+    assert count_new_kernels(live, {"diffuse_reflectance": 0.0}, kinds=[kind]) == 0
 
 
 def test_a_probe_of_the_user_lights_the_plane():

@@ -62,9 +62,10 @@ def has_separate_diffuse_part(bsdf: MitsubaObject) -> bool:
     """
     import mitsuba as mi
 
-    known = getattr(bsdf, "has_constant_diffuse_part", None)
-    if known is not None:
-        return known
+    parts = _list_children(bsdf) if bsdf.class_name() == "TwoSidedBRDF" else [bsdf]
+    known = [getattr(part, "has_constant_diffuse_part", None) for part in parts]
+    if None not in known:
+        return all(known)
     wi, wo = PAIRS
     matte, others = (eval_bsdf(bsdf, wi, wo, types) for types in split_component_types(mi))
     whole = eval_bsdf(bsdf, wi, wo)
@@ -73,6 +74,21 @@ def has_separate_diffuse_part(bsdf: MitsubaObject) -> bool:
         and np.ptp(matte, axis=0).max() < TOLERANCE * matte.max()
         and np.abs(whole - matte - others).max() < TOLERANCE * whole.max()
     )
+
+
+def _list_children(parent: MitsubaObject) -> list[MitsubaObject]:
+    """Return the objects that a Mitsuba object holds, such as the BSDFs of a two-sided one."""
+    import mitsuba as mi
+
+    found = []
+
+    class Children(mi.TraversalCallback):
+        def put(self, name: str, value: Any, *_: Any) -> None:
+            if isinstance(value, mi.Object):
+                found.append(value)
+
+    parent.traverse(Children())
+    return found
 
 
 def is_isotropic(bsdf: MitsubaObject) -> bool:
@@ -102,17 +118,10 @@ def _has_texture(parent: MitsubaObject) -> bool:
     """Return whether a Mitsuba object or one of its children has a spatially varying texture."""
     import mitsuba as mi
 
-    varies = []
-
-    class Parts(mi.TraversalCallback):
-        def put(self, name: str, value: Any, *_: Any) -> None:
-            if isinstance(value, mi.Texture):
-                varies.append(value.is_spatially_varying())
-            elif isinstance(value, mi.Object):
-                value.traverse(Parts())
-
-    parent.traverse(Parts())
-    return any(varies)
+    return any(
+        child.is_spatially_varying() if isinstance(child, mi.Texture) else _has_texture(child)
+        for child in _list_children(parent)
+    )
 
 
 class CacheByValues:

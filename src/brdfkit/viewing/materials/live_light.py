@@ -14,6 +14,7 @@ from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.scene_input.environment import describe_environment
 from brdfkit.rendering.scenes._studio import BALL
 
+LIGHTS = 4  # kept at most
 LAMP = "lamp"  # the name of the light that is a lamp at a point
 DEPTH = 6  # largest number of segments of a path
 
@@ -77,9 +78,11 @@ class LiveLights:
 
     def get(self, name: str) -> LiveLight:
         """Return a light; raise `BrdfkitError` if no map has this name."""
-        if name not in self.loaded:
-            self.loaded[name] = LiveLight(name, self._describe(name))
-        return self.loaded[name]
+        light = self.loaded.pop(name, None) or LiveLight(name, self._describe(name))
+        self.loaded[name] = light  # the last one is the newest
+        while len(self.loaded) > LIGHTS:
+            self.loaded.pop(next(iter(self.loaded)))
+        return light
 
     def _describe(self, name: str) -> dict[str, MitsubaObject]:
         """Return Mitsuba's dictionary of a light."""
