@@ -106,6 +106,12 @@ def draw_montage(rendering: Any, on_any_ground: bool = False) -> PillowImage:
     return page
 
 
+def draw_picture(rendering: Any) -> PillowImage:
+    """Draw the first picture of a `Rendering`, and nothing else."""
+    picture = rendering.pictures[rendering.reference]
+    return to_image(to_visible_srgb(rendering.tone_mapping(picture)), 1)
+
+
 def to_image(rgb: FloatArray, zoom: int) -> PillowImage:
     """Convert sRGB values (height, width, 3) in 0..1 to an image, enlarged by the factor `zoom`."""
     from PIL import Image

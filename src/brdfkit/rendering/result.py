@@ -17,7 +17,14 @@ from brdfkit.images.errors import ImageErrors, compare_pictures
 from brdfkit.images.errors.noise import estimate_samples
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.images.tone_mapping import ToneMapping
-from brdfkit.rendering.montage import COLUMNS, TILE, draw_montage, find_picture_suffix, write_exr
+from brdfkit.rendering.montage import (
+    COLUMNS,
+    TILE,
+    draw_montage,
+    draw_picture,
+    find_picture_suffix,
+    write_exr,
+)
 
 BILLION = 1e9  # number of samples per pixel above which texts say "more than a billion"
 WIDEST = 1100  # largest width of the montage in a notebook [pixels]
@@ -60,6 +67,9 @@ class Rendering(Shown):
     tone_mapping : ToneMapping
         The curve with which PNG files and notebooks show the pictures; by default radiance 1 is
         white. The values of the pictures do not change.
+    bare : bool
+        Whether PNG files contain the first picture alone, without a caption, as those of
+        `viewing.render_view`.
     """
 
     pictures: dict[str, np.ndarray] = field(repr=False)
@@ -74,6 +84,7 @@ class Rendering(Shown):
     shadows: str = ""
     tone_mapping: ToneMapping = field(default_factory=ToneMapping)
     standard_error: np.ndarray | None = field(default=None, repr=False)
+    bare: bool = False
 
     @property
     def reference(self) -> str:
@@ -153,7 +164,8 @@ class Rendering(Shown):
         path = Path(path)
         suffix = find_picture_suffix(path)
         png = io.BytesIO()
-        draw_montage(self).save(png, "PNG")
+        draw = draw_picture if self.bare else draw_montage
+        draw(self).save(png, "PNG")
         if suffix == ".exr":
             with write_safely(path) as beside:
                 write_exr(self, beside)

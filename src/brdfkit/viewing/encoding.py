@@ -14,7 +14,7 @@ LEVELS = 4096  # of brightness, that `to_bytes_quickly` distinguishes
 
 def to_bytes(linear: AnyArray) -> AnyArray:
     """Convert linear brightness, 0 to 1, to sRGB in 8 bits; nan becomes 0."""
-    return np.rint(255 * to_srgb(np.nan_to_num(linear))).astype(np.uint8)
+    return (255 * to_srgb(np.nan_to_num(linear)) + 0.5).astype(np.uint8)
 
 
 def to_bytes_quickly(linear: AnyArray) -> AnyArray:

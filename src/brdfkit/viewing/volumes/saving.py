@@ -75,7 +75,7 @@ def render_state(
     tone = application.states.tone_mapping(state)
     name = application.volume.name
     seconds = time.monotonic() - start
-    return Rendering({name: joined}, spp, seconds, seed, tone_mapping=tone)
+    return Rendering({name: joined}, spp, seconds, seed, tone_mapping=tone, bare=True)
 
 
 def make_file(application: Application, session: Session, kind: str) -> Message:
