@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from brdfkit.viewing.controls import State
 
-MOST = 100  # steps
+LARGEST_STEP_COUNT = 100  # of undo
 
 
 class UndoSteps:
@@ -16,7 +16,7 @@ class UndoSteps:
     def remember(self, state: State) -> None:
         """Make a state a step, unless it is the present one."""
         if state != self.done[-1]:
-            self.done = [*self.done, dict(state)][-MOST:]
+            self.done = [*self.done, dict(state)][-LARGEST_STEP_COUNT:]
             self.undone = []
 
     def undo(self) -> State:

@@ -29,7 +29,7 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.volumes import transfer_table
-from brdfkit.viewing.volumes.rays import MOST_LABELS, Rays, cast_rays, list_values
+from brdfkit.viewing.volumes.rays import LARGEST_LABEL_COUNT, Rays, cast_rays, list_values
 from brdfkit.viewing.volumes.state import FIRST_BUMP, VolumeState
 from brdfkit.viewing.volumes.volume_controls import DENSE
 
@@ -39,9 +39,9 @@ REST_WEIGHT = 2.0  # of r against s
 NOISE = 0.03  # of s, as a share of its largest value
 CHANGE, SHARE = 0.25, 0.6  # wanted: this opacity, but at most this share of what is possible
 LEAST_CHANGE = 0.05  # of the stroke's opacity, below which it has failed
-MOST_HARM = 0.5  # change of the rest over that of the stroke, above which it has failed
+LARGEST_HARM = 0.5  # change of the rest over that of the stroke, above which it has failed
 LEAST_AMOUNT, LARGEST_AMOUNT, HALVINGS = 1e-5, 4.0, 8  # of the search for the multiple of w
-MOST_PLACES = 1000  # of a stroke
+LARGEST_PLACE_COUNT = 1000  # of a stroke
 
 
 def paint(
@@ -63,7 +63,7 @@ def paint(
 
     changes = change(_find_amount(lambda amount: painted.measure(change(amount)), painted.wanted))
     done = painted.measure(changes)
-    if done < LEAST_CHANGE or painted.measure_harm(changes) > MOST_HARM * done:
+    if done < LEAST_CHANGE or painted.measure_harm(changes) > LARGEST_HARM * done:
         raise BrdfkitError(
             "The values under the stroke do not differ enough from those of the rest of the "
             "picture; draw elsewhere, or turn or clip the volume."
@@ -143,7 +143,7 @@ class _Stroke:
                 values,
                 weights,
                 self.hide,
-                MOST_LABELS if labels else transfer_table.POINTS,
+                LARGEST_LABEL_COUNT if labels else transfer_table.POINTS,
             )
             return {"transfer.mode": "points", "transfer.points": points}
         at = np.linspace(0, 1, len(weights))
@@ -179,7 +179,7 @@ def _check_stroke(stroke: Any) -> FloatArray:
         places = np.zeros(0)
     if places.ndim != 2 or places.shape[1] != 2 or not np.isfinite(places).all():
         raise BrdfkitError("The page sent no stroke; draw it again.")
-    if not 1 <= len(places) <= MOST_PLACES:
+    if not 1 <= len(places) <= LARGEST_PLACE_COUNT:
         raise BrdfkitError("The stroke is too long; draw a shorter one.")
     return np.clip(places, 0, 1)
 

@@ -11,8 +11,8 @@ from brdfkit.viewing.volumes.camera import Camera
 from brdfkit.viewing.volumes.live_volume import LiveVolume
 
 BINS = 128  # of the range of values; labels have one each
-MOST_LABELS = 256
-MOST_STEPS = 192  # along a ray
+LARGEST_LABEL_COUNT = 256
+LARGEST_STEP_COUNT = 192  # along a ray
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +87,7 @@ def cast_rays(
     with np.errstate(divide="ignore", invalid="ignore"):
         a, b = (clip[0] - o) / d, (clip[1] - o) / d
     near = np.maximum(np.nanmax(np.minimum(a, b), axis=1), 0)
-    steps = min(max(volume.size), MOST_STEPS)
+    steps = min(max(volume.size), LARGEST_STEP_COUNT)
     length = np.maximum(np.nanmin(np.maximum(a, b), axis=1) - near, 0) / steps
     t = near[:, None] + (np.arange(steps) + 0.5) * length[:, None]
     indices = (o + t[..., None] * d[:, None]) * volume.size - 0.5
@@ -105,7 +105,7 @@ def list_values(live: LiveVolume) -> FloatArray:
     """Return the volume's values (bins,) in the middles of the bins, rising."""
     if live.labels is None:
         return np.linspace(live.low, live.high, BINS)
-    if len(live.labels) <= MOST_LABELS:
+    if len(live.labels) <= LARGEST_LABEL_COUNT:
         return live.labels.astype(float)
     return np.interp(
         np.linspace(0, len(live.labels) - 1, BINS), range(len(live.labels)), live.labels
