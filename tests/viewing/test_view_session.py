@@ -13,6 +13,7 @@ from PIL import Image
 
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.viewing import picture_files
 from brdfkit.viewing import session as session_file
 from brdfkit.viewing.render_thread import work_safely
 from brdfkit.viewing.session import Session
@@ -234,7 +235,7 @@ def test_an_orbit_is_rendered_frame_by_frame_from_the_view_on(session, monkeypat
         count, tolerance = len(archive.namelist()), 0
         first = Image.open(io.BytesIO(archive.read("000.png")))
     assert count == 3
-    frame = saving.render_state(session.application, session.state, session.size, 1)
+    frame = picture_files.render_state(session.application, session.state, session.size, 1)
     (picture,) = frame.pictures.values()
     view = session.application.develop(session.state, {0: picture})[0]
     assert abs(np.asarray(first).astype(int) - view).mean() <= tolerance

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol, TypeAlias
 
 from brdfkit.core.array_types import AnyArray
+from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.viewing.controls import State
 
 Message: TypeAlias = tuple[dict[str, Any], list[bytes]]  # JSON, and the bytes beside it
@@ -13,6 +14,10 @@ Message: TypeAlias = tuple[dict[str, Any], list[bytes]]  # JSON, and the bytes b
 
 class Application(Protocol):
     """What a session shows: a volume, or materials."""
+
+    @property
+    def name(self) -> str:
+        """The name of what is shown, for files."""
 
     def describe(self) -> Message:
         """Return the message "open", with the panels, the controls and the data."""
@@ -33,6 +38,9 @@ class Application(Protocol):
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
     ) -> AnyArray:
         """Render a pass: (height, width, 3), linear sRGB."""
+
+    def tone_mapping(self, state: State) -> ToneMapping:
+        """Return the tone mapping of a state."""
 
     def develop(
         self, state: State, pictures: dict[int, AnyArray], moving: bool

@@ -11,8 +11,8 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
 from brdfkit.rendering.render_materials import to_picture_size
 from brdfkit.rendering.result import Rendering
+from brdfkit.viewing.picture_files import render_state
 from brdfkit.viewing.volumes.application import VolumeApplication
-from brdfkit.viewing.volumes.saving import render_state
 from brdfkit.viewing.volumes.source import load_within_memory
 from brdfkit.volumes import Volume
 

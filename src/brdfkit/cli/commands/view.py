@@ -91,7 +91,7 @@ def _write_picture(
     """Render the picture of a state, and write it."""
     from brdfkit.cli.arguments import check_picture_path
     from brdfkit.cli.picture_output import write_result
-    from brdfkit.viewing.volumes.saving import render_state
+    from brdfkit.viewing.picture_files import render_state
 
     path = check_picture_path(output)
     application = _make_application(volume, settings, changes, console)

@@ -13,10 +13,11 @@ from brdfkit.core.arguments import to_number, to_whole_number
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
+from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.viewing.application import Message
 from brdfkit.viewing.controls import State
-from brdfkit.viewing.encoding import to_bytes, to_bytes_quickly
 from brdfkit.viewing.session import Session
+from brdfkit.viewing.tone_controls import develop, to_tone_mapping
 from brdfkit.viewing.volumes import saving, scripts, slices
 from brdfkit.viewing.volumes.histograms import make_histograms
 from brdfkit.viewing.volumes.live_scene import LiveScene, SceneKind
@@ -146,17 +147,20 @@ class VolumeApplication:
         """Load the scene of a kind."""
         return LiveScene(self.states.live, kind, self.states.environments)
 
+    @property
+    def name(self) -> str:
+        """The name of the volume."""
+        return self.volume.name
+
+    def tone_mapping(self, state: State) -> ToneMapping:
+        """Return the tone mapping of a state."""
+        return to_tone_mapping(state)
+
     def develop(
         self, state: State, pictures: dict[int, AnyArray], moving: bool = False
     ) -> dict[int, AnyArray]:
-        """Return the pictures of all sides as sRGB in 8 bits, with the exposure of both together.
-
-        With `moving`, bytes may be one level off, so that it takes less time.
-        """
-        tone = self.states.tone_mapping(state)
-        brightest = tone.brightest_of(saving.join_sides(pictures, state["wipe"]))
-        convert = to_bytes_quickly if moving else to_bytes
-        return {side: convert(tone(picture, brightest)) for side, picture in pictures.items()}
+        """Return the pictures of all sides as sRGB in 8 bits, with one exposure."""
+        return develop(state, pictures, moving)
 
     def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
         """Return the places of the box's corners, its size and the names of its ends."""

@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 import io
-import json
-import tempfile
 import zipfile
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from PIL import Image
 
-from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.progress_bar import Progress
-from brdfkit.images.errors.noise import Accumulated
 from brdfkit.rendering.film import write_animation
-from brdfkit.rendering.progressive import derive_seed
-from brdfkit.rendering.result import Rendering
+from brdfkit.viewing import picture_files
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.encoding import encode_png, to_bytes
 from brdfkit.viewing.volumes import transfer_table
@@ -33,49 +26,12 @@ if TYPE_CHECKING:
     Application = Any  # `VolumeApplication`, which imports this file
 
 KINDS = {
-    "png": "Picture (PNG)",
-    "exr": "Picture (EXR, linear)",
-    "state": "Settings (JSON)",
+    **picture_files.KINDS,
     "transfer": "Transfer function (JSON)",
     "film": "Orbit (GIF)",
     "frames": "Orbit (PNG frames)",
 }
 FRAMES, FILM_SAMPLES = 36, 8  # of an orbit
-
-
-def join_sides(pictures: dict[int, AnyArray], wipe: float) -> AnyArray:
-    """Return the left picture left of the wipe, and the right one right of it."""
-    if 1 not in pictures:
-        return pictures[0]
-    width = pictures[0].shape[1]
-    edge = round(wipe * width)
-    return np.concatenate([pictures[0][:, :edge], pictures[1][:, edge:]], axis=1)
-
-
-def render_state(
-    application: Application,
-    state: State,
-    size: tuple[int, int],
-    spp: int,
-    seed: int = 0,
-    progress: Progress | None = None,
-) -> Rendering:
-    """Return the picture of a state, of `spp` passes, the same as the page's for the seed 0."""
-    import time
-
-    start = time.monotonic()
-    sums = {side: Accumulated() for side in range(application.sides(state))}
-    for number in range(spp):
-        for side in sums:
-            picture = application.render(state, side, size, False, derive_seed(seed, number))
-            sums[side] = sums[side].add_pass(picture, 1)
-        if progress:
-            progress(number + 1, spp)
-    joined = join_sides({side: total.picture for side, total in sums.items()}, state["wipe"])
-    tone = application.states.tone_mapping(state)
-    name = application.volume.name
-    seconds = time.monotonic() - start
-    return Rendering({name: joined}, spp, seconds, seed, tone_mapping=tone, bare=True)
 
 
 def make_file(application: Application, session: Session, kind: str) -> Message:
@@ -85,51 +41,13 @@ def make_file(application: Application, session: Session, kind: str) -> Message:
             raise BrdfkitError("An orbit is being rendered already; wait for its file.")
         session.tasks.append(_make_orbit(application, session.state, session.size, kind))
         return {"type": "busy", "text": "The orbit is rendered", "fraction": 0.0}, []
-    makers = {
-        "png": _make_png,
-        "exr": _make_exr,
-        "state": _make_state,
-        "transfer": _make_transfer,
-    }
-    if kind not in makers:
+    if kind == "transfer":
+        text = to_function(application, session.state).to_json()
+        file = {"type": "file", "name": f"{application.name}.transfer.json"}
+        return file | {"mime": "application/json"}, [text.encode()]
+    if kind not in KINDS:
         raise BrdfkitError(f"A view is saved as {', '.join(KINDS)}, and not as {kind!r:.20}.")
-    suffix, mime, content = makers[kind](application, session)
-    name = f"{application.volume.name}{suffix}"
-    return {"type": "file", "name": name, "mime": mime}, [content]
-
-
-def _current_picture(session: Session) -> AnyArray:
-    """Return the picture of a session so far, linear."""
-    done = {side: a.picture for side, a in session.accumulated.items() if a.passes}
-    if not done:
-        raise BrdfkitError("There is no picture yet; wait for the first one.")
-    return join_sides(done, session.state["wipe"])
-
-
-def _make_png(application: Application, session: Session) -> tuple[str, str, bytes]:
-    colours = application.develop(session.state, {0: _current_picture(session)})
-    return ".png", "image/png", encode_png(colours[0])
-
-
-def _make_exr(application: Application, session: Session) -> tuple[str, str, bytes]:
-    picture = Rendering({application.volume.name: _current_picture(session)}, session.passes, 0.0)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "picture.exr"
-        picture.write(path)
-        return ".exr", "image/x-exr", path.read_bytes()
-
-
-def _make_state(application: Application, session: Session) -> tuple[str, str, bytes]:
-    text = json.dumps(session.state, indent=1)
-    return ".view.json", "application/json", text.encode()
-
-
-def _make_transfer(application: Application, session: Session) -> tuple[str, str, bytes]:
-    return (
-        ".transfer.json",
-        "application/json",
-        to_function(application, session.state).to_json().encode(),
-    )
+    return picture_files.make_picture_file(application, session, kind)
 
 
 def to_function(application: Application, state: State) -> TransferFunction:
@@ -163,12 +81,12 @@ def _make_orbit(
 
     Yields messages of the progress, and at last the file: one animation, or an archive of frames.
     """
-    name, tone = application.volume.name, application.states.tone_mapping(state)
+    name, tone = application.name, application.tone_mapping(state)
     images: list[Any] = []
     brightest = 0.0  # of the first frame, which all frames are exposed by
     for number in range(FRAMES):
         azimuth = state["camera.azimuth"] + 360 * number / FRAMES
-        frame = render_state(
+        frame = picture_files.render_state(
             application, state | {"camera.azimuth": azimuth}, size, FILM_SAMPLES
         ).pictures[name]
         brightest = brightest or tone.brightest_of(frame)

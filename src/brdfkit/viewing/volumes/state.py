@@ -12,7 +12,6 @@ import numpy as np
 from brdfkit.core.arguments import is_number
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError, no_such_error
-from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.lighting.environments.map_files import load_radiance
 from brdfkit.rendering.volumes import defaults
 from brdfkit.rendering.volumes.camera import (
@@ -255,13 +254,6 @@ class VolumeState:
         table = self.table(state)
         rows = table[..., 3] if table.ndim == 2 else table[..., 3].max(axis=0)
         return state["transfer.extinction"] * state["density"] * rows
-
-    def tone_mapping(self, state: State) -> ToneMapping:
-        """Return the tone mapping of a state."""
-        high = max(state["tone.high"], state["tone.low"] + 1e-3)
-        return ToneMapping(
-            state["tone.curve"], state["tone.exposure"], state["tone.by"], state["tone.low"], high
-        )
 
 
 def needs_samples_anew(before: State, after: State) -> bool:

@@ -6,8 +6,8 @@ from functools import partial
 from typing import Any
 
 from brdfkit.core.catalogue import list_environments
-from brdfkit.images.tone_mapping import CURVES
 from brdfkit.viewing.controls import Control
+from brdfkit.viewing.tone_controls import make_tone_controls
 from brdfkit.viewing.volumes.live_scene import PHASES
 from brdfkit.volumes import Volume
 
@@ -51,7 +51,7 @@ def make_controls(volume: Volume, level: float, distance: float, value_unit: str
         *_picture_controls(level, values),
         *_transfer_controls(),
         *_light_controls(),
-        *_tone_controls(),
+        *make_tone_controls(),
         *_camera_controls(distance, volume.unit),
         *_slice_controls(volume.window, values),
     ]
@@ -133,21 +133,6 @@ def _light_controls() -> list[Control]:
         sun("light.sun_strength", "Sun's strength", default=3.0, low=0, high=50),
         sun("light.sun_azimuth", "Sun's azimuth", default=-40.0, **turn),
         sun("light.sun_elevation", "Sun's elevation", default=45.0, low=-90, high=90, unit="°"),
-    ]
-
-
-def _tone_controls() -> list[Control]:
-    """Return the controls of the tone mapping."""
-    control = partial(Control, panel="tone")
-    window: dict[str, Any] = {"tone.curve": ("range",)}
-    curves = tuple((name, name) for name in CURVES)
-    means = (("channel", "each channel"), ("luminance", "luminance"))
-    return [
-        control("tone.curve", "Curve", default="range", kind="choice", choices=curves),
-        control("tone.exposure", "Exposure", default=1.0, low=0.01, high=100, log=True),
-        control("tone.low", "Black at", default=0.0, low=0, high=10, when=window),
-        control("tone.high", "White at", default=1.0, low=0.01, high=20, when=window),
-        control("tone.by", "Applied to", default="channel", kind="choice", choices=means),
     ]
 
 

@@ -1,0 +1,95 @@
+"""The picture of a view's state, from a script, and as a file that the page keeps."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from brdfkit.core.array_types import AnyArray
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.progress_bar import Progress
+from brdfkit.images.errors.noise import Accumulated
+from brdfkit.rendering.progressive import derive_seed
+from brdfkit.rendering.result import Rendering
+from brdfkit.viewing.application import Application, Message
+from brdfkit.viewing.controls import State
+from brdfkit.viewing.encoding import encode_png
+
+if TYPE_CHECKING:
+    from brdfkit.viewing.session import Session
+
+KINDS = {
+    "png": "Picture (PNG)",
+    "exr": "Picture (EXR, linear)",
+    "state": "Settings (JSON)",
+}
+
+
+def join_sides(pictures: dict[int, AnyArray], wipe: float) -> AnyArray:
+    """Return the left picture left of the wipe, and the right one right of it."""
+    if 1 not in pictures:
+        return pictures[0]
+    width = pictures[0].shape[1]
+    edge = round(wipe * width)
+    return np.concatenate([pictures[0][:, :edge], pictures[1][:, edge:]], axis=1)
+
+
+def render_state(
+    application: Application,
+    state: State,
+    size: tuple[int, int],
+    spp: int,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> Rendering:
+    """Return the picture of a state, of `spp` passes, the same as the page's for the seed 0."""
+    start = time.monotonic()
+    sums = {side: Accumulated() for side in range(application.sides(state))}
+    for number in range(spp):
+        for side in sums:
+            picture = application.render(state, side, size, False, derive_seed(seed, number))
+            sums[side] = sums[side].add_pass(picture, 1)
+        if progress:
+            progress(number + 1, spp)
+    joined = join_sides({side: total.picture for side, total in sums.items()}, state["wipe"])
+    tone = application.tone_mapping(state)
+    seconds = time.monotonic() - start
+    return Rendering({application.name: joined}, spp, seconds, seed, tone_mapping=tone, bare=True)
+
+
+def make_picture_file(application: Application, session: Session, kind: str) -> Message:
+    """Return the message "file" with the picture so far, or with the settings, of `KINDS`."""
+    makers = {"png": _make_png, "exr": _make_exr, "state": _make_state}
+    suffix, mime, content = makers[kind](application, session)
+    return {"type": "file", "name": f"{application.name}{suffix}", "mime": mime}, [content]
+
+
+def _current_picture(session: Session) -> AnyArray:
+    """Return the picture of a session so far, linear."""
+    done = {side: a.picture for side, a in session.accumulated.items() if a.passes}
+    if not done:
+        raise BrdfkitError("There is no picture yet; wait for the first one.")
+    return join_sides(done, session.state["wipe"])
+
+
+def _make_png(application: Application, session: Session) -> tuple[str, str, bytes]:
+    colours = application.develop(session.state, {0: _current_picture(session)}, False)
+    return ".png", "image/png", encode_png(colours[0])
+
+
+def _make_exr(application: Application, session: Session) -> tuple[str, str, bytes]:
+    picture = Rendering({application.name: _current_picture(session)}, session.passes, 0.0)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "picture.exr"
+        picture.write(path)
+        return ".exr", "image/x-exr", path.read_bytes()
+
+
+def _make_state(application: Application, session: Session) -> tuple[str, str, bytes]:
+    text = json.dumps(session.state, indent=1)
+    return ".view.json", "application/json", text.encode()
