@@ -6,6 +6,7 @@ import pytest
 from scipy.optimize import brentq
 
 from brdfkit.volumes import TransferFunction, Volume
+from brdfkit.volumes.rays.box import intersect_box
 from brdfkit.volumes.rays.search import find_first_crossing, find_first_positive_step
 
 SUN = {"type": "directional", "direction": [0, 0, -1], "irradiance": 2.0}
@@ -108,7 +109,17 @@ def test_the_surface_of_a_ball(mi):
     assert np.array(outwards).min() > 0.999
 
 
-@pytest.mark.parametrize(("surface_of", "level"), [("opacity", 0.5), ("values", 0.0)])
+def check_box(ray, volume, matrix):
+    """Compare where rays meet the box of a volume with the cube that `matrix` transforms."""
+    near = np.array(intersect_box(ray, volume)[0])
+    points = np.array(ray.o).T + near[:, None] * np.array(ray.d).T
+    local = (points - matrix[:3, 3]) @ np.linalg.inv(matrix[:3, :3]).T - 0.5
+    np.testing.assert_allclose(np.abs(local).max(axis=1), 0.5, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("surface_of", "level"), [("opacity", 0.5), ("values", 0.0), ("plain grid", 0.0)]
+)
 def test_of_a_transfer_function_and_an_oblique_box(mi, surface_of, level):
     """A ball of A > 0.5, where values are above 0, becomes an ellipsoid: its points and normals."""
     t = mi.ScalarTransform4f
@@ -125,7 +136,11 @@ def test_of_a_transfer_function_and_an_oblique_box(mi, surface_of, level):
     o = o @ matrix[:3, :3].T + matrix[:3, 3]
     d = d @ matrix[:3, :3].T
     d /= np.linalg.norm(d, axis=1, keepdims=True)
-    loaded = scene(mi, SKY, volume=volume, level=level, surface_of=surface_of)
+    settings = {"surface_of": surface_of}
+    if surface_of == "plain grid":
+        volume, settings = volume["values"], {}
+    loaded = scene(mi, SKY, volume=volume, level=level, **settings)
+    check_box(rays(mi, o, d), loaded.integrator().volume, matrix)
     ray, integrator = rays(mi, o, d), loaded.integrator()
     found, there = find_first_crossing(
         lambda t: integrator.value_above_level(ray(t)),

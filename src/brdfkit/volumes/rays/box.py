@@ -1,10 +1,20 @@
 """Geometry of rays and a volume's box: intersections, light from behind, normals and gradients."""
 
+import json
+import re
 from collections.abc import Callable
 
 import drjit as dr
+import numpy as np
 
-from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
+from brdfkit.core.array_types import (
+    FloatArray,
+    JitColour,
+    JitFloat,
+    JitMask,
+    JitVector,
+    MitsubaObject,
+)
 from brdfkit.mitsuba_bridge.properties.declarations import declare_radiance
 
 # The parameter `background` of integrators of volumes
@@ -15,15 +25,32 @@ SMALLEST_COSINE = 1e-3  # cosine of the angle between a bent normal and the dire
 def get_world_to_cube(volume: MitsubaObject) -> MitsubaObject:
     """Return the transform from the world to the unit cube that the volume fills.
 
-    It is the attribute `to_local` of brdfkit's volumes, whose box may be oblique. Mitsuba's own
-    volumes only tell their bounding box along the world's axes.
+    It is the attribute `to_local` of brdfkit's volumes. Mitsuba's own volumes tell their bounding
+    box along the world's axes, and an oblique one in their description alone.
     """
     import mitsuba as mi
 
     if hasattr(volume, "to_local"):
         return volume.to_local
+    described = read_described_transform(str(volume))
+    if described is not None and not is_along_axes(described):
+        return mi.Transform4f(described)
     box = volume.bbox()
     return mi.Transform4f().translate(box.min).scale(box.extents()).inverse()
+
+
+def read_described_transform(description: str) -> FloatArray | None:
+    """Return the transform (4, 4) to the unit cube that a volume's description contains, or None.
+
+    Its numbers have six digits.
+    """
+    found = re.search(r"to_local = Transform\[\s*matrix=(\[\[.*?\]\])", description, re.DOTALL)
+    return None if found is None else np.array(json.loads(found[1]))
+
+
+def is_along_axes(transform: FloatArray) -> bool:
+    """Return whether a transform (4, 4) only scales and moves along the world's axes."""
+    return not (transform[:3, :3] - np.diag(np.diag(transform)[:3])).any()
 
 
 def get_visible_part(volume: MitsubaObject) -> tuple[JitVector | float, JitVector | float]:
