@@ -125,19 +125,25 @@ def _has_texture(parent: MitsubaObject) -> bool:
 
 
 class CacheByValues:
-    """A cache of results `make(bsdf)`, which recognises a BSDF by its values at some directions."""
+    """A cache of results `make(bsdf)`, which recognises a BSDF by its values at some directions.
+
+    A BSDF that reflects at the back of surfaces is another one, though these values are equal.
+    """
 
     def __init__(self, make: Callable[[MitsubaObject], Any]) -> None:
         self.make, self.results = make, dict[bytes, Any]()
 
     def get_or_make_results(self, bsdfs: list[MitsubaObject]) -> list[tuple[MitsubaObject, Any]]:
         """Return pairs (BSDF, result); a result that is not in the cache is made."""
+        import mitsuba as mi
+
         pairs = []
         for bsdf in bsdfs:
-            values = eval_bsdf(bsdf, *PAIRS).tobytes()
-            result = self.results.pop(values, None) or self.make(bsdf)
+            has_back = mi.has_flag(bsdf.flags(), mi.BSDFFlags.BackSide)
+            key = eval_bsdf(bsdf, *PAIRS).tobytes() + bytes([has_back])
+            result = self.results.pop(key, None) or self.make(bsdf)
             # becomes the last entry; the first ones are deleted below
-            self.results[values] = result
+            self.results[key] = result
             pairs.append((bsdf, result))
         for oldest in list(self.results)[: -max(CACHED_BSDFS, len(pairs))]:
             del self.results[oldest]
