@@ -16,6 +16,7 @@ from brdfkit.rendering.progressive import derive_seed
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.volumes import source, uploads
 from brdfkit.viewing.volumes.application import VolumeApplication
+from brdfkit.volumes import formats
 
 GRID = np.arange(4 * 5 * 6, dtype=np.uint8).reshape(6, 5, 4)  # (nz, ny, nx)
 MHD = "ObjectType = Image\nNDims = 3\nDimSize = 4 5 6\nElementType = MET_UCHAR\n"
@@ -91,17 +92,43 @@ def test_a_header_and_its_voxels_are_one_volume(session, tmp_path, kind, reverse
     assert (session.application.volume.values == GRID).all()
 
 
-def test_a_header_names_no_file_of_another_folder(session, tmp_path):
+ELSEWHERE = {  # lines of headers, by the suffix of the file
+    ".mhd": [
+        *(f"{blank}ElementDataFile = SECRET" for blank in ("", "\xa0", "\x85", "\x1c")),
+        *(f"ElementDataFile={name}" for name in ("..", "data/", "..\\secret.raw", "a" * 999)),
+    ],
+    ".mha": ["ElementDataFile\xa0= SECRET", "ElementDataFile=../secret.raw"],
+    ".nhdr": [
+        *(f"{before}data file: SECRET\n" for before in ("", "\xa0", 9999 * "# long\n")),
+        *(f"{key}: SECRET\n" for key in ("datafile", "da\xffta file", "data\xfffile")),
+    ],
+}
+
+
+@pytest.mark.parametrize(
+    ("suffix", "line"),
+    [(suffix, line) for suffix, lines in ELSEWHERE.items() for line in lines],
+    ids=lambda text: ascii(text)[:30],
+)
+def test_a_header_names_no_file_of_another_folder(session, tmp_path, suffix, line):
+    """Whatever bytes the readers of headers take for blanks, or leave out."""
     secret = tmp_path / "secret.raw"
     secret.write_bytes(GRID.tobytes())
-    for header in (f"{MHD}ElementDataFile = {secret}\n", f"{MHD}ElementDataFile=../secret.raw"):
-        assert drop(session, {"a.mhd": header.encode()})[0]["type"] == "error"
-    for key in ("data file", "datafile"):
-        header = f"{NHDR}{key}: {secret}\n\n"
-        assert drop(session, {"a.nhdr": header.encode()})[0]["type"] == "error"
-        header = header.replace("\n", "\n" + 10_000 * "# long\n", 1)
-        (error, _) = drop(session, {"a.nhdr": header.encode()})
-        assert "its header is too long" in error["text"]
+    header = (NHDR if suffix == ".nhdr" else MHD) + line.replace("SECRET", str(secret)) + "\n"
+    (error, _) = drop(session, {f"a{suffix}": header.encode("latin-1")})
+    assert error["type"] == "error"
+    assert "in one" in error["text"]
+
+
+def test_a_header_names_no_link_to_another_folder(tmp_path):
+    (tmp_path / "secret.raw").write_bytes(GRID.tobytes())
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    (folder / "a.raw").symlink_to(tmp_path / "secret.raw")
+    (folder / "a.mhd").write_text(f"{MHD}ElementDataFile = a.raw\n")
+    assert bk.volumes.load(folder / "a.mhd").size == (4, 5, 6)
+    with formats.confine_headers(), pytest.raises(BrdfkitError, match="of another folder"):
+        bk.volumes.load(folder / "a.mhd")
 
 
 def test_a_hdr_is_an_environment_map_if_it_is_radiance(session, tmp_path):

@@ -175,6 +175,14 @@ def test_several_arrays_of_vtk(tmp_path):
 
 SLICES = {"spacing": 2, "unit": "um", "axes": "ZYX"}
 IMAGEJ = {"imagej": True, "resolution": (2, 4), "metadata": SLICES}
+SEVERAL = (  # OME's metadata of a volume in two files
+    '<OME xmlns="http://www.openmicroscopy.org/Schemas/OME/2016-06" UUID="urn:uuid:a">'
+    '<Image ID="Image:0"><Pixels ID="Pixels:0" DimensionOrder="XYZCT" Type="uint16" '
+    'SizeX="{}" SizeY="{}" SizeZ="4" SizeC="1" SizeT="1"><Channel ID="Channel:0:0"/>'
+    '<TiffData FirstZ="0" PlaneCount="2"><UUID FileName="a.ome.tif">urn:uuid:a</UUID></TiffData>'
+    '<TiffData FirstZ="2" PlaneCount="2"><UUID FileName="b.ome.tif">urn:uuid:b</UUID></TiffData>'
+    "</Pixels></Image></OME>"
+)
 OME = {"PhysicalSizeX": 0.5, "PhysicalSizeY": 0.25, "PhysicalSizeZ": 2, "axes": "ZYX"}
 
 
@@ -194,6 +202,20 @@ def test_tiff(tmp_path, how, spacing):
     volume = bk.volumes.load(tmp_path / "a.tif")
     assert_alike(volume, values(np.uint16), np.diag([*spacing, 1]))
     assert volume.unit == ("µm" if spacing != (1, 1, 1) else "")
+
+
+def test_a_tiff_of_several_is_read_alone(tmp_path):
+    """OME's metadata may name files of any folder; this ended in an error of NumPy's."""
+    of_one, of_two = values(np.uint16)[:2], values(np.uint16)[2:4]
+    for name, layers in (("a", of_one), ("b", of_two)):
+        tifffile.imwrite(
+            tmp_path / f"{name}.ome.tif",
+            layers,
+            description=SEVERAL.format(*layers.shape[::-1]),
+            photometric="minisblack",
+            metadata=None,
+        )
+    assert_alike(bk.volumes.load(tmp_path / "a.ome.tif"), of_one, np.eye(4))
 
 
 def test_a_folder_of_tiff(tmp_path):

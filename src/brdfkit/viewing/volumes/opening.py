@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Any
 from brdfkit.core.arguments import to_positive_number, to_whole_number, wrong_value_error
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing.volumes.source import load_within_memory
-from brdfkit.viewing.volumes.uploads import confine_header
 from brdfkit.volumes import formats
 from brdfkit.volumes.formats.raw import IN_NAME
 from brdfkit.volumes.loading import looks_like_volume
@@ -134,9 +133,7 @@ def _open_volume(
     application: Application, session: Session, path: Path, **settings: Any
 ) -> list[Message]:
     """Show the volume of a file or folder."""
-    if path.is_file():
-        confine_header(path)
-    with warnings.catch_warnings(record=True) as caught:
+    with formats.confine_headers(), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         volume, source = load_within_memory(path, **settings)
     notes: list[Message] = [({"type": "error", "text": str(w.message)}, []) for w in caught]

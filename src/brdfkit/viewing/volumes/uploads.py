@@ -1,12 +1,10 @@
 """`Upload`: the files that the page sends, in pieces, in a folder that is deleted after reading.
 
-Of the names that the page sends only the last part is used, and a header in such a file can name
-other files of the same folder alone.
+Of the names that the page sends only the last part is used.
 """
 
 from __future__ import annotations
 
-import re
 import shutil
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -21,9 +19,6 @@ from brdfkit.core.names import to_printable
 LARGEST_UPLOAD = 4 << 30  # bytes of all files of one drop
 LARGEST_FILES = 2000  # of one drop, as slices of DICOM
 LONGEST_NAME = 200  # bytes, of the 255 that file systems allow
-HEADER_LIMIT = 1 << 16  # bytes, within which headers of MetaImage and NRRD end
-# The line in such a header that names the file of the voxels
-DATA_FILE = re.compile(rb"(?im)^(\s*(?:ElementDataFile\s*=|data\s*file\s*:)\s*)(.*)$")
 
 
 class Upload:
@@ -98,19 +93,3 @@ def _to_safe_name(given: Any) -> str:
     name = Path(to_printable(given).replace("\\", "/")).name
     short = name.encode()[-LONGEST_NAME:].decode(errors="ignore")
     return short if short not in ("", "..") else "file"
-
-
-def confine_header(path: Path) -> None:
-    """Let a header of MetaImage or NRRD name a file of its own folder, whatever folder it names.
-
-    Otherwise a file from elsewhere could show any file of this computer.
-    """
-    with path.open("rb") as stream:
-        head = stream.read(HEADER_LIMIT)
-    whole = path.stat().st_size <= HEADER_LIMIT
-    confined = DATA_FILE.sub(lambda m: m[1] + re.split(rb"[/\\]", m[2])[-1], head)
-    long = head.startswith(b"NRRD0") and not re.search(rb"\n\r?\n", head)
-    if not whole and (long or confined != head):
-        raise BrdfkitError(f"{path.name}: its header is too long; start brdfkit view with it.")
-    if confined != head:
-        path.write_bytes(confined)

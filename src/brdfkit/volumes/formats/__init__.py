@@ -23,6 +23,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes.formats import _volume_file
 from brdfkit.volumes.formats._volume_file import StoredVolume as StoredVolume
 from brdfkit.volumes.formats._volume_file import VolumeFile as VolumeFile
+from brdfkit.volumes.formats._volume_file import confine_headers as confine_headers
 
 HEAD = 4096  # bytes from the start of a file by which `sniff` recognises a format
 

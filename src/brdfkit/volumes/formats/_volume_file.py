@@ -1,7 +1,11 @@
 """`VolumeFile`, a file with a volume to be read, and `StoredVolume`, the content of its header."""
 
 import importlib
+import os
+import re
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
@@ -17,6 +21,21 @@ Shape = tuple[int, int, int]  # (nz, ny, nx), the numbers of voxels along z, y, 
 
 # Converts DICOM's and ITK's world, x to the left and y to the back, to x right and y front
 LPS_TO_RAS = np.diag([-1.0, -1.0, 1.0, 1.0])
+
+_confined: ContextVar[bool] = ContextVar("confined", default=False)
+
+
+@contextmanager
+def confine_headers() -> Iterator[None]:
+    """Let headers name only files of their own folder within the block.
+
+    Otherwise a header from elsewhere could show any file of this computer as voxels.
+    """
+    token = _confined.set(True)
+    try:
+        yield
+    finally:
+        _confined.reset(token)
 
 
 def list_files(folder: Path) -> list[Path]:
@@ -71,6 +90,20 @@ class VolumeFile:
     size: tuple[int, int, int] | None = None
     dtype: Any = None
     offset: int | None = None
+
+    def find_voxel_file(self, name: str) -> Path:
+        """Return the path of the file with the voxels, which this file's header calls `name`.
+
+        Within `confine_headers`, it is the file of that name in the header's folder, whatever
+        folder the header names.
+        """
+        folder = self.path.parent
+        if not _confined.get():
+            return folder / name
+        path = folder / re.split(r"[/\\]", name)[-1]
+        if os.path.exists(path) and path.resolve().parent != folder.resolve():  # a link, or ".."
+            raise self.error("its header names a file of another folder; put the two in one")
+        return path
 
     def error(self, problem: str) -> BrdfkitError:
         """Return a `BrdfkitError` that names this file and describes the `problem`.

@@ -4,6 +4,7 @@ The rows of ``TransformMatrix`` are the directions of the axes, and x is the fas
 voxels. ITK's world, x to the patient's left and y to the back, is converted to right and front.
 """
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -72,7 +73,9 @@ def read_header(file: VolumeFile) -> StoredVolume:
         stream = make_text_opener(path, start, dtype)
     else:
         packed = _read_boolean_field(fields, "CompressedData")
-        if skip == -1 and not packed and path.exists():  # -1: the voxels are the file's last bytes
+        if (
+            skip == -1 and not packed and os.path.exists(path)
+        ):  # -1: the voxels are the file's last bytes
             start, skip = path.stat().st_size - int(np.prod(shape)) * dtype.itemsize, 0
         start = max(start + max(skip, 0), 0)
         require_enough_bytes(file, path, start, shape, dtype, "zlib" if packed else "")
@@ -123,7 +126,7 @@ def _find_voxel_file(file: VolumeFile, name: str, start: int) -> tuple[Path, int
         return file.path, start
     if name.upper().startswith("LIST") or "%" in name:
         raise file.error("its data lie in many files; save it as one .mha")
-    return file.path.parent / name, 0
+    return file.find_voxel_file(name), 0
 
 
 def _read_boolean_field(fields: dict[str, str], *names: str, default: str = "False") -> bool:

@@ -5,6 +5,7 @@ voxel to its neighbours. The patient's coordinates are converted to x right, y f
 with a field ``Segment0_ID``, Slicer's segmentations, contain labels.
 """
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -111,7 +112,7 @@ def _find_voxel_file(file: VolumeFile, header: dict[str, Any]) -> Path:
         return file.path
     if name.startswith("LIST") or "%" in name:
         raise file.error("its data lie in many files; save it as one .nrrd")
-    return file.path.parent / str(name)
+    return file.find_voxel_file(str(name))
 
 
 def _make_voxel_opener(
@@ -133,7 +134,9 @@ def _make_voxel_opener(
     if encoding not in PACKINGS:
         raise file.error(f"its encoding {encoding!r} is not read; save it as raw or gzip")
     packing = PACKINGS[encoding]
-    if skip == -1 and not packing and path.exists():  # -1: the voxels are the file's last bytes
+    if (
+        skip == -1 and not packing and os.path.exists(path)
+    ):  # -1: the voxels are the file's last bytes
         start, skip = path.stat().st_size - int(np.prod(shape)) * dtype.itemsize, 0
     if skip < 0 or start < 0:
         raise file.error("its byte skip is not possible: the file is cut short; fetch it again")

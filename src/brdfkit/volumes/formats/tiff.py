@@ -104,7 +104,8 @@ def _open_tiff(file: VolumeFile, tifffile: Any, path: Path) -> Iterator[Any]:
     propagate, log.propagate = log.propagate, False
     log.addHandler(logged)
     try:
-        with tifffile.TiffFile(path) as tiff:
+        # Metadata of OME may name other files, of which no page is read
+        with tifffile.TiffFile(path, _multifile=False) as tiff:
             yield tiff
         if logged.texts:
             raise ValueError(logged.texts[0])
