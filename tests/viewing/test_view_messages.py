@@ -37,6 +37,7 @@ FIELDS = {
     "undo": {},
     "redo": {},
     "reset": {},
+    "cancel": {},
     "pause": {"paused": st.booleans()},
     "visible": {"visible": st.booleans()},
     "shown": {"number": NUMBERS},

@@ -221,6 +221,24 @@ def test_the_picture_is_saved_as_a_file(page):
     assert np.asarray(content).std() > 5
 
 
+@pytest.mark.parametrize("way", ["key", "button"])
+def test_an_orbit_is_cancelled(page, way):
+    files = page.get_by_role("group", name="Files and history")
+    files.get_by_role("button", name="Save").click()
+    files.get_by_role("button", name="Orbit (GIF)").click()
+    cancel = page.get_by_role("button", name="Cancel")
+    cancel.wait_for()
+    page.locator(".stage").press("ArrowLeft")  # whose answer does not hide the progress
+    page.wait_for_timeout(500)
+    assert cancel.is_visible()
+    if way == "key":
+        page.locator(".stage").press("Escape")
+    else:
+        cancel.click()
+    cancel.wait_for(state="hidden")
+    page.get_by_text("The orbit is rendered").wait_for(state="hidden")
+
+
 @pytest.fixture
 def scan(tmp_path):
     """A file with a volume of 6 × 7 × 8 voxels."""

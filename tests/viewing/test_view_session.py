@@ -51,6 +51,12 @@ def work(session):
     return messages
 
 
+def work_first_passes(session):
+    """Render the passes that come before all else."""
+    for _ in range(session_file.FIRST_PASSES):
+        work(session)
+
+
 def kinds(messages):
     return [message["type"] for message, _ in messages]
 
@@ -223,6 +229,7 @@ def test_an_orbit_is_rendered_frame_by_frame_from_the_view_on(session, monkeypat
     monkeypatch.setattr(saving, "FRAMES", 3)
     monkeypatch.setattr(saving, "FILM_SAMPLES", 1)
     session.handle({"type": "set", "changes": {"renderer": "maximum_intensity"}})
+    work_first_passes(session)
     assert kinds(session.handle({"type": "save", "kind": kind})) == ["busy"]
     sent = [message for _ in range(4) for message in session.work()]
     assert kinds(sent) == ["busy", "busy", "busy", "busy", "file"]
@@ -243,16 +250,62 @@ def test_an_orbit_is_rendered_frame_by_frame_from_the_view_on(session, monkeypat
     assert session.has_work()
 
 
-def test_a_film_of_the_last_volume_is_given_up(session, application):
+@pytest.mark.parametrize("fails", [False, True])
+def test_a_film_of_the_last_volume_is_given_up(session, application, fails):
     """The list of tasks was empty when the step that was rendered meanwhile ended."""
 
     def step():
         session.open(application.first_state())  # as after a dropped file
+        if fails:
+            raise KeyError(0)  # such as a setting that the new volume does not have
         yield [({"type": "file"}, [])]
 
+    work_first_passes(session)
     session.tasks.append(step())
     assert session.work() == []
     assert session.tasks == []
+
+
+def test_a_film_that_fails_is_said_once(session):
+    def step():
+        yield from ()
+        raise BrdfkitError("The file cannot be written.")
+
+    work_first_passes(session)
+    session.tasks.append(step())
+    assert kinds(work_safely(session)) == ["error", "progress"]
+    assert session.work() == session.tasks == []
+
+
+def test_a_changed_picture_comes_before_the_next_frame_of_a_film(session):
+    work_first_passes(session)
+    session.handle({"type": "save", "kind": "film"})
+    assert kinds(work(session)) == ["busy"]
+    session.handle({"type": "set", "changes": {"camera.azimuth": 80}, "moving": True})
+    assert kinds(work(session)) == ["picture", "progress"]
+    assert kinds(work(session)) == ["busy"]  # while the pointer rests
+    session.handle({"type": "set", "changes": {"camera.azimuth": 90}, "moving": False})
+    sent = [kinds(work(session))[0] for _ in range(session_file.FIRST_PASSES + 1)]
+    assert sent == [*["picture"] * session_file.FIRST_PASSES, "busy"]
+
+
+def test_a_film_is_cancelled(session):
+    session.handle({"type": "save", "kind": "film"})
+    ((end, _),) = session.handle({"type": "cancel"})
+    assert (end["type"], end["text"], session.tasks) == ("busy", "", [])
+    session.handle({"type": "save", "kind": "film"})  # and another begins
+    assert len(session.tasks) == 1
+
+
+def test_a_film_shows_the_volume_with_which_it_began(mi, volume, monkeypatch):
+    monkeypatch.setattr(saving, "FRAMES", 2)
+    own = Session(VolumeApplication(volume, "smoke"))
+    message, _ = saving.make_file(own.application, own, "frames")
+    (film,) = own.tasks
+    other = bk.volumes.Volume(np.arange(27.0).reshape(3, 3, 3), name="other")
+    own.application.show(other, None)
+    sent = list(film)
+    assert (message["can_cancel"], sent[-1][1][0]["name"]) == (True, "smoke.orbit.zip")
 
 
 def test_another_volume_takes_no_word_on_the_last_picture_for_its_own(session, application):

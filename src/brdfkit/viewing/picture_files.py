@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,6 +40,12 @@ def join_sides(pictures: dict[int, AnyArray], wipe: float) -> AnyArray:
     return np.concatenate([pictures[0][:, :edge], pictures[1][:, edge:]], axis=1)
 
 
+def join_samples(samples: dict[int, Accumulated], state: State) -> AnyArray:
+    """Return the picture of a state from the samples of its sides, linear."""
+    pictures = {side: total.picture for side, total in samples.items() if total.passes}
+    return join_sides(pictures, state["wipe"])
+
+
 def render_state(
     application: Application,
     state: State,
@@ -49,17 +56,30 @@ def render_state(
 ) -> Rendering:
     """Return the picture of a state, of `spp` passes, the same as the page's for the seed 0."""
     start = time.monotonic()
-    sums = {side: Accumulated() for side in range(application.sides(state))}
-    for number in range(spp):
-        for side in sums:
-            picture = application.render(state, side, size, False, derive_seed(seed, number))
-            sums[side] = sums[side].add_pass(picture, 1)
+    sums: dict[int, Accumulated] = {}
+    for done in render_passes(application, state, size, spp, seed, sums):
         if progress:
-            progress(number + 1, spp)
-    joined = join_sides({side: total.picture for side, total in sums.items()}, state["wipe"])
+            progress(done, spp)
+    joined = join_samples(sums, state)
     tone = application.tone_mapping(state)
     seconds = time.monotonic() - start
     return Rendering({application.name: joined}, spp, seconds, seed, tone_mapping=tone, bare=True)
+
+
+def render_passes(
+    application: Application,
+    state: State,
+    size: tuple[int, int],
+    spp: int,
+    seed: int,
+    sums: dict[int, Accumulated],
+) -> Iterator[int]:
+    """Add `spp` passes of a state to the samples by side, `sums`; yield their number after each."""
+    for number in range(spp):
+        for side in range(application.sides(state)):
+            picture = application.render(state, side, size, False, derive_seed(seed, number))
+            sums[side] = sums.get(side, Accumulated()).add_pass(picture, 1)
+        yield number + 1
 
 
 def make_picture_file(application: Application, session: Session, kind: str) -> Message:
@@ -71,10 +91,9 @@ def make_picture_file(application: Application, session: Session, kind: str) -> 
 
 def _current_picture(session: Session) -> AnyArray:
     """Return the picture of a session so far, linear."""
-    done = {side: a.picture for side, a in session.accumulated.items() if a.passes}
-    if not done:
+    if not any(total.passes for total in session.accumulated.values()):
         raise BrdfkitError("There is no picture yet; wait for the first one.")
-    return join_sides(done, session.state["wipe"])
+    return join_samples(session.accumulated, session.state)
 
 
 def _make_png(application: Application, session: Session) -> tuple[str, str, bytes]:

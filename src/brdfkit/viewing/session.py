@@ -91,6 +91,9 @@ class Session:
             number = to_whole_number("number", message.get("number"), 0)
             self.shown = max(self.shown, min(number, self.number))
             return []
+        if kind == "cancel":
+            self.tasks = []
+            return [({"type": "busy", "text": "", "fraction": None}, [])]
         if kind in ("pause", "visible"):
             self.paused = bool(message.get("paused", self.paused))
             self.visible = bool(message.get("visible", self.visible))
@@ -168,26 +171,30 @@ class Session:
         if not self.lock.acquire(blocking=False):
             return False
         try:
-            if self.tasks:
-                return True
-            waits = self.shown < self.number  # for the page, which is slow or gone
-            gone = waits and time.monotonic() - self.last_sent > PATIENCE
-            if not self.visible or gone or (waits and (self.moving or self.stale)):
-                return False
-            return self.stale or not (self.paused or self.converged or self.moving)
+            return bool(self.tasks) or self._has_pass()
         finally:
             self.lock.release()
+
+    def _has_pass(self) -> bool:
+        """Return whether there is a pass of the picture to render, and someone who looks."""
+        waits = self.shown < self.number  # for the page, which is slow or gone
+        gone = waits and time.monotonic() - self.last_sent > PATIENCE
+        if not self.visible or gone or (waits and (self.moving or self.stale)):
+            return False
+        return self.stale or not (self.paused or self.converged or self.moving)
 
     def work(self) -> list[Message]:
         """Render a pass of the newest state, and return its pictures if the page waits for them.
 
-        Tasks, such as a film, come first, step by step. Pictures are rendered and encoded outside
-        of the lock, so that messages are answered meanwhile.
+        Tasks, such as a film, come first, step by step, but for the first passes of a changed
+        picture. All is rendered and encoded outside of the lock, so that messages are answered
+        meanwhile.
         """
         with self._lock_briefly() as locked:
             if not locked:
                 return []
-            task = self.tasks[0] if self.tasks else None
+            changed = self.stale or self.passes < FIRST_PASSES
+            task = self.tasks[0] if self.tasks and not (changed and self._has_pass()) else None
             begun = None if task else self._begin_pass()
         return self._continue_task(task) if begun is None else self._render_pass(begun)
 
@@ -206,13 +213,19 @@ class Session:
 
     def _continue_task(self, task: Iterator[list[Message]] | None) -> list[Message]:
         """Return the messages of the next step of a task, unless it is needed no more."""
-        messages = None if task is None else next(task, None)
+        messages, defect = None, None
+        try:
+            messages = None if task is None else next(task, None)
+        except Exception as error:  # which nobody needs to know of a task that was given up
+            defect = error
         with self.lock:
             if task not in self.tasks:
                 return []
             if messages is None:
                 self.tasks.remove(task)
-            return messages or []
+        if defect is not None:
+            raise defect
+        return messages or []
 
     def _begin_pass(self) -> Pass:
         moving, samples = self.moving, self.accumulated

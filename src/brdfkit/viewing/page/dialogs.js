@@ -33,6 +33,7 @@ const KEYS = [
   ]],
   ["Everywhere", [
     ["Ctrl + Z or U, Ctrl + Y", "undo, redo"],
+    ["Escape", "cancel an orbit"],
     ["?", "this help"],
   ]],
 ];

@@ -46,9 +46,13 @@ function createUploads(session) {
   session.on("uploaded", () => acknowledge?.(true));
   session.on("error", () => acknowledge?.(false));
 
-  for (const type of ["history", "ask_raw", "error"]) {
-    session.on(type, () => session.emit("busy", { text: "" }));
-  }
+  let opening = false; // whether Python works on the files; what else it works on goes on
+  const end = () => {
+    opening = false;
+    session.emit("busy", { text: "" });
+  };
+  for (const type of ["history", "ask_raw"]) session.on(type, () => opening && end());
+  session.on("error", end);
 
   /** Send a file in pieces; return whether Python took all of them. */
   async function send(file, details) {
@@ -60,6 +64,7 @@ function createUploads(session) {
       offset += piece.byteLength;
       if (offset >= file.size && details.index === details.count - 1) {
         // Python's answer to the last piece is what it made of the files
+        opening = true;
         session.emit("busy", { text: `Opening ${file.name}`, fraction: null });
         return true;
       }

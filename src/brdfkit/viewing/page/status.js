@@ -13,6 +13,9 @@ function writeVolume({ size, spacing, unit }) {
 function createStatus(session) {
   const message = make("span", { class: "message", role: "status", "aria-live": "polite" });
   const bar = make("progress", { hidden: true, "aria-label": "Progress", max: 1 });
+  const cancel = makeButton("Cancel", () => session.send({ type: "cancel" }), {
+    title: "Escape", hidden: true,
+  });
   const [size, samples, value] = ["size", "samples", "value"].map((name) => make("span", { class: name }));
   let busy = "";
   let phase = "";
@@ -35,14 +38,16 @@ function createStatus(session) {
     say();
   });
   session.on("probe", ({ text }) => (value.textContent = text || ""));
-  session.on("busy", ({ text, fraction }) => {
+  session.on("busy", ({ text, fraction, can_cancel }) => {
     busy = text || "";
     bar.hidden = !busy;
+    cancel.hidden = !(busy && can_cancel);
     if (typeof fraction === "number") bar.value = fraction;
     else bar.removeAttribute("value");
     say();
   });
-  return make("div", { class: "status" }, size, samples, message, bar, value);
+  session.on("cancel", () => cancel.hidden || cancel.click());
+  return make("div", { class: "status" }, size, samples, message, bar, cancel, value);
 }
 
 /** Put notices on the stage: errors, which are closed, and the loss of the connection. */

@@ -15,7 +15,9 @@ function listenForKeys(session, root, stage, { cameraKey, paintKey, moveCross, s
     else if (plain && event.key === "u") session.command("undo");
   });
   root.addEventListener("keydown", (event) => {
-    if (event.key === "?" && !takesText(event.target) && !event.target.closest("dialog")) help();
+    if (event.target.closest("dialog")) return;
+    if (event.key === "?" && !takesText(event.target)) help();
+    if (event.key === "Escape") session.emit("cancel");
   });
   listenForUndo(session, root);
   // A notebook has keys of its own, which are not meant while the focus is in the viewer

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import zipfile
 from collections.abc import Iterator
+from copy import copy
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ import numpy as np
 from PIL import Image
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.images.errors.noise import Accumulated
 from brdfkit.rendering.film import write_animation
 from brdfkit.viewing import picture_files
 from brdfkit.viewing.controls import State
@@ -39,8 +41,9 @@ def make_file(application: Application, session: Session, kind: str) -> Message:
     if kind in ("film", "frames"):
         if session.tasks:
             raise BrdfkitError("An orbit is being rendered already; wait for its file.")
-        session.tasks.append(_make_orbit(application, session.state, session.size, kind))
-        return {"type": "busy", "text": "The orbit is rendered", "fraction": 0.0}, []
+        shown = copy(application)  # which keeps what it shows when the page opens another file
+        session.tasks.append(_make_orbit(shown, session.state, session.size, kind))
+        return _describe_orbit(0, 0), []
     if kind == "transfer":
         text = to_function(application, session.state).to_json()
         file = {"type": "file", "name": f"{application.name}.transfer.json"}
@@ -79,25 +82,34 @@ def _make_orbit(
 ) -> Iterator[list[Message]]:
     """Render a turn, frame by frame, from the view of a state on.
 
-    Yields messages of the progress, and at last the file: one animation, or an archive of frames.
+    Yields messages of the progress after each pass, and at last the file: one animation, or an
+    archive of frames.
     """
     name, tone = application.name, application.tone_mapping(state)
     images: list[Any] = []
     brightest = 0.0  # of the first frame, which all frames are exposed by
     for number in range(FRAMES):
         azimuth = state["camera.azimuth"] + 360 * number / FRAMES
-        frame = picture_files.render_state(
-            application, state | {"camera.azimuth": azimuth}, size, FILM_SAMPLES
-        ).pictures[name]
+        turned, samples = state | {"camera.azimuth": azimuth}, dict[int, Accumulated]()
+        for done in picture_files.render_passes(
+            application, turned, size, FILM_SAMPLES, 0, samples
+        ):
+            yield [(_describe_orbit(number, done), [])]
+        frame = picture_files.join_samples(samples, state)
         brightest = brightest or tone.brightest_of(frame)
         images.append(Image.fromarray(to_bytes(tone(frame, brightest))))
-        text = f"The orbit is rendered: {number + 1} of {FRAMES} frames"
-        yield [({"type": "busy", "text": text, "fraction": (number + 1) / FRAMES}, [])]
     write, suffix, mime = ORBITS[kind]
     stream = io.BytesIO()
     write(stream, images)
     file = {"type": "file", "name": f"{name}.orbit{suffix}", "mime": mime}
     yield [({"type": "busy", "text": "", "fraction": None}, []), (file, [stream.getvalue()])]
+
+
+def _describe_orbit(number: int, passes: int) -> dict[str, Any]:
+    """Return the message "busy" after some passes of the frame of a `number`, from 0."""
+    text = f"The orbit is rendered: frame {number + 1} of {FRAMES}"
+    fraction = (number + passes / FILM_SAMPLES) / FRAMES
+    return {"type": "busy", "text": text, "fraction": fraction, "can_cancel": True}
 
 
 def _write_frames(stream: io.BytesIO, images: list[Any]) -> None:
