@@ -23,6 +23,7 @@ from brdfkit.viewing.volumes.histograms import make_histograms
 from brdfkit.viewing.volumes.live_scene import LiveScene, SceneKind
 from brdfkit.viewing.volumes.opening import load_raw, load_upload
 from brdfkit.viewing.volumes.painting import paint
+from brdfkit.viewing.volumes.pointer import find_visible_voxel
 from brdfkit.viewing.volumes.source import Source
 from brdfkit.viewing.volumes.state import VolumeState, list_controls, needs_samples_anew
 from brdfkit.viewing.volumes.uploads import Upload
@@ -134,13 +135,14 @@ class VolumeApplication:
         """Render a pass of one sample per pixel: (height, width, 3), linear sRGB."""
         import drjit as dr
 
-        kind = self.states.scene_kind(state, side, size, moving)
+        shown = self.states.of_side(state, side)
+        kind = self.states.scene_kind(shown, size, moving)
         scene = self.scenes.pop(kind, None) or self._load(kind)
         self.scenes[kind] = scene  # the last one is the newest
         if len(self.scenes) > SCENES:
             self.scenes.pop(next(iter(self.scenes)))
             dr.flush_malloc_cache()  # which keeps the memory of every size of a picture
-        scene.show(self.states.look(state))
+        scene.show(self.states.look(shown))
         return scene.render(seed)
 
     def _load(self, kind: SceneKind) -> LiveScene:
@@ -210,11 +212,18 @@ class VolumeApplication:
         """Return the value of the first voxel that is visible under the pointer."""
         place = np.clip([to_number(name, message.get(name)) for name in "xy"], 0, 1)
         state, (width, height) = session.state, session.size
-        side = int(bool(state["second"]) and place[0] > state["wipe"])
-        ray = self.states.camera(state).cast_ray(place[0], place[1], width / height)
-        extinction = self.states.find_extinction(state, side)
-        densest = state["second" if side else "renderer"] == "maximum_intensity"
-        at = slices.find_visible_voxel(self.states.live, extinction, state["clip"], ray, densest)
+        shown = self.states.of_side(state, int(bool(state["second"]) and place[0] > state["wipe"]))
+        table, extinction = self.states.find_opacities(shown)
+        at = find_visible_voxel(
+            self.states.live,
+            self.states.camera(state),
+            place,
+            width / height,
+            state["clip"],
+            table,
+            extinction,
+            shown["renderer"] == "maximum_intensity",
+        )
         text = "" if at is None else slices.describe_voxel(self.volume, at, self.states.value_unit)
         return [({"type": "probe", "text": text, "voxel": at}, [])]
 

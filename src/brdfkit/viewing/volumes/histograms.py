@@ -34,12 +34,14 @@ def _count_voxels(
 ) -> tuple[list[int], bytes]:
     step = -(-volume.values.size // COUNTED_VOXELS)
     voxels = volume.values.reshape(-1)[::step]
+    # Shares of the range, since the range of large values may be too narrow to be cut into bins
+    shares = (voxels.astype(float) - values[0]) / (values[1] - values[0])
     gradients = volume.gradient_magnitude.reshape(-1)[::step]
-    ends = (0, steepest), values
-    joint = np.histogram2d(gradients, voxels, (GRADIENT_BINS, BINS), ends)[0]
+    ends = (0, steepest), (0, 1)
+    joint = np.histogram2d(gradients, shares, (GRADIENT_BINS, BINS), ends)[0]
     shade = np.log1p(joint) / max(np.log1p(joint.max()), 1e-9)
     picture = encode_png(np.rint(255 * shade[::-1]).astype(np.uint8))
     # Bins of whole numbers are not finer than the numbers, because some would always be empty
     whole = not np.any(voxels % 1)
     count = min(max(int(values[1] - values[0]), BINS), FINE_BINS) if whole else FINE_BINS
-    return np.histogram(voxels, count, values)[0].tolist(), picture
+    return np.histogram(shares, count, (0, 1))[0].tolist(), picture

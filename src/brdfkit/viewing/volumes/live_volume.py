@@ -14,7 +14,7 @@ from weakref import WeakValueDictionary
 import numpy as np
 from numpy.typing import ArrayLike
 
-from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.core.array_types import FloatArray
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.lookup import MIN_STEPS
@@ -29,7 +29,7 @@ class LiveVolume:
     """A volume, its range of values, and the grids that all scenes of it share.
 
     `labels` are the labels that occur, rising, or None. `low` and `high` are the ends of the range
-    of values, `high` = `low` + 1 if there is only one value. `steepest` is the gradient magnitude
+    of values, which differ even if there is only one value. `steepest` is the gradient magnitude
     at the upper end of tables over gradient magnitudes.
     """
 
@@ -37,7 +37,7 @@ class LiveVolume:
         self.volume = volume
         self.labels = np.unique(volume.values) if volume.labels else None
         self.low, high = volume.range
-        self.high = high if high > self.low else self.low + 1.0
+        self.high = high if high > self.low else self.low + max(1.0, 1e-6 * abs(self.low))
         gradients = volume.gradient_magnitude
         steepest = find_upper_percentile(gradients, STEEPEST_PERCENTILE)
         self.steepest = steepest or float(gradients.max()) or 1.0
@@ -45,7 +45,7 @@ class LiveVolume:
 
     def to_shares(self, values: ArrayLike) -> FloatArray:
         """Convert values of the volume to the values of the grid, 0 to 1 over the range."""
-        values = np.asarray(values)
+        values = np.asarray(values, float)
         if self.labels is None:
             return np.clip((values - self.low) / (self.high - self.low), 0, 1)
         steps = max(len(self.labels) - 1, 1)
@@ -63,10 +63,6 @@ class LiveVolume:
     def row_gradients(self) -> FloatArray:
         """The gradient magnitude at each row of a table over gradient magnitudes."""
         return np.linspace(0, self.steepest, GRADIENT_ROWS)
-
-    def find_rows(self, values: ArrayLike) -> AnyArray:
-        """Return the nearest row of a table for values of the volume."""
-        return np.rint(self.to_shares(values) * (VALUE_ROWS - 1)).astype(int)
 
     def describe(self, by_gradients: bool, colour: str) -> dict[str, Any]:
         """Return the dictionary of a `transfer_function` over the volume, for any table.

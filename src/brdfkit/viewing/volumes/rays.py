@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
+from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, IntArray
 from brdfkit.viewing.volumes.camera import Camera
 from brdfkit.viewing.volumes.live_volume import LiveVolume
 
@@ -20,18 +20,26 @@ class Rays:
     """Samples in the middles of equal parts of rays within the visible part of a volume's box.
 
     `values` and `gradients` (n, steps) are shares, 0 to 1, as in tables of a `LiveVolume`.
-    `length` (n,) is that of the parts of a ray, 0 if it misses the box. Values are counted in a
+    `length` (n,) is that of the parts of a ray, 0 if it misses the box. `voxels` (n, steps, 3) are
+    the nearest voxels (i, j, k). Values are counted in a
     number of `bins`, whose middles spread evenly over the shares.
     """
 
     values: FloatArray
     gradients: FloatArray
     length: FloatArray
+    voxels: IntArray
     bins: int
 
     def select(self, mask: BoolArray) -> Rays:
         """Return the rays of a mask (n,)."""
-        return Rays(self.values[mask], self.gradients[mask], self.length[mask], self.bins)
+        return replace(
+            self,
+            values=self.values[mask],
+            gradients=self.gradients[mask],
+            length=self.length[mask],
+            voxels=self.voxels[mask],
+        )
 
     def depths(self, table: AnyArray, extinction: float) -> FloatArray:
         """Return the optical depth (n, steps) of each sample.
@@ -71,12 +79,18 @@ def _transmit(depths: FloatArray) -> FloatArray:
 
 
 def cast_rays(
-    live: LiveVolume, camera: Camera, places: FloatArray, aspect: float, clip: FloatArray
+    live: LiveVolume,
+    camera: Camera,
+    places: FloatArray,
+    aspect: float,
+    clip: FloatArray,
+    steps: int | None = None,
 ) -> Rays:
     """Sample a volume along the rays through `places` (n, 2), 0 to 1 from the top left.
 
     `aspect` is the picture's width over its height. `clip` (2, 3) has the corners of the visible
-    part in the unit cube.
+    part in the unit cube. A ray has `steps` samples, by default one for each voxel along the
+    longest axis, up to `LARGEST_STEP_COUNT`.
     """
     from scipy.ndimage import map_coordinates
 
@@ -87,7 +101,7 @@ def cast_rays(
     with np.errstate(divide="ignore", invalid="ignore"):
         a, b = (clip[0] - o) / d, (clip[1] - o) / d
     near = np.maximum(np.nanmax(np.minimum(a, b), axis=1), 0)
-    steps = min(max(volume.size), LARGEST_STEP_COUNT)
+    steps = steps or min(max(volume.size), LARGEST_STEP_COUNT)
     length = np.maximum(np.nanmin(np.maximum(a, b), axis=1) - near, 0) / steps
     t = near[:, None] + (np.arange(steps) + 0.5) * length[:, None]
     indices = (o + t[..., None] * d[:, None]) * volume.size - 0.5
@@ -98,7 +112,8 @@ def cast_rays(
 
     values = live.to_shares(look_up(volume.values, 0 if volume.labels else 1))
     gradients = np.clip(look_up(volume.gradient_magnitude, 0) / live.steepest, 0, 1)
-    return Rays(values, gradients, length, len(list_values(live)))
+    voxels = np.clip(np.rint(indices), 0, np.array(volume.size) - 1).astype(int)
+    return Rays(values, gradients, length, voxels, len(list_values(live)))
 
 
 def list_values(live: LiveVolume) -> FloatArray:

@@ -19,6 +19,7 @@ from brdfkit.viewing import picture_files
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.encoding import encode_png, to_bytes
 from brdfkit.viewing.volumes import transfer_table
+from brdfkit.viewing.volumes.live_volume import VALUE_ROWS
 from brdfkit.volumes import TransferFunction
 
 if TYPE_CHECKING:
@@ -62,13 +63,15 @@ def to_function(application: Application, state: State) -> TransferFunction:
         state["transfer.colour"],
     )
     if state["transfer.mode"] == "preset":
-        return replace(states.load_preset(name), extinction=extinction)
+        return replace(states.load_preset(name, state["renderer"]), extinction=extinction)
     if state["transfer.mode"] == "points":
         points = state["transfer.points"]
         rgba = np.array([[*transfer_table.parse_colour(c), a] for _, c, a in points])
         values, gradients = np.array([value for value, _, _ in points]), None
     else:
-        step = 16  # of the rows over values, which are far finer than any bump
+        # A row for each sixteenth of the narrowest bump is enough
+        narrowest = min(bump["sx"] for bump in state["transfer.bumps"])
+        step = max(1, min(16, int(VALUE_ROWS * narrowest / 16)))
         values, rows = np.unique(states.live.row_values[::step], return_index=True)
         rgba = states.table(state)[..., ::step, :][..., rows, :]
         gradients = states.live.row_gradients if rgba.ndim == 3 else None

@@ -61,6 +61,8 @@ def find_changes(application: Application, state: State) -> State:
     states = application.states
     first = states.first()
     changes = {name: value for name, value in state.items() if value != first[name]}
+    if any(name.startswith("transfer.") for name in changes):
+        changes["transfer.mode"] = state["transfer.mode"]  # other changes may alter it
     if "transfer.preset" in changes:
         # These may be as in the first state, but a preset would change them
         changes |= {name: state[name] for name in PRESET}

@@ -1,4 +1,4 @@
-"""Slices through a volume as pictures, and the value of the voxel under the pointer."""
+"""Slices through a volume as pictures, and the voxel under the pointer in them, in words."""
 
 from __future__ import annotations
 
@@ -6,16 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from brdfkit.core.array_types import FloatArray
 from brdfkit.viewing.encoding import encode_png
-from brdfkit.viewing.volumes.live_volume import LiveVolume
 from brdfkit.volumes import Volume
 
 # The axis that a plane is across, and the axes to its right and upwards
 PLANES = (("z", "x", "y"), ("y", "x", "z"), ("x", "y", "z"))
 LONGEST = 512  # pixels of a slice
-RAY_STEPS = 512  # along which the first visible voxel is sought
-MATTER_OPACITY = 0.5  # of a ray up to the voxel that counts as the first visible one
 
 
 def draw_slices(
@@ -60,38 +56,3 @@ def describe_voxel(volume: Volume, at: list[int], unit: str = "") -> str:
     number = f"{int(value)}" if volume.labels else f"{float(value):.6g}"
     length = f" {volume.unit}" if volume.unit else ""
     return f"{number} {unit}".rstrip() + f" at voxel {i}, {j}, {k} ({where}{length})"
-
-
-def find_visible_voxel(
-    volume: LiveVolume,
-    extinction: FloatArray,
-    clip: list[list[float]],
-    ray: tuple[FloatArray, FloatArray],
-    densest: bool = False,
-) -> list[int] | None:
-    """Return the first voxel (i, j, k) that is visible along a `ray`, (origin, unit direction).
-
-    It is where the opacity along the ray reaches `MATTER_OPACITY`, or the densest voxel if it never
-    does, or if the view shows the `densest` voxels. None if the ray misses the visible part between
-    the corners `clip` of the unit cube, or if all of it is transparent. `extinction` (VALUE_ROWS,)
-    is that of the transfer function [1/unit of length].
-    """
-    scan, (origin, direction) = volume.volume, ray
-    inverse = np.linalg.inv(scan.cube_to_world)
-    o, d = inverse[:3, :3] @ origin + inverse[:3, 3], inverse[:3, :3] @ direction
-    low, high = np.array(clip, float)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        a, b = (low - o) / d, (high - o) / d
-    near, far = max(np.nanmax(np.minimum(a, b)), 0.0), np.nanmin(np.maximum(a, b))
-    if not near < far:
-        return None
-    t = near + (np.arange(RAY_STEPS) + 0.5) / RAY_STEPS * (far - near)
-    points = origin + t[:, None] * direction
-    sigma = extinction[volume.find_rows(scan(points))]
-    if not sigma.max() > 0:
-        return None
-    passed = np.cumsum(sigma) * (far - near) / RAY_STEPS
-    reached = np.flatnonzero(1 - np.exp(-passed) >= MATTER_OPACITY)
-    first = reached[0] if len(reached) and not densest else int(sigma.argmax())
-    ijk = np.linalg.inv(scan.to_world) @ [*points[first], 1]
-    return np.clip(np.rint(ijk[:3]), 0, np.array(scan.size) - 1).astype(int).tolist()

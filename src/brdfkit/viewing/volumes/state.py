@@ -31,10 +31,12 @@ from brdfkit.viewing.volumes.volume_controls import make_controls
 from brdfkit.volumes import TransferFunction, Volume
 from brdfkit.volumes.transfer.files import list_presets
 from brdfkit.volumes.transfer.windows import scale_transfer_to_values
+from brdfkit.volumes.volume import LARGEST_COORDINATE
 
 FIRST_BUMP = {"x": 0.5, "y": 0.25, "sx": 0.15, "sy": 0.25, "colour": "#e8a060", "a": 0.5}
 CLIP = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]
 THINNEST = 1e-3  # edge of the clipping box, as a share of the volume's
+OPAQUE = 1e30  # extinction [1/unit of length] within an isosurface
 MOVING_STEPS = 0.5  # share of the steps along rays while something moves
 # Presets that are chosen for the volume, as for a renderer
 CHOSEN = {"emission": "emission_absorption", "intensity": "maximum_intensity"}
@@ -61,8 +63,11 @@ class VolumeState:
         self.level = defaults.choose_surface_level(volume)
         self.front = find_front(volume)
         self.loaded: dict[str, TransferFunction] = {}  # presets, by name
+        # Functions by the renderer that they suit, and the parts of the state that they are
+        self.defaults: dict[str, TransferFunction] = {}
+        self.default_parts: dict[str, State] = {}
         self.last_table: tuple[State, AnyArray] = {}, np.zeros(0)
-        self.function = self._scale(defaults.choose_transfer_function(volume, "single_scattering"))
+        self.function = self._default_function("single_scattering")
         sides = [camera_direction(volume, azimuth, 20.0) for azimuth in TURN_AZIMUTHS]
         is_visible = defaults.make_visibility_test(self.function, 0.0)
         origin, target = place_camera(volume, is_visible, sides, 1.0)
@@ -99,24 +104,47 @@ class VolumeState:
             "transfer.colour": function.colour,
         }
 
+    def _default_function(self, renderer: str) -> TransferFunction:
+        """Return the transfer function that suits the volume and a renderer."""
+        renderer = "single_scattering" if renderer == "isosurface" else renderer
+        if renderer not in self.defaults:
+            function = defaults.choose_transfer_function(self.volume, renderer)
+            self.defaults[renderer] = self._scale(function)
+        return self.defaults[renderer]
+
+    def _default_part(self, renderer: str) -> State:
+        """Return the part of the state that the default function of a renderer is."""
+        if renderer not in self.default_parts:
+            function = self._default_function(renderer)
+            self.default_parts[renderer] = self._describe_function(function)
+        return self.default_parts[renderer]
+
+    def _has_default_function(self, state: State) -> bool:
+        """Return whether a state has the default function of its renderer, as it is."""
+        if state["transfer.preset"] != "default":
+            return False
+        part = self._default_part(state["renderer"])
+        return all(state[name] == value for name, value in part.items())
+
     def presets(self) -> list[str]:
         """Return the names of the transfer functions that the page offers."""
         return ["default", *CHOSEN, *list_presets(), *self.functions]
 
-    def load_preset(self, name: str) -> TransferFunction:
-        """Return a transfer function of `presets`, scaled to the volume."""
+    def load_preset(self, name: str, renderer: str = "single_scattering") -> TransferFunction:
+        """Return a transfer function of `presets`, scaled to the volume.
+
+        "default" is the one that suits the `renderer`.
+        """
         if name == "default":
-            return self.function
+            return self._default_function(renderer)
+        if name in CHOSEN:
+            return self._default_function(CHOSEN[name])
         if name in self.functions:
             return self.functions[name]
         if name not in self.loaded:
-            if name in CHOSEN:
-                function = defaults.choose_transfer_function(self.volume, CHOSEN[name])
-            elif name in list_presets():
-                function = TransferFunction.load(name)
-            else:
+            if name not in list_presets():
                 raise no_such_error("transfer function", name, self.presets())
-            self.loaded[name] = self._scale(function)
+            self.loaded[name] = self._scale(TransferFunction.load(name))
         return self.loaded[name]
 
     def _scale(self, function: TransferFunction) -> TransferFunction:
@@ -149,8 +177,12 @@ class VolumeState:
             control = self.controls.get(name)
             new[name] = control.check(value) if control else self._check(name, value)
         if "transfer.preset" in changes and "transfer.points" not in changes:
-            filled = self._describe_function(self.load_preset(new["transfer.preset"]))
+            function = self.load_preset(new["transfer.preset"], new["renderer"])
+            filled = self._describe_function(function)
             new |= {name: value for name, value in filled.items() if name not in changes}
+        elif "renderer" in changes and not any(name.startswith("transfer.") for name in changes):
+            if self._has_default_function(state):
+                new |= self._default_part(new["renderer"])
         elif "transfer.points" in changes and state["transfer.mode"] == "preset":
             new |= {"transfer.mode": "points"} if "transfer.mode" not in changes else {}
         return new
@@ -160,7 +192,8 @@ class VolumeState:
 
         Equal functions give the same array, since it is made anew only after a change.
         """
-        function = {name: value for name, value in state.items() if name.startswith("transfer.")}
+        names = (name for name in state if name == "renderer" or name.startswith("transfer."))
+        function = {name: state[name] for name in names}
         last = self.last_table  # another thread may exchange it meanwhile
         if last[0] != function:
             last = self.last_table = function, self._make_table(state)
@@ -169,7 +202,7 @@ class VolumeState:
     def _make_table(self, state: State) -> AnyArray:
         """Return RGBA of a state's transfer function at the rows of a table."""
         if state["transfer.mode"] == "preset":
-            function = self.load_preset(state["transfer.preset"])
+            function = self.load_preset(state["transfer.preset"], state["renderer"])
             return transfer_table.table_of_function(function, self.live)
         return transfer_table.to_table(state, self.live)
 
@@ -182,7 +215,7 @@ class VolumeState:
             "transfer.preset": lambda: value in self.presets(),
             "transfer.points": lambda: transfer_table.is_points(value),
             "transfer.bumps": lambda: transfer_table.is_bumps(value),
-            "transfer.extinction": lambda: is_number(value) and 0 < value < 1e9,
+            "transfer.extinction": lambda: is_number(value) and 0 < value < 1e30,
         }[name]
         try:
             if not fine():
@@ -211,9 +244,19 @@ class VolumeState:
             self.front,
         )
 
-    def scene_kind(self, state: State, side: int, size: tuple[int, int], moving: bool) -> SceneKind:
-        """Return what of a state needs kernels of its own, left (0) or right (1) of the wipe."""
-        renderer = state["second"] if side else state["renderer"]
+    def of_side(self, state: State, side: int) -> State:
+        """Return the state of the picture left (0) or right (1) of the wipe.
+
+        A default transfer function is that of the side's renderer.
+        """
+        renderer = state["second" if side else "renderer"]
+        suits = renderer == state["renderer"] or not self._has_default_function(state)
+        function = {} if suits else self._default_part(renderer)
+        return state | function | {"renderer": renderer}
+
+    def scene_kind(self, state: State, size: tuple[int, int], moving: bool) -> SceneKind:
+        """Return what of the state of a side needs kernels of its own."""
+        renderer = state["renderer"]
         kind = SceneKind(renderer, size, choose_steps(self.volume, MOVING_STEPS if moving else 1.0))
         if renderer != "isosurface":
             by_gradients = self.table(state).ndim == 3
@@ -226,7 +269,7 @@ class VolumeState:
         return kind
 
     def look(self, state: State) -> Look:
-        """Return the parameters of a state's scenes."""
+        """Return the parameters of the scene of a side's state."""
         sun = state["light.sun_strength"] * parse_colour(state["light.sun_colour"])
         return Look(
             camera=self.camera(state),
@@ -244,16 +287,12 @@ class VolumeState:
             sun_direction=to_direction(state["light.sun_azimuth"], state["light.sun_elevation"]),
         )
 
-    def find_extinction(self, state: State, side: int) -> AnyArray:
-        """Return what hides light, per unit of length, at each row of a table (VALUE_ROWS,).
-
-        It is infinite within an isosurface. Of gradient magnitudes, the densest counts.
-        """
-        if state["second" if side else "renderer"] == "isosurface":
-            return np.where(self.live.row_values > state["level"], np.inf, 0.0)
-        table = self.table(state)
-        rows = table[..., 3] if table.ndim == 2 else table[..., 3].max(axis=0)
-        return state["transfer.extinction"] * state["density"] * rows
+    def find_opacities(self, state: State) -> tuple[AnyArray, float]:
+        """Return what hides light in the state of a side: a table of RGBA, and the extinction."""
+        if state["renderer"] == "isosurface":
+            inside = self.live.row_values > state["level"]
+            return np.repeat(inside.astype(float)[:, None], 4, axis=1), OPAQUE
+        return self.table(state), state["transfer.extinction"] * state["density"]
 
 
 def needs_samples_anew(before: State, after: State) -> bool:
@@ -272,4 +311,4 @@ def list_controls(controls: Mapping[str, Control]) -> list[dict[str, Any]]:
 
 def _is_numbers(value: Any, count: int) -> bool:
     """Return whether a value is a list of as many finite numbers."""
-    return len(value) == count and all(is_number(x) and abs(x) < 1e12 for x in value)
+    return len(value) == count and all(is_number(x) and abs(x) < LARGEST_COORDINATE for x in value)
