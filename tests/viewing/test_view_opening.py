@@ -1,8 +1,10 @@
 """Files that are dropped on a page: what they open, and that nothing of them stays."""
 
 import json
+import os
 import shutil
-from functools import partial
+import tempfile
+import threading
 
 import nibabel
 import numpy as np
@@ -10,6 +12,7 @@ import psutil
 import pytest
 
 import brdfkit as bk
+from brdfkit.cli.commands import view
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.lighting.environments.map_files import write_map
 from brdfkit.rendering.progressive import derive_seed
@@ -32,9 +35,7 @@ def volume():
 @pytest.fixture
 def session(mi, volume, tmp_path, monkeypatch):
     """A session whose uploads lie in `tmp_path`."""
-    monkeypatch.setattr(
-        uploads, "TemporaryDirectory", partial(uploads.TemporaryDirectory, dir=tmp_path)
-    )
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     session = Session(VolumeApplication(volume, "smoke"))
     session.handle({"type": "hello", "width": 64, "height": 64, "state": None})
     yield session
@@ -243,6 +244,37 @@ def test_slices_of_one_name_in_two_folders_are_kept_both(session, tmp_path):
         piece = {"type": "upload", "kind": "volume", "name": f"{index}/1.dcm", "size": 1}
         upload.add(piece | {"offset": 0, "index": index, "count": 3}, bytes([index]))
     assert [path.read_bytes() for path, _ in upload.files] == [b"\0", b"\1"]
+
+
+@pytest.mark.parametrize("made", [False, True])
+def test_a_folder_that_cannot_be_written_is_a_sentence(session, tmp_path, monkeypatch, made):
+    """Be it one for all temporary files, or later that of the drop."""
+    session.handle({"type": "set", "changes": {"renderer": "maximum_intensity"}})
+    session.work()
+    begin = {"type": "upload", "kind": "volume", "name": "x.raw", "size": 2, "offset": 0}
+    begin |= {"index": 0, "count": 1}
+    messages = [begin, {"type": "save", "kind": "exr"}]
+    if made:
+        session.handle(begin, b"x")
+        shutil.rmtree(session.application.upload.folder.name)
+        messages = [begin | {"offset": 1}]
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "none"))
+    for message in messages:
+        (error, _), _ = session.handle(message, b"x")
+        assert "No such file or directory); make room, or set TMPDIR" in error["text"]
+
+
+def test_the_end_deletes_a_file_that_is_still_read(session, tmp_path, monkeypatch):
+    """Without the session's lock, which the long answer has."""
+    statuses = []
+    monkeypatch.setattr(os, "_exit", statuses.append)
+    drop(session, {"a.raw": GRID.tobytes()})
+    with session.lock:
+        thread = threading.Thread(target=view._exit_at_once)
+        thread.start()
+        thread.join(10)
+    assert statuses == [130]
+    assert list(tmp_path.iterdir()) == []
 
 
 # Memory

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,6 +19,7 @@ from brdfkit.rendering.result import Rendering
 from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.encoding import encode_png
+from brdfkit.viewing.temporary_folders import make_folder
 
 if TYPE_CHECKING:
     from brdfkit.viewing.session import Session
@@ -103,7 +103,7 @@ def _make_png(application: Application, session: Session) -> tuple[str, str, byt
 
 def _make_exr(application: Application, session: Session) -> tuple[str, str, bytes]:
     picture = Rendering({application.name: _current_picture(session)}, session.passes, 0.0)
-    with tempfile.TemporaryDirectory() as folder:
+    with make_folder() as folder:
         path = Path(folder) / "picture.exr"
         picture.write(path)
         return ".exr", "image/x-exr", path.read_bytes()

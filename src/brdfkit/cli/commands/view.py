@@ -163,7 +163,9 @@ def _exit_at_once() -> None:
 
     from brdfkit.cli.errors import print_message
     from brdfkit.core.interrupts import find_exit_status
+    from brdfkit.viewing.temporary_folders import delete_folders
 
+    delete_folders()  # a long answer may still read them
     print_message("interrupted.")
     os._exit(find_exit_status())
 

@@ -15,6 +15,7 @@ import psutil
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import to_printable
+from brdfkit.viewing.temporary_folders import explain_failures, make_folder
 
 LARGEST_UPLOAD = 4 << 30  # bytes of all files of one drop
 LARGEST_FILES = 2000  # of one drop, as slices of DICOM
@@ -43,10 +44,8 @@ class Upload:
     def add(self, message: dict[str, Any], data: bytes) -> bool:
         """Write a piece of a file; return whether it was the last piece of the last file."""
         try:
-            return self._add(message, data)
-        except OSError as error:
-            self.clear()
-            raise BrdfkitError(f"The file cannot be kept ({error.strerror}); make room.") from error
+            with explain_failures():
+                return self._add(message, data)
         except BrdfkitError:
             self.clear()
             raise
@@ -57,7 +56,7 @@ class Upload:
         index = to_whole_number("index", message.get("index"), 0, count - 1)
         if index == offset == 0:
             self.clear()
-            self.folder = TemporaryDirectory(prefix="brdfkit-view-")
+            self.folder = make_folder()
         if offset == 0 and index == len(self.files):
             self._begin_file(message, size)
         fits = offset == self.end and offset + len(data) <= size and (data or not size)
