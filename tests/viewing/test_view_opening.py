@@ -9,7 +9,9 @@ import threading
 import nibabel
 import numpy as np
 import psutil
+import pydicom
 import pytest
+import small_volumes
 
 import brdfkit as bk
 from brdfkit.cli.commands import view
@@ -136,6 +138,39 @@ def test_a_hdr_is_an_environment_map_if_it_is_radiance(session, tmp_path):
     opened = drop(session, {"lamp.hdr": radiance(tmp_path)}, **{"lamp.hdr": "environment"})[0]
     assert opened["state"]["light.environment"] == "lamp.hdr"
     assert session.application.volume.name == "smoke"
+
+
+def dicom(folder, description):
+    """The bytes of a series of DICOM slices."""
+    small_volumes.dicom(folder)
+    for path in folder.glob("*.dcm"):
+        header = pydicom.dcmread(path)
+        header.SeriesDescription = description
+        header.save_as(path)
+    return {path.name: path.read_bytes() for path in sorted(folder.glob("*.dcm"))}
+
+
+@pytest.mark.parametrize(
+    ("description", "name"), [("T1 MPRAGE/sag ", "T1 MPRAGE_sag"), ("", "s16"), ("..", "s16")]
+)
+def test_a_dropped_series_is_named_by_its_description(session, tmp_path, description, name):
+    (tmp_path / "scan").mkdir()
+    files = dicom(tmp_path / "scan", description)
+    (opened,) = drop(session, files)
+    assert (opened["title"], opened["volume"]["size"]) == (name, (6, 5, 4))
+    assert session.application.source.path == name
+    opened, notice = drop(session, {"s16.dcm": files["s16.dcm"]})
+    assert notice["text"].startswith("s16.dcm is one slice: drop all files of a scan together")
+
+
+@pytest.mark.parametrize("names", [["a.txt"], ["a.txt", "b.txt"]])
+def test_a_file_of_another_kind_is_refused_by_what_the_page_opens(session, names):
+    error, _ = drop(session, dict.fromkeys(names, b"hello"))
+    if len(names) == 1:
+        assert error["text"].startswith("a.txt: is no file that the page opens")
+        assert error["text"].endswith("transfer functions and settings (.json).")
+    else:
+        assert error["text"].startswith("the dropped files: has no DICOM image")
 
 
 def test_a_volume_and_a_map_in_one_drop(session, tmp_path):

@@ -274,7 +274,7 @@ def test_raw(tmp_path):
     assert_alike(bk.volumes.load(tmp_path / "b.raw", **told), values(), np.diag([*SPACING, 1]))
     assert_alike(bk.volumes.load(tmp_path / "a_6x5x4_int16.raw"), values(), np.eye(4))
     for change, sentence in (
-        ({"size": None}, r"has no header; give its size=\(nx, ny, nz\) and dtype"),
+        ({"size": None}, r"has no header; name it .*, as b_256x256x128_uint8\.raw, or give size="),
         ({"offset": 4}, r"has 246 bytes, where 6×5×4 voxels of >i2 behind 4 bytes make 244"),
         ({"dtype": "float32"}, "480 bytes, but the file has only 240 bytes for them"),
         ({"dtype": "colour"}, "dtype = 'colour' is no type of numbers"),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
@@ -19,6 +20,7 @@ from brdfkit.core.arguments import to_positive_number, to_whole_number, wrong_va
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing.volumes.source import load_within_memory
 from brdfkit.volumes import formats
+from brdfkit.volumes.formats.dicom import find_series_description
 from brdfkit.volumes.formats.raw import IN_NAME
 from brdfkit.volumes.loading import looks_like_volume
 
@@ -40,11 +42,12 @@ def load_upload(
     upload = application.upload
     if not upload.add(message, data):
         return [({"type": "uploaded"}, [])]
-    folder = f"{upload.folder.name}{os.sep}"
+    folder = upload.folder.name
     try:
         return _open_drop(application, session)
     except BrdfkitError as error:  # the folder means nothing to the user
-        raise BrdfkitError(str(error).replace(folder, "")) from error
+        text = str(error).replace(f"{folder}{os.sep}", "").replace(folder, "the dropped files")
+        raise BrdfkitError(text) from error
     finally:
         if upload.raw is None:
             upload.clear()
@@ -135,11 +138,35 @@ def _open_volume(
     """Show the volume of a file or folder."""
     with formats.confine_headers(), warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        volume, source = load_within_memory(path, **settings)
-    notes: list[Message] = [({"type": "error", "text": str(w.message)}, []) for w in caught]
-    application.show(volume, replace(source, path=path.name, uploaded=True))
+        try:
+            volume, source = load_within_memory(path, **settings)
+        except formats.UnknownFormatError as error:
+            raise BrdfkitError(
+                f"{path}: is no file that the page opens: it opens volumes, which are "
+                f"{formats.describe_formats()}, environment maps (.hdr .exr), and transfer "
+                "functions and settings (.json)."
+            ) from error
+    name = path.name
+    if path.is_dir():
+        name = _name_series(application.upload.files)
+        volume = replace(volume, name=name)
+    notes = [str(warning.message) for warning in caught]
+    if path.is_file() and volume.size[2] == 1:
+        notes.append(f"{name} is one slice: drop all files of a scan together, or their folder.")
+    application.show(volume, replace(source, path=name, uploaded=True))
     session.open(application.first_state())
-    return [session.describe_view(), *notes]
+    errors: list[Message] = [({"type": "error", "text": " ".join(notes)}, [])] if notes else []
+    return [session.describe_view(), *errors]
+
+
+def _name_series(files: list[tuple[Path, str]]) -> str:
+    """Return the name of a volume of several files: its series' description, or the first file's.
+
+    Characters that names of files cannot have are replaced.
+    """
+    first = min(path for path, kind in files if kind == "volume")
+    description = find_series_description(first)
+    return re.sub(r'[\x00-\x1f/\\:*?"<>|]+', "_", description).strip(" ._") or first.stem
 
 
 def _open_environment(application: Application, session: Session, path: Path) -> list[Message]:

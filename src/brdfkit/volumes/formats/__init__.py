@@ -28,10 +28,19 @@ from brdfkit.volumes.formats._volume_file import confine_headers as confine_head
 HEAD = 4096  # bytes from the start of a file by which `sniff` recognises a format
 
 
+class UnknownFormatError(BrdfkitError):
+    """The error for a file that is in no format of volumes."""
+
+
 @cache
 def list_formats() -> tuple[ModuleType, ...]:
     """Return the format modules of this folder, in alphabetical order."""
     return import_modules(__name__, __path__)
+
+
+def describe_formats() -> str:
+    """Return the names of the formats with their suffixes."""
+    return ", ".join(f"{module.NAME} ({' '.join(module.SUFFIXES)})" for module in list_formats())
 
 
 def has_volume_suffix(name: str | Path) -> bool:
@@ -77,8 +86,8 @@ def _choose_format(file: VolumeFile) -> ModuleType:
         if packed and not any(suffix.endswith(".gz") for suffix in module.SUFFIXES):
             raise file.error(f"is {module.NAME} packed by gzip, which is not read; unpack it")
         return module
-    known = ", ".join(f"{module.NAME} ({' '.join(module.SUFFIXES)})" for module in list_formats())
-    raise file.error(f"is in no known format of volumes; the known formats are {known}")
+    problem = f"is in no known format of volumes; the known formats are {describe_formats()}"
+    raise UnknownFormatError(str(file.error(problem)))
 
 
 def _find_format_module(name: str) -> ModuleType:
@@ -92,13 +101,15 @@ def _read_unpacked_head(file: VolumeFile) -> tuple[bytes, bool]:
         with file.path.open("rb") as stream:
             head = stream.read(HEAD)
         if not head:
-            raise file.error("the file is empty; fetch it again")
+            raise file.error("the file is empty; save or fetch it again")
         packed = head.startswith(b"\x1f\x8b")
         if packed:
             with gzip.open(file.path) as stream:
                 head = stream.read(HEAD)
     except (EOFError, zlib.error, gzip.BadGzipFile) as error:
-        raise file.error(f"the compressed data are damaged ({error}); fetch it again") from error
+        raise file.error(
+            f"the compressed data are damaged ({error}); save or fetch it again"
+        ) from error
     except OSError as error:
         raise BrdfkitError(f"{file.path}: cannot be read ({error.strerror}).") from error
     return head, packed

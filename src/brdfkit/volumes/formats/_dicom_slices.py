@@ -58,7 +58,7 @@ def read_slice(file: VolumeFile, pydicom: Any, path: Path) -> Slice | None:
     except AttributeError as error:  # pydicom's header has no attribute for a missing field
         raise file.error(f"{path.name} has no {error.name}; convert it, as by dcm2niix") from error
     except Exception as error:  # pydicom raises errors of many classes for damaged values
-        raise file.error(f"the header of {path.name} is damaged; fetch it again") from error
+        raise file.error(f"the header of {path.name} is damaged; save or fetch it again") from error
 
 
 def read_pixels(file: VolumeFile, pydicom: Any, image: Slice) -> AnyArray:
@@ -71,7 +71,7 @@ def read_pixels(file: VolumeFile, pydicom: Any, image: Slice) -> AnyArray:
         reason = (str(error).splitlines() or [type(error).__name__])[0].rstrip(".")[:120]
         raise file.error(f"the pixels of {image.path.name} cannot be read ({reason})") from error
     if pixels.shape != image.shape:
-        raise file.error(f"the pixels of {image.path.name} are cut short; fetch it again")
+        raise file.error(f"the pixels of {image.path.name} are cut short; save or fetch it again")
     return pixels
 
 

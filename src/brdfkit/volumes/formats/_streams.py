@@ -25,7 +25,7 @@ Opener: TypeAlias = Callable[[], AbstractContextManager[Any]]  # opens a stream 
 CHUNK = 2**20  # packed bytes that are read from a file at a time
 # Largest number of bytes per packed byte; bzip2 packs 45 million equal bytes into 40
 LARGEST_PACKING = {"gzip": 1032, "zlib": 1032, "bz2": 2**21}
-CUT_SHORT = "the data are cut short or damaged; fetch the file again"
+CUT_SHORT = "the data are cut short or damaged; save or fetch the file again"
 
 
 def require_enough_bytes(
@@ -46,7 +46,7 @@ def require_enough_bytes(
         raise file.error(
             f"its header states {size} voxels, which are {needed:,} bytes, but the file has only "
             f"{present:,} {'packed ' if packing else ''}bytes for them: it is cut short, or its "
-            "header is wrong; fetch it again"
+            "header is wrong; save or fetch it again"
         )
 
 

@@ -55,7 +55,9 @@ class Encoding:
         forms = {"appended": appended, "ascii": "ascii", "binary": "base64"}
         form = None if form is None else forms.get(form)
         if form is None or size_type is None:
-            raise file.error("its header is damaged (format or header_type); fetch it again")
+            raise file.error(
+                "its header is damaged (format or header_type); save or fetch it again"
+            )
         return cls(form, order, np.dtype(order + size_type), compressor is not None)
 
 

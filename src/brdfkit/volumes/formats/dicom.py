@@ -7,6 +7,7 @@ with the SeriesNumber 2.
 """
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 
@@ -65,6 +66,17 @@ def read_header(file: VolumeFile) -> StoredVolume:
     )
 
 
+def find_series_description(path: Path) -> str:
+    """Return the description of the series to which a DICOM image belongs; "" if it has none."""
+    import pydicom
+
+    try:
+        header = pydicom.dcmread(path, stop_before_pixels=True, specific_tags=["SeriesDescription"])
+        return str(header.get("SeriesDescription", ""))
+    except Exception:  # of many classes, for files that are none or damaged
+        return ""
+
+
 def _choose_series(file: VolumeFile, images: list[Slice]) -> list[Slice]:
     """Return the images of one series: the number behind '#' in the path, or the only series.
 
@@ -115,6 +127,6 @@ def _find_slice_step(file: VolumeFile, images: list[Slice], normal: FloatArray) 
         at = int(uneven.argmax())
         raise file.error(
             f"slices are missing: {steps[at]:.4g} mm between the slices {at + 1} and {at + 2}, "
-            f"elsewhere {median:.4g} mm; fetch the series again"
+            f"elsewhere {median:.4g} mm; save or fetch the series again"
         )
     return (places[-1] - places[0]) / (len(places) - 1)

@@ -58,7 +58,7 @@ def read_header(file: VolumeFile) -> StoredVolume:
         channels = int(fields.get("ElementNumberOfChannels", 1))
         skip = int(fields.get("HeaderSize", 0))
     except (KeyError, ValueError) as error:
-        raise file.error(f"its header is damaged ({error}); fetch it again") from error
+        raise file.error(f"its header is damaged ({error}); save or fetch it again") from error
     if len(sizes) != 3 or min(sizes) < 1:
         raise file.error(f"has the size {tuple(sizes)}; it should be three numbers above 0")
     shape = sizes[2], sizes[1], sizes[0]
@@ -103,7 +103,7 @@ def _read_fields(file: VolumeFile) -> tuple[dict[str, str], int]:
             fields[name.strip()] = value.strip()
             if name.strip() == "ElementDataFile":
                 return fields, read
-    raise file.error("its header has no ElementDataFile at its end; fetch it again")
+    raise file.error("its header has no ElementDataFile at its end; save or fetch it again")
 
 
 def _make_grid_to_world(fields: dict[str, str]) -> FloatArray:

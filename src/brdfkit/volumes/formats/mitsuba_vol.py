@@ -23,7 +23,9 @@ def read_header(file: VolumeFile) -> StoredVolume:
     with file.path.open("rb") as stream:
         head = stream.read(HEADER.size)
     if len(head) < HEADER.size or head[:3] != b"VOL":
-        raise file.error("is not a volume grid of Mitsuba's, or is cut short; fetch it again")
+        raise file.error(
+            "is not a volume grid of Mitsuba's, or is cut short; save or fetch it again"
+        )
     _, version, encoding, nx, ny, nz, channels, *box = HEADER.unpack(head)
     if (version, encoding) != (3, 1):
         raise file.error(

@@ -43,7 +43,8 @@ def read_header(file: VolumeFile) -> StoredVolume:
         start, intent = int(image.dataobj.offset), int(header["intent_code"])
     except Exception as error:
         raise file.error(
-            f"is not a NIfTI file, or is damaged ({_summarise_error(error)}); fetch it again"
+            f"is not a NIfTI file, or is damaged ({_summarise_error(error)}); "
+            "save or fetch it again"
         ) from error
     if dtype.kind not in "iuf":
         raise file.error(f"has {dtype} at each voxel, colours or vectors; it should be one number")

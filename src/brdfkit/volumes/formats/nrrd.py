@@ -93,7 +93,7 @@ def _read_fields(file: VolumeFile) -> tuple[dict[str, Any], int]:
         if missing:
             raise ValueError(f"it lacks {', '.join(sorted(missing))}")
     except Exception as error:
-        raise file.error(f"its NRRD header is damaged ({error}); fetch it again") from error
+        raise file.error(f"its NRRD header is damaged ({error}); save or fetch it again") from error
     return header, start
 
 
@@ -139,7 +139,9 @@ def _make_voxel_opener(
     ):  # -1: the voxels are the file's last bytes
         start, skip = path.stat().st_size - int(np.prod(shape)) * dtype.itemsize, 0
     if skip < 0 or start < 0:
-        raise file.error("its byte skip is not possible: the file is cut short; fetch it again")
+        raise file.error(
+            "its byte skip is not possible: the file is cut short; save or fetch it again"
+        )
     require_enough_bytes(file, path, start + (0 if packing else skip), shape, dtype, packing)
     if packing:
         return make_opener(path, start, packing, skip)

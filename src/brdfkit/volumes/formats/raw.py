@@ -40,7 +40,9 @@ def read_header(file: VolumeFile) -> StoredVolume:
         raise file.error(
             f"has no header; open its header, {header.name}"
             if header
-            else "has no header; give its size=(nx, ny, nz) and dtype, such as 'uint16' or '>i2'"
+            else "has no header; name it by its voxels along x, y and z and their type, as "
+            f"{file.path.stem}_256x256x128_uint8{file.path.suffix}, or give size=(nx, ny, nz) and "
+            "dtype in Python"
         )
     shape, dtype, offset = (size[2], size[1], size[0]), _parse_dtype(file, dtype), file.offset or 0
     require_enough_bytes(file, file.path, offset, shape, dtype)

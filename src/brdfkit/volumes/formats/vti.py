@@ -56,7 +56,7 @@ def read_header(file: VolumeFile) -> StoredVolume:
         start, stop = bodies[int(array.get("place", ""))]
         place = int(array.get("offset", 0))
     except (AttributeError, OverflowError, TypeError, ValueError) as error:
-        raise file.error(f"its header is damaged ({error}); fetch it again") from error
+        raise file.error(f"its header is damaged ({error}); save or fetch it again") from error
     if min(shape) < 1:
         raise file.error(f"has {shape[::-1]} {'cells' if of_cells else 'points'}: no volume")
     if array.get("NumberOfComponents", "1") != "1":
@@ -130,7 +130,9 @@ def _read_xml_without_data(
     try:
         root = ElementTree.fromstring(b"".join(parts))
     except ElementTree.ParseError as error:
-        raise file.error(f"its XML is cut short or damaged ({error}); fetch it again") from error
+        raise file.error(
+            f"its XML is cut short or damaged ({error}); save or fetch it again"
+        ) from error
     raw = appended and b"base64" not in appended[0]
     form = "raw" if raw else "base64"
     return root, bodies, (appended.end(), form) if appended else None

@@ -42,7 +42,7 @@ def read_preset(cls: Any, path: Path, name: str) -> Any:
     try:
         root = ElementTree.fromstring(read_bytes(path))
     except ElementTree.ParseError as error:
-        raise BrdfkitError(f"{path}: is no XML ({error}); fetch it again.") from error
+        raise BrdfkitError(f"{path}: is no XML ({error}); save or fetch it again.") from error
     presets = {e.get("name", str(i)): e for i, e in enumerate(root.iter("VolumeProperty"))}
     if not presets:
         raise BrdfkitError(f"{path}: has no <VolumeProperty>, as Slicer's presets are called.")
