@@ -121,6 +121,14 @@ def test_a_stroke_that_cannot_work_is_a_sentence(balls, stroke, opacities, chang
         paint(balls, state, stroke, 1.0, hide)
 
 
+@pytest.mark.quick
+def test_a_stroke_beyond_the_last_bump_is_a_sentence(balls):
+    state = make_state(balls, "bumps", (0.02, 0.3))
+    bumps = state["transfer.bumps"] * (transfer_table.LARGEST_BUMPS // 2)
+    with pytest.raises(BrdfkitError, match="64 are the most"):
+        paint(balls, balls.change(state, {"transfer.bumps": bumps}), LEFT, 1.0)
+
+
 def test_a_stroke_is_one_undo_step_and_needs_no_kernel(mi):
     application = VolumeApplication(make_balls())
     application.first = make_state(application.states, "points", (0.02, 0.3)) | {

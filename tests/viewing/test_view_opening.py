@@ -1,6 +1,7 @@
 """Files that are dropped on a page: what they open, and that nothing of them stays."""
 
 import json
+import math
 import os
 import shutil
 import tempfile
@@ -414,10 +415,46 @@ def test_the_command_has_the_downsampling(mi):
     assert json.loads(message["text"].split("'")[1]) == {}
 
 
-def test_bumps_of_vpt_are_shown(session):
+def drop_bump(session, r, g, b):
+    """Drop a bump of VPT; return the first answer."""
     bump = {"position": {"x": 0.3, "y": 0.6}, "size": {"x": 0.2, "y": 0.1}}
-    files = {"tf.json": json.dumps([bump | {"color": {"r": 1, "g": 0.5, "b": 0, "a": 0.7}}])}
-    (message,) = drop(session, {n: t.encode() for n, t in files.items()}, **{"tf.json": "transfer"})
+    text = json.dumps([bump | {"color": {"r": r, "g": g, "b": b, "a": 0.7}}])
+    return drop(session, {"tf.json": text.encode()}, **{"tf.json": "transfer"})[0]
+
+
+def test_bumps_of_vpt_are_shown(session):
+    message = drop_bump(session, 1, 0.5, 0)
     (shown,) = message["state"]["transfer.bumps"]
     assert shown == {"x": 0.3, "y": 0.6, "sx": 0.2, "sy": 0.1, "a": 0.7, "colour": "#ff8000"}
     assert message["state"]["transfer.mode"] == "bumps2d"
+
+
+def test_any_bump_of_vpt_has_a_colour_or_is_a_sentence(session):
+    for component, shown in (
+        (1e308, "ff"),
+        (2, "ff"),
+        (-1, "00"),
+        (math.inf, "ff"),
+        (10**400, "ff"),
+    ):
+        message = drop_bump(session, 1, component, 0)
+        assert message["state"]["transfer.bumps"][0]["colour"] == f"#ff{shown}00"
+    for component in (math.nan, "1", None):
+        assert "is no transfer function" in drop_bump(session, 1, component, 0)["text"]
+
+
+@pytest.mark.parametrize(
+    ("state", "sentence"),
+    [
+        *((state, "should be settings by name") for state in (5, [1], "renderer", [], "")),
+        ({"light.environment": "a" * 5000}, "'aaa.*' is not possible"),
+        ({"light.environment": "a\0"}, "is not possible"),
+        ({"transfer.preset": "a" * 5000}, "is not possible"),
+        ({1: 2}, "there is no setting 1"),
+    ],
+    ids=lambda value: str(value)[:30],
+)
+def test_a_state_that_is_none_is_a_sentence(volume, state, sentence):
+    for make in (VolumeApplication, bk.viewing.render_view):
+        with pytest.raises(BrdfkitError, match=f"(?i){sentence}"):
+            make(volume, **{"state" if make is bk.viewing.render_view else "changes": state})

@@ -174,6 +174,7 @@ GOOD = {"kind": "brdfkit transfer function", "points": [[0, 0, 0, 0, 0], [1, 1, 
     ("text", "sentence"),
     [
         ("{", "is no valid JSON"),
+        pytest.param("[" * 200_000, "is no valid JSON", id="deep"),
         ("[]", "is no transfer function"),
         (json.dumps({**GOOD, "colr": "albedo"}), "no field 'colr'; did you mean colour"),
         (json.dumps({**GOOD, "points": [[1, 0, 0, 0]]}), "rows of five numbers"),

@@ -101,6 +101,16 @@ def test_the_level_is_not_of_outliers():
     assert 45 < level < 430
 
 
+@pytest.mark.parametrize("voxel", [(9, 9, 9), (9, 9, 10)])  # the first is not sampled
+def test_the_level_of_a_volume_that_is_empty_but_for_one_voxel(monkeypatch, voxel):
+    """It was below all values, after a warning of NumPy's."""
+    monkeypatch.setattr(defaults.windows, "SAMPLED_VOXELS", 4000)
+    values = np.zeros((20, 20, 20))
+    values[voxel] = 5
+    assert 0 < defaults.choose_surface_level(Volume(values)) < 5
+    assert 0 < defaults.choose_surface_level(Volume(values[9:10, 9:10, 9:11])) < 5
+
+
 # Boundaries
 
 

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, TypeGuard
 
-from brdfkit.core.arguments import is_number
+from brdfkit.core.arguments import is_number, wrong_value_error
 from brdfkit.core.errors import BrdfkitError
 
 State = dict[str, Any]
@@ -78,6 +78,18 @@ class Control:
 def is_colour(value: Any) -> TypeGuard[str]:
     """Return whether a value is a colour such as "#ff8800"."""
     return isinstance(value, str) and bool(COLOUR.fullmatch(value))
+
+
+def to_changes(state: object) -> State:
+    """Return the settings, by name, that a user gives; None are none.
+
+    Raises `BrdfkitError` for anything else.
+    """
+    if state is None:
+        return {}
+    if not isinstance(state, Mapping):
+        raise wrong_value_error("state", state, 'settings by name, as {"show.box": False}')
+    return dict(state)
 
 
 def default_state(controls: Iterable[Control]) -> State:

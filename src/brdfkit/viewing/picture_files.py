@@ -12,6 +12,7 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.memory import require_memory
 from brdfkit.core.progress_bar import Progress
 from brdfkit.images.errors.noise import Accumulated
 from brdfkit.rendering.progressive import derive_seed
@@ -54,7 +55,11 @@ def render_state(
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Rendering:
-    """Return the picture of a state, of `spp` passes, the same as the page's for the seed 0."""
+    """Return the picture of a state, of `spp` passes, the same as the page's for the seed 0.
+
+    Raises `BrdfkitError` for a `size` [pixels] that the memory has no room for.
+    """
+    require_memory(size, application.sides(state))
     start = time.monotonic()
     sums: dict[int, Accumulated] = {}
     for done in render_passes(application, state, size, spp, seed, sums):

@@ -8,7 +8,6 @@ from typing import Any
 
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.core.memory import require_memory
 from brdfkit.rendering.render_materials import to_picture_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.viewing.picture_files import render_state
@@ -62,6 +61,5 @@ def render_view(
     spp, seed = to_whole_number("spp", spp, 1), to_whole_number("seed", seed, 0)
     loaded = volume if isinstance(volume, Volume) else load_within_memory(volume)[0]
     size = to_picture_size(size)
-    require_memory(size, 1)
-    application = VolumeApplication(loaded, changes=dict(state or {}))
+    application = VolumeApplication(loaded, changes=state)
     return render_state(application, application.first_state(), size, spp, seed)

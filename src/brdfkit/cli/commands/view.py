@@ -62,7 +62,7 @@ def _parse_state(state: str | None) -> dict[str, Any]:
         text = read_bytes(Path(state)).decode("utf-8", "replace")
     try:
         changes = json.loads(text)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise BrdfkitError(f"--state is no JSON ({error}); copy it from the page.") from None
     if not isinstance(changes, dict):
         raise BrdfkitError(
@@ -73,10 +73,13 @@ def _parse_state(state: str | None) -> dict[str, Any]:
 
 def _parse_size(size: str) -> tuple[int, int]:
     """Return the numbers of --size."""
-    width, _, height = size.lower().partition("x")
-    if not (width.isdecimal() and height.isdecimal() and int(width) and int(height)):
-        raise BrdfkitError(f"--size {size} should be width and height, as 640x480.")
-    return int(width), int(height)
+    try:
+        width, height = map(int, size.lower().split("x"))
+    except ValueError:
+        width = height = 0
+    if min(width, height) < 1:
+        raise BrdfkitError(f"--size {size:.40} should be width and height, as 640x480.")
+    return width, height
 
 
 def _write_picture(

@@ -144,9 +144,11 @@ def choose_surface_level(volume: Volume) -> float:
         return 0.5 * (1 if volume.labels else high)
     values = windows.sample_values(volume.values)
     # Outliers are left out, because they would leave only a few bins for all other values
-    values = values[
-        (values >= np.percentile(values, 0.1)) & (values <= np.percentile(values, 99.9))
-    ]
+    inner = values[(values >= np.percentile(values, 0.1)) & (values <= np.percentile(values, 99.9))]
+    if inner.size and np.ptp(inner) > 0:  # unless all other values are equal
+        values = inner
+    elif np.ptp(values) == 0:  # of few voxels of a large volume
+        return (low + high) / 2
     counts, edges = np.histogram(values, LEVELS)
     below = np.cumsum(counts)[:-1]
     sums = np.cumsum(counts * (edges[1:] + edges[:-1]) / 2)

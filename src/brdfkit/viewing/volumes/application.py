@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -15,7 +16,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.viewing.application import Message
-from brdfkit.viewing.controls import State
+from brdfkit.viewing.controls import State, to_changes
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.tone_controls import develop, to_tone_mapping
 from brdfkit.viewing.volumes import saving, scripts, slices
@@ -59,10 +60,11 @@ class VolumeApplication:
         self, volume: Volume, source: Source | None, changes: Mapping[str, Any] | None = None
     ) -> None:
         """Show another volume."""
+        given = to_changes(changes)
         self.volume, self.source = volume, source
         self.states = VolumeState(volume)
         self.scenes: dict[SceneKind, LiveScene] = {}
-        self.first = self.change(self.states.first(), self._read_files(changes or {}))
+        self.first = self.change(self.states.first(), self._read_files(given))
 
     def _read_files(self, changes: Mapping[str, Any]) -> State:
         """Return changes with the names of their files, after they were read."""
@@ -73,7 +75,7 @@ class VolumeApplication:
         read = dict(changes)
         for name in readers.keys() & changes.keys():
             path = Path(str(changes[name]))
-            if path.is_file():
+            if os.path.isfile(path):  # False, too, for what is no path
                 readers[name](path)
                 read[name] = path.name
         return read

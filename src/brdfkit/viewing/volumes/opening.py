@@ -213,9 +213,14 @@ def read_vpt_bumps(path: Path) -> list[dict[str, Any]] | None:
             {
                 **{"x": r["position"]["x"], "y": r["position"]["y"]},
                 **{"sx": r["size"]["x"], "sy": r["size"]["y"], "a": r["color"]["a"]},
-                "colour": "#" + "".join(f"{round(255 * r['color'][c]):02x}" for c in "rgb"),
+                "colour": "#" + "".join(_to_hex(r["color"][c]) for c in "rgb"),
             }
             for r in records
         ]
     except (ValueError, RecursionError, TypeError, KeyError):
         return None
+
+
+def _to_hex(component: float) -> str:
+    """Return a colour's component as two hexadecimal digits; VPT keeps it from 0 to 1."""
+    return f"{round(255 * min(max(component, 0), 1)):02x}"

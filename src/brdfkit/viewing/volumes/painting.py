@@ -148,6 +148,10 @@ class _Stroke:
             return {"transfer.mode": "points", "transfer.points": points}
         at = np.linspace(0, 1, len(weights))
         bumps = [dict(bump) for bump in self.state["transfer.bumps"]]
+        if not self.hide and len(bumps) >= transfer_table.LARGEST_BUMPS:
+            raise BrdfkitError(
+                f"A stroke adds a bump, and {len(bumps)} are the most that can be; remove one."
+            )
         if not self.hide:
             return {"transfer.bumps": [*bumps, _fit_bump(at, weights)]}
         for bump in bumps:

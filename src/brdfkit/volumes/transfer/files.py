@@ -81,7 +81,7 @@ def parse_json(cls: Any, text: str | bytes, where: str | Path) -> Any:
     """
     try:
         record = json.loads(text)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise BrdfkitError(f"{where}: is no valid JSON ({error}); correct it.") from error
     if not isinstance(record, dict) or record.get("kind") != KIND:
         raise BrdfkitError(f'{where}: is no transfer function; its "kind" should be "{KIND}".')
