@@ -471,7 +471,7 @@ def test_the_voxel_under_the_pointer(session, volume):
 def test_slices_are_sent_when_they_are_shown_and_moved(session, volume):
     answers = session.handle({"type": "set", "changes": {"show.slices": True}})
     assert kinds(answers) == ["state", "slices"]
-    assert [plane["axis"] for plane in answers[1][0]["planes"]] == ["z", "y", "x"]
+    assert [plane["name"] for plane in answers[1][0]["planes"]] == ["z", "y", "x"]
     ((probe, _),) = session.handle({"type": "probe_slice", "plane": 0, "x": 0.99, "y": 0.99})
     assert probe["voxel"] == [15, 0, 8]
     assert probe["text"].startswith(f"{volume.values[8, 0, 15]:.6g} at voxel 15, 0, 8")
@@ -491,7 +491,7 @@ def test_only_the_slices_that_change_are_sent(session):
     session.handle({"type": "set", "changes": shown})
     moved = session.handle({"type": "set", "changes": {"slices": [4, 8, 8]}})
     ((_, _), (message, pictures)) = moved
-    assert [plane["axis"] for plane in message["planes"]] == ["x"]
+    assert [plane["name"] for plane in message["planes"]] == ["x"]
     assert len(pictures) == 1
     assert kinds(session.handle({"type": "set", "changes": {"slices": [4, 8, 8]}})) == ["state"]
 

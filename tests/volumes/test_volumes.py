@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import small_volumes as small
 from click.testing import CliRunner
+from scipy.spatial.transform import Rotation
 from small_volumes import TO_WORLD, values
 
 import brdfkit as bk
@@ -13,6 +14,7 @@ from brdfkit.cli import main
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.volumes import made
 from brdfkit.volumes.made import marschner_lobb, shepp_logan, slab, smoke, sphere
+from brdfkit.volumes.orientation import find_nearest_axes
 from brdfkit.volumes.summary.summary import summarise
 
 OBLIQUE = bk.volumes.Volume(values(np.float32) ** 2, TO_WORLD, "oblique", unit="mm")
@@ -38,6 +40,46 @@ def test_slices_lie_where_the_box_does():
     for one, (across, up) in zip(axes, ((0, 1), (0, 2), (1, 2)), strict=True):
         for limits, axis in ((one.get_xlim(), across), (one.get_ylim(), up)):
             assert sorted(limits) == pytest.approx(box[axis])
+
+
+@pytest.mark.quick
+def test_slices_of_a_patient_are_upright():
+    """The patient's right, or front, is at the left, however the voxels are stored."""
+    to_world = np.diag([-1.0, -1.0, 2.0, 1.0])  # an axial series of DICOM
+    found = summarise(bk.volumes.Volume(np.arange(24.0).reshape(2, 3, 4), to_world, axes="RAS"))
+    shown = [
+        (one.get_title().split(":")[0], one.get_xlabel()[4:], one.get_ylabel()[4:])
+        for one in found.picture().axes[:3]
+    ]
+    axial, coronal, sagittal = (one.images[0].get_array() for one in found.picture().axes[:3])
+    left, back, head = "left", "back", "head"
+    expected = [("Axial", left, "front"), ("Coronal", left, head), ("Sagittal", back, head)]
+    assert shown == expected
+    values = np.arange(24.0).reshape(2, 3, 4)  # of which x points to the left, y to the back
+    np.testing.assert_array_equal(axial, values[1])
+    np.testing.assert_array_equal(coronal, values[::-1, 1])
+    np.testing.assert_array_equal(sagittal, values[::-1, :, 2])
+
+
+@pytest.mark.quick
+def test_each_axis_of_a_turned_grid_has_its_own_axis_of_the_world():
+    """Also where two of the grid's axes are nearest to the same one."""
+    turns = [
+        *Rotation.random(200, rng=0).as_matrix(),
+        Rotation.from_euler("z", 45, True).as_matrix(),
+    ]
+    shared = 0
+    for turn in turns:
+        to_world = np.eye(4)
+        to_world[:3, :3] = turn * (1.0, 2.0, 0.5)
+        nearest, signs = find_nearest_axes(to_world)
+        assert sorted(nearest) == [0, 1, 2]
+        assert (turn[nearest, range(3)] * signs > 0).all()
+        largest = np.abs(turn).argmax(axis=0).tolist()
+        if len(set(largest)) == 3:
+            assert list(nearest) == largest
+        shared += len(set(largest)) < 3
+    assert shared > 0
 
 
 def test_spacing_box_and_cube():

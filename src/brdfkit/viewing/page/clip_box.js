@@ -4,12 +4,16 @@ const THINNEST_CLIP = 0.01; // share of an axis that stays between its two ends
 
 /** Make the editor of the state's "clip", [[x0, y0, z0], [x1, y1, z1]]. */
 function createClipBox(session) {
-  const ends = ["x", "y", "z"].flatMap((axis, k) => [
-    makeClipEnd(session, `${axis} from`, 0, k), makeClipEnd(session, `${axis} to`, 1, k),
-  ]);
+  let ends = [];
   const whole = makeButton("Whole volume", () => session.change({ clip: [[0, 0, 0], [1, 1, 1]] }));
-  const element = make("div", { class: "clip", hidden: true }, ...ends.map(({ row }) => row),
-    make("div", { class: "tools" }, whole));
+  const tools = make("div", { class: "tools" }, whole);
+  const element = make("div", { class: "clip", hidden: true }, tools);
+  session.on("open", ({ volume }) => {
+    ends = (volume?.axis_names || []).flatMap((axis, k) => [
+      makeClipEnd(session, `${axis} from`, 0, k), makeClipEnd(session, `${axis} to`, 1, k),
+    ]);
+    element.replaceChildren(...ends.map(({ row }) => row), tools);
+  });
   session.on("state", (names) => {
     element.hidden = !session.state.clip;
     if (names.has("clip")) ends.forEach(({ show }) => show());

@@ -1,8 +1,8 @@
 // Three slices through the volume, with a cross that is dragged to the voxel of interest.
 
-const PLANE_NAMES = { x: "Sagittal", y: "Coronal", z: "Axial" }; // of a patient (RAS)
 const WINDOW_DRAG = 0.005; // of the window, for a pixel of a drag
 const WINDOW_LEAST = 0.002; // of the range of values
+const END_RADIUS = 9; // pixels of the disc with the name of an edge
 const PROBE_INTERVAL = 100; // ms between two questions for a voxel's value, at least
 
 /** Return a function that asks for values, not more often than Python likes, the latest last. */
@@ -46,7 +46,7 @@ function createSlices(session, probe) {
       pictures.map((bytes) => createImageBitmap(new Blob([bytes], { type: "image/png" }))),
     );
     // All three at first, and then only those that change
-    planes.forEach((plane, k) => views["zyx".indexOf(plane.axis)].show(plane, bitmaps[k], number));
+    planes.forEach((plane, k) => views[plane.number].show(plane, bitmaps[k], number));
   });
 
   session.on("state", (names) => {
@@ -101,24 +101,26 @@ function createSlice(session, number, probe) {
   let shown = 0; // number of the message that the bitmap is of
   let place = { x: 0, y: 0, width: 1, height: 1 };
 
-  const sizeAlong = (axis) => session.description.volume.size["xyz".indexOf(axis)];
-  const indexOf = (axis) => session.state.slices["xyz".indexOf(axis)];
+  const sizeAlong = (axis) => session.description.volume.size[axis];
 
-  /** Return the slices' indices with some of them set, each within its axis. */
+  /** Return where the voxel of the cross is along an axis of the plane: 0 to 1, to the right or up. */
+  function findCrossShare(k) {
+    const share = (session.state.slices[plane.axes[k]] + 0.5) / sizeAlong(plane.axes[k]);
+    return plane.ways[k] > 0 ? share : 1 - share;
+  }
+
+  /** Return the slices' indices with some of them set, {axis: index}, each within its axis. */
   function setIndices(changes) {
     return {
-      slices: session.state.slices.map((old, k) => {
-        const axis = "xyz"[k];
-        return axis in changes ? clamp(Math.round(changes[axis]), 0, sizeAlong(axis) - 1) : old;
-      }),
+      slices: session.state.slices.map((old, axis) => (
+        axis in changes ? clamp(Math.round(changes[axis]), 0, sizeAlong(axis) - 1) : old)),
     };
   }
 
   /** Fit the slice into its canvas, with the proportions of its voxels. */
   function fit() {
     const { size, spacing = [1, 1, 1] } = session.description.volume;
-    const length = (axis) => size["xyz".indexOf(axis)] * spacing["xyz".indexOf(axis)];
-    const [right, up] = [length(plane.across), length(plane.up)];
+    const [right, up] = plane.axes.map((axis) => size[axis] * spacing[axis]);
     const scale = Math.min(canvas.clientWidth / right, canvas.clientHeight / up);
     const [width, height] = [scale * right, scale * up];
     place = { x: (canvas.clientWidth - width) / 2, y: (canvas.clientHeight - height) / 2, width, height };
@@ -131,8 +133,8 @@ function createSlice(session, number, probe) {
     const { x, y, width, height } = place;
     context.imageSmoothingQuality = "high";
     context.drawImage(bitmap, x, y, width, height);
-    const across = x + (width * (indexOf(plane.across) + 0.5)) / sizeAlong(plane.across);
-    const up = y + height * (1 - (indexOf(plane.up) + 0.5) / sizeAlong(plane.up));
+    const across = x + width * findCrossShare(0);
+    const up = y + height * (1 - findCrossShare(1));
     context.beginPath();
     context.moveTo(across, y);
     context.lineTo(across, y + height);
@@ -141,7 +143,36 @@ function createSlice(session, number, probe) {
     context.lineWidth = 1;
     context.strokeStyle = readColours(canvas)("cross");
     context.stroke();
-    if (!box.matches(":focus")) box.value = indexOf(plane.axis);
+    writeEnds(context);
+    showIndex();
+  }
+
+  /** Write the names of the edges, such as R and L, on discs that hide the cross. */
+  function writeEnds(context) {
+    const { x, y, width, height } = place;
+    const [left, right, lower, upper] = plane.ends;
+    const [middle, level] = [x + width / 2, y + height / 2];
+    context.font = readFont(canvas, 12);
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    const write = (text, across, down) => {
+      if (!text) return;
+      context.beginPath();
+      context.arc(across, down, END_RADIUS, 0, 2 * Math.PI);
+      context.fillStyle = "rgb(0 0 0 / 75%)";
+      context.fill();
+      context.fillStyle = "#fff";
+      context.fillText(text, across, down);
+    };
+    write(left, x + END_RADIUS, level);
+    write(right, x + width - END_RADIUS, level);
+    write(lower, middle, y + height - END_RADIUS);
+    write(upper, middle, y + END_RADIUS);
+  }
+
+  /** Show the index of the slice, unless it is being typed. */
+  function showIndex() {
+    if (!box.matches(":focus")) box.value = session.state.slices[plane.axes[2]];
   }
 
   /** Return where a pointer is in the slice: 0 to 1 from its top left. */
@@ -152,12 +183,18 @@ function createSlice(session, number, probe) {
 
   function moveCross(event) {
     const [x, y] = locate(event);
-    const { across, up } = plane;
-    session.drag(setIndices({
-      [across]: x * sizeAlong(across) - 0.5, [up]: (1 - y) * sizeAlong(up) - 0.5,
-    }));
+    const changes = [x, 1 - y].map((share, k) => {
+      const along = plane.ways[k] > 0 ? share : 1 - share;
+      return [plane.axes[k], along * sizeAlong(plane.axes[k]) - 0.5];
+    });
+    session.drag(setIndices(Object.fromEntries(changes)));
   }
-  const step = (axis, way) => session.nudge(setIndices({ [axis]: indexOf(axis) + way }));
+
+  /** Move the cross by voxels: to the right (k = 0), upwards (1) or through the plane (2). */
+  function step(k, voxels) {
+    const axis = plane.axes[k];
+    session.nudge(setIndices({ [axis]: session.state.slices[axis] + plane.ways[k] * voxels }));
+  }
 
   followWindowDrag(session, canvas);
   canvas.addEventListener("pointerdown", (event) => {
@@ -174,37 +211,36 @@ function createSlice(session, number, probe) {
   canvas.addEventListener("lostpointercapture", session.finish);
   canvas.addEventListener("wheel", (event) => {
     event.preventDefault();
-    if (plane) step(plane.axis, event.deltaY > 0 ? -1 : 1);
+    if (plane) step(2, event.deltaY > 0 ? -1 : 1);
   }, { passive: false });
   canvas.addEventListener("keydown", (event) => {
     if (!plane || event.ctrlKey || event.metaKey || event.altKey) return;
-    const [axis, way] = {
-      ArrowLeft: [plane.across, -1], ArrowRight: [plane.across, 1], ArrowDown: [plane.up, -1],
-      ArrowUp: [plane.up, 1], PageDown: [plane.axis, -1], PageUp: [plane.axis, 1],
+    const [k, way] = {
+      ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowDown: [1, -1], ArrowUp: [1, 1],
+      PageDown: [2, -1], PageUp: [2, 1],
     }[event.key] || [];
-    if (!axis) return;
+    if (!way) return;
     event.preventDefault();
-    step(axis, way * (event.shiftKey ? 10 : 1));
+    step(k, way * (event.shiftKey ? 10 : 1));
   });
   box.addEventListener("input", () => {
     const value = readNumber(box);
-    if (value !== null) session.nudge(setIndices({ [plane.axis]: value }));
+    if (value !== null) session.nudge(setIndices({ [plane.axes[2]]: value }));
   });
   box.addEventListener("change", () => {
     session.finish();
-    box.value = indexOf(plane.axis);
+    box.value = session.state.slices[plane.axes[2]];
   });
 
   function show(newPlane, newBitmap, newNumber) {
     if (newNumber < shown) return;
     bitmap?.close();
     [plane, bitmap, shown] = [newPlane, newBitmap, newNumber];
-    const { axes } = session.description.volume;
-    name.textContent = axes === "RAS" ? PLANE_NAMES[plane.axis] : plane.axis;
+    name.textContent = plane.name;
     canvas.setAttribute("aria-label",
-      `${name.textContent} slice; arrow keys move the cross, Page Up and Page Down the slice`);
-    box.max = plane.count - 1;
-    count.textContent = `/ ${plane.count - 1}`;
+      `${plane.name} slice; arrow keys move the cross, Page Up and Page Down the slice`);
+    box.max = sizeAlong(plane.axes[2]) - 1;
+    count.textContent = `/ ${box.max}`;
     draw();
   }
   return { element, show, draw };

@@ -30,11 +30,11 @@ from brdfkit.viewing.volumes.state import VolumeState, list_controls, needs_samp
 from brdfkit.viewing.volumes.uploads import Upload
 from brdfkit.viewing.volumes.volume_controls import PANELS
 from brdfkit.volumes import Volume
+from brdfkit.volumes.orientation import LETTERS, PLANES, name_ends
 
 SCENES = (
     6  # kept at most, as many as a wipe between two renderers needs at rest and moving, and more
 )
-ENDS = {"RAS": ["L", "R", "P", "A", "I", "S"]}  # names of the ends of the axes x, y and z
 
 
 class VolumeApplication:
@@ -112,11 +112,18 @@ class VolumeApplication:
                 "range": [live.low, live.high],
                 "steepest": live.steepest,
                 "axes": volume.axes,
+                "axis_names": self._name_axes(),
             },
             "histogram": counts,
             "presets": self.states.presets(),
             "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
         }, [joint]
+
+    def _name_axes(self) -> list[str]:
+        """Return the names of the grid's axes, which of a patient say where they start and end."""
+        if self.volume.axes != "RAS":
+            return list("xyz")
+        return ["–".join(ends).capitalize() for ends in name_ends(self.volume)]
 
     def change(self, state: State, changes: Mapping[str, Any]) -> State:
         """Return the state after changes; raise `BrdfkitError` if one is not possible."""
@@ -173,10 +180,11 @@ class VolumeApplication:
         points = corners @ to_world[:3, :3].T + to_world[:3, 3]
         camera = self.states.camera(state)
         edges = np.linalg.norm(to_world[:3, :3], axis=0)
+        ends = name_ends(self.volume, LETTERS) if self.volume.axes == "RAS" else ()
         return {
             "corners": np.round(camera.project(points, size[0] / size[1]), 5).tolist(),
             "size": [f"{edge:.4g} {self.volume.unit}".strip() for edge in edges],
-            "ends": ENDS.get(self.volume.axes, []),
+            "ends": [letter for pair in ends for letter in pair],
         }
 
     def follow(self, before: State, after: State) -> list[Message]:
@@ -238,7 +246,7 @@ class VolumeApplication:
 
     def _probe_slice(self, session: Session, message: dict[str, Any]) -> list[Message]:
         """Return the value of the voxel under the pointer in a slice."""
-        plane = to_whole_number("plane", message.get("plane"), 0, len(slices.PLANES) - 1)
+        plane = to_whole_number("plane", message.get("plane"), 0, len(PLANES) - 1)
         x, y = (to_number(name, message.get(name)) for name in "xy")
         at = slices.move_crosshair(self.volume, session.state["slices"], plane, x, y)
         text = slices.describe_voxel(self.volume, at, self.states.value_unit)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
 from brdfkit.viewing.encoding import encode_png
 from brdfkit.volumes import Volume
+from brdfkit.volumes.orientation import list_slice_planes
 
-# The axis that a plane is across, and the axes to its right and upwards
-PLANES = (("z", "x", "y"), ("y", "x", "z"), ("x", "y", "z"))
 LONGEST = 512  # pixels of a slice
 
 
@@ -23,28 +23,22 @@ def draw_slices(
     """
     planes, pictures = [], []
     low, high = window
-    for axis, across, up in PLANES:
-        through = "xyz".index(axis)
+    for number, plane in enumerate(list_slice_planes(volume)):
+        through = plane.axes[2]
         if shown is not None and shown[through] == at[through]:
             continue
-        voxels = np.take(volume.values, at[through], axis=2 - through)  # (above, right)
+        voxels = plane.cut(volume.values, at[through])
         step = -(-max(voxels.shape) // LONGEST)
         shares = (voxels[::step, ::step].astype(float) - low) / ((high - low) or 1.0)
-        grey = np.rint(255 * np.clip(shares, 0, 1)).astype(np.uint8)
-        pictures.append(encode_png(grey[::-1]))
-        count = volume.size[through]
-        planes.append({"axis": axis, "count": count, "across": across, "up": up})
+        pictures.append(encode_png(np.rint(255 * np.clip(shares, 0, 1)).astype(np.uint8)))
+        planes.append({"number": number, **asdict(plane)})
     return planes, pictures
 
 
 def move_crosshair(volume: Volume, at: list[int], plane: int, x: float, y: float) -> list[int]:
     """Return the voxel (i, j, k) at a place of a plane, 0 to 1 from its top left."""
-    _, across, up = PLANES[plane]
-    moved = list(at)
-    for name, share in ((across, x), (up, 1 - y)):
-        axis = "xyz".index(name)
-        moved[axis] = int(np.clip(share * volume.size[axis], 0, volume.size[axis] - 1))
-    return moved
+    moved = list_slice_planes(volume)[plane].locate(x, y, volume.size)
+    return [moved.get(axis, index) for axis, index in enumerate(at)]
 
 
 def describe_voxel(volume: Volume, at: list[int], unit: str = "") -> str:

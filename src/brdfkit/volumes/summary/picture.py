@@ -8,9 +8,16 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from brdfkit.core.colours import to_srgb
+from brdfkit.volumes.orientation import (
+    SlicePlane,
+    find_nearest_axes,
+    list_slice_planes,
+    name_ends,
+)
 from brdfkit.volumes.summary.histograms import PARTS
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 from brdfkit.volumes.transfer.windows import scale_transfer_to_values
+from brdfkit.volumes.volume import Volume
 
 VolumeSummary = Any  # the class in `summary.py`; its import would be circular
 Reach = tuple[float, float, float, float]  # first and last value, first and last gradient
@@ -20,7 +27,6 @@ COLOUR = "#0072b2"  # blue, the colour of the histogram of values
 POINTS = 400  # number of samples of a drawn transfer function along each axis
 LEVELS = 0.01, 0.25, 0.5, 0.75  # values of A whose contour lines are drawn
 VEIL = 0.85  # opacity of the transfer function's colours over the histogram where A is 1
-PLANES = (("x", "y", "z"), ("x", "z", "y"), ("y", "z", "x"))  # axes to the right, up, and normal
 
 
 def draw_summary(summary: VolumeSummary, transfer: TransferFunction | None = None) -> Figure:
@@ -29,8 +35,8 @@ def draw_summary(summary: VolumeSummary, transfer: TransferFunction | None = Non
         transfer = _scale_transfer_to_volume(transfer, summary.data)
     figure = Figure(figsize=SIZE, layout="constrained")
     above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=(1.3, 1))[:, 0]
-    for axes, (across, up, through) in zip(above.subplots(1, 3), PLANES, strict=True):
-        _draw_slice(axes, summary, "xyz".index(across), "xyz".index(up), "xyz".index(through))
+    for axes, plane in zip(above.subplots(1, 3), list_slice_planes(summary.data), strict=True):
+        _draw_slice(axes, summary, plane)
     if summary.labels:
         _draw_value_histogram(below.subplots(), summary, transfer)
         return figure
@@ -40,36 +46,45 @@ def draw_summary(summary: VolumeSummary, transfer: TransferFunction | None = Non
     return figure
 
 
-def _draw_slice(axes: Axes, summary: VolumeSummary, across: int, up: int, through: int) -> None:
-    """Draw the middle slice, normal to the axis `through`, and label the other two axes."""
+def _draw_slice(axes: Axes, summary: VolumeSummary, plane: SlicePlane) -> None:
+    """Draw the middle slice of a plane, and label the two axes in it."""
+    through = plane.axes[2]
     middle = summary.size[through] // 2
-    voxels = np.take(summary.data.values, middle, axis=2 - through)  # axes (up, across)
     colours = "tab20" if summary.labels else "gray"
+    across, up = (_find_axis_span(summary.data, plane, k) for k in range(2))
     axes.imshow(
-        voxels,
+        plane.cut(summary.data.values, middle),
         cmap=colours,
         vmin=summary.least,
         vmax=summary.largest,
-        origin="lower",
-        extent=(*_find_axis_span(summary.data, across), *_find_axis_span(summary.data, up)),
+        extent=(*across, *up),
         interpolation="nearest",
     )
-    unit = f" [{summary.unit}]" if summary.unit else ""
-    axes.set_xlabel(f"{'xyz'[across]}{unit} → {summary.directions[across]}")
-    axes.set_ylabel(f"{'xyz'[up]}{unit} → {summary.directions[up]}")
-    axes.set_title(f"slice {middle} along {'xyz'[through]}", fontsize=10)
+    axes.set_xlabel(_label_axis(summary.data, plane, 0))
+    axes.set_ylabel(_label_axis(summary.data, plane, 1))
+    name = f"{plane.name}: " if summary.data.axes == "RAS" else ""
+    axes.set_title(f"{name}slice {middle} along {'xyz'[through]}", fontsize=10)
 
 
-def _find_axis_span(volume: Any, axis: int) -> tuple[float, float]:
-    """Return the world coordinates between which the grid's `axis` runs.
+def _label_axis(volume: Volume, plane: SlicePlane, k: int) -> str:
+    """Return the label of the axis to the right (`k` = 0) or upwards (1), with its direction."""
+    axis, way = plane.axes[k], plane.ways[k]
+    unit = f" [{volume.unit}]" if volume.unit else ""
+    return f"{'xyz'[axis]}{unit} → {name_ends(volume)[axis][way > 0]}"
 
-    The first one is larger if the axis points against the world's nearest axis.
+
+def _find_axis_span(volume: Volume, plane: SlicePlane, k: int) -> tuple[float, float]:
+    """Return the world coordinates at the left and right, or at the lower and upper edge.
+
+    `k` is 0 or 1, as for `_label_axis`.
     """
+    axis, way = plane.axes[k], plane.ways[k]
+    _, signs = find_nearest_axes(volume.to_world)
     start, along = volume.cube_to_world[:3, 3], volume.cube_to_world[:3, axis]
-    length = np.linalg.norm(along)
-    one_way = np.sign(along[np.abs(along).argmax()])
-    begin = one_way * (start @ along) / length
-    return begin, begin + one_way * length
+    length = float(np.linalg.norm(along))
+    begin = float(signs[axis] * (start @ along)) / length
+    end = begin + signs[axis] * length
+    return (begin, end) if way > 0 else (end, begin)
 
 
 def _draw_value_histogram(

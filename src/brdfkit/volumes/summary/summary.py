@@ -10,6 +10,7 @@ import numpy as np
 from brdfkit.core.array_types import IntArray
 from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.core.documents.parts import BAD
+from brdfkit.volumes.orientation import find_nearest_axes, name_ends
 from brdfkit.volumes.summary import histograms
 from brdfkit.volumes.summary.histograms import FEW_VALUES, PARTS, STEPS, format_bars, format_shades
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
@@ -18,9 +19,6 @@ from brdfkit.volumes.volume import Volume
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-# Names of the directions of the world's axes x, y and z, (negative, positive)
-PATIENT = (("left", "right"), ("back", "front"), ("feet", "head"))
-WORLD = (("-x", "+x"), ("-y", "+y"), ("-z", "+z"))
 LINES = 4  # lines of text for the histogram of values and gradient magnitudes
 UNEVEN_SPACING = 3.0  # a larger ratio of the largest spacing to the smallest is a defect
 TURNED_DEGREES = 1.0  # a larger angle between the axes of grid and world is reported [degrees]
@@ -199,11 +197,10 @@ def find_axis_directions(volume: Volume) -> tuple[tuple[str, ...], float]:
     Also returns the largest angle [°] between an axis of the grid and the world's nearest axis.
     """
     axes = volume.to_world[:3, :3] / np.linalg.norm(volume.to_world[:3, :3], axis=0)
-    main = np.abs(axes).argmax(axis=0)
-    words = PATIENT if volume.axes == "RAS" else WORLD
-    named = tuple(words[w][int(axes[w, i] > 0)] for i, w in enumerate(main))
-    cosines = np.abs(axes[main, range(3)])
-    return named, float(np.degrees(np.arccos(np.clip(cosines.min(), -1, 1))))
+    nearest, _ = find_nearest_axes(volume.to_world)
+    cosines = np.abs(axes[nearest, range(3)])
+    turned = float(np.degrees(np.arccos(np.clip(cosines.min(), -1, 1))))
+    return tuple(end for _, end in name_ends(volume)), turned
 
 
 def may_be_labels(volume: Volume) -> bool:
