@@ -72,8 +72,9 @@ def test_a_wrong_word_is_refused_before_the_work(folder, words, sentence):
 
 def test_the_copied_command_writes_the_picture_of_the_page(mi, folder):
     session = Session(VolumeApplication(*source.load_within_memory("head.nii", downsample=2)))
-    session.handle({"type": "hello", "width": 64, "height": 128, "state": None})
-    session.handle({"type": "set", "changes": {"renderer": "isosurface", "level": 0.55}})
+    session.handle({"type": "hello", "width": 128, "height": 256, "state": None})
+    changes = {"renderer": "isosurface", "level": 0.55, "view.scale": 0.5}
+    session.handle({"type": "set", "changes": changes})
     for _ in range(2):
         session.work()
     ((message, _),) = session.handle({"type": "copy", "kind": "command"})

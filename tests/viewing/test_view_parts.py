@@ -1,7 +1,10 @@
 """The camera, the transfer functions and the page of a view, against independent computations."""
 
+import io
+
 import numpy as np
 import pytest
+from PIL import Image
 
 import brdfkit as bk
 from brdfkit.viewing import front_end
@@ -9,6 +12,7 @@ from brdfkit.viewing.controls import Control
 from brdfkit.viewing.encoding import to_bytes, to_bytes_quickly
 from brdfkit.viewing.volumes import transfer_table
 from brdfkit.viewing.volumes.camera import Camera
+from brdfkit.viewing.volumes.histograms import make_histograms
 from brdfkit.viewing.volumes.live_volume import LiveVolume
 from brdfkit.volumes.transfer.files import list_presets
 
@@ -66,6 +70,18 @@ def test_points_are_the_preset(name):
     else:  # a row for each of 64 gradient magnitudes
         row = function(values, np.full_like(values, volume.steepest * 20 / 63))
         assert whole[20] == pytest.approx(row, abs=1e-12)
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(("highest", "bins"), [(3, 4), (299, 300), (1499, 750)])
+def test_bins_of_whole_numbers_hold_as_many_of_them(highest, bins):
+    """Of 300 values, 24 bins of the joint histogram, and 212 others, had two values each."""
+    values = np.arange(4 * 3 * (highest + 1)).reshape(4, 3, -1) % (highest + 1)
+    volume = bk.volumes.Volume(values.astype(np.int16))
+    counts, joint = make_histograms(volume, (0, highest), 1.0)
+    assert counts == [values.size // bins] * bins
+    width = Image.open(io.BytesIO(joint)).width
+    assert (highest + 1) % width == 0
 
 
 @pytest.mark.quick

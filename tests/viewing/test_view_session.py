@@ -209,7 +209,7 @@ def test_the_copied_script_writes_the_picture_that_the_page_saves(
 ):
     monkeypatch.chdir(tmp_path)
     changes = {"renderer": "emission_absorption", "second": second, "camera.azimuth": 75.0}
-    changes |= {"tone.exposure": 2.0, "tone.curve": curve}
+    changes |= {"tone.exposure": 2.0, "tone.curve": curve, "view.scale": 0.5}
     session.handle({"type": "set", "changes": changes})
     work(session), work(session)
     ((message, _),) = session.handle({"type": "copy", "kind": "python"})

@@ -1,8 +1,12 @@
 """The widget of a view: it carries the messages of a session to a notebook and back."""
 
+import base64
+import io
 import time
 
+import numpy as np
 import pytest
+from PIL import Image
 
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
@@ -24,6 +28,22 @@ def test_the_widget_sends_pictures_until_it_is_closed(mi, monkeypatch):
     widget.thread.thread.join(20)
     assert not widget.thread.thread.is_alive()
     assert "export default { render };" in widget._esm
+
+
+def test_the_widget_has_a_picture_for_pages_without_python(mi):
+    """Of an array here; it is rendered once."""
+    values = bk.volumes.load("smoke", size=8).values
+    widget = bk.view(values, {"renderer": "maximum_intensity"})
+    assert repr(widget) == "<view of volume, which a running notebook shows>"
+    data, _ = widget._repr_mimebundle_()
+    assert "application/vnd.jupyter.widget-view+json" in data
+    assert data["text/plain"] == repr(widget)
+    picture = Image.open(io.BytesIO(base64.b64decode(data["image/png"])))
+    assert np.ptp(np.asarray(picture)) > 100
+    assert widget._repr_mimebundle_()[0]["image/png"] is data["image/png"]
+    widget.close()
+    (same,) = bk.viewing.render_view(values, spp=1, size=32).pictures.values()
+    assert same.shape == (32, 32, 3)
 
 
 def test_an_impossible_state_is_refused_before_anything_is_shown(mi):

@@ -7,18 +7,19 @@ from pathlib import Path
 from typing import Any
 
 from brdfkit.core.arguments import to_whole_number
+from brdfkit.core.array_types import AnyArray
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.rendering.render_materials import to_picture_size
 from brdfkit.rendering.result import Rendering
 from brdfkit.viewing.picture_files import render_state
 from brdfkit.viewing.volumes.application import VolumeApplication
-from brdfkit.viewing.volumes.source import load_within_memory
+from brdfkit.viewing.volumes.source import find_volume
 from brdfkit.volumes import Volume
 
 
 @in_turn
 def render_view(
-    volume: Volume | str | Path,
+    volume: Volume | AnyArray | str | Path,
     state: Mapping[str, Any] | None = None,
     *,
     size: int | tuple[int, int] = 512,
@@ -31,8 +32,9 @@ def render_view(
 
     Parameters
     ----------
-    volume : Volume, str or Path
-        The volume; or the file, folder or name that `brdfkit.volumes.load` takes.
+    volume : Volume, ndarray, str or Path
+        The volume; its values (nz, ny, nx); or the file, folder or name that `brdfkit.volumes.load`
+        takes.
     state : dict of str to object, optional
         The settings that differ from those with which a view begins, by name. "light.environment"
         and "transfer.preset" may be files.
@@ -59,7 +61,7 @@ def render_view(
     >>> brdfkit.viewing.render_view("smoke", view, spp=1, size=64)    # doctest: +SKIP
     """
     spp, seed = to_whole_number("spp", spp, 1), to_whole_number("seed", seed, 0)
-    loaded = volume if isinstance(volume, Volume) else load_within_memory(volume)[0]
+    loaded, _ = find_volume(volume)
     size = to_picture_size(size)
     application = VolumeApplication(loaded, changes=state)
     return render_state(application, application.first_state(), size, spp, seed)

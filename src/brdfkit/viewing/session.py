@@ -230,7 +230,7 @@ class Session:
     def _begin_pass(self) -> Pass:
         moving, samples = self.moving, self.accumulated
         anew, self.stale = self.stale and bool(samples), False
-        size = self._picture_size(moving)
+        size = self.picture_size(moving)
         return Pass(self.state, moving, size, self.passes, samples, anew)
 
     def _render_pass(self, begun: Pass) -> list[Message]:
@@ -280,7 +280,7 @@ class Session:
         self.number += 1
         return self.number
 
-    def _picture_size(self, moving: bool) -> tuple[int, int]:
+    def picture_size(self, moving: bool = False) -> tuple[int, int]:
         """Return the size of the picture [pixels], which is smaller while something moves."""
         scale = self.state["view.moving_scale"] if moving else self.state["view.scale"]
         width, height = (max(round(side * scale / 32) * 32, 32) for side in self.size)

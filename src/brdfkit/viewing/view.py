@@ -6,13 +6,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from brdfkit.core.array_types import AnyArray
 from brdfkit.viewing.volumes.application import VolumeApplication
-from brdfkit.viewing.volumes.source import load_within_memory
+from brdfkit.viewing.volumes.source import find_volume
 from brdfkit.viewing.widget import make_widget
 from brdfkit.volumes import Volume
 
 
-def view(volume: Volume | str | Path, state: Mapping[str, Any] | None = None) -> Any:
+def view(volume: Volume | AnyArray | str | Path, state: Mapping[str, Any] | None = None) -> Any:
     """Show a volume as an interactive widget of a notebook.
 
     The widget orbits the volume, edits its transfer function, exchanges renderers, light and tone
@@ -21,8 +22,9 @@ def view(volume: Volume | str | Path, state: Mapping[str, Any] | None = None) ->
 
     Parameters
     ----------
-    volume : Volume, str or Path
-        The volume; or the file, folder or name that `brdfkit.volumes.load` takes.
+    volume : Volume, ndarray, str or Path
+        The volume; its values (nz, ny, nx); or the file, folder or name that `brdfkit.volumes.load`
+        takes.
     state : dict of str to object, optional
         The settings that differ from those with which a view begins, as the page's "Copy as
         Python" writes them.
@@ -42,5 +44,5 @@ def view(volume: Volume | str | Path, state: Mapping[str, Any] | None = None) ->
     --------
     >>> bk.view("smoke")    # doctest: +SKIP
     """
-    loaded, source = (volume, None) if isinstance(volume, Volume) else load_within_memory(volume)
+    loaded, source = find_volume(volume)
     return make_widget(VolumeApplication(loaded, source, state))

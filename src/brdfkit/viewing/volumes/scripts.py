@@ -33,7 +33,7 @@ def write_script(application: Application, session: Session) -> str:
         f"{_write_comments(application, changes)}"
         "import brdfkit\n\n"
         f"state = {state}\n"
-        f"picture = brdfkit.viewing.render_view({load}, state, size={session.size}, "
+        f"picture = brdfkit.viewing.render_view({load}, state, size={session.picture_size()}, "
         f"spp={max(session.passes, SAMPLES)})\n"
         f"picture.write({application.volume.name + '.png'!r})\n"
     )
@@ -48,7 +48,7 @@ def write_command(application: Application, session: Session) -> str:
         )
     if source.settings.keys() - {"downsample"}:
         raise BrdfkitError("A command cannot say how raw voxels are stored; copy Python.")
-    width, height = session.size
+    width, height = session.picture_size()
     words = ["brdfkit", "view", source.path]
     words += [word for k, v in source.settings.items() for word in (f"--{k}", str(v))]
     words += ["--state", json.dumps(changes), "--size", f"{width}x{height}"]

@@ -8,9 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import psutil
 
 from brdfkit import volumes
+from brdfkit.core.array_types import AnyArray
 from brdfkit.volumes import Volume
 from brdfkit.volumes.loading import TooLargeError
 
@@ -28,6 +30,15 @@ class Source:
     path: str
     settings: Mapping[str, Any] = field(default_factory=dict)
     uploaded: bool = False
+
+
+def find_volume(volume: Volume | AnyArray | str | Path) -> tuple[Volume, Source | None]:
+    """Return the volume that a user means: itself, an array's, or that of a file or name."""
+    if isinstance(volume, Volume):
+        return volume, None
+    if isinstance(volume, np.ndarray):
+        return Volume(volume), None
+    return load_within_memory(volume)
 
 
 def load_within_memory(
