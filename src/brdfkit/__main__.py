@@ -1,5 +1,30 @@
-"""Runs the command line as `python -m brdfkit`, where the program `brdfkit` is not on the PATH."""
+"""Runs the program `brdfkit`, as `python -m brdfkit` where it is not on the PATH."""
 
-from brdfkit.cli import main
+import os
+import signal
+import sys
+from types import FrameType
 
-main(prog_name="python -m brdfkit")
+
+def main(name: str | None = None) -> None:
+    """Run the command line, whose usage calls the program `name`.
+
+    Ctrl-C while the commands are imported ends the program at once, without a traceback.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _exit_interrupted)
+    from brdfkit.cli import main as run
+
+    if signal.getsignal(signal.SIGINT) is _exit_interrupted:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+    sys.exit(run(prog_name=name))
+
+
+def _exit_interrupted(number: int, _frame: FrameType | None) -> None:
+    """End the program with the message and the status of a command that Ctrl-C ended."""
+    os.write(2, b"brdfkit: interrupted.\n")  # to standard error, which `print` may be using
+    os._exit(128 + number)
+
+
+if __name__ == "__main__":
+    main("python -m brdfkit")

@@ -87,6 +87,38 @@ def test_ctrl_c_within_exec_has_the_status_too():
     assert (done.returncode, done.stderr) == (130, "brdfkit: interrupted.\n")
 
 
+WITHIN_IMPORTS = """
+import os, signal, sys
+from brdfkit.__main__ import main
+
+class Presser:
+    def find_spec(self, name, *_):
+        if name == "click":
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Presser())
+{}
+main()
+"""
+
+
+@pytest.mark.parametrize(
+    ("before", "expected"),
+    [
+        ("", (130, "", "brdfkit: interrupted.\n")),
+        # As the shell does for a command in the background
+        (
+            "signal.signal(signal.SIGINT, signal.SIG_IGN)",
+            (0, f"brdfkit, version {bk.__version__}\n", ""),
+        ),
+    ],
+)
+def test_ctrl_c_within_imports_is_a_sentence(before, expected):
+    words = sys.executable, "-c", WITHIN_IMPORTS.format(before), "--version"
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == expected
+
+
 @pytest.mark.quick
 @pytest.mark.parametrize("words", [["info"], ["fit"], ["convert"], ["render"]])
 def test_a_name_that_is_too_long_is_a_sentence(words, tmp_path):

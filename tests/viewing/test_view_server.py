@@ -16,12 +16,18 @@ from brdfkit.viewing.session import Session
 from brdfkit.viewing.volumes.application import VolumeApplication
 
 
-def status(address, **headers):
+def ask(address, method="GET", **headers):
+    """The status and the headers of an answer, which may be an error."""
     try:
-        with urlopen(Request(address, headers=headers)) as answer:
-            return answer.status
+        answer = urlopen(Request(address, headers=headers, method=method))
     except HTTPError as error:
-        return error.code
+        answer = error
+    with answer:
+        return answer.status, answer.headers
+
+
+def status(address, **headers):
+    return ask(address, **headers)[0]
 
 
 def test_the_page_and_its_files_have_a_strict_policy(address):
@@ -31,6 +37,23 @@ def test_the_page_and_its_files_have_a_strict_policy(address):
             assert answer.read()
         assert policy.startswith("default-src 'none'")
         assert "unsafe" not in policy
+
+
+@pytest.mark.parametrize(
+    ("path", "method", "expected"),
+    [
+        ("/the-token/x/y", "GET", 404),
+        ("/the-token/x", "GET", 404),
+        ("/the-token/", "POST", 405),
+        ("/the-token", "GET", 404),
+        ("/another", "GET", 404),
+        ("/another/", "GET", 403),
+    ],
+)
+def test_every_refusal_has_the_policy(address, path, method, expected):
+    answered, headers = ask(address.replace("/the-token/", path), method)
+    assert answered == expected
+    assert headers["Content-Security-Policy"] == server.POLICY
 
 
 def test_other_names_sites_and_tokens_are_refused(address):

@@ -74,6 +74,7 @@ def make_app(make_application: Callable[[], Application], port: int, token: str)
     `make_application` is called for each page, so that every page has a view of its own.
     """
     from starlette.applications import Starlette
+    from starlette.exceptions import HTTPException
     from starlette.requests import Request
     from starlette.responses import PlainTextResponse, Response
     from starlette.routing import Route, WebSocketRoute
@@ -100,6 +101,13 @@ def make_app(make_application: Callable[[], Application], port: int, token: str)
         if name not in kinds:
             return PlainTextResponse("There is no such file.", 404, HEADERS)
         return Response(read_page_file(name), 200, HEADERS, kinds[name])
+
+    async def refuse(_: Request, error: Exception) -> Response:
+        """Answer a request that no route takes, by Starlette's error, with the headers of all."""
+        assert isinstance(error, HTTPException)
+        return PlainTextResponse(
+            error.detail, error.status_code, {**HEADERS, **(error.headers or {})}
+        )
 
     async def serve_session(socket: WebSocket) -> None:
         if not is_allowed(socket) or socket.headers.get("origin") is None:
@@ -128,7 +136,8 @@ def make_app(make_application: Callable[[], Application], port: int, token: str)
         Route("/{token}/{name}", serve_file),
         WebSocketRoute("/{token}/session", serve_session),
     ]
-    app = Starlette(routes=routes)
+    app = Starlette(routes=routes, exception_handlers={HTTPException: refuse})
+    app.router.redirect_slashes = False  # which would answer before `is_allowed`
     app.state.thread = thread
     return app
 
