@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.cli.commands import view
 from brdfkit.lighting.environments.map_files import read_map
@@ -124,7 +125,7 @@ def test_a_browser_is_opened_only_where_it_has_a_window(monkeypatch):
 
 
 def test_the_volume_is_loaded_once_and_the_first_page_has_the_first_view(folder, monkeypatch):
-    made, pages = [], []
+    made, pages, loaded = [], [], []
     first_init = VolumeApplication.__init__
 
     def init(self, *arguments):
@@ -134,7 +135,10 @@ def test_the_volume_is_loaded_once_and_the_first_page_has_the_first_view(folder,
     @contextlib.contextmanager
     def serve(make_application, listening):
         listening.close()
-        pages.extend([make_application(), make_application()])
+        pages.append(make_application())
+        loaded.append(pages[0].volume)
+        pages[0].show(bk.volumes.load("sphere"), None)  # as a page that another file is dropped on
+        pages.append(make_application())
         yield ADDRESS
         raise AssertionError
 
@@ -148,7 +152,7 @@ def test_the_volume_is_loaded_once_and_the_first_page_has_the_first_view(folder,
     assert (done.exit_code, done.stdout.count("\n")) == (130, 1)
     assert pages == made
     assert pages[0] is not pages[1]
-    assert pages[0].volume is pages[1].volume
+    assert pages[1].volume is loaded[0]
     assert pages[1].first_state()["renderer"] == "isosurface"
 
 

@@ -125,5 +125,6 @@ def test_a_message_is_answered_by_no_defect(defects, messages):
         json.dumps(view.overlay(session.state, session.size), allow_nan=False)
         view.states.look(session.state)
         for side in range(view.sides(session.state)):
-            view.states.scene_kind(session.state, side, session.size, moving=False)
+            shown = view.states.of_side(session.state, side)
+            view.states.scene_kind(shown, session.size, moving=False)
     session.close()

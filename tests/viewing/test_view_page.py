@@ -261,6 +261,11 @@ def test_a_volume_is_opened_from_a_file(new_page, scan, way):
         chooser.value.set_files(scan)
     new_page.get_by_text("6 × 7 × 8 voxels of 2").wait_for(timeout=60_000)
     assert number(new_page, "The plot shows values to") == 2
+    if way == "drop":  # the volume of the command is not shown with its settings
+        new_page.wait_for_timeout(1000)  # until the address has them
+        new_page.reload()
+        new_page.get_by_text("The address has settings of two_blocks of 6×7×8 voxels").wait_for()
+        new_page.get_by_text("16 × 16 × 16 voxels").wait_for()
 
 
 def test_a_stroke_hides_and_shows_instead_of_orbiting(page):

@@ -118,6 +118,22 @@ def test_undo_and_redo_skip_what_was_dragged_over(session):
     assert session.state == session.application.first_state()
 
 
+def test_the_address_has_settings_of_one_volume(session):
+    """After a dropped file, those of another one were applied to the volume of the command."""
+    hello = {"type": "hello", "width": 64, "height": 64}
+    ((opened, _),) = session.handle(hello)
+    assert opened["subject"] == "smoke of 16×16×16 voxels"
+    changed = {"camera.azimuth": 77.0}
+    other = changed | {"subject": "head of 4×5×6 voxels", "transfer.preset": "head.json"}
+    (opened, _), (error, _) = session.handle(hello | {"state": other})
+    assert opened["state"] == session.first
+    assert error["text"].startswith("The address has settings of head of 4×5×6 voxels; they are")
+    for own in (changed, changed | {"subject": opened["subject"]}):
+        session.handle({"type": "reset"})
+        ((opened, _),) = session.handle(hello | {"state": own})
+        assert opened["state"]["camera.azimuth"] == 77
+
+
 def test_what_changes_no_sample_keeps_the_samples(session):
     work(session), work(session)
     session.handle({"type": "set", "changes": {"tone.exposure": 3, "wipe": 0.2}, "moving": False})

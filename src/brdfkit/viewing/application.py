@@ -19,6 +19,10 @@ class Application(Protocol):
     def name(self) -> str:
         """The name of what is shown, for files."""
 
+    @property
+    def subject(self) -> str:
+        """What is shown, in words that tell it from all else: no other takes its settings."""
+
     def describe(self) -> Message:
         """Return the message "open", with the panels, the controls and the data."""
 

@@ -101,9 +101,20 @@ class Session:
         return self.application.answer(self, message, data)
 
     def _restore(self, state: Any) -> list[Message]:
-        """Show the state of the page's address; an impossible one is said, and left aside."""
+        """Show the state of the page's address, with the subject that it shows.
+
+        The state of another subject, and an impossible one, is said, and left aside.
+        """
         if not isinstance(state, dict):
             return []
+        state, shown = dict(state), self.application.subject
+        subject = state.pop("subject", shown)
+        if subject != shown:
+            text = (
+                f"The address has settings of {str(subject)[:80]}; they are left aside, because "
+                f"{shown} is shown."
+            )
+            return [({"type": "error", "text": text}, [])]
         try:
             self.change(state, moving=False)
         except BrdfkitError as error:
@@ -113,7 +124,8 @@ class Session:
     def describe_view(self) -> Message:
         """Return the message "open", with the state."""
         message, buffers = self.application.describe()
-        return message | self.describe_state()[0] | {"type": "open"}, buffers
+        named = {"type": "open", "subject": self.application.subject}
+        return message | self.describe_state()[0] | named, buffers
 
     def describe_state(self) -> Message:
         """Return the message "state"."""

@@ -146,16 +146,17 @@ def _serve_page(listening: Any, first: Any, changes: dict[str, Any], no_browser:
     from brdfkit.viewing import server
 
     waiting = [first]
+    volume, source = first.volume, first.source  # the first page may open another volume
 
     def make_application() -> Any:
         try:
             return waiting.pop()
         except IndexError:
-            return type(first)(first.volume, first.source, changes)
+            return type(first)(volume, source, changes)
 
     with server.serve(make_application, listening) as address:
         opened = not no_browser and _open_browser(address)
-        click.echo(_describe_page(first.volume.name, address, opened))
+        click.echo(_describe_page(volume.name, address, opened))
         while True:  # until Ctrl-C
             time.sleep(3600)
 

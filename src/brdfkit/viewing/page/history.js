@@ -2,6 +2,11 @@
 
 const ADDRESS_DELAY = 300; // ms without a change after which the address follows the state
 
+/** Return the state with the name of what it shows, the subject, or null before any is known. */
+function nameState({ state, description }) {
+  return description && { ...state, subject: description.subject };
+}
+
 /** Return the state that an address such as `…#state=eyJ…` carries, or null. */
 function readAddress(hash) {
   const coded = new URLSearchParams(hash.replace(/^#/, "")).get("state");
@@ -28,7 +33,7 @@ function keepAddress(session) {
   let timer = 0;
   session.on("state", () => {
     clearTimeout(timer);
-    timer = setTimeout(() => history.replaceState(null, "", writeAddress(session.state)), ADDRESS_DELAY);
+    timer = setTimeout(() => history.replaceState(null, "", writeAddress(nameState(session))), ADDRESS_DELAY);
   });
   return () => clearTimeout(timer);
 }

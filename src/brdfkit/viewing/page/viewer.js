@@ -45,8 +45,7 @@ function watchTheme(session) {
 /** Say hello to Python, with the state that the page has already, or that its address carries. */
 function greet(session, stage) {
   const linked = session.model.address ? readAddress(location.hash) : null;
-  const state = session.description ? session.state : linked;
-  session.send({ type: "hello", ...measurePixels(stage), state });
+  session.send({ type: "hello", ...measurePixels(stage), state: nameState(session) || linked });
 }
 
 /**

@@ -163,6 +163,11 @@ class VolumeApplication:
         """The name of the volume."""
         return self.volume.name
 
+    @property
+    def subject(self) -> str:
+        """The volume's name and size."""
+        return f"{self.name} of {'×'.join(map(str, self.volume.size))} voxels"
+
     def tone_mapping(self, state: State) -> ToneMapping:
         """Return the tone mapping of a state."""
         return to_tone_mapping(state)
