@@ -443,6 +443,13 @@ def test_any_bump_of_vpt_has_a_colour_or_is_a_sentence(session):
         assert "is no transfer function" in drop_bump(session, 1, component, 0)["text"]
 
 
+def test_a_file_without_settings_is_a_sentence(session):
+    for content, sentence in ((b"[1]", "no settings by name"), (200_000 * b"[", "is no JSON")):
+        (error, _) = drop(session, {"a.json": content}, **{"a.json": "state"})
+        assert error["text"].startswith("a.json: ")
+        assert sentence in error["text"]
+
+
 @pytest.mark.parametrize(
     ("state", "sentence"),
     [

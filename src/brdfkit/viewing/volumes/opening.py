@@ -197,6 +197,8 @@ def _open_state(application: Application, session: Session, path: Path) -> list[
         raise BrdfkitError(
             f"{path.name}: is no JSON ({error}); choose settings of a view."
         ) from None
+    if not isinstance(changes, dict):
+        raise BrdfkitError(f"{path.name}: has no settings by name; choose settings of a view.")
     return session.handle({"type": "set", "changes": changes, "moving": False})
 
 
