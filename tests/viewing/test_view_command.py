@@ -53,6 +53,19 @@ def test_a_picture_replaces_another_only_by_force(mi, folder):
     assert (record["spp"], record["written"]) == (1, ["a.png"])
 
 
+def test_the_values_are_labels_if_the_user_says_so(mi, folder, monkeypatch):
+    made, init = [], VolumeApplication.__init__
+    monkeypatch.setattr(
+        VolumeApplication, "__init__", lambda own, *given: made.append(own) or init(own, *given)
+    )
+    tissues = np.indices((8, 8, 8), np.uint8).sum(0, dtype=np.uint8) // 4
+    nibabel.save(nibabel.Nifti1Image(tissues, np.eye(4)), "atlas.nii")
+    words = "atlas.nii", "-o", "a.png", "--spp", 1, "--size", "32x32", "--force"
+    said = [run(*words, *option).stderr for option in ([], ["--labels"], ["--no-labels"])]
+    assert [own.volume.labels for own in made] == [False, True, False]
+    assert ["may hold labels" in text for text in said] == [True, False, False]
+
+
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [

@@ -111,14 +111,13 @@ def render_volume(
     """
     from brdfkit import volumes
     from brdfkit.rendering import render_orbit, render_volume
-    from brdfkit.volumes.summary.summary import may_be_labels
 
     loading = {key: settings[key] for key in ("labels", "downsample") if key in settings}
     parameters = parse_settings(values, "--set", free=True)
     with console.progress(f"read {name}"):
         volume = volumes.load(name, **loading)
-    if may_be_labels(volume) and "labels" not in loading:
-        print_message(f"{volume.name} may hold labels, not densities: if so, add --labels.")
+    if "labels" not in loading:
+        warn_of_labels(volume)
     _warn_of_units(volume, settings.get("transfer"))
     with console.progress("render") as progress:
         how = {key: value for key, value in how.items() if value is not None}
@@ -127,6 +126,14 @@ def render_volume(
         if "orbit" in how:
             return render_orbit(volume, frames=how.pop("orbit"), **how)
         return render_volume(volume, **how)
+
+
+def warn_of_labels(volume: Volume) -> None:
+    """Print a warning if a volume's values may be labels."""
+    from brdfkit.volumes.summary.summary import may_be_labels
+
+    if may_be_labels(volume):
+        print_message(f"{volume.name} may hold labels, not densities: if so, add --labels.")
 
 
 def _warn_of_units(volume: Volume, transfer: str | None) -> None:

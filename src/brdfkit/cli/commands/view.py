@@ -20,6 +20,11 @@ from brdfkit.core.errors import BrdfkitError
 )
 @click.option("--no-browser", is_flag=True, help="Print the address, and open no browser.")
 @click.option("--downsample", type=click.IntRange(1), metavar="N", help="Make N³ voxels one.")
+@click.option(
+    "--labels/--no-labels",
+    default=None,
+    help="Treat the values as labels, or as densities; by default the file decides.",
+)
 @click.option("--state", metavar="JSON", help="Settings to begin with, as the page copies them.")
 @click.option("--size", default="512x512", show_default=True, help="Size of the written picture.")
 @click.option("--spp", type=click.IntRange(1), default=64, help="Samples of the written picture.")
@@ -30,6 +35,7 @@ def view(
     port: int,
     no_browser: bool,
     downsample: int | None,
+    labels: bool | None,
     state: str | None,
     size: str,
     spp: int,
@@ -41,7 +47,8 @@ def view(
     orbits it, edits its transfer function, exchanges renderers, light and tone mapping, and shows
     slices. It is served to this computer alone; over SSH, forward the port that is printed.
     """
-    settings = {} if downsample is None else {"downsample": downsample}
+    given = {"downsample": downsample, "labels": labels}
+    settings = {name: value for name, value in given.items() if value is not None}
     changes = _parse_state(state)
     if output is None:
         _show_page(volume, settings, changes, port, no_browser, console)
@@ -94,10 +101,13 @@ def _write_picture(
     """Render the picture of a state, and write it."""
     from brdfkit.cli.arguments import check_picture_path
     from brdfkit.cli.picture_output import write_result
+    from brdfkit.cli.volume_render import warn_of_labels
     from brdfkit.viewing.picture_files import render_state
 
     path = check_picture_path(output)
     application = _make_application(volume, settings, changes, console)
+    if "labels" not in settings:
+        warn_of_labels(application.volume)
     with console.progress("render") as progress:
         first = application.first_state()
         picture = render_state(application, first, size, spp, progress=progress)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -31,6 +32,7 @@ from brdfkit.viewing.volumes.uploads import Upload
 from brdfkit.viewing.volumes.volume_controls import PANELS
 from brdfkit.volumes import Volume
 from brdfkit.volumes.orientation import LETTERS, PLANES, name_ends
+from brdfkit.volumes.summary.summary import may_be_labels
 
 SCENES = (
     6  # kept at most, as many as a wipe between two renderers needs at rest and moving, and more
@@ -61,7 +63,7 @@ class VolumeApplication:
     ) -> None:
         """Show another volume."""
         given = to_changes(changes)
-        self.volume, self.source = volume, source
+        self.volume, self.source, self.loaded = volume, source, volume
         self.states = VolumeState(volume)
         self.scenes: dict[SceneKind, LiveScene] = {}
         self.first = self.change(self.states.first(), self._read_files(given))
@@ -126,8 +128,35 @@ class VolumeApplication:
         return ["–".join(ends).capitalize() for ends in name_ends(self.volume)]
 
     def change(self, state: State, changes: Mapping[str, Any]) -> State:
-        """Return the state after changes; raise `BrdfkitError` if one is not possible."""
-        return self.states.change(state, changes)
+        """Return the state after changes; raise `BrdfkitError` if one is not possible.
+
+        If the values become labels, or no longer are, what is as at first suits that.
+        """
+        new = self.states.change(state, changes)
+        if new["labels"] == self.volume.labels:
+            return new
+        kept = scripts.find_changes(self, state)
+        self._show_as(new["labels"])
+        return self.states.change(self.states.first(), {**kept, **changes})
+
+    @in_turn
+    def _show_as(self, labels: bool) -> None:
+        """Show the values as labels, or as none."""
+        same = labels == self.loaded.labels
+        volume = self.loaded if same else replace(self.loaded, labels=labels)
+        states = VolumeState(volume)
+        states.share_files(self.states)
+        self.volume, self.states, self.scenes = volume, states, {}
+
+    def doubts(self) -> list[str]:
+        """Return a sentence for what may be wrong with how the volume is shown."""
+        told = self.source is not None and "labels" in self.source.settings
+        if told or not may_be_labels(self.volume):
+            return []
+        return [
+            f"{self.name} may hold labels, not densities: if so, tick “Values are labels” below "
+            "the transfer function."
+        ]
 
     def sides(self, state: State) -> int:
         """Return the number of pictures: 2 if there is a renderer right of the wipe."""
@@ -193,6 +222,14 @@ class VolumeApplication:
         }
 
     def follow(self, before: State, after: State) -> list[Message]:
+        """Return what a change of the state shows beside the picture: doubts, and slices."""
+        if after["labels"] != self.volume.labels:  # by undo, which changes no setting alone
+            self._show_as(after["labels"])
+        doubts = [] if before else self.doubts()  # when the page opens
+        notes: list[Message] = [({"type": "error", "text": text}, []) for text in doubts]
+        return [*notes, *self._draw_slices(before, after)]
+
+    def _draw_slices(self, before: State, after: State) -> list[Message]:
         """Return the slices if they are shown and have changed."""
         if not after["show.slices"]:
             return []

@@ -154,6 +154,7 @@ def _open_volume(
     if path.is_file() and volume.size[2] == 1:
         notes.append(f"{name} is one slice: drop all files of a scan together, or their folder.")
     application.show(volume, replace(source, path=name, uploaded=True))
+    notes += application.doubts()
     session.open(application.first_state())
     errors: list[Message] = [({"type": "error", "text": " ".join(notes)}, [])] if notes else []
     return [session.describe_view(), *errors]

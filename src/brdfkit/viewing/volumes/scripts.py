@@ -46,11 +46,14 @@ def write_command(application: Application, session: Session) -> str:
         raise BrdfkitError(
             "This volume was made in Python, and no command can load it; copy Python."
         )
-    if source.settings.keys() - {"downsample"}:
+    settings = dict(source.settings)
+    labels = settings.pop("labels", None)
+    if settings.keys() - {"downsample"}:
         raise BrdfkitError("A command cannot say how raw voxels are stored; copy Python.")
     width, height = session.picture_size()
     words = ["brdfkit", "view", source.path]
-    words += [word for k, v in source.settings.items() for word in (f"--{k}", str(v))]
+    words += [word for k, v in settings.items() for word in (f"--{k}", str(v))]
+    words += [] if labels is None else ["--labels" if labels else "--no-labels"]
     words += ["--state", json.dumps(changes), "--size", f"{width}x{height}"]
     words += ["--spp", str(max(session.passes, SAMPLES)), "-o", f"{application.volume.name}.png"]
     return _write_comments(application, changes) + shlex.join(words)
@@ -61,6 +64,8 @@ def find_changes(application: Application, state: State) -> State:
     states = application.states
     first = states.first()
     changes = {name: value for name, value in state.items() if value != first[name]}
+    if state["labels"] != application.loaded.labels:
+        changes["labels"] = state["labels"]
     if any(name.startswith("transfer.") for name in changes):
         changes["transfer.mode"] = state["transfer.mode"]  # other changes may alter it
     if "transfer.preset" in changes:

@@ -154,6 +154,11 @@ class VolumeState:
             function = function.per(self.volume.unit)
         return function
 
+    def share_files(self, other: VolumeState) -> None:
+        """Offer the environment maps and functions from the page that `other` offers."""
+        self.environments, self.functions = other.environments, other.functions
+        self.controls["light.environment"] = other.controls["light.environment"]
+
     def add_environment(self, path: Path) -> None:
         """Offer a further environment map, read from a file."""
         _, rgb = load_radiance(path)

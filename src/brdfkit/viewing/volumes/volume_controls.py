@@ -49,7 +49,7 @@ def make_controls(volume: Volume, level: float, distance: float, value_unit: str
     values = {"low": low, "high": high, "unit": value_unit}
     return [
         *_picture_controls(level, values),
-        *_transfer_controls(),
+        *_transfer_controls(volume.labels),
         *_light_controls(),
         *make_tone_controls(),
         *_camera_controls(distance, volume.unit),
@@ -98,7 +98,7 @@ def _picture_controls(level: float, values: dict[str, Any]) -> list[Control]:
     ]
 
 
-def _transfer_controls() -> list[Control]:
+def _transfer_controls(labels: bool) -> list[Control]:
     """Return the controls beside the editor of the transfer function."""
     control = partial(Control, panel="transfer")
     factor: dict[str, Any] = {
@@ -110,10 +110,14 @@ def _transfer_controls() -> list[Control]:
     meanings = (("albedo", "what is scattered"), ("emission", "what glows"))
     colour: dict[str, Any] = {"default": "albedo", "kind": "choice", "choices": meanings}
     mode: dict[str, Any] = {"default": "points", "kind": "choice", "choices": MODES}
+    nearest = (
+        "Labels, such as numbers of tissues, have colours of their own, and no values between."
+    )
     return [
         control("density", "Density", default=1.0, when=DENSE, **factor),
         control("transfer.mode", "Drawn by", when=MATTER, **mode),
         control("transfer.colour", "Colour is", when=SCATTERING, **colour),
+        control("labels", "Values are labels", default=labels, kind="flag", help=nearest),
     ]
 
 

@@ -12,7 +12,14 @@ from brdfkit.core.documents import Document, Paragraph, Picture, Shown, Table
 from brdfkit.core.documents.parts import BAD
 from brdfkit.volumes.orientation import find_nearest_axes, name_ends
 from brdfkit.volumes.summary import histograms
-from brdfkit.volumes.summary.histograms import FEW_VALUES, PARTS, STEPS, format_bars, format_shades
+from brdfkit.volumes.summary.histograms import (
+    FEW_VALUES,
+    PARTS,
+    SAMPLED_VOXELS,
+    STEPS,
+    format_bars,
+    format_shades,
+)
 from brdfkit.volumes.transfer.transfer_function import TransferFunction
 from brdfkit.volumes.volume import Volume
 
@@ -205,7 +212,13 @@ def find_axis_directions(volume: Volume) -> tuple[tuple[str, ...], float]:
 
 def may_be_labels(volume: Volume) -> bool:
     """Return whether a volume's values may be labels: few whole numbers, not marked as labels."""
-    return not volume.labels and 0 < histograms.count_different_values(volume.values) <= FEW_VALUES
+    if volume.labels:
+        return False
+    some = volume.values.reshape(-1)[:: max(volume.values.size // SAMPLED_VOXELS, 1)]
+    return all(
+        0 < histograms.count_different_values(values) <= FEW_VALUES
+        for values in (some, volume.values)  # of which all voxels of a large volume take long
+    )
 
 
 def _format_size(numbers: Iterable[float]) -> str:
