@@ -221,6 +221,24 @@ def test_the_picture_is_saved_as_a_file(page):
     assert np.asarray(content).std() > 5
 
 
+def test_values_become_labels_by_a_tick(new_page, tmp_path):
+    path = tmp_path / "atlas.nii"
+    tissues = np.indices((6, 7, 8), np.uint8).sum(0, dtype=np.uint8) // 4
+    nibabel.save(nibabel.Nifti1Image(tissues, np.eye(4)), path)
+    with new_page.expect_file_chooser() as chooser:
+        new_page.get_by_role("button", name="Open").click()
+    chooser.value.set_files(path)
+    new_page.get_by_text("atlas may hold labels, not densities").wait_for(timeout=60_000)
+    new_page.get_by_role("button", name="Close").click()
+    before = pixels(new_page)
+    box = new_page.get_by_label("Values are labels")
+    box.check()
+    wait_for_change(new_page, before)
+    new_page.get_by_role("button", name="Undo").click()
+    new_page.wait_for_timeout(500)
+    assert not box.is_checked()
+
+
 @pytest.mark.parametrize("way", ["key", "button"])
 def test_an_orbit_is_cancelled(page, way):
     files = page.get_by_role("group", name="Files and history")
