@@ -104,7 +104,7 @@ def read_map(path: str | Path) -> AnyArray:
         return read_pixels(path, path)
     except BrdfkitError as error:
         reason = str(error).removesuffix(".")
-        raise BrdfkitError(f"{reason}: fetch it again, since it may be cut off.") from error
+        raise BrdfkitError(f"{reason}: save or fetch it again, since it may be cut off.") from error
 
 
 @in_turn
