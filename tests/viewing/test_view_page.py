@@ -19,6 +19,31 @@ DROP = """async ([name, letters]) => {
 }"""
 
 
+SAID = """() => {
+    const said = [];
+    const note = () => said.push([".hint", ".samples"].map(
+        (name) => document.querySelector(name).textContent));
+    new MutationObserver(note).observe(document.querySelector(".hint"), { childList: true });
+    return said;
+}"""
+WRITTEN = """() => {
+    const written = [];
+    const { fillText, clearRect } = CanvasRenderingContext2D.prototype;
+    const isOverlay = ({ canvas }) => canvas.className === "overlay";
+    Object.assign(CanvasRenderingContext2D.prototype, {
+        clearRect(...place) {
+            if (isOverlay(this)) written.length = 0;
+            clearRect.apply(this, place);
+        },
+        fillText(text, x, y) {
+            if (isOverlay(this)) written.push([text, x, y, this.measureText(text).width]);
+            fillText.call(this, text, x, y);
+        },
+    });
+    return written;
+}"""
+
+
 def pixels(page):
     """The pixels of the picture (height, width, 3)."""
     shot = page.locator("canvas").first.screenshot()
@@ -80,12 +105,36 @@ def test_a_renderer_is_chosen_and_a_number_is_typed(page):
     wait_for_change(page, surface, 0.3)
 
 
+def test_the_page_says_what_it_prepares(page):
+    said = page.evaluate_handle(SAID)
+    choose(page, "Renderer", "Maximum intensity")
+    page.wait_for_function("(said) => said.some(([text]) => text === '')", arg=said)
+    # The statistics are no longer those of the old picture
+    assert said.json_value()[0] == ["Preparing Maximum intensity …", ""]
+    choose(page, "Right of the wipe", "Isosurface")
+    assert said.json_value()[-1][0] == "Preparing Isosurface …"
+    page.locator(".side.right", has_text="Isosurface").wait_for()
+
+
+def test_keys_work_after_a_click_on_nothing(page):
+    page.get_by_role("button", name="Redo").dblclick(force=True)
+    assert page.evaluate("() => getSelection().toString()") == ""
+    page.locator(".status").click()
+    page.keyboard.press("1")
+    page.locator("details", has_text="Field of view").evaluate("(own) => (own.open = true)")
+    assert number(page, "Elevation [°]") == 0
+
+
 def test_a_bump_is_dragged_typed_widened_and_removed(page):
     choose(page, "Renderer", "Emission and absorption")
     choose(page, "Drawn by", "bumps over values and gradients")
+    assert page.locator(".head option:checked").first.inner_text() == "edited"
+    handle = page.get_by_role("button", name="bump 1 of 1")
+    assert number(page, "Value") > 0.85  # where the points have their peak
+    assert number(page, "Opacity") == 1
+    type_number(page, "Value", 0.5)
     page.wait_for_timeout(1000)
     before = pixels(page)
-    handle = page.get_by_role("button", name="bump 1 of 1")
     handle.scroll_into_view_if_needed()
     box, plot = handle.bounding_box(), page.locator(".plot canvas").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
@@ -106,6 +155,10 @@ def test_a_bump_is_dragged_typed_widened_and_removed(page):
     page.get_by_role("button", name="Add bump").click()
     assert number(page, "Opacity") == 0.5
     wait_for_change(page, dark)
+    page.get_by_role("button", name="Add bump").click()
+    page.get_by_role("button", name="bump 2 of 2").wait_for()
+    places = [own.get_attribute("aria-label") for own in page.locator(".handle").all()]
+    assert [place.split(", ")[0] for place in places] == ["bump 1 of 2: 0.5", "bump 2 of 2: 0.25"]
 
 
 def test_the_menu_says_when_the_points_are_no_longer_those_of_the_preset(page):
@@ -212,6 +265,14 @@ def test_the_picture_fills_the_screen_and_leaves_it(page):
         )
 
 
+def test_a_click_copies_the_command(page):
+    page.get_by_role("button", name="Copy as command").click()
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_text("It is on the clipboard.").wait_for()
+    assert "brdfkit" in dialog.get_by_role("textbox").input_value()
+    dialog.get_by_role("button", name="Close").click()
+
+
 def test_the_picture_is_saved_as_a_file(page):
     page.get_by_text("Save", exact=True).first.click()
     with page.expect_download() as download:
@@ -267,8 +328,27 @@ def scan(tmp_path):
     return path
 
 
+def check_lengths_and_labels(page):
+    """Clip the volume of 12 × 14 × 16 mm, and turn it: no two labels lie over each other."""
+    for panel in ("Camera", "Clipping box"):
+        page.get_by_text(panel, exact=True).click()
+    type_number(page, "Back–front to [mm]", 7)
+    assert number(page, "Back–front to [mm]") == 7
+    written = page.evaluate_handle(WRITTEN)
+    for azimuth in (0, 35, 70):
+        written.evaluate("(own) => (own.length = 0)")
+        type_number(page, "Azimuth [°]", azimuth)
+        page.wait_for_function("(own) => own.length > 0", arg=written)
+        labels = written.json_value()
+        assert {"S", "16 mm", "5 mm"} <= {text for text, *_ in labels}
+        for k, (_, x, y, width) in enumerate(labels):
+            for _, u, v, other in labels[:k]:
+                assert abs(x - u) > (width + other) / 2 or abs(y - v) > 12
+
+
 @pytest.mark.parametrize("way", ["dialog", "drop"])
 def test_a_volume_is_opened_from_a_file(new_page, scan, way):
+    assert new_page.locator(".stage").evaluate("(own) => own.matches(':focus')")
     if way == "drop":
         import base64
 
@@ -284,6 +364,8 @@ def test_a_volume_is_opened_from_a_file(new_page, scan, way):
         new_page.reload()
         new_page.get_by_text("The address has settings of two_blocks of 6×7×8 voxels").wait_for()
         new_page.get_by_text("16 × 16 × 16 voxels").wait_for()
+    else:
+        check_lengths_and_labels(new_page)
 
 
 def test_a_stroke_hides_and_shows_instead_of_orbiting(page):

@@ -8,6 +8,7 @@ from PIL import Image
 
 import brdfkit as bk
 from brdfkit.viewing import front_end
+from brdfkit.viewing.canvas_sizes import choose_size
 from brdfkit.viewing.controls import Control
 from brdfkit.viewing.encoding import to_bytes, to_bytes_quickly
 from brdfkit.viewing.volumes import transfer_table
@@ -82,6 +83,22 @@ def test_bins_of_whole_numbers_hold_as_many_of_them(highest, bins):
     assert counts == [values.size // bins] * bins
     width = Image.open(io.BytesIO(joint)).width
     assert (highest + 1) % width == 0
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("canvas", "size"),
+    [
+        ((64, 64), (64, 64)),
+        ((1, 1), (64, 64)),
+        ((544, 480), (576, 512)),  # and not 512 × 512, of which a tenth would be cropped
+        ((868, 689), (896, 704)),
+        ((3840, 2160), (2048, 1152)),
+        ((10**400, 1), (64, 64)),
+    ],
+)
+def test_a_picture_has_nearly_the_proportions_of_its_canvas(canvas, size):
+    assert choose_size(*canvas) == size
 
 
 @pytest.mark.quick

@@ -337,6 +337,38 @@ def test_another_volume_takes_no_word_on_the_last_picture_for_its_own(session, a
     assert session.shown == session.number
 
 
+def test_no_picture_of_the_last_volume_comes_after_another_was_opened(
+    session, application, monkeypatch
+):
+    work(session)
+    assert session.describe_view()[0]["number"] == session.number == 1
+    render = application.render
+
+    def open_meanwhile(*arguments):
+        session.open(application.first_state())
+        return render(*arguments)
+
+    monkeypatch.setattr(application, "render", open_meanwhile)
+    session.handle({"type": "set", "changes": {"camera.azimuth": 1}, "moving": True})
+    assert session.work() == []
+    assert session.number == 1
+
+
+def test_a_picture_says_what_it_shows_and_fits_its_overlay(session):
+    session.handle({"type": "resize", "width": 300, "height": 200})
+    changes = {"renderer": "isosurface", "view.moving_scale": 0.125}
+    session.handle({"type": "set", "changes": changes, "moving": True})
+    ((picture, (content,)), _) = work(session)
+    width, height = Image.open(io.BytesIO(content)).size
+    assert width / height == session.size[0] / session.size[1]
+    assert picture["overlay"]["renderers"] == ["isosurface", ""]
+    camera = session.application.states.camera(session.state)
+    side = np.array(camera.target) + camera.axes[0] * picture["overlay"]["across"] / 2
+    assert camera.project(side[None], width / height)[0, 0] == pytest.approx(
+        0.5 - height / width / 2
+    )
+
+
 def test_the_last_picture_is_sent_without_loss_when_the_page_is_ready(session, monkeypatch):
     monkeypatch.setattr(session_file, "LARGEST_SAMPLES", 3)
     ((first, _), _) = session.work()

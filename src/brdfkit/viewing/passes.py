@@ -14,7 +14,7 @@ class Pass:
     """A pass when it begins: what it shows, and the samples by side to which it adds its own.
 
     `number` is that of the passes before it. With `anew` no sample is missing, and the picture is
-    only developed anew.
+    only developed anew. `opened` is how often the session had opened something.
     """
 
     state: State
@@ -23,6 +23,7 @@ class Pass:
     number: int
     samples: dict[int, Accumulated]
     anew: bool
+    opened: int
 
 
 def add_passes(

@@ -19,6 +19,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.errors.noise import Accumulated
 from brdfkit.rendering.progressive import derive_seed
 from brdfkit.viewing.application import Application, Message
+from brdfkit.viewing.canvas_sizes import choose_size
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.passes import Pass, add_passes
 from brdfkit.viewing.pictures import describe_error, describe_noise, make_pictures
@@ -27,8 +28,6 @@ from brdfkit.viewing.undo import UndoSteps
 LARGEST_SAMPLES = 1024  # per pixel, after which a picture counts as converged
 FIRST_PASSES = 4  # each of which is shown, since every pass is a visible gain
 REST_INTERVAL = 0.25  # seconds between two pictures after the first passes
-SIZE_STEP = 64  # pixels: every size of a picture needs kernels of its own, so there are few
-SMALLEST_SIDE, LARGEST_SIDE = 64, 2048
 SIDES = "width", "height"
 PATIENCE = 10.0  # seconds without a word on the last picture, after which nobody seems to look
 LONGEST_WAIT = 0.2  # seconds for which a pass waits for a message that is answered meanwhile
@@ -42,10 +41,12 @@ class Session:
         self.lock = threading.RLock()  # no function that runs kernels takes it
         self.size, self.visible, self.paused = (512, 512), True, False
         self.number, self.shown = 0, 0  # of the last picture that was sent, and that is shown
+        self.opened = 0  # how often something was opened
         self.open(application.first_state())
 
     def open(self, state: State) -> None:
         """Begin anew with a state, as for another volume."""
+        self.opened += 1
         self.state, self.first = dict(state), dict(state)
         self.steps, self.moving = UndoSteps(state), False
         self.tasks: list[Iterator[list[Message]]] = []
@@ -122,10 +123,13 @@ class Session:
         return []
 
     def describe_view(self) -> Message:
-        """Return the message "open", with the state."""
+        """Return the message "open", with the state.
+
+        Pictures up to its number show what was there before.
+        """
         message, buffers = self.application.describe()
-        named = {"type": "open", "subject": self.application.subject}
-        return message | self.describe_state()[0] | named, buffers
+        own = {"type": "open", "subject": self.application.subject, "number": self.number}
+        return message | self.describe_state()[0] | own, buffers
 
     def describe_state(self) -> Message:
         """Return the message "state"."""
@@ -165,12 +169,10 @@ class Session:
 
     def _resize(self, message: Mapping[str, Any]) -> None:
         """Take over the size of the page's canvas [pixels], in steps."""
-        width, height = (
-            max(round(min(side, LARGEST_SIDE) / SIZE_STEP) * SIZE_STEP, SMALLEST_SIDE)
-            for side in (to_whole_number(name, message.get(name), 1) for name in SIDES)
-        )
-        if (width, height) != self.size:
-            self.size = width, height
+        width, height = (to_whole_number(name, message.get(name), 1) for name in SIDES)
+        size = choose_size(width, height)
+        if size != self.size:
+            self.size = size
             self.forget_samples()
 
     # Pictures
@@ -243,7 +245,7 @@ class Session:
         moving, samples = self.moving, self.accumulated
         anew, self.stale = self.stale and bool(samples), False
         size = self.picture_size(moving)
-        return Pass(self.state, moving, size, self.passes, samples, anew)
+        return Pass(self.state, moving, size, self.passes, samples, anew, self.opened)
 
     def _render_pass(self, begun: Pass) -> list[Message]:
         """Render a pass, and return its pictures if it is time to send them."""
@@ -261,7 +263,7 @@ class Session:
         if number is None:
             return []
         app, state = self.application, begun.state
-        common = {"number": number, "overlay": app.overlay(state, self.size)}
+        common = {"number": number, "overlay": app.overlay(state, begun.size)}
         pictures = passes if begun.moving else {side: a.picture for side, a in samples.items()}
         messages = make_pictures(app, state, pictures, common, begun.moving, lossless)
         return [*messages, self.describe_progress()]
@@ -280,7 +282,7 @@ class Session:
             self.passes += not begun.anew
             self.converged = not begun.moving and self.passes >= LARGEST_SAMPLES
             self.accumulated = samples
-        elif not begun.moving:
+        elif not begun.moving or begun.opened != self.opened:
             return None  # the state has changed, and this picture is of the old one
         now = time.monotonic()
         first = begun.number < FIRST_PASSES
@@ -295,7 +297,7 @@ class Session:
     def picture_size(self, moving: bool = False) -> tuple[int, int]:
         """Return the size of the picture [pixels], which is smaller while something moves."""
         scale = self.state["view.moving_scale"] if moving else self.state["view.scale"]
-        width, height = (max(round(side * scale / 32) * 32, 32) for side in self.size)
+        width, height = (round(side * scale) for side in self.size)
         return width, height
 
     def describe_progress(self) -> Message:

@@ -17,7 +17,7 @@ function listViews(axes) {
 }
 
 /** Return the camera's moves, each of which gives the changes of the state that it means. */
-function makeCameraMoves(session, stage) {
+function makeCameraMoves(session, picture) {
   const controlled = (name) => session.description?.controls.find((c) => c.name === name);
 
   /** Keep a value within the limits of its control. */
@@ -46,7 +46,7 @@ function makeCameraMoves(session, stage) {
     const tilt = front * Math.sin(lift);
     const up = [tilt * Math.sin(turn), -tilt * Math.cos(turn), Math.cos(lift)];
     // The field of view is that of the picture's shorter side
-    const shorter = Math.min(stage.clientWidth, stage.clientHeight);
+    const shorter = Math.min(picture.place.width, picture.place.height);
     const half = state["camera.distance"] * Math.tan((state["camera.fov"] * Math.PI) / 360);
     const length = (2 * half) / shorter; // of a pixel, at the target
     return {

@@ -1,6 +1,7 @@
-// The clipping box: for each axis two sliders with number boxes, from 0 to 1 of the volume.
+// The clipping box: for each axis two sliders with number boxes, in the volume's unit.
 
 const THINNEST_CLIP = 0.01; // share of an axis that stays between its two ends
+const CLIP_STEP = 0.005; // of a slider, as a share of the axis
 
 /** Make the editor of the state's "clip", [[x0, y0, z0], [x1, y1, z1]]. */
 function createClipBox(session) {
@@ -21,10 +22,17 @@ function createClipBox(session) {
   return element;
 }
 
-/** Make the control of one end of an axis: `end` 0 or 1, `axis` 0 to 2. */
+/**
+ * Make the control of one end of an axis: `end` 0 or 1, `axis` 0 to 2.
+ *
+ * It shows the length from the start of the axis; the state holds its share of the whole axis.
+ */
 function makeClipEnd(session, label, end, axis) {
+  const { size, spacing = [1, 1, 1], unit = "" } = session.description.volume;
+  const length = size[axis] * spacing[axis];
   // A slider changes one name of a session; here that name stands for one number in "clip"
-  const within = (how) => ({ [label]: value }) => {
+  const within = (how) => ({ [label]: place }) => {
+    const value = place / length;
     const clip = session.state.clip.map((corner) => [...corner]);
     clip[end][axis] = end
       ? Math.max(value, clip[0][axis] + THINNEST_CLIP)
@@ -36,9 +44,14 @@ function makeClipEnd(session, label, end, axis) {
     nudge: within("nudge"),
     finish: session.finish,
     get state() {
-      return { [label]: session.state.clip[end][axis] };
+      return { [label]: length * session.state.clip[end][axis] };
     },
   };
-  const { row, show } = makeSlider(part, { name: label, label, low: 0, high: 1, step: 0.01 });
-  return { row, show: () => show(session.state.clip[end][axis]) };
+  const scale = {
+    low: 0, high: 1, step: CLIP_STEP,
+    toPlace: (place) => place / length, toValue: (share) => share * length,
+  };
+  const high = Math.max(length, roundNumber(length)); // as the box shows it
+  const { row, show } = makeSlider(part, { name: label, label, unit, low: 0, high }, scale);
+  return { row, show: () => show(part.state[label]) };
 }

@@ -35,9 +35,8 @@ function readNumber(box) {
 }
 
 /** Make a slider with a number box; both change `control.name` in the session. */
-function makeSlider(session, control) {
+function makeSlider(session, control, scale = makeScale(control)) {
   const { name, label, unit = "" } = control;
-  const scale = makeScale(control);
   const range = make("input", { type: "range", min: scale.low, max: scale.high, step: scale.step });
   const number = make("input", {
     type: "number", min: control.low, max: control.high,

@@ -1,17 +1,18 @@
 // Dialogs: a text to copy, the keys, and the form for files of voxels without a header.
 
-const KEYS = [
+/** Return the parts of the help: what keys and pointers do; `views` names the buttons of the views. */
+const listKeys = (views) => [
   ["Picture", [
     ["drag, arrow keys", "orbit"],
     ["Shift + drag, right drag, Shift + arrow keys", "pan"],
     ["wheel, two fingers, + and −", "zoom"],
     ["Ctrl + wheel", "field of view"],
-    ["1 … 6", "look along an axis"],
-    ["double click, R", "camera as at the start"],
+    ["1 … 6", `the views of the buttons ${views}`],
+    ["double click, R", "camera as at the start, the button ⌂"],
     ["W", "second picture and wipe"],
     ["P", "paint: drag or Enter shows what is there, with Shift hides it"],
     ["C", "slices through the voxel under the pointer"],
-    ["F", "the whole screen"],
+    ["F", "the whole screen, the button ⤢"],
     ["Space", "pause, go on"],
   ]],
   ["Transfer function", [
@@ -53,34 +54,44 @@ function makeAnswers(...buttons) {
   return make("div", { class: "answers" }, ...buttons);
 }
 
-/** Put a text on the clipboard; where the browser forbids that, from the box that shows it. */
+/**
+ * Put a text on the clipboard, and return whether that is allowed.
+ *
+ * Where the browser forbids to write it, the box that shows it may be allowed to copy.
+ */
 async function copyText(text, box) {
   try {
     await navigator.clipboard.writeText(text);
+    return true;
   } catch {
     box.select();
-    document.execCommand("copy");
+    return document.execCommand("copy");
   }
 }
 
-/** Show a text, selected, with a button that copies it. */
+/** Copy a text and show it, selected; the button copies it where the browser wants a click for it. */
 function showText(root, { title, text }) {
   const rows = clamp(text.split("\n").length, 2, 18);
   const box = make("textarea", {
     value: text, readOnly: true, rows, spellcheck: false, "aria-label": title,
   });
-  const copy = makeButton("Copy", async () => {
-    await copyText(text, box);
-    copy.textContent = "Copied";
-  }, { class: "main" });
-  const dialog = openDialog(root, title, box, makeAnswers(copy, makeButton("Close", () => dialog.close())));
+  const copied = make("p", { class: "sum", role: "status" });
+  const copy = makeButton("Copy", put, { hidden: true });
+  const close = makeButton("Close", () => dialog.close(), { class: "main" });
+  const dialog = openDialog(root, title, box, copied, makeAnswers(copy, close));
   box.focus();
   box.select();
+  async function put() {
+    copy.hidden = await copyText(text, box);
+    copied.textContent = copy.hidden ? "It is on the clipboard." : "The browser did not copy it.";
+  }
+  put();
 }
 
-/** Show what keys, pointers and wheel do. */
-function showHelp(root) {
-  const parts = KEYS.map(([title, rows]) => make("section", {},
+/** Show what keys, pointers and wheel do; `volume` is the one that is shown, if any. */
+function showHelp(root, volume) {
+  const views = listViews(volume?.axes).map(([name]) => name).join(" ");
+  const parts = listKeys(views).map(([title, rows]) => make("section", {},
     make("h3", {}, title),
     make("dl", {}, ...rows.map(([keys, meaning]) =>
       make("div", {}, make("dt", {}, keys), make("dd", {}, meaning))))));

@@ -77,6 +77,11 @@ function writeNumber(value) {
   return String(roundNumber(value)).replace("-", "−");
 }
 
+/** Write a number with its unit, which may be unknown. */
+function writeQuantity(value, unit) {
+  return unit ? `${writeNumber(value)} ${unit}` : writeNumber(value);
+}
+
 /** Round a number to four significant digits; whole numbers stay whole. */
 function roundNumber(value) {
   return Number.isInteger(value) ? value : Number(Number(value).toPrecision(4));

@@ -1,4 +1,4 @@
-// Draws over the picture: the box of the volume, the names of its axes, its lengths.
+// Draws over the picture: the box of the volume, its axes, and the part that the clipping leaves.
 
 // The corners of the box come in the order of the bits x, y, z: corner 101b = 5 is at the end of x
 // and z, and at the start of y. Edges join corners that differ in one bit.
@@ -20,19 +20,6 @@ function findMiddle(corners) {
 function findFarEdges(corners) {
   const farthest = corners.reduce((far, corner, k) => (corner[2] > corners[far][2] ? k : far), 0);
   return new Set(EDGES.filter((edge) => edge.includes(farthest)));
-}
-
-/** Return the edge along an axis (0 to 2) that is best for a length: far out and low, but in sight. */
-function chooseEdge(corners, axis, { clientWidth, clientHeight }) {
-  const bit = AXIS_BITS[axis];
-  const middle = findMiddle(corners);
-  const score = ([from, to]) => {
-    const [x, y] = findMiddle([corners[from], corners[to]]);
-    const hidden = Math.max(-x, x - clientWidth, -y, y - clientHeight, 0);
-    return Math.hypot(x - middle[0], y - middle[1]) + 0.4 * (y - middle[1]) - 4 * hidden;
-  };
-  const along = EDGES.filter(([from, to]) => from + bit === to);
-  return along.reduce((best, edge) => (score(edge) > score(best) ? edge : best));
 }
 
 /**
@@ -68,9 +55,12 @@ function createOverlay(session, stage) {
     const { state } = session;
     if (!overlay?.corners?.length) return;
     const { x, y, width, height } = picture.place;
+    context.font = readFont(stage, 12);
+    if (state["show.axes"] !== false) {
+      drawScale(context, overlay.across / Math.min(width, height), session.description.volume?.unit);
+    }
     const corners = overlay.corners.map(([u, v, depth]) => [x + u * width, y + v * height, depth]);
     if (corners.some(([, , depth]) => !(depth > 0))) return; // the camera is inside the box
-    context.font = readFont(stage, 12);
     if (state["show.box"] !== false) {
       const clipped = isClipped(state.clip);
       if (clipped) drawBox(context, findPartCorners(corners, state.clip), CLIP_COLOURS);
@@ -80,8 +70,9 @@ function createOverlay(session, stage) {
       const { size = [], ends = [] } = overlay;
       // Axes whose ends have no names are named with their lengths
       const named = size.map((length, axis) => `${"xyz"[axis]} ${length}`);
-      drawLengths(context, corners, ends.length ? size : named);
-      drawEnds(context, corners, ends);
+      const write = createLabels(context);
+      drawEnds(write, corners, ends);
+      drawLengths(context, write, corners, ends.length ? size : named);
     }
   }
   session.on("drawn", draw);
@@ -114,45 +105,14 @@ function drawBox(context, corners, [near, dim]) {
   context.setLineDash([]);
 }
 
-/** Write a text with a dark rim, in the middle of a place that is kept on the canvas. */
-function writeOver(context, text, x, y) {
-  const half = context.measureText(text).width / 2;
-  const right = context.canvas.clientWidth;
-  const bottom = context.canvas.clientHeight;
+/** Write a text with a dark rim, so that it shows on every picture, around a place. */
+function writeRimmed(context, text, x, y) {
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.lineJoin = "round";
   context.lineWidth = 3;
   context.strokeStyle = "rgb(0 0 0 / 65%)";
   context.fillStyle = "#fff";
-  const place = [clamp(x, half + 4, right - half - 4), clamp(y, 10, bottom - VIEW_BUTTONS)];
-  context.strokeText(text, ...place);
-  context.fillText(text, ...place);
-}
-
-/** Write the length along each axis beside an edge, outside the box. */
-function drawLengths(context, corners, lengths) {
-  const middle = findMiddle(corners);
-  lengths.forEach((text, axis) => {
-    const ends = chooseEdge(corners, axis, context.canvas).map((k) => corners[k]);
-    const [x, y] = findMiddle(ends);
-    if (Math.hypot(ends[0][0] - ends[1][0], ends[0][1] - ends[1][1]) < 30) return; // seen end on
-    const away = Math.hypot(x - middle[0], y - middle[1]) || 1;
-    const gap = 8 + context.measureText(text).width / 2;
-    writeOver(context, text, x + (gap * (x - middle[0])) / away, y + (14 * (y - middle[1])) / away);
-  });
-}
-
-/** Write the names of the ends, such as L and R, in the middle of the faces. */
-function drawEnds(context, corners, names) {
-  names.forEach((name, k) => {
-    const bit = AXIS_BITS[k >> 1];
-    const face = corners.filter((_, corner) => Boolean(corner & bit) === (k % 2 === 1));
-    const opposite = corners.filter((_, corner) => Boolean(corner & bit) !== (k % 2 === 1));
-    const [x, y] = findMiddle(face);
-    const [u, v] = findMiddle(opposite);
-    const length = Math.hypot(x - u, y - v);
-    if (length < 24) return; // the axis is seen end on
-    writeOver(context, name, x + (12 * (x - u)) / length, y + (12 * (y - v)) / length);
-  });
+  context.strokeText(text, x, y);
+  context.fillText(text, x, y);
 }

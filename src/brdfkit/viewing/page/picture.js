@@ -5,19 +5,22 @@ const RESIZE_DELAY = 150; // ms without a change after which Python hears of a n
 /**
  * Put the picture on a stage; `second` names the setting that puts another one right of the wipe.
  *
- * `place` is the rectangle of the picture on the stage [pixels of CSS]; it has the picture's own
- * proportions. Listeners to "drawn" receive Python's description of the picture.
+ * `place` is the rectangle of the picture on the stage [pixels of CSS], which it covers; it has the
+ * picture's own proportions, so that a few pixels may lie beside the stage. `renderers` are those
+ * of the pictures that are shown left and right. Listeners to "drawn" receive the picture.
  */
 function createPicture(session, stage) {
   const canvas = make("canvas", { class: "picture", "aria-hidden": "true" });
-  const picture = { place: { x: 0, y: 0, width: 1, height: 1 }, described: null };
+  const picture = {
+    place: { x: 0, y: 0, width: 1, height: 1 }, described: null, renderers: [undefined, undefined],
+  };
   const latest = [null, null]; // for each side, what createImageBitmap made
   const numbers = [-1, -1];
   stage.append(canvas);
 
-  /** Fit a picture of some proportions into the stage. */
-  function fit({ width, height }) {
-    const scale = Math.min(stage.clientWidth / width, stage.clientHeight / height);
+  /** Cover the stage with a picture of some proportions. */
+  function cover({ width, height }) {
+    const scale = Math.max(stage.clientWidth / width, stage.clientHeight / height);
     picture.place = {
       x: (stage.clientWidth - scale * width) / 2,
       y: (stage.clientHeight - scale * height) / 2,
@@ -29,7 +32,7 @@ function createPicture(session, stage) {
   picture.draw = () => {
     const context = startDrawing(canvas);
     if (latest[0]) {
-      fit(latest[0]);
+      cover(latest[0]);
       const { x, y, width, height } = picture.place;
       context.imageSmoothingQuality = "high";
       context.drawImage(latest[0], x, y, width, height);
@@ -46,16 +49,25 @@ function createPicture(session, stage) {
     session.emit("drawn", picture);
   };
 
+  /** Show nothing at a side until its next picture comes. */
+  function forget(side) {
+    latest[side]?.close();
+    latest[side] = null;
+    picture.renderers[side] = undefined;
+    if (side === 0) picture.described = null;
+  }
+
   /** Decode a picture and draw it, unless a newer one is there already. */
   async function show(content, [bytes]) {
     const { number, side = 0, mime } = content;
     try {
       const bitmap = await createImageBitmap(new Blob([bytes], { type: mime }));
-      if (number >= numbers[side]) {
-        latest[side]?.close();
+      if (number > numbers[side]) {
+        forget(side);
         latest[side] = bitmap;
         numbers[side] = number;
         picture.described = content;
+        picture.renderers[side] = content.overlay?.renderers?.[side] ?? "";
         picture.draw();
       } else bitmap.close();
     } finally {
@@ -73,13 +85,18 @@ function createPicture(session, stage) {
   session.on("picture", show);
   session.on("state", (names) => {
     if (names.has("background")) stage.style.backgroundColor = session.state.background;
-    if (names.has("second") && !session.state.second) {
-      latest[1]?.close();
-      latest[1] = null;
-    }
+    if (names.has("second") && !session.state.second) forget(1);
     if (names.has("second") || names.has("wipe")) picture.draw();
   });
-  session.on("open", () => numbers.fill(-1));
+  session.on("open", ({ number }) => {
+    for (const side of [0, 1]) {
+      if (numbers[side] > number) continue; // a picture of what was opened came first
+      forget(side);
+      numbers[side] = number;
+    }
+    picture.draw();
+  });
+  session.on("lost", () => numbers.fill(-1)); // another session of Python counts anew
   return picture;
 }
 

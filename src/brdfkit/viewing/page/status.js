@@ -19,6 +19,8 @@ function createStatus(session) {
   const [size, samples, value] = ["size", "samples", "value"].map((name) => make("span", { class: name }));
   let busy = "";
   let phase = "";
+  let statistics = "";
+  let preparing = false; // then the statistics are of another picture
 
   function say() {
     const text = busy || phase;
@@ -32,9 +34,17 @@ function createStatus(session) {
   });
   session.on("progress", ({ samples: count, per_second, noise, paused, converged }) => {
     const rate = per_second ? `${writeNumber(per_second)}/s` : "";
-    samples.textContent = [`${writeNumber(count)} ${count === 1 ? "sample" : "samples"}`, rate, noise]
+    statistics = [`${writeNumber(count)} ${count === 1 ? "sample" : "samples"}`, rate, noise]
       .filter(Boolean).join(" · ");
     phase = paused ? "paused" : converged ? "converged" : "";
+    if (!preparing) samples.textContent = statistics;
+    say();
+  });
+  session.on("preparing", (now) => {
+    if (now === preparing) return;
+    preparing = now;
+    if (now) statistics = phase = "";
+    samples.textContent = statistics;
     say();
   });
   session.on("probe", ({ text }) => (value.textContent = text || ""));
@@ -74,11 +84,4 @@ function createNotices(session, stage) {
     const buttons = reconnect ? [makeButton("Reconnect", () => reconnect(), { class: "main" })] : [];
     show("The connection to Python is lost.", ...buttons);
   });
-
-  const hint = make("p", { class: "hint" }, "Waiting for the first picture …");
-  stage.append(hint);
-  session.on("open", ({ volume }) => {
-    if (volume === null) hint.textContent = "Drop a volume here, or choose Open.";
-  });
-  session.on("picture", () => hint.remove());
 }

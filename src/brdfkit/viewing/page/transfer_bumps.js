@@ -61,8 +61,8 @@ function makeBumpKind(volume, flat) {
     colour: ({ colour }) => colour,
     move: (bumps, k, x, y) => replace(bumps, k, { x: share(x), [flat ? "y" : "a"]: share(y) }),
     describe({ x, y, a }) {
-      const gradient = flat ? `, gradient ${writeNumber(y * steepest)} ${slope}` : "";
-      return `${writeNumber(low + x * width)} ${unit}${gradient}, opacity ${writeNumber(a)}`;
+      const gradient = flat ? `, gradient ${writeQuantity(y * steepest, slope)}` : "";
+      return `${writeQuantity(low + x * width, unit)}${gradient}, opacity ${writeNumber(a)}`;
     },
     /** Return bumps of which one is wider and higher by factors. */
     scale: (bumps, k, right, up) =>

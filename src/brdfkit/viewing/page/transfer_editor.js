@@ -16,7 +16,7 @@ function createTransferEditor(session) {
   const head = make("div", { class: "head" });
   const fields = make("div", { class: "fields", role: "group", "aria-label": "Selected handle" });
   const axis = createValueAxis(show);
-  const addButton = makeButton("Add", () => add((axis.from + axis.to) / 2, 0.5));
+  const addButton = makeButton("Add", () => add(findGap(), 0.5));
   const removeButton = makeButton("Remove", () => remove(), { title: "Delete" });
   const tools = make("div", { class: "tools" }, addButton, removeButton,
     makeButton("Load…", () => session.emit("pick", "transfer", ".json")),
@@ -45,6 +45,15 @@ function createTransferEditor(session) {
     selected = k;
     edit(list, "change");
     focusHandle(k);
+  }
+
+  /** Return the middle of the widest gap between the handles that the plot shows. */
+  function findGap() {
+    const own = items().map((item) => kind.place(item)[0]).filter((x) => x > axis.from && x < axis.to);
+    const places = [axis.from, ...own, axis.to].sort((one, other) => one - other);
+    const width = (k) => places[k + 1] - places[k];
+    const widest = own.reduce((best, _, k) => (width(k + 1) > width(best) ? k + 1 : best), 0);
+    return places[widest] + width(widest) / 2;
   }
 
   const withoutSelected = () => items().filter((_, k) => k !== selected);
@@ -206,7 +215,7 @@ function createTransferEditor(session) {
     if (element.hidden) return;
     const mode = controls.find(({ name }) => name === "transfer.mode");
     presetMenu = makePresetMenu(session, presets);
-    modeMenu = makeChoice(session, mode);
+    modeMenu = makeModeMenu(session, mode);
     head.replaceChildren(presetMenu.row, modeMenu.row);
     chooseKind();
     axis.open(volume);
@@ -222,7 +231,7 @@ function createTransferEditor(session) {
       chooseKind();
       modeMenu.show(session.state["transfer.mode"]);
     }
-    if (names.has("transfer.preset") || names.has("transfer.points")) presetMenu.show(names);
+    if (TRANSFER_NAMES.some((name) => names.has(name))) presetMenu.show(names);
     if (TRANSFER_NAMES.some((name) => names.has(name)) || names.has("renderer")) show();
   });
 

@@ -24,7 +24,7 @@ function readPoints(points, value) {
 /**
  * Make the menu of presets. Choosing one makes Python fill the points.
  *
- * Where they are no longer the preset's, the menu says "edited": so it can be chosen again.
+ * Where these are no longer shown, the menu says "edited": so the preset can be chosen again.
  */
 function makePresetMenu(session, presets) {
   const filled = new Map(); // preset → the points with which Python filled it
@@ -38,12 +38,13 @@ function makePresetMenu(session, presets) {
   select.append(make("option", { hidden: true }, "edited"));
 
   function show(names) {
-    const { "transfer.preset": name, "transfer.points": points } = session.state;
+    const { "transfer.preset": name, "transfer.points": points, "transfer.mode": mode } = session.state;
     if (chosen && names.has("transfer.points")) {
       filled.set(chosen, points);
       chosen = "";
     }
-    const edited = filled.has(name) && !chosen && !equal(filled.get(name), points);
+    const moved = filled.has(name) && !chosen && !equal(filled.get(name), points);
+    const edited = moved || mode.startsWith("bumps");
     select.selectedIndex = edited ? presets.length : presets.indexOf(name);
   }
   return { row: makeRow("choice", "Preset", select), show };
@@ -75,7 +76,7 @@ function makePointKind({ range: [low, high], value_unit: unit = "" }) {
     place: ([value, , a]) => [(value - low) / width, a],
     colour: ([, colour]) => colour,
     move: (points, k, x, y) => moved(points, k, round(low + x * width), y),
-    describe: ([value, , a]) => `${writeNumber(value)} ${unit}, opacity ${writeNumber(a)}`,
+    describe: ([value, , a]) => `${writeQuantity(value, unit)}, opacity ${writeNumber(a)}`,
     add(points, x, y) {
       const value = round(low + x * width);
       const above = points.findIndex(([own]) => own > value);

@@ -33,6 +33,18 @@ function probePicture(stage, picture, probe) {
   });
 }
 
+/**
+ * Give the picture the focus that nothing else has, so that its keys work: only in the server's
+ * page, since a notebook has other things to focus.
+ */
+function keepFocus(session, root, stage) {
+  const take = () => {
+    if (document.activeElement === document.body) stage.focus({ preventScroll: true, focusVisible: false });
+  };
+  session.on("open", take);
+  root.addEventListener("click", take);
+}
+
 /** Tell the parts that draw on canvases when the colours of the style sheet change. */
 function watchTheme(session) {
   const queries = ["(prefers-color-scheme: dark)", "(forced-colors: active)"]
@@ -63,14 +75,15 @@ function render({ model, el }) {
     class: model.address ? "brdfkit-view whole" : "brdfkit-view",
     "data-lm-suppress-shortcuts": "true", // JupyterLab's keys
   });
-  const help = () => showHelp(root);
+  const help = () => showHelp(root, session.description?.volume);
   const probe = makeProbe(session);
 
   const picture = createPicture(session, stage);
   createOverlay(session, stage);
+  createPreparation(session, stage, picture);
   createWipe(session, stage, picture);
   const paint = createPaint(session, stage, picture);
-  const moves = makeCameraMoves(session, stage);
+  const moves = makeCameraMoves(session, picture);
   followPointers(session, stage, moves);
   stage.append(makeViewButtons(session, stage, moves));
   createNotices(session, stage);
@@ -95,6 +108,7 @@ function render({ model, el }) {
     cameraKey: makeCameraKeys(session, moves), paintKey: paint.key, moveCross: makeCrossKey(session),
     switchWipe: makeWipeSwitch(session), help,
   });
+  if (model.address) keepFocus(session, root, stage);
   session.on("redraw", picture.draw);
   session.on("file", download);
   session.on("text", (content) => showText(root, content));

@@ -16,15 +16,14 @@ function createWipe(session, stage, picture) {
   function place() {
     const { state } = session;
     handle.hidden = !state.second;
-    const { x, y, width, height } = picture.place;
-    handle.style.left = `${x + (state.wipe ?? 0.5) * width}px`;
-    handle.style.top = `${y}px`;
-    handle.style.height = `${height}px`;
+    const { x, width } = picture.place;
+    handle.style.left = `${clamp(x + (state.wipe ?? 0.5) * width, 0, stage.clientWidth)}px`;
     const percent = Math.round(100 * (state.wipe ?? 0.5));
     handle.setAttribute("aria-valuenow", percent);
     handle.setAttribute("aria-valuetext", `${percent} % of the first picture`);
-    names[0].textContent = nameRenderer(session, state.renderer);
-    names[1].textContent = nameRenderer(session, state.second);
+    names.forEach((name, side) => {
+      name.textContent = nameRenderer(session, picture.renderers[side]);
+    });
   }
 
   handle.addEventListener("pointerdown", (event) => {
@@ -54,12 +53,6 @@ function createWipe(session, stage, picture) {
     session.nudge({ wipe: Math.round(1000 * clamp(target, 0, 1)) / 1000 });
   });
   session.on("drawn", place);
-}
-
-/** Return the label of a renderer, as the menus show it. */
-function nameRenderer(session, value) {
-  const menu = session.description?.controls.find(({ name }) => name === "second");
-  return menu?.choices.find(([own]) => own === value)?.[1] ?? "";
 }
 
 /** Switch the second picture on and off: the key w of the picture. */

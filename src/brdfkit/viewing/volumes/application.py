@@ -208,7 +208,10 @@ class VolumeApplication:
         return develop(state, pictures, moving)
 
     def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
-        """Return the places of the box's corners, its size and the names of its ends."""
+        """Return the places of the box's corners, its size, the names of its ends, the renderers.
+
+        `across` is the length across the picture's shorter side at the camera's target.
+        """
         corners = np.stack(np.meshgrid([0, 1], [0, 1], [0, 1], indexing="ij"), -1).reshape(-1, 3)
         to_world = self.volume.cube_to_world
         points = corners @ to_world[:3, :3].T + to_world[:3, 3]
@@ -219,6 +222,8 @@ class VolumeApplication:
             "corners": np.round(camera.project(points, size[0] / size[1]), 5).tolist(),
             "size": [f"{edge:.4g} {self.volume.unit}".strip() for edge in edges],
             "ends": [letter for pair in ends for letter in pair],
+            "across": 2 * camera.distance * float(np.tan(np.radians(camera.fov / 2))),
+            "renderers": [state["renderer"], state["second"]],
         }
 
     def follow(self, before: State, after: State) -> list[Message]:
