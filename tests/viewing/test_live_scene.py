@@ -42,7 +42,7 @@ def test_a_view_shows_what_a_scene_of_its_function_shows(mi, name, renderer):
     )
     shown = application.render(state, 0, (32, 32), False, 7)
 
-    function = application.states.load_preset(state["transfer.preset"], renderer)
+    function = application.states.functions.load(state["transfer.preset"], renderer)
     entries = describe_integrator(volume, function, renderer, {})
     camera = application.states.camera(state)
     sensor = make_camera((0, -1, 0), (0, 0, 0), camera.horizontal_fov(1.0), (32, 32))
@@ -99,11 +99,11 @@ def test_a_saved_function_is_the_one_that_was_shown(mi, tmp_path):
     )
     path = tmp_path / "default.json"
     to_function(application, state).save(path)
-    states.add_function(path)
+    states.functions.add(path)
     loaded = states.change(states.first(), {"transfer.preset": path.name})
     # The colours of points have 8 bits
-    assert states.table(loaded) == pytest.approx(states.table(state), abs=0.01)
-    assert states.load_preset("default") is states.function
+    assert states.functions.table(loaded) == pytest.approx(states.functions.table(state), abs=0.01)
+    assert states.functions.load("default") is states.functions.load("default")
 
 
 @pytest.mark.parametrize("renderer", list(LABELS))
@@ -136,15 +136,21 @@ def test_the_default_function_suits_the_renderer(mi):
     states = VolumeApplication(bk.volumes.load("smoke", size=8)).states
     first = states.first()
     shown = states.change(first, {"renderer": "maximum_intensity"})
-    function = states.load_preset("intensity")
-    assert states.table(shown) == pytest.approx(function(states.live.row_values), abs=0.02)
+    function = states.functions.load("intensity")
+    assert states.functions.table(shown) == pytest.approx(
+        function(states.live.row_values), abs=0.02
+    )
     assert states.change(shown, {"renderer": "single_scattering"}) == first
     # Right of the wipe, too; but a function that was drawn stays on both sides
     both = states.change(first, {"second": "maximum_intensity"})
-    assert np.array_equal(states.table(states.of_side(both, 1)), states.table(shown))
+    assert np.array_equal(
+        states.functions.table(states.of_side(both, 1)), states.functions.table(shown)
+    )
     drawn = {"transfer.points": [[0, "#000000", 0], [1, "#ffffff", 1]]}
     both = states.change(both, drawn)
-    assert np.array_equal(states.table(states.of_side(both, 1)), states.table(both))
+    assert np.array_equal(
+        states.functions.table(states.of_side(both, 1)), states.functions.table(both)
+    )
     assert (
         states.change(both, {"renderer": "isosurface"})["transfer.points"]
         == drawn["transfer.points"]
@@ -174,4 +180,4 @@ def test_a_saved_function_keeps_narrow_bumps(mi):
     bump = {"x": 0.513, "y": 0.5, "sx": 0.001, "sy": 1, "colour": "#ffffff", "a": 0.9}
     state = states.change(states.first(), {"transfer.mode": "bumps", "transfer.bumps": [bump]})
     saved = to_function(application, state)
-    assert saved(states.live.row_values) == pytest.approx(states.table(state), abs=0.03)
+    assert saved(states.live.row_values) == pytest.approx(states.functions.table(state), abs=0.03)

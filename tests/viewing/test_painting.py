@@ -51,7 +51,9 @@ def see(states, state):
     places = [np.linspace(stroke[0], stroke[-1], 30) for stroke in (LEFT, RIGHT)]
     clip = np.array(state["clip"])
     rays = [cast_rays(states.live, states.camera(state), p, 1.0, clip) for p in places]
-    depths = [r.depths(states.table(state), state["transfer.extinction"]).sum(1) for r in rays]
+    depths = [
+        r.depths(states.functions.table(state), state["transfer.extinction"]).sum(1) for r in rays
+    ]
     return np.array([-np.expm1(-depth).mean() for depth in depths])
 
 
@@ -84,7 +86,9 @@ def test_strokes_on_labels_change_their_label_alone():
     left, right = see(states, hidden) - see(states, first)
     assert left < -0.15
     assert right == pytest.approx(0, abs=1e-6)
-    assert states.table(hidden)[:, :3] == pytest.approx(states.table(first)[:, :3], abs=0.01)
+    assert states.functions.table(hidden)[:, :3] == pytest.approx(
+        states.functions.table(first)[:, :3], abs=0.01
+    )
 
 
 @pytest.mark.quick

@@ -379,7 +379,7 @@ def test_the_script_of_uploaded_raw_voxels_loads_them_alike(session, tmp_path, m
 
 def test_the_script_of_uploaded_light_and_functions_loads_them_alike(session, tmp_path):
     write_map(np.full((2, 4, 3), 0.2, np.float32), tmp_path / "lamp.exr")
-    session.application.states.load_preset("emission").save(tmp_path / "own.json")
+    session.application.states.functions.load("emission").save(tmp_path / "own.json")
     for name, kind in (("lamp.exr", "environment"), ("own.json", "transfer")):
         drop(session, {name: (tmp_path / name).read_bytes()}, **{name: kind})
     session.handle({"type": "set", "changes": {"transfer.mode": "preset"}})

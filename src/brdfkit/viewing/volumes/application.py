@@ -72,7 +72,7 @@ class VolumeApplication:
         """Return changes with the names of their files, after they were read."""
         readers = {
             "light.environment": self.states.add_environment,
-            "transfer.preset": self.states.add_function,
+            "transfer.preset": self.states.functions.add,
         }
         read = dict(changes)
         for name in readers.keys() & changes.keys():
@@ -117,7 +117,7 @@ class VolumeApplication:
                 "axis_names": self._name_axes(),
             },
             "histogram": counts,
-            "presets": self.states.presets(),
+            "presets": self.states.functions.names(),
             "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
         }, [joint]
 

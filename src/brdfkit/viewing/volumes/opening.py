@@ -184,7 +184,7 @@ def _open_transfer(application: Application, session: Session, path: Path) -> li
     if bumps is not None:
         session.change({"transfer.mode": "bumps2d", "transfer.bumps": bumps})
         return [session.describe_state()]
-    application.states.add_function(path)
+    application.states.functions.add(path)
     session.change({"transfer.preset": path.name})
     session.forget_samples()
     return [session.describe_view()]

@@ -104,7 +104,7 @@ class _Stroke:
 
     def _find_depths(self, rays: Rays, changes: dict[str, Any]) -> FloatArray:
         """Return the optical depths of the samples of rays after changes of the state."""
-        return rays.depths(self.states.table(self.state | changes), self.extinction)
+        return rays.depths(self.states.functions.table(self.state | changes), self.extinction)
 
     def find_weights(self) -> FloatArray:
         """Return the weights w (bins,), scaled so that the largest is 1."""
@@ -167,7 +167,7 @@ def _use_points(states: VolumeState, state: State) -> State:
     points = state["transfer.points"]
     if states.volume.labels:
         values = list_values(states.live)
-        rgba = states.load_preset(state["transfer.preset"])(values)
+        rgba = states.functions.load(state["transfer.preset"])(values)
         points = [
             [value, transfer_table.format_colour(colour[:3]), float(colour[3])]
             for value, colour in zip(values.tolist(), rgba, strict=True)

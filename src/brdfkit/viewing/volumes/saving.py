@@ -63,7 +63,7 @@ def to_function(application: Application, state: State) -> TransferFunction:
         state["transfer.colour"],
     )
     if state["transfer.mode"] == "preset":
-        return replace(states.load_preset(name, state["renderer"]), extinction=extinction)
+        return replace(states.functions.load(name, state["renderer"]), extinction=extinction)
     if state["transfer.mode"] == "points":
         points = state["transfer.points"]
         rgba = np.array([[*transfer_table.parse_colour(c), a] for _, c, a in points])
@@ -73,7 +73,7 @@ def to_function(application: Application, state: State) -> TransferFunction:
         narrowest = min(bump["sx"] for bump in state["transfer.bumps"])
         step = max(1, min(16, int(VALUE_ROWS * narrowest / 16)))
         values, rows = np.unique(states.live.row_values[::step], return_index=True)
-        rgba = states.table(state)[..., ::step, :][..., rows, :]
+        rgba = states.functions.table(state)[..., ::step, :][..., rows, :]
         gradients = states.live.row_gradients if rgba.ndim == 3 else None
     return TransferFunction(
         values, rgba, extinction, colour, gradients, application.states.value_unit, unit, name

@@ -80,6 +80,6 @@ def _write_comments(application: Application, changes: State) -> str:
     """Return a comment for each file that the page sent, whose folder is unknown."""
     states, source = application.states, application.source
     names = [source.path] if source is not None and source.uploaded else []
-    sent = {"light.environment": states.environments, "transfer.preset": states.functions}
+    sent = {"light.environment": states.environments, "transfer.preset": states.functions.files}
     names += [changes[k] for k, known in sent.items() if k in changes and changes[k] in known]
     return "".join(f"# Write the folder of {n} before its name; the page hides it\n" for n in names)

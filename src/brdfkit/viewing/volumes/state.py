@@ -26,11 +26,10 @@ from brdfkit.viewing.volumes import transfer_table
 from brdfkit.viewing.volumes.camera import Camera
 from brdfkit.viewing.volumes.live_scene import Look, SceneKind, choose_steps
 from brdfkit.viewing.volumes.live_volume import get_live_volume
+from brdfkit.viewing.volumes.transfer_functions import TransferFunctions
 from brdfkit.viewing.volumes.transfer_table import parse_colour
 from brdfkit.viewing.volumes.volume_controls import make_controls
-from brdfkit.volumes import TransferFunction, Volume
-from brdfkit.volumes.transfer.files import list_presets
-from brdfkit.volumes.transfer.windows import scale_transfer_to_values
+from brdfkit.volumes import Volume
 from brdfkit.volumes.volume import LARGEST_COORDINATE
 
 FIRST_BUMP = {"x": 0.5, "y": 0.25, "sx": 0.15, "sy": 0.25, "colour": "#e8a060", "a": 0.5}
@@ -38,8 +37,6 @@ CLIP = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]
 THINNEST = 1e-3  # edge of the clipping box, as a share of the volume's
 OPAQUE = 1e30  # extinction [1/unit of length] within an isosurface
 MOVING_STEPS = 0.5  # share of the steps along rays while something moves
-# Presets that are chosen for the volume, as for a renderer
-CHOSEN = {"emission": "emission_absorption", "intensity": "maximum_intensity"}
 # Names whose change does not alter the samples of a picture
 DRAWN_ONLY = (
     "wipe",
@@ -62,26 +59,18 @@ class VolumeState:
         self.volume, self.live = volume, get_live_volume(volume)
         self.level = defaults.choose_surface_level(volume)
         self.front = find_front(volume)
-        self.loaded: dict[str, TransferFunction] = {}  # presets, by name
-        # Functions by the renderer that they suit, and the parts of the state that they are
-        self.defaults: dict[str, TransferFunction] = {}
-        self.default_parts: dict[str, State] = {}
-        self.last_table: tuple[State, AnyArray] = {}, np.zeros(0)
-        self.function = self._default_function("single_scattering")
+        self.functions = TransferFunctions(self.live)
+        function = self.functions.load("default")
         sides = [camera_direction(volume, azimuth, 20.0) for azimuth in TURN_AZIMUTHS]
-        is_visible = defaults.make_visibility_test(self.function, 0.0)
+        is_visible = defaults.make_visibility_test(function, 0.0)
         origin, target = place_camera(volume, is_visible, sides, 1.0)
         self.home = tuple(float(x) for x in target)
         distance = float(np.linalg.norm(origin - target))
+        # "HU" for a scan that has them; empty if unknown
+        self.value_unit = "HU" if function.value_unit == "HU" else ""
         controls = make_controls(volume, self.level, distance, self.value_unit)
         self.controls = {control.name: control for control in controls}
         self.environments: dict[str, AnyArray] = {}  # maps from the page, by name
-        self.functions: dict[str, TransferFunction] = {}  # those from the page, by name
-
-    @property
-    def value_unit(self) -> str:
-        """The unit of the volume's values, "HU" for a scan that has them; empty if unknown."""
-        return self.function.value_unit if self.function.value_unit == "HU" else ""
 
     def first(self) -> State:
         """Return the state with which a view begins: the default transfer function, home."""
@@ -91,72 +80,12 @@ class VolumeState:
             "slices": [n // 2 for n in self.volume.size],
             "transfer.preset": "default",
             "transfer.bumps": [dict(FIRST_BUMP)],
-            **self._describe_function(self.function),
+            **self.functions.default_part("single_scattering"),
         }
-
-    def _describe_function(self, function: TransferFunction) -> State:
-        """Return the part of the state that a transfer function is."""
-        exact = function.gradients is not None or self.volume.labels
-        return {
-            "transfer.mode": "preset" if exact else "points",
-            "transfer.points": transfer_table.to_points(function, self.live.low, self.live.high),
-            "transfer.extinction": function.extinction,
-            "transfer.colour": function.colour,
-        }
-
-    def _default_function(self, renderer: str) -> TransferFunction:
-        """Return the transfer function that suits the volume and a renderer."""
-        renderer = "single_scattering" if renderer == "isosurface" else renderer
-        if renderer not in self.defaults:
-            function = defaults.choose_transfer_function(self.volume, renderer)
-            self.defaults[renderer] = self._scale(function)
-        return self.defaults[renderer]
-
-    def _default_part(self, renderer: str) -> State:
-        """Return the part of the state that the default function of a renderer is."""
-        if renderer not in self.default_parts:
-            function = self._default_function(renderer)
-            self.default_parts[renderer] = self._describe_function(function)
-        return self.default_parts[renderer]
-
-    def _has_default_function(self, state: State) -> bool:
-        """Return whether a state has the default function of its renderer, as it is."""
-        if state["transfer.preset"] != "default":
-            return False
-        part = self._default_part(state["renderer"])
-        return all(state[name] == value for name, value in part.items())
-
-    def presets(self) -> list[str]:
-        """Return the names of the transfer functions that the page offers."""
-        return ["default", *CHOSEN, *list_presets(), *self.functions]
-
-    def load_preset(self, name: str, renderer: str = "single_scattering") -> TransferFunction:
-        """Return a transfer function of `presets`, scaled to the volume.
-
-        "default" is the one that suits the `renderer`.
-        """
-        if name == "default":
-            return self._default_function(renderer)
-        if name in CHOSEN:
-            return self._default_function(CHOSEN[name])
-        if name in self.functions:
-            return self.functions[name]
-        if name not in self.loaded:
-            if name not in list_presets():
-                raise no_such_error("transfer function", name, self.presets())
-            self.loaded[name] = self._scale(TransferFunction.load(name))
-        return self.loaded[name]
-
-    def _scale(self, function: TransferFunction) -> TransferFunction:
-        """Return a function in the volume's values and its unit of length."""
-        function = scale_transfer_to_values(function, self.volume.values)
-        if self.volume.unit and function.length_unit:
-            function = function.per(self.volume.unit)
-        return function
 
     def share_files(self, other: VolumeState) -> None:
         """Offer the environment maps and functions from the page that `other` offers."""
-        self.environments, self.functions = other.environments, other.functions
+        self.environments, self.functions.files = other.environments, other.functions.files
         self.controls["light.environment"] = other.controls["light.environment"]
 
     def add_environment(self, path: Path) -> None:
@@ -167,12 +96,6 @@ class VolumeState:
         choices = dict.fromkeys([*control.choices, (path.name, path.name)])
         self.controls[control.name] = replace(control, choices=tuple(choices))
 
-    def add_function(self, path: Path) -> None:
-        """Offer the transfer function of a file as a preset with the file's name."""
-        function = replace(TransferFunction.load(path), name=path.name)
-        self.functions[path.name] = self._scale(function)
-        self.last_table = {}, np.zeros(0)  # of an older function of this name
-
     def change(self, state: State, changes: Mapping[str, Any]) -> State:
         """Return the state after `changes`; raise `BrdfkitError` if one is not possible."""
         new = dict(state)
@@ -182,34 +105,15 @@ class VolumeState:
             control = self.controls.get(name)
             new[name] = control.check(value) if control else self._check(name, value)
         if "transfer.preset" in changes and "transfer.points" not in changes:
-            function = self.load_preset(new["transfer.preset"], new["renderer"])
-            filled = self._describe_function(function)
+            function = self.functions.load(new["transfer.preset"], new["renderer"])
+            filled = self.functions.describe(function)
             new |= {name: value for name, value in filled.items() if name not in changes}
         elif "renderer" in changes and not any(name.startswith("transfer.") for name in changes):
-            if self._has_default_function(state):
-                new |= self._default_part(new["renderer"])
+            if self.functions.is_default(state):
+                new |= self.functions.default_part(new["renderer"])
         elif "transfer.points" in changes and state["transfer.mode"] == "preset":
             new |= {"transfer.mode": "points"} if "transfer.mode" not in changes else {}
         return new
-
-    def table(self, state: State) -> AnyArray:
-        """Return RGBA of a state's transfer function, (n, 4) or over gradients (m, n, 4).
-
-        Equal functions give the same array, since it is made anew only after a change.
-        """
-        names = (name for name in state if name == "renderer" or name.startswith("transfer."))
-        function = {name: state[name] for name in names}
-        last = self.last_table  # another thread may exchange it meanwhile
-        if last[0] != function:
-            last = self.last_table = function, self._make_table(state)
-        return last[1]
-
-    def _make_table(self, state: State) -> AnyArray:
-        """Return RGBA of a state's transfer function at the rows of a table."""
-        if state["transfer.mode"] == "preset":
-            function = self.load_preset(state["transfer.preset"], state["renderer"])
-            return transfer_table.table_of_function(function, self.live)
-        return transfer_table.to_table(state, self.live)
 
     def _check(self, name: str, value: Any) -> Any:
         """Return the value of a name that no control declares; raise an error if it is wrong."""
@@ -217,7 +121,7 @@ class VolumeState:
             "camera.target": lambda: _is_numbers(value, 3),
             "clip": lambda: len(value) == 2 and all(_is_numbers(corner, 3) for corner in value),
             "slices": lambda: _is_numbers(value, 3),
-            "transfer.preset": lambda: value in self.presets(),
+            "transfer.preset": lambda: value in self.functions.names(),
             "transfer.points": lambda: transfer_table.is_points(value),
             "transfer.bumps": lambda: transfer_table.is_bumps(value),
             "transfer.extinction": lambda: is_number(value) and 0 < value < 1e30,
@@ -255,8 +159,8 @@ class VolumeState:
         A default transfer function is that of the side's renderer.
         """
         renderer = state["second" if side else "renderer"]
-        suits = renderer == state["renderer"] or not self._has_default_function(state)
-        function = {} if suits else self._default_part(renderer)
+        suits = renderer == state["renderer"] or not self.functions.is_default(state)
+        function = {} if suits else self.functions.default_part(renderer)
         return state | function | {"renderer": renderer}
 
     def scene_kind(self, state: State, size: tuple[int, int], moving: bool) -> SceneKind:
@@ -264,7 +168,7 @@ class VolumeState:
         renderer = state["renderer"]
         kind = SceneKind(renderer, size, choose_steps(self.volume, MOVING_STEPS if moving else 1.0))
         if renderer != "isosurface":
-            by_gradients = self.table(state).ndim == 3
+            by_gradients = self.functions.table(state).ndim == 3
             kind = replace(kind, by_gradients=by_gradients, colour=state["transfer.colour"])
         if renderer == "single_scattering":
             kind = replace(kind, phase=state["phase"], max_depth=int(state["depth"]) + 1, steps=0)
@@ -278,7 +182,7 @@ class VolumeState:
         sun = state["light.sun_strength"] * parse_colour(state["light.sun_colour"])
         return Look(
             camera=self.camera(state),
-            table=self.table(state),
+            table=self.functions.table(state),
             extinction=state["transfer.extinction"] * state["density"],
             level=state["level"],
             surface=parse_colour(state["surface.colour"]),
@@ -297,7 +201,7 @@ class VolumeState:
         if state["renderer"] == "isosurface":
             inside = self.live.row_values > state["level"]
             return np.repeat(inside.astype(float)[:, None], 4, axis=1), OPAQUE
-        return self.table(state), state["transfer.extinction"] * state["density"]
+        return self.functions.table(state), state["transfer.extinction"] * state["density"]
 
 
 def needs_samples_anew(before: State, after: State) -> bool:
