@@ -44,7 +44,7 @@ def test_the_values_become_labels_and_undo_takes_it_back(session):
     state = message["state"]
     assert (state["labels"], state["camera.azimuth"]) == (True, 77)
     assert state["transfer.mode"] == "preset"  # a colour for each label
-    assert session.application.states.function.name == "a colour for each label"
+    assert session.application.states.functions.load("default").name == "a colour for each label"
     assert "picture" in [message["type"] for message, _ in session.work()]
     for way, labels in (("undo", False), ("redo", True), ("reset", False)):
         session.handle({"type": way})
