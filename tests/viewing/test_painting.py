@@ -142,6 +142,9 @@ def test_a_stroke_is_one_undo_step_and_needs_no_kernel(mi):
     session.handle({"type": "hello", "width": 64, "height": 64, "state": None})
     message = {"type": "paint", "stroke": LEFT, "hide": False}
     session.work()
+    session.handle({"type": "set", "changes": {"transfer.mode": "bumps"}})
+    session.work()  # what computes the integrals of a table
+    session.handle({"type": "undo"})
     before, kernels = session.state, []
     for _ in range(2):
         ((state, _),) = session.handle(message)
