@@ -13,7 +13,7 @@ from brdfkit.core.errors import BrdfkitError
 
 
 def test_the_widget_sends_pictures_until_it_is_closed(mi, monkeypatch):
-    widget = bk.view(bk.volumes.load("smoke", size=16), {"renderer": "maximum_intensity"})
+    widget = bk.view(bk.volumes.load("smoke", size=16), state={"renderer": "maximum_intensity"})
     sent = []
     monkeypatch.setattr(widget, "_send_message", sent.append)
     widget.thread.add(widget.session, sent.append)
@@ -48,4 +48,4 @@ def test_the_widget_has_a_picture_for_pages_without_python(mi):
 
 def test_an_impossible_state_is_refused_before_anything_is_shown(mi):
     with pytest.raises(BrdfkitError, match="raster"):
-        bk.view("smoke", {"renderer": "raster"})
+        bk.view("smoke", state={"renderer": "raster"})

@@ -154,7 +154,7 @@ def compare(
         brdf: Any = thing if spectral else getattr(thing, "rgb", thing)
         values = _evaluate_at_samples(brdf, data, samples)
         errors[name] = {
-            loss: _compute_error(losses.named.by_sample[loss], values, samples)
+            loss: compute_error(losses.named.by_sample[loss], values, samples)
             for loss in losses.named.by_sample
         }
         albedos[name] = _compute_albedos(brdf, pixels)
@@ -186,7 +186,7 @@ def _evaluate_at_samples(brdf: Any, data: Measured, samples: Samples) -> FloatAr
     return np.broadcast_to(values, samples.values.shape)
 
 
-def _compute_error(loss: Loss, values: FloatArray, samples: Samples) -> float:
+def compute_error(loss: Loss, values: FloatArray, samples: Samples) -> float:
     """Return the error E of `values` (n, channels) at samples; nan if all their weights are 0."""
     importance = loss.importance(samples)
     return (

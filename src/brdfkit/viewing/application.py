@@ -23,6 +23,9 @@ class Application(Protocol):
     def subject(self) -> str:
         """What is shown, in words that tell it from all else: no other takes its settings."""
 
+    def again(self) -> Application:
+        """Return another view of the same, as for another page."""
+
     def describe(self) -> Message:
         """Return the message "open", with the panels, the controls and the data."""
 

@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.jit.threads import in_turn
+from brdfkit.materials.resolve import MaterialLike
 from brdfkit.rendering.render_materials import to_picture_size
 from brdfkit.rendering.result import Rendering
+from brdfkit.viewing.choosing import make_application
 from brdfkit.viewing.picture_files import render_state
-from brdfkit.viewing.volumes.application import VolumeApplication
-from brdfkit.viewing.volumes.source import find_volume
 from brdfkit.volumes import Volume
 
 
 @in_turn
 def render_view(
-    volume: Volume | AnyArray | str | Path,
+    subject: Volume | AnyArray | MaterialLike,
     state: Mapping[str, Any] | None = None,
     *,
+    models: MaterialLike | Iterable[MaterialLike] = (),
     size: int | tuple[int, int] = 512,
     spp: int = 64,
     seed: int = 0,
@@ -32,12 +32,13 @@ def render_view(
 
     Parameters
     ----------
-    volume : Volume, ndarray, str or Path
-        The volume; its values (nz, ny, nx); or the file, folder or name that `brdfkit.volumes.load`
-        takes.
+    subject : Volume, ndarray, Measured, Model, Fit, str, Path or dict
+        The volume or the material, or its file, folder or name, as for `brdfkit.view`.
     state : dict of str to object, optional
         The settings that differ from those with which a view begins, by name. "light.environment"
         and "transfer.preset" may be files.
+    models : str, Model, Fit or Path, or several
+        The models beside a material, as for `brdfkit.view`; the first is shown.
     size : int or (int, int), default 512
         Side of the picture, or its width and height [pixels].
     spp : int, default 64
@@ -53,7 +54,8 @@ def render_view(
     Raises
     ------
     BrdfkitError
-        For a volume that cannot be read, and for a setting that does not exist or is impossible.
+        For what is no volume or material, or cannot be read, and for a setting that does not exist
+        or is impossible.
 
     Examples
     --------
@@ -61,7 +63,8 @@ def render_view(
     >>> brdfkit.viewing.render_view("smoke", view, spp=1, size=64)    # doctest: +SKIP
     """
     spp, seed = to_whole_number("spp", spp, 1), to_whole_number("seed", seed, 0)
-    loaded, _ = find_volume(volume)
     size = to_picture_size(size)
-    application = VolumeApplication(loaded, changes=state)
+    if isinstance(models, str | dict) or not isinstance(models, Iterable):
+        models = [models]
+    application = make_application(subject, models, state)
     return render_state(application, application.first_state(), size, spp, seed)

@@ -1,30 +1,38 @@
-"""`view`: an interactive view of a volume in a notebook, or in a browser beside a script."""
+"""`view`: an interactive view of a volume, or of a material, in a notebook."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 from brdfkit.core.array_types import AnyArray
-from brdfkit.viewing.volumes.application import VolumeApplication
-from brdfkit.viewing.volumes.source import find_volume
+from brdfkit.materials.resolve import MaterialLike
+from brdfkit.viewing.choosing import make_application
 from brdfkit.viewing.widget import make_widget
 from brdfkit.volumes import Volume
 
 
-def view(volume: Volume | AnyArray | str | Path, state: Mapping[str, Any] | None = None) -> Any:
-    """Show a volume as an interactive widget of a notebook.
+def view(
+    subject: Volume | AnyArray | MaterialLike,
+    *models: MaterialLike,
+    state: Mapping[str, Any] | None = None,
+) -> Any:
+    """Show a volume, or a material beside a model, as an interactive widget of a notebook.
 
-    The widget orbits the volume, edits its transfer function, exchanges renderers, light and tone
-    mapping, and shows slices; its picture converges while nothing moves. The command ``brdfkit
-    view`` shows the same in a browser.
+    Of a volume, the widget orbits it, edits its transfer function, exchanges renderers, light and
+    tone mapping, and shows slices. Of a measured material, it shows the material left and a model
+    right of a wipe, with the model's parameters as sliders and a button that fits it. The picture
+    converges while nothing moves. The command ``brdfkit view`` shows the same in a browser.
 
     Parameters
     ----------
-    volume : Volume, ndarray, str or Path
-        The volume; its values (nz, ny, nx); or the file, folder or name that `brdfkit.volumes.load`
-        takes.
+    subject : Volume, ndarray, Measured, Model, Fit, str, Path or dict
+        The volume, its values (nz, ny, nx), or the file, folder or name that `brdfkit.volumes.load`
+        takes; or the material, its name or its path. A model or a fit is shown alone unless
+        `models` are given.
+    *models : str, Model, Fit or Path
+        The models beside a material: labels such as ``"ggx+ggx"``, models with values, or fits; by
+        default ggx. The first is shown, and the page's menu begins with the others.
     state : dict of str to object, optional
         The settings that differ from those with which a view begins, as the page's "Copy as
         Python" writes them.
@@ -37,12 +45,12 @@ def view(volume: Volume | AnyArray | str | Path, state: Mapping[str, Any] | None
     Raises
     ------
     BrdfkitError
-        If anywidget is not installed, for a volume that cannot be read, and for a setting that
-        does not exist or is impossible.
+        If anywidget is not installed, for what is no volume or material, or cannot be read, and for
+        a setting that does not exist or is impossible.
 
     Examples
     --------
     >>> bk.view("smoke")    # doctest: +SKIP
+    >>> bk.view("car_paint", "ggx", "ward")    # doctest: +SKIP
     """
-    loaded, source = find_volume(volume)
-    return make_widget(VolumeApplication(loaded, source, state))
+    return make_widget(make_application(subject, models, state))

@@ -1,7 +1,8 @@
-"""`brdfkit view`: shows a volume interactively in the browser."""
+"""`brdfkit view`: shows a volume or a material interactively in the browser."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,24 +14,28 @@ from brdfkit.core.errors import BrdfkitError
 
 
 @click.command()
-@click.argument("volume", metavar="VOLUME")
+@click.argument("thing", metavar="VOLUME|MATERIAL")
+@click.argument("models", nargs=-1, metavar="[MODEL]...")
 @output_option("Picture to write instead of showing a page: .png, or .exr with a .png beside it.")
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=0, help="Port of the page; 0 is any."
 )
 @click.option("--no-browser", is_flag=True, help="Print the address, and open no browser.")
-@click.option("--downsample", type=click.IntRange(1), metavar="N", help="Make N³ voxels one.")
+@click.option(
+    "--downsample", type=click.IntRange(1), metavar="N", help="For a volume: make N³ voxels one."
+)
 @click.option(
     "--labels/--no-labels",
     default=None,
-    help="Treat the values as labels, or as densities; by default the file decides.",
+    help="Treat a volume's values as labels, or as densities; by default the file decides.",
 )
 @click.option("--state", metavar="JSON", help="Settings to begin with, as the page copies them.")
 @click.option("--size", default="512x512", show_default=True, help="Size of the written picture.")
 @click.option("--spp", type=click.IntRange(1), default=64, help="Samples of the written picture.")
 @writing_options
 def view(
-    volume: str,
+    thing: str,
+    models: tuple[str, ...],
     output: Path | None,
     port: int,
     no_browser: bool,
@@ -41,19 +46,34 @@ def view(
     spp: int,
     console: Console,
 ) -> None:
-    """Show a VOLUME interactively in the browser, until Ctrl-C.
+    """Show a VOLUME or a MATERIAL interactively in the browser, until Ctrl-C.
 
     VOLUME is a file or folder of a scan, or the name of a synthetic volume such as smoke. The page
     orbits it, edits its transfer function, exchanges renderers, light and tone mapping, and shows
-    slices. It is served to this computer alone; over SSH, forward the port that is printed.
+    slices.
+
+    MATERIAL is a measured file or name such as car_paint. The page shows it left and the first
+    MODEL (ggx, or a sum such as ggx+ward) right of a wipe, with a slider for each parameter, and
+    fits the model. A model or the JSON of a fit is shown alone.
+
+    The page is served to this computer alone; over SSH, forward the port that is printed.
     """
     given = {"downsample": downsample, "labels": labels}
     settings = {name: value for name, value in given.items() if value is not None}
     changes = _parse_state(state)
+
+    def make_application() -> Any:
+        """Read the volume or the material, and return the view of it."""
+        from brdfkit.viewing.choosing import make_application
+
+        with console.progress(f"read {thing}"):
+            return make_application(thing, models, changes, **settings)
+
     if output is None:
-        _show_page(volume, settings, changes, port, no_browser, console)
+        _show_page(make_application, port, no_browser)
     else:
-        _write_picture(volume, settings, changes, output, _parse_size(size), spp, console)
+        known = labels is not None
+        _write_picture(make_application, known, output, _parse_size(size), spp, console)
 
 
 def _parse_state(state: str | None) -> dict[str, Any]:
@@ -90,9 +110,8 @@ def _parse_size(size: str) -> tuple[int, int]:
 
 
 def _write_picture(
-    volume: str,
-    settings: dict[str, Any],
-    changes: dict[str, Any],
+    make_application: Callable[[], Any],
+    labels_are_known: bool,
     output: Path,
     size: tuple[int, int],
     spp: int,
@@ -103,10 +122,11 @@ def _write_picture(
     from brdfkit.cli.picture_output import write_result
     from brdfkit.cli.volume_render import warn_of_labels
     from brdfkit.viewing.picture_files import render_state
+    from brdfkit.viewing.volumes.application import VolumeApplication
 
     path = check_picture_path(output)
-    application = _make_application(volume, settings, changes, console)
-    if "labels" not in settings:
+    application = make_application()
+    if not labels_are_known and isinstance(application, VolumeApplication):
         warn_of_labels(application.volume)
     with console.progress("render") as progress:
         first = application.first_state()
@@ -114,26 +134,7 @@ def _write_picture(
     write_result(picture, path, picture.tone_mapping, console)
 
 
-def _make_application(
-    volume: str, settings: dict[str, Any], changes: dict[str, Any], console: Console
-) -> Any:
-    """Load the volume, and return the view of it."""
-    from brdfkit.viewing.volumes.application import VolumeApplication
-    from brdfkit.viewing.volumes.source import load_within_memory
-
-    with console.progress(f"read {volume}"):
-        loaded, source = load_within_memory(volume, **settings)
-    return VolumeApplication(loaded, source, changes)
-
-
-def _show_page(
-    volume: str,
-    settings: dict[str, Any],
-    changes: dict[str, Any],
-    port: int,
-    no_browser: bool,
-    console: Console,
-) -> None:
+def _show_page(make_application: Callable[[], Any], port: int, no_browser: bool) -> None:
     """Serve the page until Ctrl-C, and open it in the browser."""
     from brdfkit.viewing import server
     from brdfkit.viewing.render_thread import is_rendering
@@ -141,32 +142,30 @@ def _show_page(
     server.require_server()
     try:
         with server.open_socket(port) as listening:  # before the volume, which takes longer
-            application = _make_application(volume, settings, changes, console)
-            _serve_page(listening, application, changes, no_browser)
+            _serve_page(listening, make_application(), no_browser)
     except KeyboardInterrupt:
         if is_rendering():
             _exit_at_once()
         raise
 
 
-def _serve_page(listening: Any, first: Any, changes: dict[str, Any], no_browser: bool) -> None:
-    """Serve the view `first` to the first page, and views of the same volume to others."""
+def _serve_page(listening: Any, first: Any, no_browser: bool) -> None:
+    """Serve the view `first` to the first page, and views of the same thing to others."""
     import time
 
     from brdfkit.viewing import server
 
     waiting = [first]
-    volume, source = first.volume, first.source  # the first page may open another volume
 
     def make_application() -> Any:
         try:
             return waiting.pop()
         except IndexError:
-            return type(first)(volume, source, changes)
+            return first.again()
 
     with server.serve(make_application, listening) as address:
         opened = not no_browser and _open_browser(address)
-        click.echo(_describe_page(volume.name, address, opened))
+        click.echo(_describe_page(first.name, address, opened))
         while True:  # until Ctrl-C
             time.sleep(3600)
 

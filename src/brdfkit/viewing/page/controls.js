@@ -71,7 +71,9 @@ function makeSlider(session, control, scale = makeScale(control)) {
   const row = make("div", { class: "control slider" },
     make("label", {}, make("span", { class: "name" }, label), range), number,
     make("span", { class: "unit" }, unit));
-  return { row, show, input: range };
+  /** Return how far along the slider a value is, 0 to 1. */
+  const place = (value) => clamp((scale.toPlace(value) - scale.low) / (scale.high - scale.low), 0, 1);
+  return { row, show, input: range, place };
 }
 
 /** Make a menu of choices. */
@@ -101,13 +103,36 @@ function makeColour(session, { name, label }) {
   return { row: makeRow("colour", label, well), show: (value) => (well.value = value), input: well };
 }
 
+/** Make a text box, with a menu of the usual texts before it. */
+function makeText(session, { name, label, choices = [] }) {
+  const other = make("option", { hidden: true });
+  const select = make("select", {
+    onchange: () => session.change({ [name]: choices[select.selectedIndex][0] }),
+  }, ...choices.map(([, text]) => make("option", {}, text)), other);
+  const box = make("input", {
+    type: "text", spellcheck: false, autocomplete: "off", "aria-label": `${label}, typed`,
+    onchange: () => box.value.trim() && session.change({ [name]: box.value.trim() }),
+  });
+  const row = makeRow("text", label, select);
+  row.append(box);
+  const show = (value) => {
+    const known = choices.findIndex(([own]) => own === value);
+    other.textContent = value;
+    select.selectedIndex = known < 0 ? choices.length : known;
+    box.value = value;
+  };
+  return { row, show, input: select };
+}
+
 /** Put a label before an input. */
 function makeRow(kind, label, input) {
   return make("div", { class: `control ${kind}` },
     make("label", {}, make("span", { class: "name" }, label), input));
 }
 
-const CONTROL_MAKERS = { slider: makeSlider, choice: makeChoice, flag: makeFlag, colour: makeColour };
+const CONTROL_MAKERS = {
+  slider: makeSlider, choice: makeChoice, flag: makeFlag, colour: makeColour, text: makeText,
+};
 
 /** Let a double click on a control's label, and Delete, set it to its default. */
 function offerDefault(session, control, row) {
@@ -136,7 +161,8 @@ function isWanted({ when }, state) {
  *
  * `editors` maps a panel's name to an element with a richer view of the panel's values, which
  * comes first in it; `edited` are the names that such views change, so that no control repeats
- * them. Panels of editors that Python does not mention are not shown.
+ * them. Panels of editors that Python does not mention are not shown. Returns a function that
+ * gives the parts of a control by its name.
  */
 function createPanels(session, element, editors, edited) {
   let shown = []; // of [control, its parts]
@@ -151,7 +177,8 @@ function createPanels(session, element, editors, edited) {
     return details;
   }
 
-  session.on("open", ({ panels = [], controls = [] }) => {
+  function build({ panels = [], controls = [] }) {
+    const focused = shown.find(([, { row }]) => row.matches(":focus-within"))?.[0].name;
     shown = controls
       .filter(({ name, kind }) => !edited.has(name) && CONTROL_MAKERS[kind])
       .map((control) => [control, CONTROL_MAKERS[control.kind](session, control)]);
@@ -162,7 +189,11 @@ function createPanels(session, element, editors, edited) {
       input.setAttribute("aria-description", control.help);
     }
     element.replaceChildren(...panels.map(makePanel));
-  });
+    if (focused) find(focused)?.input.focus();
+  }
+  const find = (name) => shown.find(([control]) => control.name === name)?.[1];
+  session.on("open", build);
+  session.on("controls", build);
 
   session.on("state", (names) => {
     for (const [control, parts] of shown) {
@@ -174,4 +205,5 @@ function createPanels(session, element, editors, edited) {
       panel.hidden = [...children].every((child) => child.hidden);
     }
   });
+  return find;
 }

@@ -1,21 +1,30 @@
 // Dialogs: a text to copy, the keys, and the form for files of voxels without a header.
 
-/** Return the parts of the help: what keys and pointers do; `views` names the buttons of the views. */
+/**
+ * Return the sections of the help: the part of the page that each is about, "" for all; its title;
+ * what keys and pointers do. `views` names the buttons of the views.
+ */
 const listKeys = (views) => [
-  ["Picture", [
+  ["camera", "Picture", [
     ["drag, arrow keys", "orbit"],
     ["Shift + drag, right drag, Shift + arrow keys", "pan"],
     ["wheel, two fingers, + and −", "zoom"],
     ["Ctrl + wheel", "field of view"],
     ["1 … 6", `the views of the buttons ${views}`],
     ["double click, R", "camera as at the start, the button ⌂"],
-    ["W", "second picture and wipe"],
     ["P", "paint: drag or Enter shows what is there, with Shift hides it"],
     ["C", "slices through the voxel under the pointer"],
+  ]],
+  ["light", "Picture", [
+    ["drag, left and right arrow", "turn the light"],
+    ["R", "light as at the start"],
+  ]],
+  ["", "Every picture", [
+    ["W", "second picture and wipe"],
     ["F", "the whole screen, the button ⤢"],
     ["Space", "pause, go on"],
   ]],
-  ["Transfer function", [
+  ["transfer", "Transfer function", [
     ["double click, Add", "new point or bump"],
     ["Page Up, Page Down, Home, End", "another handle"],
     ["drag, arrow keys", "move it; with Shift in large steps"],
@@ -24,15 +33,15 @@ const listKeys = (views) => [
     ["Ctrl + wheel, + and −, 0", "fewer or more values, the whole range"],
     ["drag beside the handles, Shift + wheel", "other values"],
   ]],
-  ["Slices", [
+  ["slices", "Slices", [
     ["drag, arrow keys", "move the cross"],
     ["wheel, Page Up and Page Down", "next slice"],
     ["Shift + drag, right drag", "contrast and brightness"],
   ]],
-  ["Panels", [
+  ["", "Panels", [
     ["double click on a name, Delete", "the default of a setting"],
   ]],
-  ["Everywhere", [
+  ["", "Everywhere", [
     ["Ctrl + Z or U, Ctrl + Y", "undo, redo"],
     ["Escape", "cancel an orbit"],
     ["?", "this help"],
@@ -88,10 +97,11 @@ function showText(root, { title, text }) {
   put();
 }
 
-/** Show what keys, pointers and wheel do; `volume` is the one that is shown, if any. */
-function showHelp(root, volume) {
-  const views = listViews(volume?.axes).map(([name]) => name).join(" ");
-  const parts = listKeys(views).map(([title, rows]) => make("section", {},
+/** Show what keys, pointers and wheel do. */
+function showHelp(session, root) {
+  const views = listViews(session.description?.volume?.axes).map(([name]) => name).join(" ");
+  const shown = listKeys(views).filter(([part]) => !part || uses(session, part));
+  const parts = shown.map(([, title, rows]) => make("section", {},
     make("h3", {}, title),
     make("dl", {}, ...rows.map(([keys, meaning]) =>
       make("div", {}, make("dt", {}, keys), make("dd", {}, meaning))))));

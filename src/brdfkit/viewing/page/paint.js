@@ -105,7 +105,7 @@ function createPaint(session, stage, picture) {
 
   function key(event) {
     if (event.ctrlKey || event.metaKey || event.altKey) return false;
-    if (event.key === "p") press(!on);
+    if (event.key === "p" && uses(session, "paint")) press(!on);
     else if (on && event.key === "Enter") {
       stroke = { places: [[0.5, 0.5]], hide: event.shiftKey };
       draw();

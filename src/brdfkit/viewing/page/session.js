@@ -9,10 +9,16 @@ function toBytes(buffer) {
   return new Uint8Array(buffer.buffer, buffer.byteOffset, buffer.byteLength);
 }
 
+/** Return whether what is shown uses a part of the page, such as "slices". */
+function uses(session, part) {
+  return Boolean(session.description?.parts?.includes(part));
+}
+
 /**
  * Start a session on an anywidget model.
  *
- * `state` holds the value of each name; `description` is Python's last "open" message. Parts of
+ * `state` holds the value of each name; `description` is Python's last "open" message, with the
+ * controls of a later "controls" message. Parts of
  * the page listen with `on(type, listener)` to the messages of Python by their type, and to
  * "state", which carries the set of names that have changed, whoever changed them.
  */
@@ -37,6 +43,12 @@ function createSession(model) {
       edits.forget();
       session.emit("open", content, bytes);
       session.emit("history", content);
+      session.emit("state", new Set(Object.keys(session.state)));
+    } else if (content.type === "controls") {
+      session.description = { ...session.description, ...content };
+      session.state = { ...content.state };
+      edits.forget();
+      session.emit("controls", content);
       session.emit("state", new Set(Object.keys(session.state)));
     } else if (content.type === "state") {
       edits.accept(content.state);

@@ -52,14 +52,17 @@ function createToolbar(session, pick, paint, help) {
   const save = makeMenu("Save");
   const group = (...buttons) => make("div", { class: "group" }, ...buttons);
   const title = make("span", { class: "title" });
+  const open = makeButton("Open…", () => pick(), { class: "main" });
   session.on("open", (content) => {
     title.textContent = title.title = content.title || "";
+    open.hidden = !uses(session, "files");
+    paint.hidden = !uses(session, "paint");
     save.button.disabled = !content.saves?.length;
     save.fill(...(content.saves || []).map(({ kind, label }) =>
       makeButton(label, () => session.send({ type: "save", kind }))));
   });
   return make("div", { class: "toolbar", role: "group", "aria-label": "Files and history" },
-    group(makeButton("Open…", () => pick(), { class: "main" }), save.element),
+    group(open, save.element),
     group(
       makeButton("Copy as Python", () => session.send({ type: "copy", kind: "python" })),
       makeButton("Copy as command", () => session.send({ type: "copy", kind: "command" })),

@@ -1,11 +1,11 @@
 // The viewer: puts the parts together, and connects them to a model of anywidget's kind.
 
 /** Do what a key means to the whole viewer; the picture's own keys come first. */
-function listenForKeys(session, root, stage, { cameraKey, paintKey, moveCross, switchWipe, help }) {
+function listenForKeys(session, root, stage, { pictureKeys, moveCross, switchWipe, help }) {
   stage.addEventListener("keydown", (event) => {
     if (event.target !== stage) return;
     const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
-    if (cameraKey(event) || paintKey(event)) event.preventDefault();
+    if (pictureKeys.some((key) => key(event))) event.preventDefault();
     else if (plain && event.key === " ") {
       event.preventDefault();
       session.emit("pause");
@@ -75,7 +75,7 @@ function render({ model, el }) {
     class: model.address ? "brdfkit-view whole" : "brdfkit-view",
     "data-lm-suppress-shortcuts": "true", // JupyterLab's keys
   });
-  const help = () => showHelp(root, session.description?.volume);
+  const help = () => showHelp(session, root);
   const probe = makeProbe(session);
 
   const picture = createPicture(session, stage);
@@ -85,6 +85,7 @@ function render({ model, el }) {
   const paint = createPaint(session, stage, picture);
   const moves = makeCameraMoves(session, picture);
   followPointers(session, stage, moves);
+  turnLight(session, stage);
   stage.append(makeViewButtons(session, stage, moves));
   createNotices(session, stage);
   probePicture(stage, picture, probe);
@@ -92,8 +93,12 @@ function render({ model, el }) {
   const slices = createSlices(session, probe);
   const transfer = createTransferEditor(session);
   const panels = make("div", { class: "panels" });
-  const editors = { transfer: transfer.element, clip: createClipBox(session), camera: createTargetBoxes(session) };
-  createPanels(session, panels, editors, new Set(TRANSFER_NAMES));
+  const editors = {
+    transfer: transfer.element, clip: createClipBox(session), camera: createTargetBoxes(session),
+    fit: createFitPanel(session),
+  };
+  const findControl = createPanels(session, panels, editors, new Set(TRANSFER_NAMES));
+  markParameters(session, findControl);
 
   const pick = acceptFiles(session, root);
   const views = make("div", { class: "views-area" }, stage, slices.element);
@@ -105,8 +110,8 @@ function render({ model, el }) {
   el.append(root);
 
   listenForKeys(session, root, stage, {
-    cameraKey: makeCameraKeys(session, moves), paintKey: paint.key, moveCross: makeCrossKey(session),
-    switchWipe: makeWipeSwitch(session), help,
+    pictureKeys: [makeCameraKeys(session, moves), paint.key, makeLightKeys(session)],
+    moveCross: makeCrossKey(session), switchWipe: makeWipeSwitch(session), help,
   });
   if (model.address) keepFocus(session, root, stage);
   session.on("redraw", picture.draw);

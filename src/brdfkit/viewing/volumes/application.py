@@ -45,7 +45,9 @@ class VolumeApplication:
         changes: Mapping[str, Any] | None = None,
     ) -> None:
         self.upload = Upload()
-        self.show(volume, Source(source) if isinstance(source, str) else source, changes)
+        read_from = Source(source) if isinstance(source, str) else source
+        self.given = volume, read_from, changes
+        self.show(*self.given)
 
     @in_turn
     def show(
@@ -159,6 +161,10 @@ class VolumeApplication:
     def subject(self) -> str:
         """The volume's name and size."""
         return f"{self.name} of {'×'.join(map(str, self.volume.size))} voxels"
+
+    def again(self) -> VolumeApplication:
+        """Return another view of the volume with which this one began, as for another page."""
+        return VolumeApplication(*self.given)
 
     def tone_mapping(self, state: State) -> ToneMapping:
         """Return the tone mapping of a state."""

@@ -1,0 +1,245 @@
+"""`MaterialApplication`: what a session shows of a material beside a model of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.arguments import to_number
+from brdfkit.core.array_types import AnyArray
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.images.tone_mapping import ToneMapping
+from brdfkit.materials.resolve import MaterialLike
+from brdfkit.viewing.application import Message
+from brdfkit.viewing.controls import State, to_changes
+from brdfkit.viewing.materials import fit_task, material_scripts, saving
+from brdfkit.viewing.materials.explorer_controls import MODEL
+from brdfkit.viewing.materials.idle_parameters import find_idle_parameters
+from brdfkit.viewing.materials.live_light import LiveLights
+from brdfkit.viewing.materials.live_material import LiveMaterial
+from brdfkit.viewing.materials.material_scene import SceneKind
+from brdfkit.viewing.materials.material_state import (
+    MaterialState,
+    find_moving_size,
+    make_kind,
+    make_look,
+)
+from brdfkit.viewing.materials.parameter_controls import list_panels
+from brdfkit.viewing.materials.parameter_state import PREFIX
+from brdfkit.viewing.session import Session
+from brdfkit.viewing.tone_controls import develop, to_tone_mapping
+
+PASSES_BEFORE = 3  # at rest, before the kernels for moves are made
+MODELS = 4  # whose scenes are kept at most
+PANELS = (("fit", "Model and fit", True),)  # before those of the parameters
+MORE_PANELS = (
+    ("picture", "Picture", True),
+    ("light", "Light", True),
+    ("tone", "Tone mapping", False),
+)
+DRAWN_ONLY = "wipe", "tone.", "fit.", "view.moving_scale"  # names that alter no samples
+
+
+class MaterialApplication:
+    """A view of a material and of models of it, left and right of the wipe.
+
+    `material` is a measured one; or a model or a fit, which is then shown alone. `models` are
+    labels, models with values or fits; the first is shown. `changes` are settings that differ from
+    the first ones. Raises `BrdfkitError` if one of them is not possible.
+    """
+
+    def __init__(
+        self,
+        material: MaterialLike,
+        models: Iterable[MaterialLike] = (),
+        changes: Mapping[str, Any] | None = None,
+    ) -> None:
+        self.given = material, tuple(models), to_changes(changes)
+        self.states = MaterialState(*self.given[:2])
+        self.lights = LiveLights()
+        self.live: dict[str, LiveMaterial] = {}  # by the model's label, or "" for the measured one
+        self.preview: tuple[Any, AnyArray] = None, np.zeros(0)  # the last one, with what it shows
+        self.rested: dict[tuple[LiveMaterial, SceneKind], int] = {}  # passes at rest
+        self.task: fit_task.FitTask | None = None
+        self.first = self.change(self.states.first(), self.given[2])
+        self.base = self.states.to_model(self.first)  # whose values the controls begin with
+
+    @property
+    def name(self) -> str:
+        """The name of the material."""
+        return self.states.name
+
+    @property
+    def subject(self) -> str:
+        """The material's name, and whether it was measured."""
+        return f"the material {self.name}" if self.states.measured else f"the model {self.name}"
+
+    def again(self) -> MaterialApplication:
+        """Return another view of the same material, as for another page."""
+        return MaterialApplication(*self.given)
+
+    def close(self) -> None:
+        """End the fit that goes on, because the page is gone."""
+        if self.task is not None:
+            self.task.cancel()
+
+    def first_state(self) -> State:
+        """Return the state with which a view begins."""
+        return self.first
+
+    def describe(self) -> Message:
+        """Return the message "open": the panels, the controls and what can be saved."""
+        return {
+            "title": self.name,
+            "parts": ["light", *(["fit"] if self.states.is_fittable else [])],
+            "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
+        } | self._describe_controls(), []
+
+    def _describe_controls(self) -> dict[str, Any]:
+        """Return the panels and the controls, those of the shown model among them."""
+        panels = [*PANELS, *list_panels(type(self.base)), *MORE_PANELS]
+        return {
+            "panels": [
+                {"name": name, "label": label, "open": is_open} for name, label, is_open in panels
+            ],
+            "controls": [c.to_json() for c in self.states.list_controls(self.base).values()],
+        }
+
+    def change(self, state: State, changes: Mapping[str, Any]) -> State:
+        """Return the state after changes; raise `BrdfkitError` if one is not possible."""
+        return self.states.change(state, changes)
+
+    def sides(self, state: State) -> int:
+        """Return the number of pictures: 2 if there is one right of the wipe."""
+        return 2 if state["second"] else 1
+
+    def needs_samples_anew(self, before: State, after: State) -> bool:
+        """Return whether the samples of one state are not those of another."""
+        names = before.keys() | after.keys()
+        changed = [name for name in names if before.get(name) != after.get(name)]
+        return any(not name.startswith(DRAWN_ONLY) for name in changed)
+
+    def render(
+        self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
+    ) -> AnyArray:
+        """Render a pass: (height, width, 3), linear sRGB. Both sides share light and samples."""
+        is_model = state["second" if side else "first"] == MODEL
+        shown: Any = self.states.to_model(state) if is_model else self.states.measured
+        live = self._find_live(state["model"] if is_model else "", shown)
+        if is_model:
+            live.show(shown)
+        kind = make_kind(state, size, moving)
+        if moving and not is_model:
+            return self._render_still(live, kind, state)
+        if not moving:
+            self._prepare_move(live, kind, state)
+        return live.render(kind, make_look(state), seed)
+
+    def _prepare_move(self, live: LiveMaterial, kind: SceneKind, state: State) -> None:
+        """Make the kernels of pictures while something moves, after a few pictures at rest.
+
+        Otherwise the first move of a slider would wait for them.
+        """
+        self.rested[live, kind] = self.rested.get((live, kind), 0) + 1
+        if self.rested[live, kind] == PASSES_BEFORE:
+            size = find_moving_size(state, kind.size)
+            live.render(make_kind(state, size, moving=True), make_look(state))
+
+    def _render_still(self, live: LiveMaterial, kind: SceneKind, state: State) -> AnyArray:
+        """Return the picture without noise of the measured material, which no slider changes."""
+        key = kind, state["light.turn"]
+        if self.preview[0] != key:
+            self.preview = key, live.render(kind, make_look(state))
+        return self.preview[1]
+
+    def _find_live(self, key: str, material: Any) -> LiveMaterial:
+        """Return the scenes of a material, which are made when it is first shown."""
+        live = self.live.pop(key, None) or LiveMaterial(material, self.lights)
+        self.live[key] = live  # the last one is the newest
+        while len(self.live) > MODELS:
+            self.live.pop(next(iter(self.live)))
+        return live
+
+    def tone_mapping(self, state: State) -> ToneMapping:
+        """Return the tone mapping of a state."""
+        return to_tone_mapping(state)
+
+    def develop(
+        self, state: State, pictures: dict[int, AnyArray], moving: bool
+    ) -> dict[int, AnyArray]:
+        """Return the pictures of all sides as sRGB in 8 bits, with one exposure."""
+        return develop(state, pictures, moving)
+
+    def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
+        """Return which parameters do nothing in the picture, with the reasons."""
+        idle = find_idle_parameters(self.states.to_model(state))
+        return {"idle": {PREFIX + name: reason for name, reason in idle.items()}}
+
+    def follow(self, before: State, after: State) -> list[Message]:
+        """Return the controls if they are those of another model, or too short for its values."""
+        model = self.states.to_model(after)
+        same = type(model) is type(self.base) and before
+        if same and not self.states.exceeds_controls(self.base, after):
+            return []
+        return self.describe_model(after)
+
+    def describe_model(self, state: State) -> list[Message]:
+        """Return the controls of a state's model, whose defaults are its values, and its fit."""
+        self.base = self.states.to_model(state)
+        controls = {"type": "controls", "state": state} | self._describe_controls()
+        return [(controls, []), (self.states.describe_fit(state["model"]), [])]
+
+    def answer(self, session: Session, message: dict[str, Any], data: bytes) -> list[Message]:
+        """Answer a message that is about the material."""
+        answers: dict[str, Callable[[Session, dict[str, Any]], list[Message]]] = {
+            "probe": self._probe,
+            "fit": self._fit,
+            "save": self._save,
+            "copy": self._copy,
+        }
+        kind = str(message.get("type"))
+        if kind not in answers:
+            raise BrdfkitError(
+                f"The page sent a message {kind!r:.40}, which is unknown; reload it."
+            )
+        return answers[kind](session, message)
+
+    def _fit(self, session: Session, message: dict[str, Any]) -> list[Message]:
+        """Begin to fit the model that is shown, or end the fit that goes on."""
+        if message.get("cancel"):
+            self.close()
+            return []
+        if not self.states.is_fittable:
+            raise BrdfkitError(f"{self.name} was not measured, so nothing can be fitted to it.")
+        if self.task is not None and not self.task.ended:
+            raise BrdfkitError("A fit goes on already; wait for it, or cancel it.")
+        self.task = fit_task.FitTask(self, session)
+        session.tasks.append(self.task.run())
+        return [fit_task.describe_progress(session.state["model"], None)]
+
+    def _probe(self, session: Session, message: dict[str, Any]) -> list[Message]:
+        """Return the linear RGB of each picture under the pointer."""
+        x, y = (min(max(to_number(name, message.get(name)), 0.0), 1.0) for name in "xy")
+        texts = []
+        for side, samples in sorted(session.accumulated.items()):
+            if samples.passes:
+                height, width = samples.picture.shape[:2]
+                at = min(int(y * height), height - 1), min(int(x * width), width - 1)
+                value = " ".join(f"{v:.3g}" for v in samples.picture[at])
+                shown = session.state["second" if side else "first"]
+                texts.append(f"{self.states.name_side(session.state, shown)}: {value}")
+        return [({"type": "probe", "text": "RGB of " + " · ".join(texts) if texts else ""}, [])]
+
+    def _save(self, session: Session, message: dict[str, Any]) -> list[Message]:
+        """Return a file for the page to keep."""
+        return [saving.make_file(self, session, str(message.get("kind")))]
+
+    def _copy(self, session: Session, message: dict[str, Any]) -> list[Message]:
+        """Return the view as a script or a command."""
+        kind = str(message.get("kind"))
+        is_command = kind == "command"
+        write = material_scripts.write_command if is_command else material_scripts.write_script
+        title = "The same picture from a command" if is_command else "The same from Python"
+        return [({"type": "text", "title": title, "text": write(self, session)}, [])]

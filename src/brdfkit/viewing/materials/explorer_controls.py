@@ -1,0 +1,77 @@
+"""The controls of a view of a material, besides those of a model's parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+from brdfkit.core.catalogue import list_environments
+from brdfkit.model import labels
+from brdfkit.regression.losses.named_losses import DEFAULT, named
+from brdfkit.viewing.controls import Control
+from brdfkit.viewing.materials.live_light import LAMP
+from brdfkit.viewing.materials.material_scene import PLANE
+from brdfkit.viewing.tone_controls import make_tone_controls
+
+MEASURED, MODEL = "measured", "model"  # what can be left and right of the wipe
+NO_MODELS = ("mixture",)  # names that make no model by themselves
+SHAPES = (("ball", "ball"), (PLANE, "plane"))
+
+
+def make_explorer_controls(
+    material: str, models: Sequence[str], label: str, compared: bool
+) -> list[Control]:
+    """Return the controls of a view of a `material`.
+
+    `models` are the labels that were used so far, and come first in the menu; `label` is that of
+    the model that is shown. With `compared`, the material is shown beside it.
+    """
+    return [
+        *_make_fit_controls(models, label, compared),
+        *_make_picture_controls(material, label, compared),
+        *_make_light_controls(),
+        *make_tone_controls(),
+    ]
+
+
+def _make_fit_controls(models: Sequence[str], label: str, compared: bool) -> list[Control]:
+    """Return the controls of the model and of its fit."""
+    others = [name for name in labels.models() if name not in (*models, *NO_MODELS)]
+    known = tuple((name, name) for name in (*models, *others))
+    losses = tuple((name, name) for name in named)
+    sums = "A model, or a sum such as ggx+ward."
+    control = partial(Control, panel="fit")
+    model = control("model", "Model", default=label, kind="text", choices=known, help=sums)
+    meaning = "The error that a fit makes small."
+    loss: dict[str, Any] = {"default": DEFAULT, "kind": "choice", "choices": losses}
+    return [model, *([control("fit.loss", "Loss", help=meaning, **loss)] if compared else [])]
+
+
+def _make_picture_controls(material: str, label: str, compared: bool) -> list[Control]:
+    """Return the controls of what is shown, and where."""
+    control = partial(Control, panel="picture")
+    shown = ((MEASURED, material), (MODEL, label)) if compared else ((MODEL, label),)
+    first, second = (MEASURED, MODEL) if compared else (MODEL, "")
+    right: dict[str, Any] = {"default": second, "choices": (("", "nothing"), *shown)}
+    pixels = "Pixels of the picture for each pixel of the screen."
+    scales: dict[str, Any] = {"low": 0.125, "high": 1, "step": 0.125}
+    return [
+        control("first", "Left of the wipe", default=first, kind="choice", choices=shown),
+        control("second", "Right of the wipe", kind="choice", **right),
+        control("wipe", "Wipe", default=0.5, when={"second": (MEASURED, MODEL)}),
+        control("shape", "Shape", default="ball", kind="choice", choices=SHAPES),
+        control("view.scale", "Resolution", default=1.0, low=0.25, high=2, step=0.25, help=pixels),
+        control("view.moving_scale", "Resolution while moving", default=0.5, **scales),
+    ]
+
+
+def _make_light_controls() -> list[Control]:
+    """Return the controls of the light."""
+    control = partial(Control, panel="light")
+    maps = (*((name, name) for name in list_environments()), (LAMP, "a lamp"))
+    turn: dict[str, Any] = {"low": -180, "high": 180, "unit": "°"}
+    return [
+        control("light.environment", "Environment", default="studio", kind="choice", choices=maps),
+        control("light.turn", "Rotation", default=0.0, **turn),
+    ]

@@ -1,0 +1,93 @@
+"""Scripts and commands that repeat the picture of a view of a material, and its fit."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+from typing import TYPE_CHECKING, Any
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.model import Model
+from brdfkit.viewing.controls import State
+from brdfkit.viewing.materials.parameter_state import PREFIX, to_state
+
+if TYPE_CHECKING:
+    from brdfkit.viewing.session import Session
+
+    Application = Any  # `MaterialApplication`, which imports this file
+
+SAMPLES = 64  # per pixel at least
+
+
+def write_script(application: Application, session: Session) -> str:
+    """Return a Python script that makes the model and the session's picture.
+
+    A model whose values are still those of its fit is fitted again.
+    """
+    states, state = application.states, session.state
+    material = application.given[0]
+    load = repr(os.fspath(material)) if isinstance(material, str | os.PathLike) else "material"
+    changes = {k: v for k, v in find_changes(application, state).items() if not _is_model(k)}
+    lines = ["import brdfkit", ""]
+    if states.measured is None:
+        lines.append(f"material = {write_model(states.to_model(state))}")
+        call = "material, state"
+    else:
+        if load != "material":
+            lines.append(f"material = brdfkit.load({load})")
+        lines += [f"model = {_write_fit(application, state)}", "print(model)"]
+        lines.append("print(brdfkit.compare(material, model))")
+        call = "material, state, models=model"
+    lines += ["", "state = {", *(f"    {k!r}: {v!r}," for k, v in changes.items()), "}"]
+    if not changes:
+        lines[-2:] = ["state = {}"]
+    spp = max(session.passes, SAMPLES)
+    lines.append(f"picture = brdfkit.viewing.render_view({call}, size={session.size}, spp={spp})")
+    return "\n".join([*lines, f"picture.write({application.name + '.png'!r})", ""])
+
+
+def _write_fit(application: Application, state: State) -> str:
+    """Return the expression of a state's model: its fit, or its values."""
+    fit, label = application.states.fits.get(state["model"]), state["model"]
+    values = to_state(application.states.to_model(state))
+    fitted = fit is not None and to_state(fit.rgb) == values
+    if fitted and not fit.settings.get("spectral"):
+        return f"brdfkit.fit(material, {label!r}, loss={fit.loss_name!r})"
+    return write_model(application.states.to_model(state))
+
+
+def write_model(model: Model) -> str:
+    """Return the expression that makes a model with its values."""
+    kind, words = type(model), [f"{n}={v!r}" for n, v in model.free_values.items()]
+    options = ", ".join(f"{name}={value!r}" for name, value in kind.changed_options().items())
+    configured = f".configured({options})" if options else ""
+    return f"brdfkit.models()[{kind.type_name()!r}]{configured}({', '.join(words)})"
+
+
+def write_command(application: Application, session: Session) -> str:
+    """Return a command that makes the session's picture."""
+    material, state = application.given[0], session.state
+    if not isinstance(material, str | os.PathLike):
+        raise BrdfkitError(
+            f"{application.name} was made in Python, and no command can load it; copy Python."
+        )
+    changes = find_changes(application, state)
+    width, height = session.size
+    words = ["brdfkit", "view", os.fspath(material)]
+    words += [state["model"]] if application.states.measured is not None else []
+    changes.pop("model", None)
+    words += ["--state", json.dumps(changes), "--size", f"{width}x{height}"]
+    words += ["--spp", str(max(session.passes, SAMPLES)), "-o", f"{application.name}.png"]
+    return shlex.join(words)
+
+
+def find_changes(application: Application, state: State) -> State:
+    """Return what of a state differs from the first one of a view of its model."""
+    first = application.states.first() | to_state(type(application.states.to_model(state))())
+    return {name: value for name, value in state.items() if first.get(name) != value}
+
+
+def _is_model(name: str) -> bool:
+    """Return whether a setting is the model, or one of its values."""
+    return name == "model" or name.startswith(PREFIX)

@@ -1,0 +1,216 @@
+"""The state of a view of a material: its first values, its checks, and what a scene shows of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.errors import BrdfkitError, no_such_error
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.resolve import Material, MaterialLike, to_material
+from brdfkit.model import Model, labels
+from brdfkit.regression import Fit
+from brdfkit.viewing.controls import Control, State, default_state
+from brdfkit.viewing.materials.explorer_controls import MODEL, make_explorer_controls
+from brdfkit.viewing.materials.material_scene import Look, SceneKind, make_studio_camera
+from brdfkit.viewing.materials.parameter_controls import make_controls
+from brdfkit.viewing.materials.parameter_state import (
+    CHANNELS,
+    PREFIX,
+    change_values,
+    to_model,
+    to_state,
+)
+from brdfkit.viewing.session import SIZE_STEP, scale_size
+
+LARGEST_WEIGHT = 1e6
+DEFAULT_MODEL = "ggx"  # beside a measured material without another one
+
+
+class MaterialState:
+    """Makes and checks the states of a view of one material and models.
+
+    Attributes
+    ----------
+    measured : Material or None
+        The material left of the wipe; None where a model is shown alone.
+    fits : dict of str to Fit
+        The fits that were made or given, by the model's label.
+    """
+
+    def __init__(self, material: MaterialLike, models: Iterable[MaterialLike]) -> None:
+        given = [_find_model(thing) for thing in models]
+        shown = to_material(material)
+        self.measured: Material | None = shown
+        if isinstance(shown, Fit | Model) and not given:
+            self.measured, given = None, [shown]
+        if not given:
+            given = [labels.model(DEFAULT_MODEL)()]
+        self.name = shown.name
+        self.fits: dict[str, Fit] = {}
+        self.models: dict[str, Model] = {}  # with the values that were given
+        for thing in given:
+            label = find_label(thing)
+            self.models[label] = thing.rgb
+            if isinstance(thing, Fit):
+                self.fits[label] = thing
+        self.label = next(iter(self.models))  # of the model that is shown first
+
+    @property
+    def is_fittable(self) -> bool:
+        """Whether models can be fitted to the material."""
+        return isinstance(self.measured, Measured)
+
+    def find_model(self, label: str) -> Model:
+        """Return the model of a label with its first values: those of its fit, or given ones."""
+        if label in self.fits:
+            return self.fits[label].rgb
+        if label not in self.models:
+            self.models[label] = labels.model(label)().rgb
+        return self.models[label]
+
+    def find_class(self, state: State) -> type[Model]:
+        """Return the class of the model of a state."""
+        return type(self.find_model(state["model"]))
+
+    def to_model(self, state: State) -> Model:
+        """Return the model of a state, with its values."""
+        return to_model(self.find_class(state), state)
+
+    def list_controls(self, model: Model, label: str = "") -> dict[str, Control]:
+        """Return all controls by name, those of a model with its values among them."""
+        label = label or find_label(model)
+        names = [label, *(known for known in self.models if known != label)]
+        own = make_explorer_controls(self.name, names, label, self.measured is not None)
+        return {control.name: control for control in [*own, *make_controls(model)]}
+
+    def first(self) -> State:
+        """Return the state with which a view begins."""
+        model = self.find_model(self.label)
+        return default_state(self.list_controls(model, self.label).values())
+
+    def change(self, state: State, changes: Mapping[str, Any]) -> State:
+        """Return the state after `changes`; raise `BrdfkitError` if one is not possible."""
+        new = dict(state)
+        label = _check_label(changes["model"]) if "model" in changes else state["model"]
+        if label != state["model"]:
+            new = {name: v for name, v in state.items() if not name.startswith(PREFIX)}
+            new |= to_state(self.find_model(label)) | {"model": label}
+        model = self.find_model(label)
+        controls = self.list_controls(model, label)
+        values: State = {}
+        for name, value in changes.items():
+            if name not in new:
+                raise no_such_error("setting", name, new)
+            if name.startswith(PREFIX):
+                values[name] = _check_parameter(controls[name], type(model), value)
+            elif name != "model":
+                new[name] = controls[name].check(value)
+        return change_values(type(model), new, _without_colours(values))
+
+    def exceeds_controls(self, base: Model, state: State) -> bool:
+        """Return whether a weight of a state is beyond the end of its slider."""
+        controls = make_controls(base)
+        return any(
+            not control.low <= state[control.name] <= control.high
+            for control in controls
+            if control.kind == "slider"
+        )
+
+    def name_side(self, state: State, shown: str) -> str:
+        """Return the name of what is left or right of the wipe."""
+        return state["model"] if shown == MODEL else self.name
+
+    def describe_fit(self, label: str) -> dict[str, Any]:
+        """Return the message "fit": how good a model's fit is, and its values by control's name."""
+        fit = self.fits.get(label)
+        if fit is None:
+            return {"type": "fit", "text": "", "notes": [], "marks": {}}
+        seconds = f"{fit.seconds:.1f} s" if fit.seconds else ""
+        texts = [f"{fit.loss_name} loss {fit.loss:.4g}", f"{fit.samples:,} samples", seconds]
+        text = ", ".join(filter(None, texts))
+        return {"type": "fit", "text": text, "notes": fit.warnings, "marks": make_marks(fit)}
+
+
+def make_marks(fit: Fit) -> dict[str, list[float | None]]:
+    """Return the fitted values and their standard errors, None if unknown, by control's name."""
+    errors: dict[str, Any] = {} if fit.wavelengths else fit.standard_errors
+    fitted = fit.rgb
+    marks: dict[str, list[float | None]] = {}
+    for name, parameter in fitted.parameters.items():
+        value, error = getattr(fitted, name), errors.get(name, np.nan)
+        if parameter.linear:
+            pairs = zip(np.broadcast_to(value, 3), np.broadcast_to(error, 3), strict=True)
+            named = {f"{name}.{c}": pair for c, pair in zip(CHANNELS, pairs, strict=True)}
+        else:
+            named = {name: (value, error)}
+        for key, (number, own) in named.items():
+            marks[PREFIX + key] = [float(number), float(own) if np.isfinite(own) else None]
+    return marks
+
+
+def make_kind(state: State, size: tuple[int, int], moving: bool) -> SceneKind:
+    """Return what of a state needs kernels of its own."""
+    return SceneKind(state["shape"], state["light.environment"], size, moving)
+
+
+def find_moving_size(state: State, size: tuple[int, int]) -> tuple[int, int]:
+    """Return the size of a session's picture while something moves, from that at rest."""
+    sides = [round(side / state["view.scale"] / SIZE_STEP) * SIZE_STEP for side in size]
+    return scale_size((sides[0], sides[1]), state["view.moving_scale"])
+
+
+def make_look(state: State) -> Look:
+    """Return the camera and the light of a state; a lamp is turned like an environment."""
+    look = Look(make_studio_camera())
+    turn = np.radians(state["light.turn"])
+    x, y, z = look.lamp
+    across, along = x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)
+    return replace(look, turn=state["light.turn"], lamp=(float(across), float(along), z))
+
+
+def find_label(model: Model | Fit) -> str:
+    """Return the label of a model, such as "ggx+ward"."""
+    return type(model.rgb).label().removeprefix("mixture:models=")
+
+
+def _find_model(thing: MaterialLike) -> Fit | Model:
+    """Return the model with values, or the fit, that a label or a file describes."""
+    if isinstance(thing, type) and issubclass(thing, Model):
+        return labels.model(thing)()
+    found = to_material(thing)
+    if not isinstance(found, Fit | Model):
+        raise BrdfkitError(f"{found.name} is no model; name the measured material first.")
+    return found
+
+
+def _check_label(label: Any) -> str:
+    """Return the usual label of a known model; raise `BrdfkitError` for another text.
+
+    No file is loaded, because a page must not run code.
+    """
+    if not isinstance(label, str) or len(label) > 200:
+        raise BrdfkitError("The model should be a name such as ggx, or a sum such as ggx+ward.")
+    return find_label(labels.model(label.replace(" ", ""))())
+
+
+def _check_parameter(control: Control, model: type[Model], value: Any) -> Any:
+    """Return the value of a parameter's control; a weight may be beyond the end of its slider."""
+    name, _, ending = control.name.removeprefix(PREFIX).partition(".")
+    if ending in CHANNELS:
+        low, high = np.clip(model.parameters[name].bounds, -LARGEST_WEIGHT, LARGEST_WEIGHT)
+        control = replace(control, low=float(low), high=float(high))
+    return control.check(value)
+
+
+def _without_colours(values: State) -> State:
+    """Return values without the colours of weights whose channels are given, which say more."""
+    given = {name.rpartition(".")[0] for name in values if name.rpartition(".")[2] in CHANNELS}
+    return {
+        name: value
+        for name, value in values.items()
+        if not (name.endswith(".colour") and name.rpartition(".")[0] in given)
+    }

@@ -1,0 +1,44 @@
+"""Files of a view of a material: its picture, its settings, its fit, and the model as shown."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.names import to_file_stem
+from brdfkit.materials.loading import save
+from brdfkit.viewing import picture_files
+
+if TYPE_CHECKING:
+    from brdfkit.viewing.application import Message
+    from brdfkit.viewing.session import Session
+
+    Application = Any  # `MaterialApplication`, which imports this file
+
+KINDS = {
+    **picture_files.KINDS,
+    "fit": "Fit (JSON)",
+    "bsdf": "Model as shown (Mitsuba's .bsdf)",
+}
+
+
+def make_file(application: Application, session: Session, kind: str) -> Message:
+    """Return the message "file" of a kind of `KINDS`."""
+    if kind in picture_files.KINDS:
+        return picture_files.make_picture_file(application, session, kind)
+    if kind not in KINDS:
+        raise BrdfkitError(f"A view is saved as {', '.join(KINDS)}, and not as {kind!r:.20}.")
+    states, label = application.states, session.state["model"]
+    if kind == "fit" and label not in states.fits:
+        raise BrdfkitError(f"{label} is not fitted yet; choose Fit first.")
+    thing = states.fits[label] if kind == "fit" else states.to_model(session.state)
+    suffix, mime = (".json", "application/json") if kind == "fit" else (".bsdf", "")
+    name = to_file_stem(f"{application.name}-{label}" if states.measured else label) + suffix
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"material{suffix}"
+        save(thing, path)
+        content = path.read_bytes()
+    mime = mime or "application/octet-stream"
+    return {"type": "file", "name": name, "mime": mime}, [content]

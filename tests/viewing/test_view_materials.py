@@ -1,0 +1,236 @@
+"""A session of a material beside a model: its state, its fit, its files and its scripts."""
+
+import json
+import shlex
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import brdfkit as bk
+from brdfkit.cli import main
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.lighting.environments.map_files import read_map
+from brdfkit.viewing.choosing import is_volume, make_application
+from brdfkit.viewing.materials import fit_task
+from brdfkit.viewing.materials.application import MaterialApplication
+from brdfkit.viewing.materials.parameter_state import to_state
+from brdfkit.viewing.session import Session
+from brdfkit.viewing.volumes.application import VolumeApplication
+
+HELLO = {"type": "hello", "width": 64, "height": 64, "state": None}
+
+
+@pytest.fixture(scope="module")
+def application(module_in_llvm):
+    """The view that all tests share, with its scenes."""
+    return MaterialApplication("car_paint", ["ggx", "ward"])
+
+
+@pytest.fixture
+def session(application):
+    application.states.fits.clear()
+    own = Session(application)
+    own.handle(HELLO)
+    return own
+
+
+def change(session, moving=False, **changes):
+    """Change settings, "__" for a dot in their names; return the messages by their types."""
+    named = {name.replace("__", "."): value for name, value in changes.items()}
+    answers = session.handle({"type": "set", "changes": named, "moving": moving})
+    return {message["type"]: message for message, _ in answers}
+
+
+def fit(session):
+    """Fit the model that is shown; return the messages by their types."""
+    answers = session.handle({"type": "fit"})
+    while session.tasks:
+        answers += session.work()
+    return {message["type"]: message for message, _ in answers}
+
+
+def test_the_material_is_left_and_the_model_right_in_the_same_light(session):
+    session.work()
+    change(session, model__alpha_u=0.05)
+    session.work()
+    first = {side: samples.picture for side, samples in session.accumulated.items()}
+    change(session, model__alpha_u=0.6)
+    session.work()
+    second = {side: samples.picture for side, samples in session.accumulated.items()}
+    assert np.abs(first[0] - second[0]).max() == 0
+    assert np.abs(first[1] - second[1]).mean() > 1e-3
+    change(session, first="model")
+    session.work()
+    np.testing.assert_array_equal(session.accumulated[0].picture, session.accumulated[1].picture)
+
+
+def test_a_moving_slider_renders_only_the_model(session, monkeypatch):
+    change(session, moving=True, model__alpha_u=0.3)
+    before = session.work()
+    assert [m["side"] for m, _ in before if m["type"] == "picture"] == [0, 1]
+    live = session.application.live[""]
+    monkeypatch.setattr(type(live), "render", lambda self, *_: pytest.fail() if self is live else 0)
+    state = session.state | {"model.alpha_u": 0.4}
+    session.application.render(state, 0, session._picture_size(True), True, 0)
+
+
+@pytest.mark.parametrize("label", ["ward", "ggx+ward", "koenderink", "lafortune:lobe_count=2"])
+def test_another_model_brings_its_own_controls(session, label):
+    answers = change(session, model=label)
+    names = {name for name in session.state if name.startswith("model.")}
+    controls = {c["name"] for c in answers["controls"]["controls"]}
+    assert names == {name for name in controls if name.startswith("model.")}
+    assert answers["controls"]["state"] == session.state
+    kind = session.application.states.find_class(session.state)
+    assert session.state == session.state | to_state(kind().rgb)
+    back = session.handle({"type": "undo"})
+    assert [m["type"] for m, _ in back] == ["state", "controls", "fit"]
+    assert session.state == session.first
+
+
+def test_a_whole_state_is_taken_over_with_its_values(session):
+    """Links and colours must not change the values beside them."""
+    change(session, model="ward + ggx")
+    change(session, model__ward_1_specular_reflectance__linked=False)
+    change(session, model__ward_1_specular_reflectance__R=7.5)
+    change(session, model__ggx_2_alpha_v=0.05, light__turn=30)
+    state = dict(session.state)
+    other = Session(session.application.again())
+    other.handle(HELLO | {"state": json.loads(json.dumps(state))})
+    assert other.state == state
+    other.handle({"type": "reset"})
+    assert other.state == other.first
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"model": "gxx"}, "did you mean ggx"),
+        ({"model": ["ggx"]}, "a name such as ggx"),
+        ({"model": "open('a').py"}, "no model"),
+        ({"model.alpha_u": "wide"}, "a number from"),
+        ({"model.f0.R": 1}, "no setting"),
+        ({"light.environment": "/etc/passwd"}, "choose one of"),
+    ],
+)
+def test_an_impossible_setting_is_a_sentence(session, changes, sentence):
+    before = session.state
+    (message, _), _ = session.handle({"type": "set", "changes": changes})
+    assert (message["type"], sentence in message["text"]) == ("error", True), message
+    assert session.state == before
+
+
+def test_a_fit_moves_the_sliders_and_is_compared(session):
+    answers = fit(session)
+    expected = bk.fit("car_paint", "ggx")
+    assert session.state == session.state | to_state(expected.rgb)
+    value, error = answers["fit"]["marks"]["model.alpha_u"]
+    assert (value, error) == (expected.values["alpha_u"], expected.standard_errors["alpha_u"])
+    weights = [answers["fit"]["marks"][f"model.specular_reflectance.{c}"][0] for c in "RGB"]
+    assert weights == list(expected.values["specular_reflectance"])
+    defaults = {c["name"]: c["default"] for c in answers["controls"]["controls"]}
+    assert defaults["model.alpha_u"] == value
+    assert answers["busy"]["text"] == ""
+
+    losses = [name for name, _ in answers["errors"]["columns"]]
+    row, floor = answers["errors"]["rows"]
+    errors = bk.compare("car_paint", expected).errors["ggx"]
+    assert row["cells"] == [f"{errors[name]:.3g}" for name in losses]
+    assert all(float(low) < float(own) for low, own in zip(floor["cells"], row["cells"]))
+
+    change(session, model="ward")
+    answers = fit(session)
+    assert [row["name"] for row in answers["errors"]["rows"]][:2] == ["ggx", "ward"]
+    change(session, model="ggx")  # which has its fitted values still
+    assert session.state["model.alpha_u"] == value
+    session.handle({"type": "undo"})
+    assert session.state["model"] == "ward"
+
+
+def test_a_fit_can_be_cancelled_and_fails_in_a_sentence(session, monkeypatch):
+    before, application = dict(session.state), session.application
+
+    def fit_for_ever(*_, progress, **__):
+        for step in range(10**9):
+            progress(step, 10**9)
+
+    monkeypatch.setattr(fit_task, "fit", fit_for_ever)
+    session.handle({"type": "fit"})
+    assert session.work()[0][0]["text"] == "ggx is fitted"
+    ((again, _), *_) = session.handle({"type": "fit"})
+    assert "goes on already" in again["text"]
+    session.handle({"type": "fit", "cancel": True})
+    while session.tasks:
+        last = session.work() or last
+    assert (last[0][0]["type"], last[0][0]["text"]) == ("busy", "")
+    assert application.task.finished.wait(10)
+    assert (session.state, application.states.fits) == (before, {})
+
+    monkeypatch.setattr(fit_task, "fit", lambda *_, **__: bk.fit("car_paint", "ggx", loss="no"))
+    answers = fit(session)
+    assert "no loss 'no'" in answers["error"]["text"]
+    assert not session.paused
+
+
+def test_parameters_that_do_nothing_are_named_with_the_picture(session):
+    change(session, model__specular_reflectance__R=0.0)
+    overlay = session.application.overlay(session.state, (64, 64))
+    assert overlay["idle"].keys() == {"model.alpha_u", "model.alpha_v", "model.f0"}
+
+
+def test_the_copied_command_and_script_repeat_the_picture(session, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    change(session, model="ggx+ward")
+    change(session, model__ward_2_alpha_u=0.4, wipe=0.25, shape="plane", light__turn=40)
+    for _ in range(2):
+        session.work()
+    ((_, (content,)),) = session.handle({"type": "save", "kind": "exr"})
+    (tmp_path / "page.exr").write_bytes(content)
+    ((message, _),) = session.handle({"type": "copy", "kind": "command"})
+    words = shlex.split(message["text"].replace("--spp 64", "--spp 2").replace(".png", ".exr"))
+    assert CliRunner().invoke(main, words[1:]).exit_code == 0
+    ((message, _),) = session.handle({"type": "copy", "kind": "python"})
+    text = message["text"].replace("spp=64", "spp=2").replace("car_paint.png", "script.exr")
+    exec(compile(text, "script", "exec"), {})
+    expected = read_map(tmp_path / "page.exr")
+    for name in ("car_paint.exr", "script.exr"):
+        np.testing.assert_allclose(read_map(tmp_path / name), expected, rtol=1e-4, atol=1e-5)
+
+
+def test_a_fit_is_saved_and_opened_again(session, tmp_path):
+    ((message, _), *_) = session.handle({"type": "save", "kind": "fit"})
+    assert "choose Fit first" in message["text"]
+    fit(session)
+    ((message, (content,)),) = session.handle({"type": "save", "kind": "fit"})
+    path = tmp_path / message["name"]
+    path.write_bytes(content)
+    assert path.name == "car_paint-ggx.json"
+    beside = make_application("car_paint", [path])
+    assert beside.first == beside.first | to_state(bk.load(path).rgb)
+    assert beside.follow({}, beside.first)[1][0]["marks"]
+    alone = make_application(path)
+    assert (alone.sides(alone.first), alone.first["first"]) == (1, "model")
+    ((message, _), *_) = Session(alone).handle({"type": "fit"})
+    assert "was not measured" in message["text"]
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("thing", "volume"), [("smoke", True), ("a.nii", True), ("ggx", False), ("a.binary", False)]
+)
+def test_what_is_viewed_is_known_by_its_name(thing, volume):
+    assert is_volume(thing) == volume
+
+
+def test_a_name_of_nothing_is_refused_with_the_nearest(tmp_path):
+    assert isinstance(make_application("smoke", size=8), VolumeApplication)
+    for name, nearest in {"smok": "smoke", "car_paimt": "car_paint", "gx": "ggx"}.items():
+        with pytest.raises(BrdfkitError, match=f"did you mean {nearest}"):
+            make_application(name)
+    with pytest.raises(BrdfkitError, match="viewed without models"):
+        make_application("smoke", ["ggx"])
+    with pytest.raises(BrdfkitError, match="is no model"):
+        make_application("car_paint", ["plaster"])
+    with pytest.raises(BrdfkitError, match="--downsample"):
+        make_application("car_paint", downsample=2)
