@@ -1,28 +1,14 @@
 """The page of a view for everybody: axe-core finds no fault, and all of it has labels and keys."""
 
-import gzip
-from pathlib import Path
-
 import pytest
-
-AXE = Path(__file__).with_name("axe") / "axe.min.js.gz"
-FAULTS = """async () => {
-    const { violations } = await axe.run(document, { resultTypes: ["violations"] });
-    return violations.filter(({ impact }) => ["serious", "critical"].includes(impact)).map(
-        ({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(" | ")}`);
-}"""
-THEMES = {
-    "light": {"color_scheme": "light", "forced_colors": "none"},
-    "dark": {"color_scheme": "dark", "forced_colors": "none"},
-    "forced": {"color_scheme": "light", "forced_colors": "active"},
-}
+from helpers.view_pages import FAULTS, THEMES, read_axe
 
 
 @pytest.fixture(scope="module")
 def opened(shared_page):
     """The page with everything that it can show: all panels, the slices, bumps and the wipe."""
     page = shared_page
-    page.evaluate(gzip.decompress(AXE.read_bytes()).decode())
+    page.evaluate(read_axe())
     page.get_by_label("Right of the wipe").select_option(label="Isosurface")
     page.get_by_label("Drawn by").select_option(label="bumps over values and gradients")
     page.evaluate("document.querySelectorAll('details').forEach((panel) => (panel.open = true))")

@@ -6,6 +6,7 @@ import re
 import nibabel
 import numpy as np
 import pytest
+from helpers.view_pages import choose, drag, number, pixels, type_number, wait_for_change
 from PIL import Image
 
 DROP = """async ([name, letters]) => {
@@ -42,47 +43,6 @@ WRITTEN = """() => {
     });
     return written;
 }"""
-
-
-def pixels(page):
-    """The pixels of the picture (height, width, 3)."""
-    shot = page.locator("canvas").first.screenshot()
-    return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"), float)
-
-
-def wait_for_change(page, before, least=1.0):
-    """Wait until the picture differs from another one by a mean of `least`."""
-    for _ in range(200):
-        now = pixels(page)
-        if np.abs(now - before).mean() > least:
-            return now
-        page.wait_for_timeout(100)
-    raise AssertionError("the picture does not change")
-
-
-def drag(page, start, end, **options):
-    """Drag from one place to another, in steps."""
-    page.mouse.move(*start)
-    page.mouse.down(**options)
-    page.mouse.move(*end, steps=8)
-    page.mouse.up(**options)
-
-
-def number(page, name):
-    """The number in a number box."""
-    return float(page.get_by_role("spinbutton", name=name, exact=True).input_value())
-
-
-def type_number(page, name, value):
-    """Type a number into its box."""
-    box = page.get_by_role("spinbutton", name=name, exact=True)
-    box.fill(str(value))
-    box.press("Enter")
-
-
-def choose(page, label, text):
-    """Choose an entry of a menu."""
-    page.get_by_role("combobox", name=label, exact=True).select_option(label=text)
 
 
 def test_a_drag_turns_the_volume_and_undo_turns_it_back(page):

@@ -2,7 +2,8 @@
 
 `session.py` is the state machine of one page, without web code; `render_thread.py` renders its
 pictures; `server.py` and `widget.py` carry its messages to the page, whose files are in `page/`.
-`volumes/` is the application for volumes.
+`volumes/` is the application for volumes, `materials/` that for a material beside models, and
+`choosing.py` chooses between them.
 """
 
 import lazy_loader

@@ -16,9 +16,10 @@ function markParameters(session, find) {
   let marks = {}; // control's name → [fitted value, standard error or null]
   let idle = {}; // parameter's name → reason
 
-  /** Return the names of the controls of a parameter. */
+  /** Return the names of the controls of a parameter, but not of those that tie or link it. */
   const controlsOf = (name) => session.description.controls
-    .map((control) => control.name).filter((own) => own === name || own.startsWith(`${name}.`));
+    .filter(({ kind }) => kind !== "flag").map((control) => control.name)
+    .filter((own) => own === name || own.startsWith(`${name}.`));
 
   function describe({ row, input }, help) {
     const text = [help, row.dataset.fitted].filter(Boolean).join(" ");

@@ -1,0 +1,117 @@
+"""The page of a material beside a model in a browser: sliders, models, the fit, the light."""
+
+import time
+from functools import partial
+
+import pytest
+from helpers.view_pages import (
+    FAULTS,
+    THEMES,
+    choose,
+    drag,
+    number,
+    pixels,
+    read_axe,
+    type_number,
+    wait_for_change,
+)
+
+from brdfkit.viewing import server
+from brdfkit.viewing.materials.application import MaterialApplication
+from brdfkit.viewing.render_thread import is_rendering
+
+
+@pytest.fixture(scope="module")
+def address(module_in_llvm):
+    """The address of a view of a material, with pictures of few pixels."""
+    quick = {"view.scale": 0.25, "view.moving_scale": 0.25}
+    make = partial(MaterialApplication, "car_paint", ["ggx"], quick)
+    with server.serve(make, server.open_socket(0), "the-token") as address:
+        yield address
+    end = time.monotonic() + 20
+    while is_rendering() and time.monotonic() < end:  # Python's end would break off the last pass
+        time.sleep(0.02)
+
+
+def test_the_page_has_what_is_about_materials_alone(page):
+    for name in ("Open…", "Paint"):
+        assert page.get_by_role("button", name=name).count() == 0
+    summaries = page.locator("summary:visible").all_inner_texts()
+    assert summaries == [
+        *("Model and fit", "Diffuse term", "Highlight", "Picture", "Light", "Tone mapping")
+    ]
+    page.get_by_role("button", name="Help").click()
+    text = page.get_by_role("dialog").inner_text()
+    assert ("turn the light" in text, "Slices" in text, "orbit" in text) == (True, False, False)
+    page.get_by_role("dialog").get_by_role("button", name="Close").click()
+
+
+def test_a_slider_changes_the_model_and_a_tie_passes_it_on(page):
+    first = pixels(page)
+    slider = page.get_by_role("slider", name="α_u", exact=True)
+    slider.focus()
+    for _ in range(40):
+        page.keyboard.press("ArrowLeft")
+    wait_for_change(page, first)
+    assert slider.get_attribute("aria-valuetext") == str(number(page, "α_u"))
+    page.wait_for_function("() => !document.querySelector('.idle')?.matches(':focus-within')")
+    assert number(page, "α_v") == number(page, "α_u") < 0.2
+    page.get_by_text("It equals α_u: the material is isotropic.").wait_for()
+    type_number(page, "α_v", 0.5)
+    page.get_by_text("It equals α_u").wait_for(state="detached")
+    assert not page.get_by_label("α_v equal to α_u").is_checked()
+
+
+def test_a_typed_sum_brings_its_parameters(page):
+    box = page.get_by_role("textbox", name="Model, typed")
+    box.fill("ggx + ward")
+    box.press("Enter")
+    page.get_by_text("Highlight 2").wait_for()
+    assert box.input_value() == "ggx+ward"
+    box.fill("gxx")
+    box.press("Enter")
+    page.get_by_role("alert").get_by_text("did you mean ggx").wait_for()
+    page.get_by_role("button", name="Close").click()
+    choose(page, "Model", "ward")
+    page.get_by_text("Highlight 2").wait_for(state="detached")
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_text("Highlight 2").wait_for()
+
+
+def test_a_drag_turns_the_light(page):
+    first = pixels(page)
+    drag(page, (150, 300), (250, 300))
+    wait_for_change(page, first)
+    assert number(page, "Rotation [°]") == 50
+    page.locator(".stage").focus()
+    page.keyboard.press("ArrowLeft")
+    page.wait_for_function("() => location.hash")
+    assert number(page, "Rotation [°]") == 45
+
+
+def test_a_fit_moves_and_marks_the_sliders_and_shows_errors(page):
+    page.get_by_role("button", name="Fit", exact=True).click()
+    page.locator("table.errors").wait_for(timeout=60_000)
+    assert number(page, "α_u") == pytest.approx(0.1148, abs=1e-4)
+    slider = page.get_by_role("slider", name="α_u", exact=True)
+    assert "fitted: 0.1148 ± 0.00022" in slider.get_attribute("aria-description")
+    mark = page.locator(".slider", has_text="α_u").first.locator(".mark span").bounding_box()
+    track = slider.bounding_box()
+    share = (mark["x"] + mark["width"] / 2 - track["x"] - 8) / (track["width"] - 16)
+    assert share == pytest.approx(float(slider.input_value()) / 400, abs=0.02)
+    rows = page.locator("table.errors tbody th").all_inner_texts()
+    assert rows == ["ggx", "noise of the data"]
+    type_number(page, "α_u", 0.3)
+    page.locator(".name", has_text="α_u").first.dblclick()  # back to the fitted value
+    assert number(page, "α_u") == pytest.approx(0.1148, abs=1e-4)
+    page.get_by_role("button", name="Copy as Python").click()
+    assert "brdfkit.fit(" in page.get_by_role("dialog").get_by_role("textbox").input_value()
+    page.get_by_role("dialog").get_by_role("button", name="Close").click()
+
+
+@pytest.mark.parametrize("theme", THEMES)
+def test_axe_finds_no_serious_fault(page, theme):
+    page.evaluate(read_axe())
+    page.evaluate("document.querySelectorAll('details').forEach((panel) => (panel.open = true))")
+    page.emulate_media(**THEMES[theme])
+    assert page.evaluate(FAULTS) == []
