@@ -100,7 +100,7 @@ def test_a_fit_moves_and_marks_the_sliders_and_shows_errors(page):
     share = (mark["x"] + mark["width"] / 2 - track["x"] - 8) / (track["width"] - 16)
     assert share == pytest.approx(float(slider.input_value()) / 400, abs=0.02)
     rows = page.locator("table.errors tbody th").all_inner_texts()
-    assert rows == ["ggx", "noise of the data"]
+    assert rows == ["ggx", "noise"]
     type_number(page, "α_u", 0.3)
     page.locator(".name", has_text="α_u").first.dblclick()  # back to the fitted value
     assert number(page, "α_u") == pytest.approx(0.1148, abs=1e-4)

@@ -58,11 +58,12 @@ def test_the_material_is_left_and_the_model_right_in_the_same_light(session):
     change(session, model__alpha_u=0.6)
     session.work()
     second = {side: samples.picture for side, samples in session.accumulated.items()}
-    assert np.abs(first[0] - second[0]).max() == 0
+    assert first[0] == pytest.approx(second[0], abs=1e-6)  # sums of threads are rounded
     assert np.abs(first[1] - second[1]).mean() > 1e-3
     change(session, first="model")
     session.work()
-    np.testing.assert_array_equal(session.accumulated[0].picture, session.accumulated[1].picture)
+    left, right = (session.accumulated[side].picture for side in (0, 1))
+    assert left == pytest.approx(right, abs=1e-6)
 
 
 def test_a_moving_slider_renders_only_the_model(session, monkeypatch):
@@ -137,7 +138,7 @@ def test_a_fit_moves_the_sliders_and_is_compared(session):
     losses = [name for name, _ in answers["errors"]["columns"]]
     row, floor = answers["errors"]["rows"]
     errors = bk.compare("car_paint", expected).errors["ggx"]
-    assert row["cells"] == [f"{errors[name]:.3g}" for name in losses]
+    assert row["cells"] == [f"{errors[name]:.3g}" for name in losses]  # none is small
     assert all(
         float(low) < float(own) for low, own in zip(floor["cells"], row["cells"], strict=True)
     )

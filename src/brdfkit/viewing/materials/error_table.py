@@ -14,7 +14,8 @@ from brdfkit.viewing.application import Message
 if TYPE_CHECKING:
     from brdfkit.viewing.materials.material_state import MaterialState
 
-FLOOR = "noise of the data"
+FLOOR = "noise"  # the name of the last row
+SMALL = 1e-3  # an error of fewer digits
 
 
 def make_error_table(states: MaterialState) -> Message:
@@ -41,5 +42,10 @@ def make_error_table(states: MaterialState) -> Message:
 
 def _make_row(name: str, errors: Any, best: list[bool]) -> dict[str, Any]:
     """Return a row of the table."""
-    cells = ["-" if np.isnan(error) else f"{error:.3g}" for error in errors]
+    cells = [_format_error(float(error)) for error in errors]
     return {"name": name, "cells": cells, "best": best}
+
+
+def _format_error(error: float) -> str:
+    """Return an error as a short text; a small one with one digit."""
+    return "-" if np.isnan(error) else f"{error:.3g}" if error >= SMALL else f"{error:.0e}"

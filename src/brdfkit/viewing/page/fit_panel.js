@@ -7,7 +7,7 @@ function makeCell(tag, text, properties = {}) {
 
 /** Make the table of errors: a row for each fit, and one for the noise of the measurement. */
 function makeErrorTable({ columns, rows }) {
-  const head = make("tr", {}, makeCell("th", "RMS error", { scope: "col" }),
+  const head = make("tr", {}, makeCell("th", "error", { scope: "col" }),
     ...columns.map(([name, meaning]) => makeCell("th", name, { scope: "col", title: meaning })));
   const body = rows.map(({ name, cells, best }) => make("tr", {},
     makeCell("th", name, { scope: "row" }),
@@ -18,7 +18,10 @@ function makeErrorTable({ columns, rows }) {
 /** Make the part of a panel that fits; it hides where nothing can be fitted. */
 function createFitPanel(session) {
   let fitting = false;
-  const button = makeButton("Fit", () => session.send({ type: "fit", cancel: fitting }), { class: "main" });
+  const button = makeButton("Fit", () => {
+    session.send({ type: "fit", cancel: fitting });
+    show(!fitting);
+  }, { class: "main" });
   const verdict = make("p", { class: "verdict" });
   const table = make("div", { class: "table" });
   const element = make("div", { class: "fit", hidden: true },
