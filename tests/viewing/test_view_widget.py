@@ -33,7 +33,7 @@ def test_the_widget_sends_pictures_until_it_is_closed(mi, monkeypatch):
 def test_the_widget_has_a_picture_for_pages_without_python(mi):
     """Of an array here; it is rendered once."""
     values = bk.volumes.load("smoke", size=8).values
-    widget = bk.view(values, {"renderer": "maximum_intensity"})
+    widget = bk.view(values, state={"renderer": "maximum_intensity"})
     assert repr(widget) == "<view of volume, which a running notebook shows>"
     data, _ = widget._repr_mimebundle_()
     assert "application/vnd.jupyter.widget-view+json" in data

@@ -62,7 +62,6 @@ class MaterialApplication:
         self.live: dict[str, LiveMaterial] = {}  # by the model's label, or "" for the measured one
         self.preview: tuple[Any, AnyArray] = None, np.zeros(0)  # the last one, with what it shows
         self.rested: dict[tuple[LiveMaterial, SceneKind], int] = {}  # passes at rest
-        self.task: fit_task.FitTask | None = None
         self.first = self.change(self.states.first(), self.given[2])
         self.base = self.states.to_model(self.first)  # whose values the controls begin with
 
@@ -81,9 +80,8 @@ class MaterialApplication:
         return MaterialApplication(*self.given)
 
     def close(self) -> None:
-        """End the fit that goes on, because the page is gone."""
-        if self.task is not None:
-            self.task.cancel()
+        """Forget the scenes, because the page is gone."""
+        self.live.clear()
 
     def first_state(self) -> State:
         """Return the state with which a view begins."""
@@ -207,16 +205,12 @@ class MaterialApplication:
         return answers[kind](session, message)
 
     def _fit(self, session: Session, message: dict[str, Any]) -> list[Message]:
-        """Begin to fit the model that is shown, or end the fit that goes on."""
-        if message.get("cancel"):
-            self.close()
-            return []
+        """Begin to fit the model that is shown."""
         if not self.states.is_fittable:
             raise BrdfkitError(f"{self.name} was not measured, so nothing can be fitted to it.")
-        if self.task is not None and not self.task.ended:
+        if session.tasks:
             raise BrdfkitError("A fit goes on already; wait for it, or cancel it.")
-        self.task = fit_task.FitTask(self, session)
-        session.tasks.append(self.task.run())
+        session.tasks.append(fit_task.FitTask(self, session).run())
         return [fit_task.describe_progress(session.state["model"], None)]
 
     def _probe(self, session: Session, message: dict[str, Any]) -> list[Message]:

@@ -17,6 +17,7 @@ from brdfkit.viewing.pictures import describe_error
 if TYPE_CHECKING:
     from brdfkit.viewing.session import Session
 
+NAME = "brdfkit fit"  # of the threads
 INTERVAL = 0.1  # seconds between two messages of the progress
 
 
@@ -37,21 +38,19 @@ class FitTask:
         self.share = 0.0  # of the steps of the fit that are done
         self.result: Fit | None = None
         self.error: Exception | None = None
-        self.ended = False
-
-    def cancel(self) -> None:
-        """End the fit at its next step; its result is not used."""
-        self.cancelled.set()
 
     def run(self) -> Iterator[list[Message]]:
-        """Fit the model, and show the fit; yields messages for the page."""
-        threading.Thread(target=self._fit, daemon=True).start()
-        while not (self.finished.wait(INTERVAL) or self.cancelled.is_set()):
-            yield [describe_progress(self.label, self.share)]
-        self.ended = True
-        if self.cancelled.is_set():
-            yield [describe_progress("", None)]
-        elif self.result is None:
+        """Fit the model, and show the fit; yields messages for the page.
+
+        If the session gives the task up, the fit ends at its next step.
+        """
+        threading.Thread(target=self._fit, name=NAME, daemon=True).start()
+        try:
+            while not self.finished.wait(INTERVAL):
+                yield [describe_progress(self.label, self.share)]
+        finally:
+            self.cancelled.set()
+        if self.result is None:
             yield [describe_progress("", None), describe_error(self.error or BrdfkitError(""))]
         else:
             yield self._show(self.result)
@@ -89,4 +88,5 @@ class FitTask:
 def describe_progress(label: str, share: float | None) -> Message:
     """Return the message "busy" of a fit; without a label it ends."""
     text = f"{label} is fitted" if label else ""
-    return {"type": "busy", "task": "fit", "text": text, "fraction": share}, []
+    progress = {"type": "busy", "task": "fit", "text": text, "fraction": share}
+    return progress | {"can_cancel": True}, []

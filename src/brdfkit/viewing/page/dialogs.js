@@ -43,7 +43,7 @@ const listKeys = (views) => [
   ]],
   ["", "Everywhere", [
     ["Ctrl + Z or U, Ctrl + Y", "undo, redo"],
-    ["Escape", "cancel an orbit"],
+    ["Escape", "cancel what takes long"],
     ["?", "this help"],
   ]],
 ];

@@ -19,7 +19,7 @@ function makeErrorTable({ columns, rows }) {
 function createFitPanel(session) {
   let fitting = false;
   const button = makeButton("Fit", () => {
-    session.send({ type: "fit", cancel: fitting });
+    session.send({ type: fitting ? "cancel" : "fit" });
     show(!fitting);
   }, { class: "main" });
   const verdict = make("p", { class: "verdict" });
@@ -37,7 +37,7 @@ function createFitPanel(session) {
     table.replaceChildren();
     show(false);
   });
-  session.on("busy", ({ task, text }) => task === "fit" && show(Boolean(text)));
+  session.on("busy", ({ task, text }) => show(task === "fit" && Boolean(text)));
   session.on("fit", ({ text, notes }) => {
     verdict.textContent = [text, ...notes].filter(Boolean).join(" ");
   });
