@@ -62,7 +62,7 @@ def test_the_material_is_left_and_the_model_right_in_the_same_light(session):
     second = {side: samples.picture for side, samples in session.accumulated.items()}
     assert first[0] == pytest.approx(second[0], abs=1e-6)  # sums of threads are rounded
     assert np.abs(first[1] - second[1]).mean() > 1e-3
-    change(session, first="model")
+    change(session, renderer="model")
     session.work()
     left, right = (session.accumulated[side].picture for side in (0, 1))
     assert left == pytest.approx(right, abs=1e-6)
@@ -163,7 +163,7 @@ def test_a_fit_can_be_cancelled_and_fails_in_a_sentence(session, monkeypatch):
 
     monkeypatch.setattr(fit_task, "fit", fit_for_ever)
     session.handle({"type": "fit"})
-    texts = [message.get("text") for _ in range(3) for message, _ in session.work()]
+    texts = [message.get("text") for _ in range(8) for message, _ in session.work()]
     assert "ggx is fitted" in texts
     ((again, _), *_) = session.handle({"type": "fit"})
     assert "goes on already" in again["text"]
@@ -227,7 +227,7 @@ def test_a_fit_is_saved_and_opened_again(session, tmp_path):
     assert beside.first == beside.first | to_state(bk.load(path).rgb)
     assert beside.follow({}, beside.first)[1][0]["marks"]
     alone = make_application(path)
-    assert (alone.sides(alone.first), alone.first["first"]) == (1, "model")
+    assert (alone.sides(alone.first), alone.first["renderer"]) == (1, "model")
     ((message, _), *_) = Session(alone).handle({"type": "fit"})
     assert "was not measured" in message["text"]
 

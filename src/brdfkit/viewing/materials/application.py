@@ -123,7 +123,7 @@ class MaterialApplication:
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
     ) -> AnyArray:
         """Render a pass: (height, width, 3), linear sRGB. Both sides share light and samples."""
-        is_model = state["second" if side else "first"] == MODEL
+        is_model = state["second" if side else "renderer"] == MODEL
         shown: Any = self.states.to_model(state) if is_model else self.states.measured
         live = self._find_live(state["model"] if is_model else "", shown)
         if is_model:
@@ -171,9 +171,12 @@ class MaterialApplication:
         return develop(state, pictures, moving)
 
     def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
-        """Return which parameters do nothing in the picture, with the reasons."""
+        """Return what is shown, and which parameters do nothing in the picture and why."""
         idle = find_idle_parameters(self.states.to_model(state))
-        return {"idle": {PREFIX + name: reason for name, reason in idle.items()}}
+        return {
+            "idle": {PREFIX + name: reason for name, reason in idle.items()},
+            "renderers": [state["renderer"], state["second"]],
+        }
 
     def follow(self, before: State, after: State) -> list[Message]:
         """Return the controls if they are those of another model, or too short for its values."""
@@ -222,7 +225,7 @@ class MaterialApplication:
                 height, width = samples.picture.shape[:2]
                 at = min(int(y * height), height - 1), min(int(x * width), width - 1)
                 value = " ".join(f"{v:.3g}" for v in samples.picture[at])
-                shown = session.state["second" if side else "first"]
+                shown = session.state["second" if side else "renderer"]
                 texts.append(f"{self.states.name_side(session.state, shown)}: {value}")
         return [({"type": "probe", "text": "RGB of " + " · ".join(texts) if texts else ""}, [])]
 

@@ -57,7 +57,8 @@ def _make_picture_controls(material: str, label: str, compared: bool) -> list[Co
     pixels = "Pixels of the picture for each pixel of the screen."
     scales: dict[str, Any] = {"low": 0.125, "high": 1, "step": 0.125}
     return [
-        control("first", "Left of the wipe", default=first, kind="choice", choices=shown),
+        # The page calls "renderer" what is left of the wipe
+        control("renderer", "Left of the wipe", default=first, kind="choice", choices=shown),
         control("second", "Right of the wipe", kind="choice", **right),
         control("wipe", "Wipe", default=0.5, when={"second": (MEASURED, MODEL)}),
         control("shape", "Shape", default="ball", kind="choice", choices=SHAPES),

@@ -24,7 +24,6 @@ from brdfkit.viewing.materials.parameter_state import (
     to_model,
     to_state,
 )
-from brdfkit.viewing.session import SIZE_STEP, scale_size
 
 LARGEST_WEIGHT = 1e6
 DEFAULT_MODEL = "ggx"  # beside a measured material without another one
@@ -159,8 +158,10 @@ def make_kind(state: State, size: tuple[int, int], moving: bool) -> SceneKind:
 
 def find_moving_size(state: State, size: tuple[int, int]) -> tuple[int, int]:
     """Return the size of a session's picture while something moves, from that at rest."""
-    sides = [round(side / state["view.scale"] / SIZE_STEP) * SIZE_STEP for side in size]
-    return scale_size((sides[0], sides[1]), state["view.moving_scale"])
+    width, height = (
+        round(side / state["view.scale"] * state["view.moving_scale"]) for side in size
+    )
+    return width, height
 
 
 def make_look(state: State) -> Look:
