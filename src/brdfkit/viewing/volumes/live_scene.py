@@ -241,5 +241,5 @@ def _rotation_from_z(direction: FloatArray) -> FloatArray:
 
 
 def choose_steps(volume: Volume, quality: float = 1.0) -> int:
-    """Return the number of parts of a ray: one for each voxel along the longest axis."""
-    return max(LEAST_STEPS, round(quality * max(volume.size)))
+    """Return the number of parts of a ray: `quality` for each voxel along the longest axis."""
+    return round(quality * max(LEAST_STEPS, *volume.size))

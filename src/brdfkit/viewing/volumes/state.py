@@ -36,7 +36,7 @@ FIRST_BUMP = {"x": 0.5, "y": 0.25, "sx": 0.15, "sy": 0.25, "colour": "#e8a060", 
 CLIP = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]
 THINNEST = 1e-3  # edge of the clipping box, as a share of the volume's
 OPAQUE = 1e30  # extinction [1/unit of length] within an isosurface
-MOVING_STEPS = 0.5  # share of the steps along rays while something moves
+MOVING_STEPS = 0.4  # share of the steps along rays while something moves
 # Names whose change does not alter the samples of a picture
 DRAWN_ONLY = (
     "wipe",
