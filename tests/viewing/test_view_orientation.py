@@ -169,7 +169,7 @@ def axial_page(opened_page):
         box.fill(str(index))
         box.press("Enter")
         box.blur()  # a box that is being typed into does not follow the cross
-    opened_page.wait_for_timeout(800)  # until their pictures have come
+    opened_page.wait_for_timeout(3000)  # until their pictures have come
     return opened_page
 
 
