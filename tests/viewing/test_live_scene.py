@@ -7,8 +7,8 @@ import brdfkit as bk
 from brdfkit.rendering.progressive import to_rgb
 from brdfkit.rendering.scenes._studio import make_camera
 from brdfkit.rendering.volumes.scene import describe_integrator
+from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.volumes.application import VolumeApplication
-from brdfkit.viewing.volumes.camera import Camera
 from brdfkit.viewing.volumes.live_volume import VALUE_ROWS, LiveVolume
 from brdfkit.viewing.volumes.pointer import find_visible_voxel
 from brdfkit.viewing.volumes.saving import to_function
@@ -111,7 +111,7 @@ def test_the_light_turns_without_its_map_being_sent_again(mi, renderer):
     application = VolumeApplication(bk.volumes.load("smoke", size=8))
     state = application.change(application.first_state(), {"renderer": renderer})
     application.render(state, 0, (32, 32), False, 0)
-    (scene,) = application.scenes.values()
+    (scene,) = application.scenes.kept.values()
     data = scene.parameters["sky.data"].array if "sky.data" in scene.parameters else None
     application.render(application.change(state, {"light.turn": 60}), 0, (32, 32), False, 0)
     assert data is None or scene.parameters["sky.data"].array.index == data.index

@@ -72,7 +72,7 @@ def test_a_moving_slider_renders_only_the_model(session, monkeypatch):
     change(session, moving=True, model__alpha_u=0.3)
     before = session.work()
     assert [m["side"] for m, _ in before if m["type"] == "picture"] == [0, 1]
-    monkeypatch.delattr(type(session.application.live[""]), "render")
+    monkeypatch.delattr(type(session.application.live.kept[""]), "render")
     state = session.state | {"model.alpha_u": 0.4}
     session.application.render(state, 0, session.picture_size(True), True, 0)
     with pytest.raises(AttributeError, match="render"):

@@ -8,11 +8,11 @@ from PIL import Image
 
 import brdfkit as bk
 from brdfkit.viewing import front_end
+from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.canvas_sizes import choose_size
 from brdfkit.viewing.controls import Control
 from brdfkit.viewing.encoding import to_bytes, to_bytes_quickly
 from brdfkit.viewing.volumes import transfer_table
-from brdfkit.viewing.volumes.camera import Camera
 from brdfkit.viewing.volumes.histograms import make_histograms
 from brdfkit.viewing.volumes.live_volume import LiveVolume
 from brdfkit.volumes.transfer.files import list_presets

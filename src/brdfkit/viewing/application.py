@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol, TypeAlias
 
 from brdfkit.core.array_types import AnyArray
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.viewing.controls import State
 
@@ -65,3 +66,8 @@ class Application(Protocol):
 
     def close(self) -> None:
         """Forget the files of the page, which is gone."""
+
+
+def unknown_message_error(kind: str) -> BrdfkitError:
+    """Return the error for a message of the page that no application knows."""
+    return BrdfkitError(f"The page sent a message {kind!r:.40}, which is unknown; reload it.")

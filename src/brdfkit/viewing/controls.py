@@ -95,3 +95,14 @@ def to_changes(state: object) -> State:
 def default_state(controls: Iterable[Control]) -> State:
     """Return the state in which every control has its default."""
     return {control.name: control.default for control in controls}
+
+
+def has_other_samples(before: State, after: State, drawn_only: tuple[str, ...]) -> bool:
+    """Return whether a change of the state alters the samples of its picture.
+
+    Names that begin as one of `drawn_only` do not: they concern the tone mapping, or what is drawn
+    over the picture.
+    """
+    names = before.keys() | after.keys()
+    changed = (name for name in names if before.get(name) != after.get(name))
+    return any(not name.startswith(drawn_only) for name in changed)

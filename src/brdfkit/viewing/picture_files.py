@@ -20,6 +20,7 @@ from brdfkit.rendering.result import Rendering
 from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.encoding import encode_png
+from brdfkit.viewing.passes import add_passes
 from brdfkit.viewing.temporary_folders import make_folder
 
 if TYPE_CHECKING:
@@ -81,9 +82,12 @@ def render_passes(
 ) -> Iterator[int]:
     """Add `spp` passes of a state to the samples by side, `sums`; yield their number after each."""
     for number in range(spp):
-        for side in range(application.sides(state)):
-            picture = application.render(state, side, size, False, derive_seed(seed, number))
-            sums[side] = sums.get(side, Accumulated()).add_pass(picture, 1)
+        sides = range(application.sides(state))
+        pictures = {
+            side: application.render(state, side, size, False, derive_seed(seed, number))
+            for side in sides
+        }
+        sums |= add_passes(sums, pictures)
         yield number + 1
 
 

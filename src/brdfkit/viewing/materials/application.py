@@ -12,8 +12,8 @@ from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.materials.resolve import MaterialLike
-from brdfkit.viewing.application import Message
-from brdfkit.viewing.controls import State, to_changes
+from brdfkit.viewing.application import Message, unknown_message_error
+from brdfkit.viewing.controls import State, has_other_samples, to_changes
 from brdfkit.viewing.materials import fit_task, material_scripts, saving
 from brdfkit.viewing.materials.explorer_controls import MODEL
 from brdfkit.viewing.materials.idle_parameters import find_idle_parameters
@@ -28,6 +28,7 @@ from brdfkit.viewing.materials.material_state import (
 )
 from brdfkit.viewing.materials.parameter_controls import list_panels
 from brdfkit.viewing.materials.parameter_state import PREFIX
+from brdfkit.viewing.recent import Recent
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.tone_controls import develop, to_tone_mapping
 
@@ -59,9 +60,9 @@ class MaterialApplication:
         self.given = material, tuple(models), to_changes(changes)
         self.states = MaterialState(*self.given[:2])
         self.lights = LiveLights()
-        self.live: dict[str, LiveMaterial] = {}  # by the model's label, or "" for the measured one
+        # By the model's label, or "" for the measured one
+        self.live: Recent[str, LiveMaterial] = Recent(MODELS)
         self.preview: tuple[Any, AnyArray] = None, np.zeros(0)  # the last one, with what it shows
-        self.rested: dict[tuple[LiveMaterial, SceneKind], int] = {}  # passes at rest
         self.first = self.change(self.states.first(), self.given[2])
         self.base = self.states.to_model(self.first)  # whose values the controls begin with
 
@@ -115,9 +116,7 @@ class MaterialApplication:
 
     def needs_samples_anew(self, before: State, after: State) -> bool:
         """Return whether the samples of one state are not those of another."""
-        names = before.keys() | after.keys()
-        changed = [name for name in names if before.get(name) != after.get(name)]
-        return any(not name.startswith(DRAWN_ONLY) for name in changed)
+        return has_other_samples(before, after, DRAWN_ONLY)
 
     def render(
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
@@ -125,7 +124,8 @@ class MaterialApplication:
         """Render a pass: (height, width, 3), linear sRGB. Both sides share light and samples."""
         is_model = state["second" if side else "renderer"] == MODEL
         shown: Any = self.states.to_model(state) if is_model else self.states.measured
-        live = self._find_live(state["model"] if is_model else "", shown)
+        key = state["model"] if is_model else ""
+        live = self.live.get(key, lambda: LiveMaterial(shown, self.lights))
         if is_model:
             live.show(shown)
         kind = make_kind(state, size, moving)
@@ -140,8 +140,8 @@ class MaterialApplication:
 
         Otherwise the first move of a slider would wait for them.
         """
-        self.rested[live, kind] = self.rested.get((live, kind), 0) + 1
-        if self.rested[live, kind] == PASSES_BEFORE:
+        live.rested[kind] += 1
+        if live.rested[kind] == PASSES_BEFORE:
             size = find_moving_size(state, kind.size)
             live.render(make_kind(state, size, moving=True), make_look(state))
 
@@ -151,14 +151,6 @@ class MaterialApplication:
         if self.preview[0] != key:
             self.preview = key, live.render(kind, make_look(state))
         return self.preview[1]
-
-    def _find_live(self, key: str, material: Any) -> LiveMaterial:
-        """Return the scenes of a material, which are made when it is first shown."""
-        live = self.live.pop(key, None) or LiveMaterial(material, self.lights)
-        self.live[key] = live  # the last one is the newest
-        while len(self.live) > MODELS:
-            self.live.pop(next(iter(self.live)))
-        return live
 
     def tone_mapping(self, state: State) -> ToneMapping:
         """Return the tone mapping of a state."""
@@ -202,9 +194,7 @@ class MaterialApplication:
         }
         kind = str(message.get("type"))
         if kind not in answers:
-            raise BrdfkitError(
-                f"The page sent a message {kind!r:.40}, which is unknown; reload it."
-            )
+            raise unknown_message_error(kind)
         return answers[kind](session, message)
 
     def _fit(self, session: Session, message: dict[str, Any]) -> list[Message]:

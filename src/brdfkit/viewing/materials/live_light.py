@@ -13,6 +13,7 @@ from brdfkit.core.jit.llvm import use_variant
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 from brdfkit.rendering.scene_input.environment import describe_environment
 from brdfkit.rendering.scenes._studio import BALL
+from brdfkit.viewing.recent import Recent
 
 LIGHTS = 4  # kept at most
 LAMP = "lamp"  # the name of the light that is a lamp at a point
@@ -74,15 +75,11 @@ class LiveLights:
 
     def __init__(self, environments: Mapping[str, AnyArray] = MappingProxyType({})) -> None:
         self.environments = environments
-        self.loaded: dict[str, LiveLight] = {}
+        self.loaded: Recent[str, LiveLight] = Recent(LIGHTS)
 
     def get(self, name: str) -> LiveLight:
         """Return a light; raise `BrdfkitError` if no map has this name."""
-        light = self.loaded.pop(name, None) or LiveLight(name, self._describe(name))
-        self.loaded[name] = light  # the last one is the newest
-        while len(self.loaded) > LIGHTS:
-            self.loaded.pop(next(iter(self.loaded)))
-        return light
+        return self.loaded.get(name, lambda: LiveLight(name, self._describe(name)))
 
     def _describe(self, name: str) -> dict[str, MitsubaObject]:
         """Return Mitsuba's dictionary of a light."""

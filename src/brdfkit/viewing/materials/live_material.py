@@ -7,6 +7,8 @@ the light change without a new kernel.
 
 from __future__ import annotations
 
+from collections import Counter
+
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.materials.resolve import Material
@@ -15,6 +17,7 @@ from brdfkit.rendering.scene_input.loading import find_scene_suffix
 from brdfkit.viewing.materials.live_bsdf import LiveBsdf
 from brdfkit.viewing.materials.live_light import LiveLights
 from brdfkit.viewing.materials.material_scene import Look, MaterialScene, SceneKind
+from brdfkit.viewing.recent import Recent
 
 SCENES = 6  # kept at most
 
@@ -32,7 +35,8 @@ class LiveMaterial:
 
     def __init__(self, material: Material, lights: LiveLights) -> None:
         self.bsdf, self.lights = LiveBsdf(material), lights
-        self.scenes: dict[SceneKind, MaterialScene] = {}
+        self.scenes: Recent[SceneKind, MaterialScene] = Recent(SCENES)
+        self.rested: Counter[SceneKind] = Counter()  # passes at rest
 
     @property
     def material(self) -> Material:
@@ -53,11 +57,7 @@ class LiveMaterial:
 
         Raises `BrdfkitError` for a shape or an environment map that cannot be shown.
         """
-        scene = self.scenes.pop(kind, None) or self._load(kind)
-        self.scenes[kind] = scene  # the last one is the newest
-        while len(self.scenes) > SCENES:
-            self.scenes.pop(next(iter(self.scenes)))
-        return scene.render(look, seed)
+        return self.scenes.get(kind, lambda: self._load(kind)).render(look, seed)
 
     def _load(self, kind: SceneKind) -> MaterialScene:
         """Load the scene of a kind."""

@@ -18,8 +18,8 @@ from brdfkit.rendering.progressive import to_rgb
 from brdfkit.rendering.scene_input.environment import replace_light
 from brdfkit.rendering.scene_input.loading import find_scene
 from brdfkit.rendering.scenes._studio import CAMERA, FOV, TARGET, make_studio
+from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.materials.live_light import LiveLight
-from brdfkit.viewing.volumes.camera import Camera
 
 PLANE = "plane"  # the name of the shape that is a level square
 SIDE = 2.0  # of the plane [m], the diameter of the ball

@@ -42,8 +42,8 @@ def write_script(application: Application, session: Session) -> str:
     lines += ["", "state = {", *(f"    {k!r}: {v!r}," for k, v in changes.items()), "}"]
     if not changes:
         lines[-2:] = ["state = {}"]
-    spp = max(session.passes, SAMPLES)
-    lines.append(f"picture = brdfkit.viewing.render_view({call}, size={session.size}, spp={spp})")
+    size, spp = session.picture_size(), max(session.passes, SAMPLES)
+    lines.append(f"picture = brdfkit.viewing.render_view({call}, size={size}, spp={spp})")
     return "\n".join([*lines, f"picture.write({application.name + '.png'!r})", ""])
 
 
@@ -73,7 +73,7 @@ def write_command(application: Application, session: Session) -> str:
             f"{application.name} was made in Python, and no command can load it; copy Python."
         )
     changes = find_changes(application, state)
-    width, height = session.size
+    width, height = session.picture_size()
     words = ["brdfkit", "view", os.fspath(material)]
     words += [state["model"]] if application.states.measured is not None else []
     changes.pop("model", None)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import to_file_stem
 from brdfkit.materials.loading import save
 from brdfkit.viewing import picture_files
+from brdfkit.viewing.temporary_folders import make_folder
 
 if TYPE_CHECKING:
     from brdfkit.viewing.application import Message
@@ -36,7 +36,7 @@ def make_file(application: Application, session: Session, kind: str) -> Message:
     thing = states.fits[label] if kind == "fit" else states.to_model(session.state)
     suffix, mime = (".json", "application/json") if kind == "fit" else (".bsdf", "")
     name = to_file_stem(f"{application.name}-{label}" if states.measured else label) + suffix
-    with tempfile.TemporaryDirectory() as folder:
+    with make_folder() as folder:
         path = Path(folder) / f"material{suffix}"
         save(thing, path)
         content = path.read_bytes()

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from brdfkit.core.arguments import to_number, to_whole_number
-from brdfkit.core.errors import BrdfkitError
+from brdfkit.viewing.application import unknown_message_error
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.volumes import saving, scripts, slices
 from brdfkit.viewing.volumes.opening import load_raw, load_upload
@@ -32,7 +32,7 @@ def answer(
     if kind == "upload":
         return load_upload(application, session, message, data)
     if kind not in ANSWERS:
-        raise BrdfkitError(f"The page sent a message {kind!r:.40}, which is unknown; reload it.")
+        raise unknown_message_error(kind)
     return ANSWERS[kind](application, session, message)
 
 

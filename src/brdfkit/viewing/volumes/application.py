@@ -12,7 +12,8 @@ from brdfkit.core.array_types import AnyArray
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.viewing.application import Message
-from brdfkit.viewing.controls import State, to_changes
+from brdfkit.viewing.controls import State, has_other_samples, to_changes
+from brdfkit.viewing.recent import Recent
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.tone_controls import develop, to_tone_mapping
 from brdfkit.viewing.volumes import scripts
@@ -20,7 +21,7 @@ from brdfkit.viewing.volumes.answers import answer, show_slices
 from brdfkit.viewing.volumes.description import describe_box, describe_volume
 from brdfkit.viewing.volumes.live_scene import LiveScene, SceneKind
 from brdfkit.viewing.volumes.source import Source
-from brdfkit.viewing.volumes.state import VolumeState, needs_samples_anew
+from brdfkit.viewing.volumes.state import DRAWN_ONLY, VolumeState
 from brdfkit.viewing.volumes.uploads import Upload
 from brdfkit.volumes import Volume
 from brdfkit.volumes.summary.summary import may_be_labels
@@ -57,7 +58,7 @@ class VolumeApplication:
         given = to_changes(changes)
         self.volume, self.source, self.loaded = volume, source, volume
         self.states = VolumeState(volume)
-        self.scenes: dict[SceneKind, LiveScene] = {}
+        self.scenes = _make_scenes()
         self.first = self.change(self.states.first(), self._read_files(given))
 
     def _read_files(self, changes: Mapping[str, Any]) -> State:
@@ -111,7 +112,7 @@ class VolumeApplication:
         volume = self.loaded if same else replace(self.loaded, labels=labels)
         states = VolumeState(volume)
         states.share_files(self.states)
-        self.volume, self.states, self.scenes = volume, states, {}
+        self.volume, self.states, self.scenes = volume, states, _make_scenes()
 
     def doubts(self) -> list[str]:
         """Return a sentence for what may be wrong with how the volume is shown."""
@@ -129,22 +130,16 @@ class VolumeApplication:
 
     def needs_samples_anew(self, before: State, after: State) -> bool:
         """Return whether the samples of one state are not those of another."""
-        return needs_samples_anew(before, after)
+        return has_other_samples(before, after, DRAWN_ONLY)
 
     @in_turn
     def render(
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
     ) -> AnyArray:
         """Render a pass of one sample per pixel: (height, width, 3), linear sRGB."""
-        import drjit as dr
-
         shown = self.states.of_side(state, side)
         kind = self.states.scene_kind(shown, size, moving)
-        scene = self.scenes.pop(kind, None) or self._load(kind)
-        self.scenes[kind] = scene  # the last one is the newest
-        if len(self.scenes) > LARGEST_SCENE_COUNT:
-            self.scenes.pop(next(iter(self.scenes)))
-            dr.flush_malloc_cache()  # which keeps the memory of every size of a picture
+        scene = self.scenes.get(kind, lambda: self._load(kind))
         scene.show(self.states.look(shown))
         return scene.render(seed)
 
@@ -192,3 +187,11 @@ class VolumeApplication:
     def answer(self, session: Session, message: dict[str, Any], data: bytes) -> list[Message]:
         """Answer a message that is about the volume."""
         return answer(self, session, message, data)
+
+
+def _make_scenes() -> Recent[SceneKind, LiveScene]:
+    """Return an empty store of scenes, which gives the memory of dropped ones back."""
+    import drjit as dr
+
+    # Dr.Jit keeps the memory of every size of a picture
+    return Recent(LARGEST_SCENE_COUNT, dr.flush_malloc_cache)

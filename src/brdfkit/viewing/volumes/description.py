@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.volumes import saving
-from brdfkit.viewing.volumes.camera import Camera
 from brdfkit.viewing.volumes.histograms import make_histograms
 from brdfkit.viewing.volumes.state import list_controls
 from brdfkit.viewing.volumes.volume_controls import PANELS

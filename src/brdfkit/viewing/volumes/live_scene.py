@@ -23,7 +23,7 @@ from brdfkit.rendering.volumes.scene import (
     UNLIT,
     describe_renderer,
 )
-from brdfkit.viewing.volumes.camera import Camera
+from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.volumes.live_volume import LiveVolume
 from brdfkit.volumes import Volume
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray
-from brdfkit.viewing.volumes.camera import Camera
+from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.volumes.live_volume import LiveVolume
 from brdfkit.viewing.volumes.rays import cast_rays
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, IntArray
-from brdfkit.viewing.volumes.camera import Camera
+from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.volumes.live_volume import LiveVolume
 
 BINS = 128  # of the range of values; labels have one each

@@ -21,9 +21,9 @@ from brdfkit.rendering.volumes.camera import (
     to_direction,
 )
 from brdfkit.rendering.volumes.scene import TURN_AZIMUTHS
+from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.controls import Control, State, default_state
 from brdfkit.viewing.volumes import transfer_table
-from brdfkit.viewing.volumes.camera import Camera
 from brdfkit.viewing.volumes.live_scene import Look, SceneKind, choose_steps
 from brdfkit.viewing.volumes.live_volume import get_live_volume
 from brdfkit.viewing.volumes.transfer_functions import TransferFunctions
@@ -202,15 +202,6 @@ class VolumeState:
             inside = self.live.row_values > state["level"]
             return np.repeat(inside.astype(float)[:, None], 4, axis=1), OPAQUE
         return self.functions.table(state), state["transfer.extinction"] * state["density"]
-
-
-def needs_samples_anew(before: State, after: State) -> bool:
-    """Return whether a change of the state needs new samples.
-
-    Changes of the tone mapping, and of what is drawn over the picture, do not.
-    """
-    changed = [name for name in after if before.get(name) != after[name]]
-    return any(not name.startswith(DRAWN_ONLY) for name in changed)
 
 
 def list_controls(controls: Mapping[str, Control]) -> list[dict[str, Any]]:
