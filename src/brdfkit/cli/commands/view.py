@@ -46,7 +46,7 @@ def view(
     spp: int,
     console: Console,
 ) -> None:
-    """Show a VOLUME or a MATERIAL interactively in the browser, until Ctrl-C.
+    """Show a volume or a material interactively in the browser.
 
     VOLUME is a file or folder of a scan, or the name of a synthetic volume such as smoke. The page
     orbits it, edits its transfer function, exchanges renderers, light and tone mapping, and shows
@@ -56,7 +56,8 @@ def view(
     MODEL (ggx, or a sum such as ggx+ward) right of a wipe, with a slider for each parameter, and
     fits the model. A model or the JSON of a fit is shown alone.
 
-    The page is served to this computer alone; over SSH, forward the port that is printed.
+    Ctrl-C ends it. The page is served to this computer alone; over SSH, forward the port that is
+    printed.
     """
     given = {"downsample": downsample, "labels": labels}
     settings = {name: value for name, value in given.items() if value is not None}
