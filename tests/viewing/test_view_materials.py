@@ -17,6 +17,7 @@ from brdfkit.viewing.choosing import is_volume, make_application
 from brdfkit.viewing.materials import fit_task
 from brdfkit.viewing.materials.application import MaterialApplication
 from brdfkit.viewing.materials.parameter_state import to_state
+from brdfkit.viewing.passes import CALM, mix_pictures
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.volumes.application import VolumeApplication
 
@@ -42,6 +43,13 @@ def change(session, moving=False, **changes):
     named = {name.replace("__", "."): value for name, value in changes.items()}
     answers = session.handle({"type": "set", "changes": named, "moving": moving})
     return {message["type"]: message for message, _ in answers}
+
+
+def pictures_of(session):
+    """The sides of the pictures that the next pass sends; the page shows them."""
+    messages = [message for message, _ in session.work() if message["type"] == "picture"]
+    session.handle({"type": "shown", "number": session.number})
+    return [message["side"] for message in messages]
 
 
 def fit(session):
@@ -77,6 +85,28 @@ def test_a_moving_slider_renders_only_the_model(session, monkeypatch):
     session.application.render(state, 0, session.picture_size(True), True, 0)
     with pytest.raises(AttributeError, match="render"):
         session.application.render(state, 1, session.picture_size(True), True, 0)
+
+
+def test_the_picture_stays_calm_after_a_move(session):
+    """The noise of the first passes was seen in place of the picture without noise."""
+    while not session.previews:  # the kernels for moves are made at rest
+        pictures_of(session)
+    change(session, moving=True, model__alpha_u=0.3)
+    assert pictures_of(session) == [0, 1]
+    change(session, model__alpha_u=0.31)
+    assert (pictures_of(session), session.passes) == ([0, 1], 0)
+    calm = session.previews
+    assert calm[1].shape == (64, 64, 3)  # of the resolution at rest
+    shares = []
+    while session.passes < 12:
+        session.work()
+        shown = mix_pictures(session.accumulated, session.previews)
+        traced = session.accumulated[1].picture - calm[1]
+        shares.append(((shown[1] - calm[1]) * traced).sum() / (traced**2).sum())
+    noises = [samples.noise for samples in session.accumulated.values()]
+    assert shares[0] == 0
+    assert shares[-1] == pytest.approx(CALM / max(noises), rel=1e-3)
+    assert 0 < shares[1] < shares[-1] < 1
 
 
 @pytest.mark.parametrize("label", ["ward", "ggx+ward", "koenderink", "lafortune:lobe_count=2"])
@@ -190,7 +220,7 @@ def test_parameters_that_do_nothing_are_named_with_the_picture(session):
 def test_the_copied_command_and_script_repeat_the_picture(session, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     change(session, model__alpha_u=0.4, wipe=0.25, light__turn=40)
-    for _ in range(2):
+    while session.passes < 2:
         session.work()
     ((_, (content,)),) = session.handle({"type": "save", "kind": "exr"})
     (tmp_path / "page.exr").write_bytes(content)

@@ -14,7 +14,7 @@ from PIL import Image
 import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing import picture_files
-from brdfkit.viewing import session as session_file
+from brdfkit.viewing import picture_loop as loop_file
 from brdfkit.viewing.render_thread import work_safely
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.volumes import histograms, saving
@@ -53,7 +53,7 @@ def work(session):
 
 def work_first_passes(session):
     """Render the passes that come before all else."""
-    for _ in range(session_file.FIRST_PASSES):
+    for _ in range(loop_file.FIRST_PASSES):
         work(session)
 
 
@@ -301,8 +301,8 @@ def test_a_changed_picture_comes_before_the_next_frame_of_a_film(session):
     assert kinds(work(session)) == ["picture", "progress"]
     assert kinds(work(session)) == ["busy"]  # while the pointer rests
     session.handle({"type": "set", "changes": {"camera.azimuth": 90}, "moving": False})
-    sent = [kinds(work(session))[0] for _ in range(session_file.FIRST_PASSES + 1)]
-    assert sent == [*["picture"] * session_file.FIRST_PASSES, "busy"]
+    sent = [kinds(work(session))[0] for _ in range(loop_file.FIRST_PASSES + 1)]
+    assert sent == [*["picture"] * loop_file.FIRST_PASSES, "busy"]
 
 
 def test_a_film_is_cancelled(session):
@@ -370,7 +370,7 @@ def test_a_picture_says_what_it_shows_and_fits_its_overlay(session):
 
 
 def test_the_last_picture_is_sent_without_loss_when_the_page_is_ready(session, monkeypatch):
-    monkeypatch.setattr(session_file, "LARGEST_SAMPLES", 3)
+    monkeypatch.setattr(loop_file, "LARGEST_SAMPLES", 3)
     ((first, _), _) = session.work()
     assert session.work() == session.work() == []  # it converges while the page draws
     assert session.converged
@@ -386,7 +386,7 @@ def test_the_last_picture_is_sent_without_loss_when_the_page_is_ready(session, m
 def test_rendering_stops_when_the_page_says_nothing_more(session, monkeypatch):
     session.work()
     assert session.has_work()
-    monkeypatch.setattr(session_file, "PATIENCE", 0.0)
+    monkeypatch.setattr(loop_file, "PATIENCE", 0.0)
     assert not session.has_work()
     session.handle({"type": "shown", "number": session.number})
     assert session.has_work()

@@ -42,6 +42,15 @@ class Application(Protocol):
     def needs_samples_anew(self, before: State, after: State) -> bool:
         """Return whether the samples of one state are not those of another."""
 
+    def wants_preview(
+        self, state: State, sizes: tuple[tuple[int, int], tuple[int, int]], passes: int
+    ) -> bool:
+        """Return whether a picture without noise is to be made at rest, after some passes.
+
+        It is then shown until the passes have little noise. `sizes` are those of pictures at rest
+        and while something moves.
+        """
+
     def render(
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
     ) -> AnyArray:

@@ -6,7 +6,7 @@ import json
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -20,12 +20,13 @@ from brdfkit.rendering.result import Rendering
 from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.encoding import encode_png
-from brdfkit.viewing.passes import add_passes
+from brdfkit.viewing.passes import add_passes, mix_pictures
 from brdfkit.viewing.temporary_folders import make_folder
 
 if TYPE_CHECKING:
     from brdfkit.viewing.session import Session
 
+T = TypeVar("T")
 KINDS = {
     "png": "Picture (PNG)",
     "exr": "Picture (EXR, linear)",
@@ -98,24 +99,29 @@ def make_picture_file(application: Application, session: Session, kind: str) -> 
     return {"type": "file", "name": f"{application.name}{suffix}", "mime": mime}, [content]
 
 
-def _current_picture(session: Session) -> AnyArray:
-    """Return the picture of a session so far, linear."""
-    if not any(total.passes for total in session.accumulated.values()):
-        raise BrdfkitError("There is no picture yet; wait for the first one.")
-    return join_samples(session.accumulated, session.state)
-
-
 def _make_png(application: Application, session: Session) -> tuple[str, str, bytes]:
-    colours = application.develop(session.state, {0: _current_picture(session)}, False)
+    """Make the picture as it is shown."""
+    pictures = mix_pictures(session.accumulated, session.previews)
+    picture = join_sides(_require_picture(pictures), session.state["wipe"])
+    colours = application.develop(session.state, {0: picture}, False)
     return ".png", "image/png", encode_png(colours[0])
 
 
 def _make_exr(application: Application, session: Session) -> tuple[str, str, bytes]:
-    picture = Rendering({application.name: _current_picture(session)}, session.passes, 0.0)
+    _require_picture(session.accumulated)
+    samples = join_samples(session.accumulated, session.state)
+    picture = Rendering({application.name: samples}, session.passes, 0.0)
     with make_folder() as folder:
         path = Path(folder) / "picture.exr"
         picture.write(path)
         return ".exr", "image/x-exr", path.read_bytes()
+
+
+def _require_picture(pictures: dict[int, T]) -> dict[int, T]:
+    """Return pictures, or samples, by side; raise `BrdfkitError` if there are none."""
+    if not pictures:
+        raise BrdfkitError("There is no picture yet; wait for the first one.")
+    return pictures
 
 
 def _make_state(application: Application, session: Session) -> tuple[str, str, bytes]:

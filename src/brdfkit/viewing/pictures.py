@@ -32,11 +32,9 @@ def make_pictures(
 
 
 def describe_noise(accumulated: Accumulated | None) -> str:
-    """Return the mean standard error of the pixels over their mean value, in words."""
-    error = None if accumulated is None else accumulated.standard_error
-    if accumulated is None or error is None or not accumulated.picture.mean() > 0:
-        return ""
-    return f"{100 * float(error.mean() / accumulated.picture.mean()):.2g} % noise"
+    """Return the noise of samples, in words."""
+    noise = None if accumulated is None else accumulated.noise
+    return "" if noise is None else f"{100 * noise:.2g} % noise"
 
 
 def describe_error(error: Exception) -> Message:

@@ -10,6 +10,7 @@ Other metrics need small noise: at 16 samples per pixel SSIM becomes up to 0.02 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import sqrt
 from typing import Any
 
@@ -111,6 +112,15 @@ class Accumulated:
             return None
         deviations = np.maximum(self.squares - self.spp * self.halves.picture**2, 0)
         return np.sqrt(deviations / (self.passes - 1) / self.spp).astype(np.float32)
+
+    @cached_property
+    def noise(self) -> float | None:
+        """The mean standard error of the pixels over their mean; None for one pass, and for black.
+
+        It is kept, because it takes long for a large picture.
+        """
+        error, mean = self.standard_error, float(self.picture.mean()) if self.passes else 0.0
+        return None if error is None or not mean > 0 else float(error.mean()) / mean
 
 
 def estimate_samples(decibels: float, floor: float, spp: float) -> float:

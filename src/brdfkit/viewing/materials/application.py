@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-import numpy as np
-
 from brdfkit.core.arguments import to_number
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
@@ -19,10 +17,9 @@ from brdfkit.viewing.materials.explorer_controls import MODEL
 from brdfkit.viewing.materials.idle_parameters import find_idle_parameters
 from brdfkit.viewing.materials.live_light import LiveLights
 from brdfkit.viewing.materials.live_material import LiveMaterial
-from brdfkit.viewing.materials.material_scene import SceneKind
+from brdfkit.viewing.materials.material_scene import Look, SceneKind
 from brdfkit.viewing.materials.material_state import (
     MaterialState,
-    find_moving_size,
     make_kind,
     make_look,
 )
@@ -33,6 +30,7 @@ from brdfkit.viewing.session import Session
 from brdfkit.viewing.tone_controls import develop, to_tone_mapping
 
 PASSES_BEFORE = 3  # at rest, before the kernels for moves are made
+STILLS = 2  # one at rest and one while something moves
 MODELS = 4  # whose scenes are kept at most
 PANELS = (("fit", "Model and fit", True),)  # before those of the parameters
 MORE_PANELS = (
@@ -62,7 +60,8 @@ class MaterialApplication:
         self.lights = LiveLights()
         # By the model's label, or "" for the measured one
         self.live: Recent[str, LiveMaterial] = Recent(MODELS)
-        self.preview: tuple[Any, AnyArray] = None, np.zeros(0)  # the last one, with what it shows
+        # Pictures of the measured material without noise, by what they show
+        self.stills: Recent[tuple[SceneKind, Look], AnyArray] = Recent(STILLS)
         self.first = self.change(self.states.first(), self.given[2])
         self.base = self.states.to_model(self.first)  # whose values the controls begin with
 
@@ -118,39 +117,36 @@ class MaterialApplication:
         """Return whether the samples of one state are not those of another."""
         return has_other_samples(before, after, DRAWN_ONLY)
 
+    def wants_preview(
+        self, state: State, sizes: tuple[tuple[int, int], tuple[int, int]], passes: int
+    ) -> bool:
+        """Return whether a picture without noise is made now: soon, or at once if that is quick.
+
+        It makes the kernels for moves, which takes a second at first, and filters the light.
+        """
+        kinds = {make_kind(state, size, moving=True) for size in sizes}
+        shown = [
+            self.live.kept.get(self._find_key(state, side)) for side in range(self.sides(state))
+        ]
+        ready = all(live and kinds <= live.scenes.kept.keys() for live in shown)
+        return ready or passes == PASSES_BEFORE
+
     def render(
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
     ) -> AnyArray:
         """Render a pass: (height, width, 3), linear sRGB. Both sides share light and samples."""
-        is_model = state["second" if side else "renderer"] == MODEL
-        shown: Any = self.states.to_model(state) if is_model else self.states.measured
-        key = state["model"] if is_model else ""
+        key = self._find_key(state, side)
+        shown: Any = self.states.to_model(state) if key else self.states.measured
         live = self.live.get(key, lambda: LiveMaterial(shown, self.lights))
-        if is_model:
-            live.show(shown)
-        kind = make_kind(state, size, moving)
-        if moving and not is_model:
-            return self._render_still(live, kind, state)
-        if not moving:
-            self._prepare_move(live, kind, state)
-        return live.render(kind, make_look(state), seed)
+        kind, look = make_kind(state, size, moving), make_look(state)
+        if moving and not key:  # no slider changes it
+            return self.stills.get((kind, look), lambda: live.render(kind, look))
+        live.show(shown)
+        return live.render(kind, look, seed)
 
-    def _prepare_move(self, live: LiveMaterial, kind: SceneKind, state: State) -> None:
-        """Make the kernels of pictures while something moves, after a few pictures at rest.
-
-        Otherwise the first move of a slider would wait for them.
-        """
-        live.rested[kind] += 1
-        if live.rested[kind] == PASSES_BEFORE:
-            size = find_moving_size(state, kind.size)
-            live.render(make_kind(state, size, moving=True), make_look(state))
-
-    def _render_still(self, live: LiveMaterial, kind: SceneKind, state: State) -> AnyArray:
-        """Return the picture without noise of the measured material, which no slider changes."""
-        key = kind, state["light.turn"]
-        if self.preview[0] != key:
-            self.preview = key, live.render(kind, make_look(state))
-        return self.preview[1]
+    def _find_key(self, state: State, side: int) -> str:
+        """Return the label of the model at a side, or "" for the measured material."""
+        return state["model"] if state["second" if side else "renderer"] == MODEL else ""
 
     def tone_mapping(self, state: State) -> ToneMapping:
         """Return the tone mapping of a state."""

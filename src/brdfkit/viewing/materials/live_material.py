@@ -7,8 +7,6 @@ the light change without a new kernel.
 
 from __future__ import annotations
 
-from collections import Counter
-
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.materials.resolve import Material
@@ -36,7 +34,6 @@ class LiveMaterial:
     def __init__(self, material: Material, lights: LiveLights) -> None:
         self.bsdf, self.lights = LiveBsdf(material), lights
         self.scenes: Recent[SceneKind, MaterialScene] = Recent(SCENES)
-        self.rested: Counter[SceneKind] = Counter()  # passes at rest
 
     @property
     def material(self) -> Material:

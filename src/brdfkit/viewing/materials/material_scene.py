@@ -43,7 +43,7 @@ class SceneKind:
     ground: bool = False
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Look:
     """What changes without a new kernel, besides the material.
 

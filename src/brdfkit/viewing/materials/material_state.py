@@ -156,14 +156,6 @@ def make_kind(state: State, size: tuple[int, int], moving: bool) -> SceneKind:
     return SceneKind(state["shape"], state["light.environment"], size, moving)
 
 
-def find_moving_size(state: State, size: tuple[int, int]) -> tuple[int, int]:
-    """Return the size of a session's picture while something moves, from that at rest."""
-    width, height = (
-        round(side / state["view.scale"] * state["view.moving_scale"]) for side in size
-    )
-    return width, height
-
-
 def make_look(state: State) -> Look:
     """Return the camera and the light of a state; a lamp is turned like an environment."""
     look = Look(make_studio_camera())

@@ -132,6 +132,12 @@ class VolumeApplication:
         """Return whether the samples of one state are not those of another."""
         return has_other_samples(before, after, DRAWN_ONLY)
 
+    def wants_preview(
+        self, state: State, sizes: tuple[tuple[int, int], tuple[int, int]], passes: int
+    ) -> bool:
+        """Return False: pictures of volumes that move have noise, too."""
+        return False
+
     @in_turn
     def render(
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
