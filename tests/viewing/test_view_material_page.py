@@ -109,6 +109,26 @@ def test_a_fit_moves_and_marks_the_sliders_and_shows_errors(page):
     page.get_by_role("dialog").get_by_role("button", name="Close").click()
 
 
+def test_a_pin_has_its_error_and_the_heads_of_the_table_sort(page):
+    page.get_by_role("button", name="Pin", exact=True).click()
+    type_number(page, "α_u", 0.5)
+    page.get_by_role("button", name="Pin", exact=True).click()
+    page.get_by_text("is best by cbrt").wait_for()
+    entry = page.get_by_role("list", name="Pins").get_by_role("listitem").first
+    row = page.get_by_role("row", name="1 ggx")
+    assert entry.locator(".error").inner_text() == row.get_by_role("cell").nth(2).inner_text()
+    head = page.get_by_role("columnheader", name="plain").get_by_role("button")
+    head.focus()
+    page.keyboard.press("Enter")
+    page.keyboard.press("Enter")
+    sorted_by = page.locator("th[aria-sort=descending]")
+    assert sorted_by.inner_text() == "plain"
+    assert page.locator("table.errors tbody tr").last.inner_text().startswith("noise")
+    entry.get_by_role("button", name="Show pin 1").click()
+    page.get_by_role("button", name="Remove pin 1").click()
+    page.get_by_role("button", name="Remove pin 1").wait_for(state="detached")
+
+
 @pytest.mark.parametrize("theme", THEMES)
 def test_axe_finds_no_serious_fault(page, theme):
     page.evaluate(read_axe())

@@ -74,6 +74,12 @@ def test_the_material_is_left_and_the_model_right_in_the_same_light(session):
     session.work()
     left, right = (session.accumulated[side].picture for side in (0, 1))
     assert left == pytest.approx(right, abs=1e-6)
+    session.handle({"type": "pin"})
+    change(session, renderer="pin1", model__alpha_u=0.05)
+    session.work()
+    pinned, right = (session.accumulated[side].picture for side in (0, 1))
+    assert pinned == pytest.approx(left, abs=1e-6)
+    assert right == pytest.approx(first[1], abs=1e-6)
 
 
 def test_a_moving_slider_renders_only_the_model(session, monkeypatch):
@@ -167,7 +173,7 @@ def test_a_fit_moves_the_sliders_and_is_compared(session):
     assert defaults["model.alpha_u"] == value
     assert answers["busy"]["text"] == ""
 
-    losses = [name for name, _ in answers["errors"]["columns"]]
+    losses = [name for name, _, _ in answers["errors"]["columns"]]
     row, floor = answers["errors"]["rows"]
     errors = bk.compare("car_paint", expected).errors["ggx"]
     assert row["cells"] == [f"{errors[name]:.3g}" for name in losses]  # none is small

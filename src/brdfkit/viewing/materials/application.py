@@ -9,10 +9,10 @@ from brdfkit.core.arguments import to_number
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.tone_mapping import ToneMapping
-from brdfkit.materials.resolve import MaterialLike
+from brdfkit.materials.resolve import Material, MaterialLike
 from brdfkit.viewing.application import Message, unknown_message_error
 from brdfkit.viewing.controls import State, has_other_samples, to_changes
-from brdfkit.viewing.materials import fit_task, material_scripts, saving
+from brdfkit.viewing.materials import fit_task, material_scripts, pin_answers, saving
 from brdfkit.viewing.materials.explorer_controls import MODEL
 from brdfkit.viewing.materials.idle_parameters import find_idle_parameters
 from brdfkit.viewing.materials.live_light import LiveLights
@@ -25,6 +25,7 @@ from brdfkit.viewing.materials.material_state import (
 )
 from brdfkit.viewing.materials.parameter_controls import list_panels
 from brdfkit.viewing.materials.parameter_state import PREFIX
+from brdfkit.viewing.materials.pins import COLOURS
 from brdfkit.viewing.recent import Recent
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.tone_controls import develop, to_tone_mapping
@@ -38,7 +39,14 @@ MORE_PANELS = (
     ("light", "Light", True),
     ("tone", "Tone mapping", False),
 )
-DRAWN_ONLY = "wipe", "tone.", "fit.", "view.moving_scale"  # names that alter no samples
+DRAWN_ONLY = (
+    "wipe",
+    "tone.",
+    "fit.",
+    "pins",
+    "solo",
+    "view.moving_scale",
+)  # names that alter no samples
 
 
 class MaterialApplication:
@@ -60,10 +68,12 @@ class MaterialApplication:
         self.lights = LiveLights()
         # By the model's label, or "" for the measured one
         self.live: Recent[str, LiveMaterial] = Recent(MODELS)
-        # Pictures of the measured material without noise, by what they show
-        self.stills: Recent[tuple[SceneKind, Look], AnyArray] = Recent(STILLS)
+        # Pictures without noise of what no slider changes, by what they show
+        self.stills: Recent[tuple[SceneKind, Look, Material], AnyArray] = Recent(STILLS)
         self.first = self.change(self.states.first(), self.given[2])
+        self.fitting: fit_task.FitTask | None = None  # the last one
         self.base = self.states.to_model(self.first)  # whose values the controls begin with
+        self.pins: list[Any] = self.first["pins"]  # among which the controls choose
 
     @property
     def name(self) -> str:
@@ -92,17 +102,19 @@ class MaterialApplication:
         return {
             "title": self.name,
             "parts": ["light", *(["fit"] if self.states.is_fittable else [])],
+            "pin_colours": COLOURS,
             "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
         } | self._describe_controls(), []
 
     def _describe_controls(self) -> dict[str, Any]:
         """Return the panels and the controls, those of the shown model among them."""
         panels = [*PANELS, *list_panels(type(self.base)), *MORE_PANELS]
+        controls = self.states.list_controls(self.base, pins=self.pins)
         return {
             "panels": [
                 {"name": name, "label": label, "open": is_open} for name, label, is_open in panels
             ],
-            "controls": [c.to_json() for c in self.states.list_controls(self.base).values()],
+            "controls": [c.to_json() for c in controls.values()],
         }
 
     def change(self, state: State, changes: Mapping[str, Any]) -> State:
@@ -126,7 +138,7 @@ class MaterialApplication:
         """
         kinds = {make_kind(state, size, moving=True) for size in sizes}
         shown = [
-            self.live.kept.get(self._find_key(state, side)) for side in range(self.sides(state))
+            self.live.kept.get(self._find_side(state, side)[0]) for side in range(self.sides(state))
         ]
         ready = all(live and kinds <= live.scenes.kept.keys() for live in shown)
         return ready or passes == PASSES_BEFORE
@@ -135,18 +147,19 @@ class MaterialApplication:
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
     ) -> AnyArray:
         """Render a pass: (height, width, 3), linear sRGB. Both sides share light and samples."""
-        key = self._find_key(state, side)
-        shown: Any = self.states.to_model(state) if key else self.states.measured
+        key, shown = self._find_side(state, side)
         live = self.live.get(key, lambda: LiveMaterial(shown, self.lights))
         kind, look = make_kind(state, size, moving), make_look(state)
-        if moving and not key:  # no slider changes it
-            return self.stills.get((kind, look), lambda: live.render(kind, look))
-        live.show(shown)
+        if key:
+            live.show(shown)
+        if moving and state["second" if side else "renderer"] != MODEL:  # no slider changes it
+            still = kind, look, live.material
+            return self.stills.get(still, lambda: live.render(kind, look))
         return live.render(kind, look, seed)
 
-    def _find_key(self, state: State, side: int) -> str:
-        """Return the label of the model at a side, or "" for the measured material."""
-        return state["model"] if state["second" if side else "renderer"] == MODEL else ""
+    def _find_side(self, state: State, side: int) -> tuple[str, Any]:
+        """Return a key of the material at a side, "" for the measured one, and the material."""
+        return self.states.find_side(state, state["second" if side else "renderer"])
 
     def tone_mapping(self, state: State) -> ToneMapping:
         """Return the tone mapping of a state."""
@@ -167,16 +180,24 @@ class MaterialApplication:
         }
 
     def follow(self, before: State, after: State) -> list[Message]:
-        """Return the controls if they are those of another model, or too short for its values."""
+        """Return the controls if they are those of another model, or too short for its values.
+
+        The pins are among the choices of the controls, too.
+        """
         model = self.states.to_model(after)
         same = type(model) is type(self.base) and before
         if same and not self.states.exceeds_controls(self.base, after):
-            return []
+            return [] if after["pins"] == self.pins else self.describe_pins(after)
         return self.describe_model(after)
 
     def describe_model(self, state: State) -> list[Message]:
         """Return the controls of a state's model, whose defaults are its values, and its fit."""
         self.base = self.states.to_model(state)
+        return self.describe_pins(state)
+
+    def describe_pins(self, state: State) -> list[Message]:
+        """Return the controls, whose choices have the pins of a state, and the model's fit."""
+        self.pins = state["pins"]
         controls = {"type": "controls", "state": state} | self._describe_controls()
         return [(controls, []), (self.states.describe_fit(state["model"]), [])]
 
@@ -185,6 +206,9 @@ class MaterialApplication:
         answers: dict[str, Callable[[Session, dict[str, Any]], list[Message]]] = {
             "probe": self._probe,
             "fit": self._fit,
+            "pin": pin_answers.pin,
+            "show_pin": pin_answers.show,
+            "errors": pin_answers.show_errors,
             "save": self._save,
             "copy": self._copy,
         }
@@ -197,9 +221,10 @@ class MaterialApplication:
         """Begin to fit the model that is shown."""
         if not self.states.is_fittable:
             raise BrdfkitError(f"{self.name} was not measured, so nothing can be fitted to it.")
-        if session.tasks:
+        if self.fitting is not None and self.fitting.goes_on:
             raise BrdfkitError("A fit goes on already; wait for it, or cancel it.")
-        session.tasks.append(fit_task.FitTask(self, session).run())
+        self.fitting = fit_task.FitTask(self, session)
+        session.tasks.append(self.fitting.run())
         return [fit_task.describe_progress(session.state["model"], None)]
 
     def _probe(self, session: Session, message: dict[str, Any]) -> list[Message]:

@@ -20,16 +20,21 @@ SHAPES = (("ball", "ball"), (PLANE, "plane"))
 
 
 def make_explorer_controls(
-    material: str, models: Sequence[str], label: str, compared: bool
+    material: str,
+    models: Sequence[str],
+    label: str,
+    compared: bool,
+    pins: Sequence[tuple[str, str]] = (),
 ) -> list[Control]:
     """Return the controls of a view of a `material`.
 
     `models` are the labels that were used so far, and come first in the menu; `label` is that of
-    the model that is shown. With `compared`, the material is shown beside it.
+    the model that is shown. With `compared`, the material is shown beside it. `pins` are names and
+    labels of pins.
     """
     return [
         *_make_fit_controls(models, label, compared),
-        *_make_picture_controls(material, label, compared),
+        *_make_picture_controls(material, label, compared, pins),
         *_make_light_controls(),
         *make_tone_controls(),
     ]
@@ -48,10 +53,13 @@ def _make_fit_controls(models: Sequence[str], label: str, compared: bool) -> lis
     return [model, *([control("fit.loss", "Loss", help=meaning, **loss)] if compared else [])]
 
 
-def _make_picture_controls(material: str, label: str, compared: bool) -> list[Control]:
+def _make_picture_controls(
+    material: str, label: str, compared: bool, pins: Sequence[tuple[str, str]]
+) -> list[Control]:
     """Return the controls of what is shown, and where."""
     control = partial(Control, panel="picture")
-    shown = ((MEASURED, material), (MODEL, label)) if compared else ((MODEL, label),)
+    measured = ((MEASURED, material),) if compared else ()
+    shown = *measured, (MODEL, label), *pins
     first, second = (MEASURED, MODEL) if compared else (MODEL, "")
     right: dict[str, Any] = {"default": second, "choices": (("", "nothing"), *shown)}
     pixels = "Pixels of the picture for each pixel of the screen."
@@ -60,7 +68,9 @@ def _make_picture_controls(material: str, label: str, compared: bool) -> list[Co
         # The page calls "renderer" what is left of the wipe
         control("renderer", "Left of the wipe", default=first, kind="choice", choices=shown),
         control("second", "Right of the wipe", kind="choice", **right),
-        control("wipe", "Wipe", default=0.5, when={"second": (MEASURED, MODEL)}),
+        control("wipe", "Wipe", default=0.5, when={"second": tuple(name for name, _ in shown)}),
+        # The list of pins shows it
+        control("solo", "Solo", panel="", default="", kind="choice", choices=(("", "all"), *pins)),
         control("shape", "Shape", default="ball", kind="choice", choices=SHAPES),
         control("view.scale", "Resolution", default=1.0, low=0.25, high=2, step=0.25, help=pixels),
         control("view.moving_scale", "Resolution while moving", default=0.5, **scales),

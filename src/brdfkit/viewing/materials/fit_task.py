@@ -10,7 +10,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.fitting.fit import fit
 from brdfkit.regression import Fit
 from brdfkit.viewing.application import Message
-from brdfkit.viewing.materials.error_table import make_error_table
+from brdfkit.viewing.materials.error_table import describe_errors
 from brdfkit.viewing.materials.parameter_state import to_state
 from brdfkit.viewing.pictures import describe_error
 
@@ -39,6 +39,11 @@ class FitTask:
         self.result: Fit | None = None
         self.error: Exception | None = None
 
+    @property
+    def goes_on(self) -> bool:
+        """Whether the fit is under way."""
+        return not (self.cancelled.is_set() or self.finished.is_set())
+
     def run(self) -> Iterator[list[Message]]:
         """Fit the model, and show the fit; yields messages for the page.
 
@@ -54,7 +59,8 @@ class FitTask:
             yield [describe_progress("", None), describe_error(self.error or BrdfkitError(""))]
         else:
             yield self._show(self.result)
-            yield [make_error_table(self.application.states), describe_progress("", None)]
+            yield from describe_errors(self.application.states, self.session.state)
+            yield [describe_progress("", None)]
 
     def _fit(self) -> None:
         """Do the work, and keep its result or its error."""
@@ -77,7 +83,7 @@ class FitTask:
         """Give the sliders the fitted values, unless another model is shown by now."""
         application, session = self.application, self.session
         with session.lock:
-            application.states.fits[self.label] = result
+            application.states.keep_fit(self.label, result)
             if session.state["model"] != self.label:
                 return []
             session.change(to_state(result.rgb))

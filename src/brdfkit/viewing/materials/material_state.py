@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -14,6 +15,7 @@ from brdfkit.materials.resolve import Material, MaterialLike, to_material
 from brdfkit.model import Model, labels
 from brdfkit.regression import Fit
 from brdfkit.viewing.controls import Control, State, default_state
+from brdfkit.viewing.materials.block_errors import BlockErrors
 from brdfkit.viewing.materials.explorer_controls import MODEL, make_explorer_controls
 from brdfkit.viewing.materials.material_scene import Look, SceneKind, make_studio_camera
 from brdfkit.viewing.materials.parameter_controls import make_controls
@@ -24,8 +26,18 @@ from brdfkit.viewing.materials.parameter_state import (
     to_model,
     to_state,
 )
+from brdfkit.viewing.materials.pins import (
+    NONE,
+    check_pins,
+    find_pin,
+    forget_missing_pins,
+    label_pin,
+    make_model,
+    name_pin,
+)
 
 LARGEST_WEIGHT = 1e6
+FITS = 32  # that are kept at most
 DEFAULT_MODEL = "ggx"  # beside a measured material without another one
 
 
@@ -37,7 +49,9 @@ class MaterialState:
     measured : Material or None
         The material left of the wipe; None where a model is shown alone.
     fits : dict of str to Fit
-        The fits that were made or given, by the model's label.
+        The last fit that was made, given or shown of each model, by its label.
+    all_fits : deque of (str, Fit)
+        All fits of late, with their labels.
     """
 
     def __init__(self, material: MaterialLike, models: Iterable[MaterialLike]) -> None:
@@ -50,13 +64,28 @@ class MaterialState:
             given = [labels.model(DEFAULT_MODEL)()]
         self.name = shown.name
         self.fits: dict[str, Fit] = {}
+        self.all_fits: deque[tuple[str, Fit]] = deque(maxlen=FITS)
+        self._errors: BlockErrors | None = None
         self.models: dict[str, Model] = {}  # with the values that were given
         for thing in given:
             label = find_label(thing)
             self.models[label] = thing.rgb
             if isinstance(thing, Fit):
-                self.fits[label] = thing
+                self.keep_fit(label, thing)
         self.label = next(iter(self.models))  # of the model that is shown first
+
+    def keep_fit(self, label: str, fit: Fit) -> None:
+        """Make a fit the one of its model."""
+        self.fits[label] = fit
+        self.all_fits.append((label, fit))
+
+    @property
+    def errors(self) -> BlockErrors:
+        """The errors of models beside the material, which was measured."""
+        measured: Any = self.measured
+        if self._errors is None or self._errors.measured is not measured:
+            self._errors = BlockErrors(measured)
+        return self._errors
 
     @property
     def is_fittable(self) -> bool:
@@ -79,36 +108,67 @@ class MaterialState:
         """Return the model of a state, with its values."""
         return to_model(self.find_class(state), state)
 
-    def list_controls(self, model: Model, label: str = "") -> dict[str, Control]:
+    def list_controls(
+        self, model: Model, label: str = "", pins: Sequence[Any] = ()
+    ) -> dict[str, Control]:
         """Return all controls by name, those of a model with its values among them."""
-        label = label or find_label(model)
+        own = self._list_own_controls(label or find_label(model), pins)
+        return own | {control.name: control for control in make_controls(model)}
+
+    def _list_own_controls(self, label: str, pins: Sequence[Any]) -> dict[str, Control]:
+        """Return the controls by name, without those of a model's values."""
         names = [label, *(known for known in self.models if known != label)]
-        own = make_explorer_controls(self.name, names, label, self.measured is not None)
-        return {control.name: control for control in [*own, *make_controls(model)]}
+        choices = [(name_pin(pin), label_pin(pin)) for pin in pins]
+        compared = self.measured is not None
+        own = make_explorer_controls(self.name, names, label, compared, choices)
+        return {control.name: control for control in own}
 
     def first(self) -> State:
         """Return the state with which a view begins."""
         model = self.find_model(self.label)
-        return default_state(self.list_controls(model, self.label).values())
+        return default_state(self.list_controls(model, self.label).values()) | NONE
 
     def change(self, state: State, changes: Mapping[str, Any]) -> State:
         """Return the state after `changes`; raise `BrdfkitError` if one is not possible."""
         new = dict(state)
-        label = _check_label(changes["model"]) if "model" in changes else state["model"]
+        label = self.check_label(changes["model"]) if "model" in changes else state["model"]
         if label != state["model"]:
             new = {name: v for name, v in state.items() if not name.startswith(PREFIX)}
             new |= to_state(self.find_model(label)) | {"model": label}
-        model = self.find_model(label)
-        controls = self.list_controls(model, label)
+        if "pins" in changes:
+            new["pins"] = check_pins(self, changes["pins"])
+        controls = self._list_own_controls(label, new["pins"])
         values: State = {}
         for name, value in changes.items():
             if name not in new:
                 raise no_such_error("setting", name, new)
             if name.startswith(PREFIX):
-                values[name] = _check_parameter(controls[name], type(model), value)
-            elif name != "model":
+                values[name] = value
+            elif name not in ("model", "pins"):
                 new[name] = controls[name].check(value)
-        return change_values(type(model), new, _without_colours(values))
+        return forget_missing_pins(self.check_values(label, new, values))
+
+    def check_values(self, label: str, state: State, values: State) -> State:
+        """Return the state after changes of values of a model; raise `BrdfkitError` for wrong ones.
+
+        The names of the values are in the state.
+        """
+        model = self.find_model(label)
+        controls = {control.name: control for control in make_controls(model)}
+        checked = {
+            name: _check_parameter(controls[name], type(model), value)
+            for name, value in values.items()
+        }
+        return change_values(type(model), state, _without_colours(checked))
+
+    def check_label(self, label: Any) -> str:
+        """Return the usual label of a known model; raise `BrdfkitError` for another text.
+
+        No file is loaded, because a page must not run code.
+        """
+        if not isinstance(label, str) or len(label) > 200:
+            raise BrdfkitError("The model should be a name such as ggx, or a sum such as ggx+ward.")
+        return find_label(labels.model(label.replace(" ", ""))())
 
     def exceeds_controls(self, base: Model, state: State) -> bool:
         """Return whether a weight of a state is beyond the end of its slider."""
@@ -119,9 +179,19 @@ class MaterialState:
             if control.kind == "slider"
         )
 
+    def find_side(self, state: State, shown: str) -> tuple[str, Any]:
+        """Return what is left or right of the wipe, and a key, "" for the measured material."""
+        if shown == MODEL:
+            return state["model"], self.to_model(state)
+        pin = find_pin(state["pins"], shown)
+        if pin is not None:
+            return f"{shown} {pin['model']}", make_model(self, pin)
+        return "", self.measured
+
     def name_side(self, state: State, shown: str) -> str:
         """Return the name of what is left or right of the wipe."""
-        return state["model"] if shown == MODEL else self.name
+        pin = find_pin(state["pins"], shown)
+        return label_pin(pin) if pin else state["model"] if shown == MODEL else self.name
 
     def describe_fit(self, label: str) -> dict[str, Any]:
         """Return the message "fit": how good a model's fit is, and its values by control's name."""
@@ -178,16 +248,6 @@ def _find_model(thing: MaterialLike) -> Fit | Model:
     if not isinstance(found, Fit | Model):
         raise BrdfkitError(f"{found.name} is no model; name the measured material first.")
     return found
-
-
-def _check_label(label: Any) -> str:
-    """Return the usual label of a known model; raise `BrdfkitError` for another text.
-
-    No file is loaded, because a page must not run code.
-    """
-    if not isinstance(label, str) or len(label) > 200:
-        raise BrdfkitError("The model should be a name such as ggx, or a sum such as ggx+ward.")
-    return find_label(labels.model(label.replace(" ", ""))())
 
 
 def _check_parameter(control: Control, model: type[Model], value: Any) -> Any:

@@ -188,7 +188,9 @@ function createPanels(session, element, editors, edited) {
       row.title = control.help;
       input.setAttribute("aria-description", control.help);
     }
+    const active = element.querySelector(":focus");
     element.replaceChildren(...panels.map(makePanel));
+    if (active && element.contains(active)) active.focus({ preventScroll: true }); // in an editor
     if (focused) find(focused)?.input.focus();
   }
   const find = (name) => shown.find(([control]) => control.name === name)?.[1];

@@ -1,31 +1,23 @@
-// The fit of the model that is shown: its button, how good it is, and the table of errors.
+// The fit of the model that is shown, its pins, how good they are, and the table of errors.
 
-/** Make a cell of a table. */
-function makeCell(tag, text, properties = {}) {
-  return make(tag, properties, text);
-}
-
-/** Make the table of errors: a row for each fit, and one for the noise of the measurement. */
-function makeErrorTable({ columns, rows }) {
-  const head = make("tr", {}, makeCell("th", "error", { scope: "col" }),
-    ...columns.map(([name, meaning]) => makeCell("th", name, { scope: "col", title: meaning })));
-  const body = rows.map(({ name, cells, best }) => make("tr", {},
-    makeCell("th", name, { scope: "row" }),
-    ...cells.map((text, k) => makeCell("td", text, { class: best[k] ? "best" : "" }))));
-  return make("table", { class: "errors" }, make("thead", {}, head), make("tbody", {}, ...body));
-}
-
-/** Make the part of a panel that fits; it hides where nothing can be fitted. */
-function createFitPanel(session) {
+/** Make the part of a panel that fits and pins; it has no Fit where nothing can be fitted. */
+function createFitPanel(session, root) {
   let fitting = false;
+  let errors = null;
   const button = makeButton("Fit", () => {
     session.send({ type: fitting ? "cancel" : "fit" });
     show(!fitting);
   }, { class: "main" });
-  const verdict = make("p", { class: "verdict" });
-  const table = make("div", { class: "table" });
-  const element = make("div", { class: "fit", hidden: true },
-    make("div", { class: "tools" }, button, verdict), table);
+  const pin = makeButton("Pin", () => session.send({ type: "pin" }), {
+    title: "Keep this model with its values under a colour, to compare it with others",
+  });
+  const note = make("div", { class: "verdict" });
+  const verdict = make("p", { class: "best", "aria-live": "polite" });
+  const table = createErrorTable(([, , usual]) => usual);
+  const more = makeButton("All losses …", () => showAllErrors(session, root, errors), { hidden: true });
+  const element = make("div", { class: "fit" },
+    make("div", { class: "tools" }, button, pin), note,
+    createPins(session), table.element, verdict, make("div", { class: "tools" }, more));
 
   function show(now) {
     fitting = now;
@@ -33,14 +25,22 @@ function createFitPanel(session) {
     button.classList.toggle("main", !now);
   }
   session.on("open", () => {
-    element.hidden = !uses(session, "fit");
-    table.replaceChildren();
+    button.hidden = !uses(session, "fit");
+    table.clear();
+    verdict.textContent = "";
+    more.hidden = true;
     show(false);
   });
   session.on("busy", ({ task, text }) => show(task === "fit" && Boolean(text)));
   session.on("fit", ({ text, notes }) => {
-    verdict.textContent = [text, ...notes].filter(Boolean).join(" ");
+    const lines = [text, ...notes].filter(Boolean);
+    note.replaceChildren(...lines.map((line) => make("p", {}, `${line[0].toUpperCase()}${line.slice(1)}.`)));
   });
-  session.on("errors", (content) => table.replaceChildren(makeErrorTable(content)));
+  session.on("errors", (content) => {
+    errors = content;
+    table.fill(content);
+    verdict.textContent = content.verdict;
+    more.hidden = !content.rows.length;
+  });
   return element;
 }
