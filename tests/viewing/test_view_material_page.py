@@ -3,6 +3,7 @@
 import time
 from functools import partial
 
+import numpy as np
 import pytest
 from helpers.view_pages import (
     FAULTS,
@@ -15,6 +16,7 @@ from helpers.view_pages import (
     type_number,
     wait_for_change,
 )
+from playwright.sync_api import expect
 
 from brdfkit.viewing import server
 from brdfkit.viewing.materials.application import MaterialApplication
@@ -87,6 +89,37 @@ def test_a_drag_turns_the_light(page):
     page.keyboard.press("ArrowLeft")
     page.wait_for_function("() => location.hash")
     assert number(page, "Rotation [°]") == 45
+
+
+def test_both_sides_are_compared_and_enlarged_in_step(page):
+    names = page.locator(".caption:visible")
+    choose(page, "Compare", "side by side")
+    expect(names).to_have_text(["car_paint", "ggx"])
+    expect(page.locator(".wipe")).to_be_hidden()
+    choose(page, "Compare", "flicker: in turn")
+    for name in ("ggx", "car_paint"):
+        expect(names).to_have_text([name])
+    page.emulate_media(reduced_motion="reduce")
+    page.wait_for_timeout(600)  # a turn, after which nothing moves
+    expect(names).to_have_text(["car_paint"])
+    page.locator(".stage").focus()
+    page.keyboard.down("x")
+    expect(names).to_have_text(["ggx"])
+    page.keyboard.up("x")
+    expect(names).to_have_text(["car_paint"])
+    page.emulate_media(reduced_motion="no-preference")
+    choose(page, "Compare", "ΔE map")
+    expect(page.locator(".scale")).to_contain_text("95 % below")
+
+    whole = pixels(page)
+    page.mouse.move(100, 300)
+    page.mouse.wheel(0, -500)
+    enlarged = wait_for_change(page, whole)
+    drag(page, (300, 300), (200, 300), button="middle")
+    wait_for_change(page, enlarged)
+    page.keyboard.press("0")
+    expect(page.locator(".scale")).to_be_visible()
+    assert np.abs(pixels(page) - whole).mean() < 5
 
 
 def test_a_fit_moves_and_marks_the_sliders_and_shows_errors(page):

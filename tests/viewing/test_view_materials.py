@@ -1,5 +1,6 @@
 """A session of a material beside a model: its state, its fit, its files and its scripts."""
 
+import io
 import json
 import shlex
 import threading
@@ -8,16 +9,21 @@ import time
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from PIL import Image
+from scipy.ndimage import binary_dilation
 
 import brdfkit as bk
 from brdfkit.cli import main
+from brdfkit.core.colours import from_srgb
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.images.errors.colour_difference import ciede2000
 from brdfkit.lighting.environments.map_files import read_map
 from brdfkit.viewing.choosing import is_volume, make_application
 from brdfkit.viewing.materials import fit_task
 from brdfkit.viewing.materials.application import MaterialApplication
 from brdfkit.viewing.materials.parameter_state import to_state
 from brdfkit.viewing.passes import CALM, mix_pictures
+from brdfkit.viewing.picture_files import join_sides
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.volumes.application import VolumeApplication
 
@@ -50,6 +56,31 @@ def pictures_of(session):
     messages = [message for message, _ in session.work() if message["type"] == "picture"]
     session.handle({"type": "shown", "number": session.number})
     return [message["side"] for message in messages]
+
+
+def test_the_map_of_differences_is_that_of_the_colours_as_shown(session):
+    change(session, compare="difference", tone__curve="reinhard")
+    while not session.accumulated:
+        pictures_of(session)
+    session.stale = True
+    described, (content,) = next(m for m in session.work() if m[0]["type"] == "difference")
+    left, right = (from_srgb(session.sent[1][side] / 255) for side in (0, 1))
+    differences = ciede2000(left, right)
+    mask = session.application.find_mask(session.state, (64, 64))
+    assert 0.2 < mask.mean() < 0.5  # the ball
+    assert differences[~binary_dilation(mask, iterations=3)].max() == 0
+    assert described["mean"] == pytest.approx(differences[mask].mean(), rel=1e-3)
+    assert described["upper"] == pytest.approx(np.quantile(differences[mask], 0.95), rel=1e-3)
+    drawn = np.asarray(Image.open(io.BytesIO(content))).astype(float).sum(axis=-1)
+    assert np.corrcoef(drawn[mask], differences[mask])[0, 1] > 0.9
+    session.handle({"type": "save", "kind": "png"})
+
+    ((probe, _),) = session.handle({"type": "probe", "x": 0.5, "y": 0.5})
+    assert probe["text"].endswith(f"ΔE {differences[32, 32]:.2g}")
+    ((probe, _),) = session.handle({"type": "probe", "x": 0, "y": 0})
+    assert probe["text"].endswith("ΔE 0")
+    pictures = {side: samples.picture for side, samples in session.accumulated.items()}
+    assert join_sides(pictures, session.state).shape == (64, 128, 3)
 
 
 def fit(session):

@@ -64,6 +64,9 @@ class Application(Protocol):
     ) -> dict[int, AnyArray]:
         """Return the pictures of all sides as sRGB in 8 bits, with one exposure."""
 
+    def find_mask(self, state: State, size: tuple[int, int]) -> AnyArray | None:
+        """Return where a picture shows what is compared (height, width); None for everywhere."""
+
     def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
         """Return what the page draws over the picture."""
 

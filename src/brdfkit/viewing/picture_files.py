@@ -19,6 +19,7 @@ from brdfkit.rendering.progressive import derive_seed
 from brdfkit.rendering.result import Rendering
 from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.controls import State
+from brdfkit.viewing.difference_map import draw_differences, shows_differences
 from brdfkit.viewing.encoding import encode_png
 from brdfkit.viewing.passes import add_passes, mix_pictures
 from brdfkit.viewing.temporary_folders import make_folder
@@ -34,19 +35,21 @@ KINDS = {
 }
 
 
-def join_sides(pictures: dict[int, AnyArray], wipe: float) -> AnyArray:
-    """Return the left picture left of the wipe, and the right one right of it."""
+def join_sides(pictures: dict[int, AnyArray], state: State) -> AnyArray:
+    """Return the left picture left of the wipe, and the right one right of it; or both in a row."""
     if 1 not in pictures:
         return pictures[0]
+    if state.get("compare", "wipe") != "wipe":
+        return np.concatenate([pictures[0], pictures[1]], axis=1)
     width = pictures[0].shape[1]
-    edge = round(wipe * width)
+    edge = round(state["wipe"] * width)
     return np.concatenate([pictures[0][:, :edge], pictures[1][:, edge:]], axis=1)
 
 
 def join_samples(samples: dict[int, Accumulated], state: State) -> AnyArray:
     """Return the picture of a state from the samples of its sides, linear."""
     pictures = {side: total.picture for side, total in samples.items() if total.passes}
-    return join_sides(pictures, state["wipe"])
+    return join_sides(pictures, state)
 
 
 def render_state(
@@ -101,10 +104,11 @@ def make_picture_file(application: Application, session: Session, kind: str) -> 
 
 def _make_png(application: Application, session: Session) -> tuple[str, str, bytes]:
     """Make the picture as it is shown."""
-    pictures = mix_pictures(session.accumulated, session.previews)
-    picture = join_sides(_require_picture(pictures), session.state["wipe"])
-    colours = application.develop(session.state, {0: picture}, False)
-    return ".png", "image/png", encode_png(colours[0])
+    pictures = _require_picture(mix_pictures(session.accumulated, session.previews))
+    colours = application.develop(session.state, pictures, False)
+    if shows_differences(session.state, colours):
+        return ".png", "image/png", encode_png(draw_differences(colours[0], colours[1])[0])
+    return ".png", "image/png", encode_png(join_sides(colours, session.state))
 
 
 def _make_exr(application: Application, session: Session) -> tuple[str, str, bytes]:

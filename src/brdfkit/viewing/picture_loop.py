@@ -38,6 +38,8 @@ class PictureLoop:
         self.number, self.shown = 0, 0  # of the last picture that was sent, and that is shown
         self.opened = 0  # how often something was opened
         self.tasks: list[Iterator[list[Message]]] = []
+        # The pictures that were sent last, by side: linear, and sRGB in 8 bits
+        self.sent: tuple[dict[int, AnyArray], dict[int, AnyArray]] = {}, {}
         self.forget_samples()
 
     def forget_samples(self) -> None:
@@ -146,7 +148,9 @@ class PictureLoop:
         common = {"number": number, "overlay": app.overlay(state, begun.size)}
         previews = {} if lossless else done.previews
         pictures = rendered if begun.moving else mix_pictures(done.samples, previews)
-        messages = make_pictures(app, state, pictures, common, begun.moving, lossless)
+        colours = app.develop(state, pictures, begun.moving)
+        self.sent = pictures, colours
+        messages = make_pictures(app, state, colours, common, lossless)
         return [*messages, self.describe_progress()]
 
     def _render_sides(self, begun: Pass) -> dict[int, AnyArray]:

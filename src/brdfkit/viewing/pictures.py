@@ -10,24 +10,33 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.errors.noise import Accumulated
 from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.controls import State
+from brdfkit.viewing.difference_map import draw_differences, shows_differences
 from brdfkit.viewing.encoding import encode_jpeg, encode_png
 
 
 def make_pictures(
     application: Application,
     state: State,
-    pictures: dict[int, AnyArray],
+    colours: dict[int, AnyArray],
     common: dict[str, Any],
-    moving: bool,
     lossless: bool,
 ) -> list[Message]:
-    """Return a message "picture" for each side, with what all of them have in `common`."""
+    """Return a message "picture" for each side, with what all of them have in `common`.
+
+    `colours` are the pictures by side, sRGB in 8 bits. The map of their differences follows, where
+    the state shows it.
+    """
+    encode, mime = (encode_png, "image/png") if lossless else (encode_jpeg, "image/jpeg")
     messages: list[Message] = []
-    for side, colours in sorted(application.develop(state, pictures, moving).items()):
-        mime = "image/png" if lossless else "image/jpeg"
-        picture = {"type": "picture", "side": side, "mime": mime}
-        content = encode_png(colours) if lossless else encode_jpeg(colours)
-        messages.append((picture | common, [content]))
+    for side, picture in sorted(colours.items()):
+        described = {"type": "picture", "side": side, "mime": mime}
+        messages.append((described | common, [encode(picture)]))
+    if shows_differences(state, colours):
+        height, width = colours[0].shape[:2]
+        mask = application.find_mask(state, (width, height))
+        drawn, described = draw_differences(colours[0], colours[1], mask)
+        described |= {"type": "difference", "mime": mime, "number": common["number"]}
+        messages.append((described, [encode(drawn)]))
     return messages
 
 

@@ -32,7 +32,7 @@ class Session(PictureLoop):
         self.opened += 1
         self.state, self.first = dict(state), dict(state)
         self.steps, self.moving = UndoSteps(state), False
-        self.tasks = []
+        self.tasks, self.sent = [], ({}, {})
         self.forget_samples()
 
     def close(self) -> None:

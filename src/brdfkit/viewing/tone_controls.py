@@ -42,6 +42,6 @@ def develop(state: State, pictures: dict[int, AnyArray], moving: bool) -> dict[i
     With `moving`, bytes may be one level off, so that it takes less time.
     """
     tone = to_tone_mapping(state)
-    brightest = tone.brightest_of(join_sides(pictures, state["wipe"]))
+    brightest = tone.brightest_of(join_sides(pictures, state))
     convert = to_bytes_quickly if moving else to_bytes
     return {side: convert(tone(picture, brightest)) for side, picture in pictures.items()}

@@ -5,13 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
 from brdfkit.core.arguments import to_number
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.materials.resolve import Material, MaterialLike
 from brdfkit.viewing.application import Message, unknown_message_error
+from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.controls import State, has_other_samples, to_changes
+from brdfkit.viewing.difference_map import compare_colours
 from brdfkit.viewing.materials import fit_task, material_scripts, pin_answers, saving
 from brdfkit.viewing.materials.explorer_controls import MODEL
 from brdfkit.viewing.materials.idle_parameters import find_idle_parameters
@@ -41,6 +45,7 @@ MORE_PANELS = (
 )
 DRAWN_ONLY = (
     "wipe",
+    "compare",
     "tone.",
     "fit.",
     "pins",
@@ -70,6 +75,7 @@ class MaterialApplication:
         self.live: Recent[str, LiveMaterial] = Recent(MODELS)
         # Pictures without noise of what no slider changes, by what they show
         self.stills: Recent[tuple[SceneKind, Look, Material], AnyArray] = Recent(STILLS)
+        self.cosines: Recent[tuple[str, tuple[int, int], Camera], AnyArray] = Recent(STILLS)
         self.first = self.change(self.states.first(), self.given[2])
         self.fitting: fit_task.FitTask | None = None  # the last one
         self.base = self.states.to_model(self.first)  # whose values the controls begin with
@@ -157,6 +163,18 @@ class MaterialApplication:
             return self.stills.get(still, lambda: live.render(kind, look))
         return live.render(kind, look, seed)
 
+    def find_mask(self, state: State, size: tuple[int, int]) -> AnyArray:
+        """Return where a picture shows the shape (height, width)."""
+        return np.isfinite(self.find_cosines(state, size))
+
+    def find_cosines(self, state: State, size: tuple[int, int]) -> AnyArray:
+        """Return the cosine between normal and view (height, width), nan beside the shape."""
+        camera, kind = make_look(state).camera, make_kind(state, size, moving=False)
+        live = next(iter(self.live.kept.values()))
+        return self.cosines.get(
+            (state["shape"], size, camera), lambda: live.find_cosines(kind, camera)
+        )
+
     def _find_side(self, state: State, side: int) -> tuple[str, Any]:
         """Return a key of the material at a side, "" for the measured one, and the material."""
         return self.states.find_side(state, state["second" if side else "renderer"])
@@ -228,16 +246,19 @@ class MaterialApplication:
         return [fit_task.describe_progress(session.state["model"], None)]
 
     def _probe(self, session: Session, message: dict[str, Any]) -> list[Message]:
-        """Return the linear RGB of each picture under the pointer."""
+        """Return the linear RGB of each picture under the pointer, and how their colours differ."""
         x, y = (min(max(to_number(name, message.get(name)), 0.0), 1.0) for name in "xy")
-        texts = []
-        for side, samples in sorted(session.accumulated.items()):
-            if samples.passes:
-                height, width = samples.picture.shape[:2]
-                at = min(int(y * height), height - 1), min(int(x * width), width - 1)
-                value = " ".join(f"{v:.3g}" for v in samples.picture[at])
-                shown = session.state["second" if side else "renderer"]
-                texts.append(f"{self.states.name_side(session.state, shown)}: {value}")
+        pictures, colours = session.sent
+        texts, seen = [], []
+        for side, picture in sorted(pictures.items()):
+            height, width = picture.shape[:2]
+            at = min(int(y * height), height - 1), min(int(x * width), width - 1)
+            value = " ".join(f"{v:.3g}" for v in picture[at])
+            shown = session.state["second" if side else "renderer"]
+            texts.append(f"{self.states.name_side(session.state, shown)}: {value}")
+            seen.append(colours[side][at])
+        if len(seen) > 1:
+            texts.append(f"ΔE {compare_colours(*seen):.2g}")
         return [({"type": "probe", "text": "RGB of " + " · ".join(texts) if texts else ""}, [])]
 
     def _save(self, session: Session, message: dict[str, Any]) -> list[Message]:

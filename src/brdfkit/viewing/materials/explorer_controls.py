@@ -18,6 +18,16 @@ MEASURED, MODEL = "measured", "model"  # what can be left and right of the wipe
 NO_MODELS = ("mixture",)  # names that make no model by themselves
 SHAPES = (("ball", "ball"), (PLANE, "plane"))
 
+COMPARISONS = (
+    ("wipe", "wipe"),
+    ("flicker", "flicker: in turn"),
+    ("difference", "ΔE map"),
+    ("beside", "side by side"),
+)
+COMPARISON_HELP = (
+    "How both sides are seen; ΔE is the difference in colour, of which 1 is just visible."
+)
+
 
 def make_explorer_controls(
     material: str,
@@ -62,13 +72,16 @@ def _make_picture_controls(
     shown = *measured, (MODEL, label), *pins
     first, second = (MEASURED, MODEL) if compared else (MODEL, "")
     right: dict[str, Any] = {"default": second, "choices": (("", "nothing"), *shown)}
+    two = {"second": tuple(name for name, _ in shown)}
+    ways: dict[str, Any] = {"default": "wipe", "choices": COMPARISONS, "help": COMPARISON_HELP}
     pixels = "Pixels of the picture for each pixel of the screen."
     scales: dict[str, Any] = {"low": 0.125, "high": 1, "step": 0.125}
     return [
         # The page calls "renderer" what is left of the wipe
         control("renderer", "Left of the wipe", default=first, kind="choice", choices=shown),
         control("second", "Right of the wipe", kind="choice", **right),
-        control("wipe", "Wipe", default=0.5, when={"second": tuple(name for name, _ in shown)}),
+        control("compare", "Compare", kind="choice", when=two, **ways),
+        control("wipe", "Wipe", default=0.5, when={**two, "compare": ("wipe",)}),
         # The list of pins shows it
         control("solo", "Solo", panel="", default="", kind="choice", choices=(("", "all"), *pins)),
         control("shape", "Shape", default="ball", kind="choice", choices=SHAPES),

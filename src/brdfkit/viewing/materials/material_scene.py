@@ -88,6 +88,18 @@ class MaterialScene:
             integrator = self.scene.integrator()
             return to_rgb(integrator.render(self.scene, seed=mi.UInt32(seed), spp=spp))
 
+    def find_cosines(self, camera: Camera) -> AnyArray:
+        """Return the cosine between normal and view (height, width), nan beside the shape."""
+        import mitsuba as mi
+
+        width, height = self.kind.size
+        x, y = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
+        origin, directions = camera.cast_ray(x.ravel(), y.ravel(), width / height)
+        ray = mi.Ray3f(mi.Point3f(*map(float, origin)), mi.Vector3f(directions.T))
+        si = self.scene.ray_intersect(ray)
+        cosines = np.array(mi.Frame3f.cos_theta(si.wi)).reshape(height, width)
+        return np.where(np.array(si.is_valid()).reshape(height, width), cosines, np.nan)
+
     def _place(self, camera: Camera) -> None:
         """Place the camera."""
         import drjit as dr

@@ -18,6 +18,10 @@ const listKeys = (views) => [
   ["light", "Picture", [
     ["drag, left and right arrow", "turn the light"],
     ["R", "light as at the start"],
+    ["wheel, + and −", "zoom both sides about the pointer; from 2× pixels are squares"],
+    ["Shift + drag, middle drag", "move what is enlarged"],
+    ["double click, 0", "the whole picture"],
+    ["X held", "exchange both sides"],
   ]],
   ["", "Every picture", [
     ["W", "second picture and wipe"],

@@ -3,48 +3,37 @@
 const RESIZE_DELAY = 150; // ms without a change after which Python hears of a new size
 
 /**
- * Put the picture on a stage; `second` names the setting that puts another one right of the wipe.
+ * Put the pictures on a stage; the settings "second" and "compare" say how there are several.
  *
- * `place` is the rectangle of the picture on the stage [pixels of CSS], which it covers; it has the
- * picture's own proportions, so that a few pixels may lie beside the stage. `renderers` are those
- * of the pictures that are shown left and right. Listeners to "drawn" receive the picture.
+ * `parts` are what is drawn, as `layOut` returns it, of which `place` is the first one's rectangle
+ * [pixels of CSS]; `view` is how far it is enlarged, about which place. A picture has its own
+ * proportions, so that a few pixels may lie beside the stage. `renderers` are those of the pictures
+ * that are shown left and right. `turns` exchanges the sides. Listeners to "drawn" receive the
+ * picture.
  */
-function createPicture(session, stage) {
+function createPicture(session, stage, turns) {
   const canvas = make("canvas", { class: "picture", "aria-hidden": "true" });
   const picture = {
-    place: { x: 0, y: 0, width: 1, height: 1 }, described: null, renderers: [undefined, undefined],
+    place: { x: 0, y: 0, width: 1, height: 1 }, parts: [], view: { zoom: 1, x: 0.5, y: 0.5 },
+    described: null, renderers: [undefined, undefined],
   };
-  const latest = [null, null]; // for each side, what createImageBitmap made
-  const numbers = [-1, -1];
+  const latest = [null, null, null]; // for each side, and the differences, what createImageBitmap made
+  const numbers = [-1, -1, -1];
   stage.append(canvas);
 
-  /** Cover the stage with a picture of some proportions. */
-  function cover({ width, height }) {
-    const scale = Math.max(stage.clientWidth / width, stage.clientHeight / height);
-    picture.place = {
-      x: (stage.clientWidth - scale * width) / 2,
-      y: (stage.clientHeight - scale * height) / 2,
-      width: scale * width,
-      height: scale * height,
-    };
-  }
+  picture.layOut = () => {
+    const shown = findComparison(session.state) === "difference" && latest[2] ? 2 : 0;
+    picture.parts = latest[0] ? layOut(stage, latest[0], session.state, picture.view, shown) : [];
+    for (const part of picture.parts) part.side = turns.turn(part.side);
+    if (latest[0]) picture.place = picture.parts[0].place;
+  };
 
   picture.draw = () => {
+    picture.layOut();
     const context = startDrawing(canvas);
-    if (latest[0]) {
-      cover(latest[0]);
-      const { x, y, width, height } = picture.place;
-      context.imageSmoothingQuality = "high";
-      context.drawImage(latest[0], x, y, width, height);
-      if (latest[1] && session.state.second) {
-        const edge = x + session.state.wipe * width;
-        context.save();
-        context.beginPath();
-        context.rect(edge, y, x + width - edge, height);
-        context.clip();
-        context.drawImage(latest[1], x, y, width, height);
-        context.restore();
-      }
+    const sharp = picture.view.zoom >= SHARP_ZOOM;
+    for (const part of picture.parts) {
+      if (latest[part.side]) drawPart(context, latest[part.side], part, sharp);
     }
     session.emit("drawn", picture);
   };
@@ -53,7 +42,7 @@ function createPicture(session, stage) {
   function forget(side) {
     latest[side]?.close();
     latest[side] = null;
-    picture.renderers[side] = undefined;
+    if (side < 2) picture.renderers[side] = undefined;
     if (side === 0) picture.described = null;
   }
 
@@ -66,8 +55,10 @@ function createPicture(session, stage) {
         forget(side);
         latest[side] = bitmap;
         numbers[side] = number;
-        picture.described = content;
-        picture.renderers[side] = content.overlay?.renderers?.[side] ?? "";
+        if (side < 2) {
+          picture.described = content;
+          picture.renderers[side] = content.overlay?.renderers?.[side] ?? "";
+        }
         picture.draw();
       } else bitmap.close();
     } finally {
@@ -78,18 +69,22 @@ function createPicture(session, stage) {
   /** Return where a pointer is in the picture: 0 to 1 from its top left. */
   picture.locate = (event) => {
     const { left, top } = stage.getBoundingClientRect();
-    const { x, y, width, height } = picture.place;
-    return [(event.clientX - left - x) / width, (event.clientY - top - y) / height];
+    const [across, down] = [event.clientX - left, event.clientY - top];
+    const under = picture.parts.findLast(({ area }) => across >= area.x);
+    const { x, y, width, height } = under?.place || picture.place;
+    return [(across - x) / width, (down - y) / height];
   };
 
   session.on("picture", show);
+  session.on("difference", (content, bytes) => show({ ...content, side: 2 }, bytes));
   session.on("state", (names) => {
     if (names.has("background")) stage.style.backgroundColor = session.state.background;
     if (names.has("second") && !session.state.second) forget(1);
-    if (names.has("second") || names.has("wipe")) picture.draw();
+    if (findComparison(session.state) !== "difference") forget(2);
+    if (["second", "wipe", "compare"].some((name) => names.has(name))) picture.draw();
   });
   session.on("open", ({ number }) => {
-    for (const side of [0, 1]) {
+    for (const side of [0, 1, 2]) {
       if (numbers[side] > number) continue; // a picture of what was opened came first
       forget(side);
       numbers[side] = number;

@@ -36,8 +36,8 @@ function createPreparation(session, stage, picture) {
   /** Put both over the sides that are missing, of which `wipe` divides the stage. */
   function place(missing) {
     const { x, width } = picture.place;
-    const { second, wipe = 0.5 } = session.state;
-    const edge = second ? clamp(x + wipe * width, 0, stage.clientWidth) : stage.clientWidth;
+    const { wipe = 0.5 } = session.state;
+    const edge = findComparison(session.state) === "wipe" ? clamp(x + wipe * width, 0, stage.clientWidth) : stage.clientWidth;
     for (const { style } of [veil, text]) {
       style.left = missing.includes(0) ? "0" : `${edge}px`;
       style.right = missing.includes(1) ? "0" : `${stage.clientWidth - edge}px`;

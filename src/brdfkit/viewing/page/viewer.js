@@ -78,10 +78,13 @@ function render({ model, el }) {
   const help = () => showHelp(session, root);
   const probe = makeProbe(session);
 
-  const picture = createPicture(session, stage);
+  const turns = createTurns(session, stage);
+  const picture = createPicture(session, stage, turns);
   createOverlay(session, stage);
   createPreparation(session, stage, picture);
   createWipe(session, stage, picture);
+  createCaptions(session, stage, picture);
+  const zoomKey = createZoom(session, stage, picture);
   const paint = createPaint(session, stage, picture);
   const moves = makeCameraMoves(session, picture);
   followPointers(session, stage, moves);
@@ -110,7 +113,7 @@ function render({ model, el }) {
   el.append(root);
 
   listenForKeys(session, root, stage, {
-    pictureKeys: [makeCameraKeys(session, moves), paint.key, makeLightKeys(session)],
+    pictureKeys: [makeCameraKeys(session, moves), paint.key, makeLightKeys(session), zoomKey, turns.key],
     moveCross: makeCrossKey(session), switchWipe: makeWipeSwitch(session), help,
   });
   if (model.address) keepFocus(session, root, stage);
@@ -126,7 +129,7 @@ function render({ model, el }) {
 
   const stops = [
     watchSize(session, stage, find, picture.draw), watchVisibility(session, stage),
-    watchTheme(session), slices.stop, transfer.stop, model.address ? keepAddress(session) : () => {},
+    watchTheme(session), turns.stop, slices.stop, transfer.stop, model.address ? keepAddress(session) : () => {},
   ];
   return () => {
     stops.forEach((stop) => stop());

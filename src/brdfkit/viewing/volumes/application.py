@@ -177,6 +177,10 @@ class VolumeApplication:
         """Return the pictures of all sides as sRGB in 8 bits, with one exposure."""
         return develop(state, pictures, moving)
 
+    def find_mask(self, state: State, size: tuple[int, int]) -> AnyArray | None:
+        """Return None: all of a picture is compared."""
+        return None
+
     def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
         """Return what the page draws over the picture, and the renderers that it shows."""
         drawn = describe_box(self.volume, self.states.camera(state), size[0] / size[1])
