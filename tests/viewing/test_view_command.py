@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.cli.commands import view
 from brdfkit.lighting.environments.map_files import read_map
@@ -150,7 +149,6 @@ def test_the_volume_is_loaded_once_and_the_first_page_has_the_first_view(folder,
         listening.close()
         pages.append(make_application())
         loaded.append(pages[0].volume)
-        pages[0].show(bk.volumes.load("sphere"), None)  # as a page that another file is dropped on
         pages.append(make_application())
         yield ADDRESS
         raise AssertionError
@@ -184,7 +182,7 @@ def time_the_end(temporary, rendering):
                 large = {"view.scale": 2.0, "depth": 64}
                 hello = {"type": "hello", "width": 2048, "height": 2048, "state": large}
                 page.send(json.dumps(hello))
-                piece = {"type": "upload", "kind": "volume", "name": "a.nii", "size": 9}
+                piece = {"type": "upload", "name": "a.nii", "size": 9}
                 page.send(json.dumps(piece | {"offset": 0, "index": 0, "count": 1, "bytes": [1]}))
                 page.send(b"x")
                 assert json.loads(page.recv())["type"] == "open"

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import brdfkit as bk
-from brdfkit.viewing.session import Session
+from brdfkit.viewing.drops import DropSession
 from brdfkit.viewing.volumes.application import VolumeApplication
 
 NUMBERS = st.one_of(
@@ -44,13 +44,13 @@ FIELDS = {
     "probe": {"x": NUMBERS, "y": NUMBERS},
     "probe_slice": {"plane": NUMBERS, "x": NUMBERS, "y": NUMBERS},
     "upload": {
-        "kind": st.sampled_from(["volume", "environment", "transfer", "state"]),
         "name": st.sampled_from(["a.raw", "a.nii", "a.hdr", "a.json", "a.mhd", "../a", "a.exr"]),
         "size": st.integers(0, 9),
         "offset": st.integers(0, 9),
         "count": st.integers(1, 2),
         "index": st.integers(0, 2),
     },
+    "load": {"name": st.sampled_from(["/etc/passwd", "a", "ggx "])},
     "raw": {
         "size": TRIPLES,
         "dtype": st.sampled_from(["uint8", "float32"]),
@@ -116,12 +116,13 @@ def defects():
 @given(messages=st.deferred(draw_messages))
 def test_a_message_is_answered_by_no_defect(defects, messages):
     view = VolumeApplication(application().volume, "smoke")
-    session = Session(view)
+    session = DropSession(view)
     for message, data in messages:
         for answer, _ in session.handle(message, data):
             json.dumps(answer, allow_nan=False)
         assert [str(record.exc_info[1]) for record in defects] == [], message
         json.dumps(session.state, allow_nan=False)
+        view = session.application
         json.dumps(view.overlay(session.state, session.size), allow_nan=False)
         view.states.look(session.state)
         for side in range(view.sides(session.state)):

@@ -19,8 +19,9 @@ from brdfkit.cli.commands import view
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.lighting.environments.map_files import write_map
 from brdfkit.rendering.progressive import derive_seed
-from brdfkit.viewing.session import Session
-from brdfkit.viewing.volumes import source, uploads
+from brdfkit.viewing import uploads
+from brdfkit.viewing.drops import DropSession
+from brdfkit.viewing.volumes import source
 from brdfkit.viewing.volumes.application import VolumeApplication
 from brdfkit.volumes import formats
 
@@ -39,7 +40,7 @@ def volume():
 def session(mi, volume, tmp_path, monkeypatch):
     """A session whose uploads lie in `tmp_path`."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    session = Session(VolumeApplication(volume, "smoke"))
+    session = DropSession(VolumeApplication(volume, "smoke"))
     session.handle({"type": "hello", "width": 64, "height": 64, "state": None})
     yield session
     session.close()
@@ -50,19 +51,19 @@ def kinds(messages):
     return [message["type"] for message, _ in messages]
 
 
-def pieces(files, kinds):
+def pieces(files):
     """The messages by which the page sends files, by name, and their bytes."""
     for index, (name, content) in enumerate(files.items()):
         message = {"type": "upload", "name": name, "size": len(content), "count": len(files)}
-        message |= {"kind": kinds.get(name, "volume"), "index": index}
+        message |= {"index": index}
         half = len(content) // 2
         yield message | {"offset": 0}, content[:half]
         yield message | {"offset": half}, content[half:]
 
 
-def drop(session, files, **kinds):
+def drop(session, files):
     """Drop files, by name; return Python's answers to the last piece."""
-    for message, data in pieces(files, kinds):
+    for message, data in pieces(files):
         answers = session.handle(message, data)
     return [message for message, _ in answers]
 
@@ -91,7 +92,7 @@ def test_a_header_and_its_voxels_are_one_volume(session, tmp_path, kind, reverse
         "nhdr": {"a.nhdr": f"{NHDR}data file: ./a.raw\n".encode(), "a.raw": GRID.tobytes()},
     }.get(kind) or nifti_pair(tmp_path)
     names = sorted(files, reverse=reverse)
-    opened = drop(session, {n: files[n] for n in names}, **{"head.hdr": "environment"})[0]
+    opened = drop(session, {n: files[n] for n in names})[0]
     assert (opened["type"], opened["volume"]["size"]) == ("open", (4, 5, 6))
     assert (session.application.volume.values == GRID).all()
 
@@ -136,7 +137,7 @@ def test_a_header_names_no_link_to_another_folder(tmp_path):
 
 
 def test_a_hdr_is_an_environment_map_if_it_is_radiance(session, tmp_path):
-    opened = drop(session, {"lamp.hdr": radiance(tmp_path)}, **{"lamp.hdr": "environment"})[0]
+    opened = drop(session, {"lamp.hdr": radiance(tmp_path)})[0]
     assert opened["state"]["light.environment"] == "lamp.hdr"
     assert session.application.volume.name == "smoke"
 
@@ -167,16 +168,13 @@ def test_a_dropped_series_is_named_by_its_description(session, tmp_path, descrip
 @pytest.mark.parametrize("names", [["a.txt"], ["a.txt", "b.txt"]])
 def test_a_file_of_another_kind_is_refused_by_what_the_page_opens(session, names):
     error, _ = drop(session, dict.fromkeys(names, b"hello"))
-    if len(names) == 1:
-        assert error["text"].startswith("a.txt: is no file that the page opens")
-        assert error["text"].endswith("transfer functions and settings (.json).")
-    else:
-        assert error["text"].startswith("the dropped files: has no DICOM image")
+    assert error["text"].startswith("a.txt: is no file that the page opens")
+    assert error["text"].endswith("transfer functions and settings (.json).")
 
 
 def test_a_volume_and_a_map_in_one_drop(session, tmp_path):
     files = {"lamp.hdr": radiance(tmp_path)} | nifti_pair(tmp_path)
-    opened = drop(session, files, **{"lamp.hdr": "environment", "head.hdr": "environment"})
+    opened = drop(session, files)
     assert (opened[-1]["title"], opened[-1]["state"]["light.environment"]) == ("head", "lamp.hdr")
 
 
@@ -184,7 +182,7 @@ def test_another_map_of_the_same_name_replaces_the_first(session, tmp_path):
     pictures = []
     for colour in ((1, 0, 0), (0, 0, 1)):
         path = write_map(np.full((2, 4, 3), colour, np.float32), tmp_path / "lamp.exr")
-        drop(session, {"lamp.exr": path.read_bytes()}, **{"lamp.exr": "environment"})
+        drop(session, {"lamp.exr": path.read_bytes()})
         assert session.has_work()
         session.work()
         session.handle({"type": "shown", "number": session.number})
@@ -237,7 +235,7 @@ def test_another_drop_and_an_error_leave_nothing_behind(session, tmp_path):
     ids=str,
 )
 def test_a_piece_in_a_wrong_place_is_a_sentence(session, tmp_path, wrong):
-    piece = {"type": "upload", "kind": "volume", "name": "x.raw", "size": 64, "offset": 0}
+    piece = {"type": "upload", "name": "x.raw", "size": 64, "offset": 0}
     piece |= {"index": 0, "count": 2}
     session.handle(piece, b"x" * 32)
     (error, _), _ = session.handle(piece | {"offset": 32} | wrong, b"x" * 32)
@@ -255,7 +253,7 @@ def test_too_large_a_file_is_refused_before_it_is_sent(session, tmp_path, monkey
         shutil, "disk_usage", lambda _: disk._replace(free=room != "disk" and 2**40)
     )
     size = uploads.LARGEST_UPLOAD + 1 if room == "limit" else 1000
-    piece = {"type": "upload", "kind": "volume", "name": "x.raw", "offset": 0, "index": 0}
+    piece = {"type": "upload", "name": "x.raw", "offset": 0, "index": 0}
     (error, _), _ = session.handle(piece | {"size": size, "count": 1}, b"x")
     assert "too many to send" in error["text"]
     assert list(tmp_path.iterdir()) == []
@@ -265,21 +263,21 @@ def test_too_large_a_file_is_refused_before_it_is_sent(session, tmp_path, monkey
     "name", ["", "..", "/", "a\0b.raw", "é" * 300 + ".raw", "\ud800.raw", 3, None]
 )
 def test_any_name_of_a_file_is_one_in_the_folder(session, tmp_path, name):
-    upload = session.application.upload
-    piece = {"type": "upload", "kind": "volume", "name": name, "size": 2, "offset": 0}
+    upload = session.upload
+    piece = {"type": "upload", "name": name, "size": 2, "offset": 0}
     assert kinds(session.handle(piece | {"index": 0, "count": 1}, b"x")) == ["uploaded"]
-    ((path, _),) = upload.files
+    (path,) = upload.files
     assert path.is_file()
     assert path.parent.parent == tmp_path
     assert path.suffix == (".raw" if str(name).endswith(".raw") else "")
 
 
 def test_slices_of_one_name_in_two_folders_are_kept_both(session, tmp_path):
-    upload = session.application.upload
+    upload = session.upload
     for index in (0, 1):
-        piece = {"type": "upload", "kind": "volume", "name": f"{index}/1.dcm", "size": 1}
+        piece = {"type": "upload", "name": f"{index}/1.dcm", "size": 1}
         upload.add(piece | {"offset": 0, "index": index, "count": 3}, bytes([index]))
-    assert [path.read_bytes() for path, _ in upload.files] == [b"\0", b"\1"]
+    assert [path.read_bytes() for path in upload.files] == [b"\0", b"\1"]
 
 
 @pytest.mark.parametrize("made", [False, True])
@@ -287,12 +285,12 @@ def test_a_folder_that_cannot_be_written_is_a_sentence(session, tmp_path, monkey
     """Be it one for all temporary files, or later that of the drop."""
     session.handle({"type": "set", "changes": {"renderer": "maximum_intensity"}})
     session.work()
-    begin = {"type": "upload", "kind": "volume", "name": "x.raw", "size": 2, "offset": 0}
+    begin = {"type": "upload", "name": "x.raw", "size": 2, "offset": 0}
     begin |= {"index": 0, "count": 1}
     messages = [begin, {"type": "save", "kind": "exr"}]
     if made:
         session.handle(begin, b"x")
-        shutil.rmtree(session.application.upload.folder.name)
+        shutil.rmtree(session.upload.folder.name)
         messages = [begin | {"offset": 1}]
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "none"))
     for message in messages:
@@ -380,8 +378,8 @@ def test_the_script_of_uploaded_raw_voxels_loads_them_alike(session, tmp_path, m
 def test_the_script_of_uploaded_light_and_functions_loads_them_alike(session, tmp_path):
     write_map(np.full((2, 4, 3), 0.2, np.float32), tmp_path / "lamp.exr")
     session.application.states.functions.load("emission").save(tmp_path / "own.json")
-    for name, kind in (("lamp.exr", "environment"), ("own.json", "transfer")):
-        drop(session, {name: (tmp_path / name).read_bytes()}, **{name: kind})
+    for name in ("lamp.exr", "own.json"):
+        drop(session, {name: (tmp_path / name).read_bytes()})
     session.handle({"type": "set", "changes": {"transfer.mode": "preset"}})
     named = {f"'{n}'": repr(str(tmp_path / n)) for n in ("lamp.exr", "own.json")}
     picture, text = run_script(
@@ -408,7 +406,7 @@ def test_the_script_keeps_what_was_changed_of_a_preset(session, tmp_path):
 
 def test_the_command_has_the_downsampling(mi):
     volume = bk.volumes.load("smoke", size=8)
-    own = Session(VolumeApplication(volume, source.Source("smoke", {"downsample": 2})))
+    own = DropSession(VolumeApplication(volume, source.Source("smoke", {"downsample": 2})))
     ((message, _),) = own.handle({"type": "copy", "kind": "command"})
     assert message["text"].startswith("brdfkit view smoke --downsample 2 --state '{")
     assert message["text"].endswith("-o smoke.png")
@@ -419,7 +417,7 @@ def drop_bump(session, r, g, b):
     """Drop a bump of VPT; return the first answer."""
     bump = {"position": {"x": 0.3, "y": 0.6}, "size": {"x": 0.2, "y": 0.1}}
     text = json.dumps([bump | {"color": {"r": r, "g": g, "b": b, "a": 0.7}}])
-    return drop(session, {"tf.json": text.encode()}, **{"tf.json": "transfer"})[0]
+    return drop(session, {"tf.json": text.encode()})[0]
 
 
 def test_bumps_of_vpt_are_shown(session):
@@ -444,8 +442,8 @@ def test_any_bump_of_vpt_has_a_colour_or_is_a_sentence(session):
 
 
 def test_a_file_without_settings_is_a_sentence(session):
-    for content, sentence in ((b"[1]", "no settings by name"), (200_000 * b"[", "is no JSON")):
-        (error, _) = drop(session, {"a.json": content}, **{"a.json": "state"})
+    for content, sentence in ((b"[1]", "is no transfer function"), (200_000 * b"[", "is no JSON")):
+        (error, _) = drop(session, {"a.json": content})
         assert error["text"].startswith("a.json: ")
         assert sentence in error["text"]
 

@@ -15,6 +15,7 @@ import brdfkit as bk
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing import picture_files
 from brdfkit.viewing import picture_loop as loop_file
+from brdfkit.viewing.drops import DropSession
 from brdfkit.viewing.render_thread import work_safely
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.volumes import histograms, saving
@@ -34,7 +35,7 @@ def application(mi, volume):
 
 @pytest.fixture
 def session(application):
-    session = Session(application)
+    session = DropSession(application)
     session.handle({"type": "hello", "width": 64, "height": 64, "state": None})
     return session
 
@@ -319,7 +320,7 @@ def test_a_film_shows_the_volume_with_which_it_began(mi, volume, monkeypatch):
     message, _ = saving.make_file(own.application, own, "frames")
     (film,) = own.tasks
     other = bk.volumes.Volume(np.arange(27.0).reshape(3, 3, 3), name="other")
-    own.application.show(other, None)
+    own.exchange(VolumeApplication(other))
     sent = list(film)
     assert (message["can_cancel"], sent[-1][1][0]["name"]) == (True, "smoke.orbit.zip")
 
@@ -460,7 +461,7 @@ def test_saved_settings_and_functions_come_back(session, tmp_path):
     before = dict(session.state)
     session.handle({"type": "reset"})
     piece = {"type": "upload", "name": "view.json", "size": len(state), "offset": 0}
-    answers = session.handle(piece | {"kind": "state", "count": 1, "index": 0}, state)
+    answers = session.handle(piece | {"count": 1, "index": 0}, state)
     assert kinds(answers)[-1] == "state"
     assert session.state == before
     path = tmp_path / "f.json"
@@ -477,9 +478,9 @@ def test_a_dropped_volume_replaces_the_one_that_is_shown(session, volume, tmp_pa
     path = tmp_path / "head.nii.gz"
     nibabel.save(nibabel.Nifti1Image(values, np.diag([2, 2, 3, 1])), path)
     data, half = path.read_bytes(), 40
-    piece = {"type": "upload", "kind": "volume", "name": "../../head.nii.gz", "size": len(data)}
+    piece = {"type": "upload", "name": "../../head.nii.gz", "size": len(data)}
     piece |= {"count": 1, "index": 0}
-    own = Session(VolumeApplication(volume))
+    own = DropSession(VolumeApplication(volume))
     assert kinds(own.handle(piece | {"offset": 0}, data[:half])) == ["uploaded"]
     ((opened, _), *_) = own.handle(piece | {"offset": half}, data[half:])
     assert (opened["type"], opened["volume"]["size"]) == ("open", (4, 5, 6))
@@ -488,8 +489,8 @@ def test_a_dropped_volume_replaces_the_one_that_is_shown(session, volume, tmp_pa
 
 def test_raw_voxels_ask_for_their_header(volume):
     data = bytes(range(64))
-    piece = {"type": "upload", "kind": "volume", "name": "x.raw", "size": 64, "offset": 0}
-    own = Session(VolumeApplication(volume))
+    piece = {"type": "upload", "name": "x.raw", "size": 64, "offset": 0}
+    own = DropSession(VolumeApplication(volume))
     ((question, _),) = own.handle(piece | {"count": 1, "index": 0}, data)
     assert (question["type"], question["guess"]["size"]) == ("ask_raw", [4, 4, 4])
     header = {"type": "raw", "size": [4, 4, 4], "dtype": "uint8", "spacing": [1, 1, 2]}
@@ -498,11 +499,11 @@ def test_raw_voxels_ask_for_their_header(volume):
 
 
 def test_a_damaged_file_is_a_sentence(volume):
-    own = Session(VolumeApplication(volume))
-    piece = {"type": "upload", "kind": "volume", "name": "x.nii", "size": 3, "offset": 0}
+    own = DropSession(VolumeApplication(volume))
+    piece = {"type": "upload", "name": "x.nii", "size": 3, "offset": 0}
     messages = own.handle(piece | {"count": 1, "index": 0}, b"abc")
     assert kinds(messages) == ["error", "state"]
-    assert own.application.upload.folder is None
+    assert own.upload.folder is None
 
 
 def test_the_voxel_under_the_pointer(session, volume):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
 from brdfkit.core.array_types import AnyArray
@@ -37,7 +38,7 @@ class Application(Protocol):
         """Return the state after changes; raise `BrdfkitError` if one is not possible."""
 
     def sides(self, state: State) -> int:
-        """Return the number of pictures beside each other, 1 or 2."""
+        """Return the number of pictures beside each other: 1 or 2, or 0 without any."""
 
     def needs_samples_anew(self, before: State, after: State) -> bool:
         """Return whether the samples of one state are not those of another."""
@@ -76,10 +77,25 @@ class Application(Protocol):
     def answer(self, session: Any, message: dict[str, Any], data: bytes) -> list[Message]:
         """Answer a message about the application; `session` is the `Session` that received it."""
 
+    def open_beside(self, session: Any, kind: str, path: Path) -> list[Message]:
+        """Open a dropped file beside what is shown, such as a light; `kinds.py` has its `kind`.
+
+        Raises `BrdfkitError` for a kind of which the application makes nothing.
+        """
+
     def close(self) -> None:
-        """Forget the files of the page, which is gone."""
+        """Forget what was loaded, because the page is gone or shows something else."""
 
 
 def unknown_message_error(kind: str) -> BrdfkitError:
     """Return the error for a message of the page that no application knows."""
     return BrdfkitError(f"The page sent a message {kind!r:.40}, which is unknown; reload it.")
+
+
+def no_use_error(name: str, what: str) -> BrdfkitError:
+    """Return the error for a dropped file that means nothing to what is shown.
+
+    >>> print(no_use_error("a.ply", "a mesh shows a material"))
+    a.ply: a mesh shows a material; open one, and drop the file again.
+    """
+    return BrdfkitError(f"{name}: {what}; open one, and drop the file again.")

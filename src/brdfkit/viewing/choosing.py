@@ -13,6 +13,7 @@ from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.locate import looks_like_name
 from brdfkit.model import labels
 from brdfkit.viewing.application import Application
+from brdfkit.viewing.empty import EmptyApplication
 from brdfkit.viewing.materials.application import MaterialApplication
 from brdfkit.viewing.volumes.application import VolumeApplication
 from brdfkit.viewing.volumes.source import find_volume, load_within_memory
@@ -33,12 +34,16 @@ def make_application(
     state: Mapping[str, Any] | None = None,
     **settings: Any,
 ) -> Application:
-    """Return the view of a volume, or of a material beside models.
+    """Return the view of a volume, or of a material beside models; without a thing, an empty one.
 
     `settings` are other arguments of `brdfkit.volumes.load`. Raises `BrdfkitError` for what is
     neither, and for a setting of `state` that is not possible.
     """
     models = list(models)
+    if thing is None:
+        if state or settings:
+            raise BrdfkitError("Settings belong to a volume or a material: name one.")
+        return EmptyApplication()
     if is_volume(thing):
         if models:
             raise BrdfkitError(f"{thing} is a volume, which is viewed without models.")

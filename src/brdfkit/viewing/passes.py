@@ -7,6 +7,7 @@ from enum import Enum
 
 from brdfkit.core.array_types import AnyArray
 from brdfkit.images.errors.noise import Accumulated
+from brdfkit.viewing.application import Application
 from brdfkit.viewing.controls import State
 
 CALM = 0.03  # noise that nobody minds: the mean standard error of the pixels over their mean
@@ -28,6 +29,7 @@ class Pass:
     there are any. `opened` is how often the session had opened something.
     """
 
+    application: Application
     kind: Kind
     state: State
     size: tuple[int, int]

@@ -67,6 +67,8 @@ class PictureLoop:
         gone = waits and time.monotonic() - self.last_sent > PATIENCE
         if not self.visible or gone or (waits and (self.moving or self.stale)):
             return False
+        if not self.application.sides(self.state):
+            return False
         return self.stale or not (self.paused or self.converged or self.moving)
 
     def work(self) -> list[Message]:
@@ -117,7 +119,8 @@ class PictureLoop:
         kind, size = self._choose_kind(), self.picture_size(self.moving)
         self.stale = False
         samples, previews = self.accumulated, self.previews
-        return Pass(kind, self.state, size, self.passes, samples, previews, self.opened)
+        application, state = self.application, self.state
+        return Pass(application, kind, state, size, self.passes, samples, previews, self.opened)
 
     def _choose_kind(self) -> Kind:
         """Return what the next pass is to be."""
@@ -144,7 +147,7 @@ class PictureLoop:
             lossless = self.converged and not begun.moving
         if number is None:
             return []
-        app, state = self.application, begun.state
+        app, state = begun.application, begun.state
         common = {"number": number, "overlay": app.overlay(state, begun.size)}
         previews = {} if lossless else done.previews
         pictures = rendered if begun.moving else mix_pictures(done.samples, previews)
@@ -157,15 +160,14 @@ class PictureLoop:
         """Render a pass of each side."""
         if begun.kind == Kind.DEVELOP:
             return {}
-        state, seed = begun.state, derive_seed(0, begun.number)
+        app, state, seed = begun.application, begun.state, derive_seed(0, begun.number)
         calm = begun.kind in (Kind.MOVE, Kind.PREVIEW)
         sizes = [begun.size]
         if begun.kind == Kind.PREVIEW and begun.number:  # the first move would wait for kernels
             sizes.insert(0, self.picture_size(moving=True))
         for size in sizes:
             rendered = {
-                side: self.application.render(state, side, size, calm, seed)
-                for side in range(self.application.sides(state))
+                side: app.render(state, side, size, calm, seed) for side in range(app.sides(state))
             }
         return rendered
 

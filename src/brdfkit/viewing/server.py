@@ -19,6 +19,7 @@ from typing import Any, TypeVar, cast
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing.application import Application, Message
+from brdfkit.viewing.drops import DropSession
 from brdfkit.viewing.front_end import read_module, read_page_file
 from brdfkit.viewing.render_thread import RenderThread
 from brdfkit.viewing.session import Session
@@ -121,7 +122,7 @@ def make_app(make_application: Callable[[], Application], port: int, token: str)
             with suppress(RuntimeError):  # the server has ended meanwhile
                 loop.call_soon_threadsafe(outgoing.put_nowait, message)
 
-        session = Session(await run_aside(make_application))
+        session = DropSession(await run_aside(make_application))
         writer = asyncio.create_task(write_messages(socket, outgoing))
         thread.add(session, send)
         try:

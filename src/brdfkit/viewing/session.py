@@ -35,6 +35,13 @@ class Session(PictureLoop):
         self.tasks, self.sent = [], ({}, {})
         self.forget_samples()
 
+    def exchange(self, application: Application) -> list[Message]:
+        """Show another application; return the messages that the page needs."""
+        self.application.close()
+        self.application = application
+        self.open(application.first_state())
+        return [self.describe_view(), *application.follow({}, self.state)]
+
     def close(self) -> None:
         """End what goes on, because the page is gone."""
         with self.lock:

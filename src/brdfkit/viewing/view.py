@@ -13,7 +13,7 @@ from brdfkit.volumes import Volume
 
 
 def view(
-    subject: Volume | AnyArray | MaterialLike,
+    subject: Volume | AnyArray | MaterialLike | None = None,
     *models: MaterialLike,
     state: Mapping[str, Any] | None = None,
 ) -> Any:
@@ -22,11 +22,12 @@ def view(
     Of a volume, the widget orbits it, edits its transfer function, exchanges renderers, light and
     tone mapping, and shows slices. Of a measured material, it shows the material left and a model
     right of a wipe, with the model's parameters as sliders and a button that fits it. The picture
-    converges while nothing moves. The command ``brdfkit view`` shows the same in a browser.
+    converges while nothing moves. A file that is dropped on the widget is shown instead; without a
+    `subject`, the widget waits for one. The command ``brdfkit view`` shows the same in a browser.
 
     Parameters
     ----------
-    subject : Volume, ndarray, Measured, Model, Fit, str, Path or dict
+    subject : Volume, ndarray, Measured, Model, Fit, str, Path or dict, optional
         The volume, its values (nz, ny, nx), or the file, folder or name that `brdfkit.volumes.load`
         takes; or the material, its name or its path. A model or a fit is shown alone unless
         `models` are given.

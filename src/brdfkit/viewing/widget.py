@@ -7,11 +7,11 @@ from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing.application import Application, Message
+from brdfkit.viewing.drops import DropSession
 from brdfkit.viewing.encoding import encode_png
 from brdfkit.viewing.front_end import read_module, read_page_file
 from brdfkit.viewing.picture_files import render_state
 from brdfkit.viewing.render_thread import RenderThread
-from brdfkit.viewing.session import Session
 
 STILL_SIZE, STILL_SAMPLES = (256, 256), 16  # of the picture beside the widget
 
@@ -33,12 +33,13 @@ def make_widget(application: Application) -> Any:
 
         def __init__(self) -> None:
             super().__init__()
-            self.session, self.thread, self._still = Session(application), RenderThread(), ""
+            self.session, self.thread = DropSession(application), RenderThread()
+            self._still = ""
             self.on_msg(self._receive)
             self.thread.add(self.session, self._send_message)
 
         def __repr__(self) -> str:
-            return f"<view of {application.name}, which a running notebook shows>"
+            return f"<view of {self.session.application.name}, which a running notebook shows>"
 
         def _repr_mimebundle_(self, **options: Any) -> Any:
             """Return the widget, with a picture for where no Python runs behind the notebook."""
@@ -48,11 +49,11 @@ def make_widget(application: Application) -> Any:
 
         def _draw_still(self) -> str:
             """Return a small picture of the settings when it is first drawn: a PNG in base 64."""
-            if not self._still:
-                state = self.session.state
-                rendering = render_state(application, state, STILL_SIZE, STILL_SAMPLES)
+            if not self._still and self.session.application.sides(self.session.state):
+                shown, state = self.session.application, self.session.state
+                rendering = render_state(shown, state, STILL_SIZE, STILL_SAMPLES)
                 (picture,) = rendering.pictures.values()
-                colours = application.develop(state, {0: picture}, False)[0]
+                colours = shown.develop(state, {0: picture}, False)[0]
                 self._still = base64.b64encode(encode_png(colours)).decode()
             return self._still
 

@@ -14,7 +14,7 @@ from brdfkit.core.errors import BrdfkitError
 
 
 @click.command()
-@click.argument("thing", metavar="VOLUME|MATERIAL")
+@click.argument("thing", required=False, metavar="[VOLUME|MATERIAL]")
 @click.argument("models", nargs=-1, metavar="[MODEL]...")
 @output_option("Picture to write instead of showing a page: .png, or .exr with a .png beside it.")
 @click.option(
@@ -34,7 +34,7 @@ from brdfkit.core.errors import BrdfkitError
 @click.option("--spp", type=click.IntRange(1), default=64, help="Samples of the written picture.")
 @writing_options
 def view(
-    thing: str,
+    thing: str | None,
     models: tuple[str, ...],
     output: Path | None,
     port: int,
@@ -56,6 +56,8 @@ def view(
     MODEL (ggx, or a sum such as ggx+ward) right of a wipe, with a slider for each parameter, and
     fits the model. A model or the JSON of a fit is shown alone.
 
+    Files can be dropped on the page. Without an argument it is empty, and lists what brdfkit knows.
+
     Ctrl-C ends it. The page is served to this computer alone; over SSH, forward the port that is
     printed.
     """
@@ -67,9 +69,11 @@ def view(
         """Read the volume or the material, and return the view of it."""
         from brdfkit.viewing.choosing import make_application
 
-        with console.progress(f"read {thing}"):
+        with console.progress(f"read {thing}" if thing else "start"):
             return make_application(thing, models, changes, **settings)
 
+    if output is not None and thing is None:
+        raise BrdfkitError("--output draws a volume or a material: name one.")
     if output is None:
         _show_page(make_application, port, no_browser)
     else:

@@ -23,7 +23,7 @@ from typing import IO, Any
 
 from brdfkit.core.discovery.plugin_files import import_modules
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.files import COMPRESSED, GZIP
+from brdfkit.core.files import COMPRESSED, GZIP, XZ
 from brdfkit.materials.formats._source import Source as Source
 from brdfkit.materials.formats._source import find_format_suffix
 
@@ -39,6 +39,22 @@ def list_formats() -> tuple[ModuleType, ...]:
 def has_format(path: Path) -> bool:
     """Return whether a path has the suffix of a known file format."""
     return any(find_format_suffix(path) in module.SUFFIXES for module in list_formats())
+
+
+def is_recognised(path: Path) -> bool:
+    """Return whether the first bytes of a file, decompressed, are those of a format."""
+    openers: dict[str, Any] = {GZIP: gzip.open, XZ: lzma.open}
+    try:
+        with openers.get(path.suffix.lower(), open)(path, "rb") as stream:
+            head = stream.read(HEAD)
+    except (OSError, EOFError, lzma.LZMAError):  # of a damaged file, or one that is not compressed
+        return False
+    return any(module.sniff(head) for module in list_formats())
+
+
+def describe_formats() -> str:
+    """Return the names of the formats with their suffixes."""
+    return _list_format_names(list_formats())
 
 
 def write(obj: Any, path: Path, beside: Path) -> None:
@@ -87,7 +103,7 @@ def _recognise_format(source: Source) -> ModuleType:
         )
     raise source.error(
         "is in no known format of materials; read are "
-        f"{_list_format_names(list_formats())}, each also as .gz or .xz"
+        f"{describe_formats()}, each also as .gz or .xz"
     )
 
 

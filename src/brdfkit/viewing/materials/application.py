@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.controls import State, has_other_samples, to_changes
 from brdfkit.viewing.difference_map import compare_colours
 from brdfkit.viewing.materials import fit_task, material_scripts, pin_answers, saving
+from brdfkit.viewing.materials.beside import open_beside
 from brdfkit.viewing.materials.explorer_controls import MODEL
 from brdfkit.viewing.materials.idle_parameters import find_idle_parameters
 from brdfkit.viewing.materials.live_light import LiveLights
@@ -59,7 +61,8 @@ class MaterialApplication:
 
     `material` is a measured one; or a model or a fit, which is then shown alone. `models` are
     labels, models with values or fits; the first is shown. `changes` are settings that differ from
-    the first ones. Raises `BrdfkitError` if one of them is not possible.
+    the first ones. `file` is the name of a file that was dropped, whose folder is unknown. Raises
+    `BrdfkitError` if one of them is not possible.
     """
 
     def __init__(
@@ -67,7 +70,9 @@ class MaterialApplication:
         material: MaterialLike,
         models: Iterable[MaterialLike] = (),
         changes: Mapping[str, Any] | None = None,
+        file: str = "",
     ) -> None:
+        self.file = file
         self.given = material, tuple(models), to_changes(changes)
         self.states = MaterialState(*self.given[:2])
         self.lights = LiveLights()
@@ -93,7 +98,7 @@ class MaterialApplication:
 
     def again(self) -> MaterialApplication:
         """Return another view of the same material, as for another page."""
-        return MaterialApplication(*self.given)
+        return MaterialApplication(*self.given, self.file)
 
     def close(self) -> None:
         """Forget the scenes, because the page is gone."""
@@ -107,7 +112,7 @@ class MaterialApplication:
         """Return the message "open": the panels, the controls and what can be saved."""
         return {
             "title": self.name,
-            "parts": ["light", *(["fit"] if self.states.is_fittable else [])],
+            "parts": ["files", "light", *(["fit"] if self.states.is_fittable else [])],
             "pin_colours": COLOURS,
             "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
         } | self._describe_controls(), []
@@ -234,6 +239,10 @@ class MaterialApplication:
         if kind not in answers:
             raise unknown_message_error(kind)
         return answers[kind](session, message)
+
+    def open_beside(self, session: Session, kind: str, path: Path) -> list[Message]:
+        """Open a dropped file beside the material."""
+        return open_beside(self, session, kind, path)
 
     def _fit(self, session: Session, message: dict[str, Any]) -> list[Message]:
         """Begin to fit the model that is shown."""

@@ -26,10 +26,10 @@ def write_script(application: Application, session: Session) -> str:
     A model whose values are still those of its fit is fitted again.
     """
     states, state = application.states, session.state
-    material = application.given[0]
-    load = repr(os.fspath(material)) if isinstance(material, str | os.PathLike) else "material"
+    file = find_file(application)
+    load = repr(file) if file else "material"
     changes = {k: v for k, v in find_changes(application, state).items() if not _is_model(k)}
-    lines = ["import brdfkit", ""]
+    lines = [f"{write_comment(application)}import brdfkit", ""]
     if states.measured is None:
         lines.append(f"material = {write_model(states.to_model(state))}")
         call = "material, state"
@@ -67,19 +67,33 @@ def write_model(model: Model) -> str:
 
 def write_command(application: Application, session: Session) -> str:
     """Return a command that makes the session's picture."""
-    material, state = application.given[0], session.state
-    if not isinstance(material, str | os.PathLike):
+    file, state = find_file(application), session.state
+    if not file:
         raise BrdfkitError(
             f"{application.name} was made in Python, and no command can load it; copy Python."
         )
     changes = find_changes(application, state)
     width, height = session.picture_size()
-    words = ["brdfkit", "view", os.fspath(material)]
+    words = ["brdfkit", "view", file]
     words += [state["model"]] if application.states.measured is not None else []
     changes.pop("model", None)
     words += ["--state", json.dumps(changes), "--size", f"{width}x{height}"]
     words += ["--spp", str(max(session.passes, SAMPLES)), "-o", f"{application.name}.png"]
-    return shlex.join(words)
+    return write_comment(application) + shlex.join(words)
+
+
+def find_file(application: Application) -> str:
+    """Return the name or the file of the material; "" if it was made in Python."""
+    material = application.given[0]
+    return application.file or (
+        os.fspath(material) if isinstance(material, str | os.PathLike) else ""
+    )
+
+
+def write_comment(application: Application) -> str:
+    """Return a comment for a file that the page sent, whose folder is unknown."""
+    file = application.file
+    return f"# Write the folder of {file} before its name; the page hides it\n" if file else ""
 
 
 def find_changes(application: Application, state: State) -> State:

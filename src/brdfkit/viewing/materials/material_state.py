@@ -92,6 +92,12 @@ class MaterialState:
         """Whether models can be fitted to the material."""
         return isinstance(self.measured, Measured)
 
+    def list_models(self, state: State) -> list[Model]:
+        """Return the model that a state shows, with its values, and the others with their first."""
+        shown = state["model"]
+        others = [model for label, model in self.models.items() if label != shown]
+        return [self.to_model(state), *others]
+
     def find_model(self, label: str) -> Model:
         """Return the model of a label with its first values: those of its fit, or given ones."""
         if label in self.fits:

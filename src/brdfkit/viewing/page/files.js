@@ -2,21 +2,6 @@
 
 const CHUNK = 1 << 20; // bytes of a piece
 
-/** Return what a file is for, by its name, and by its content if it is JSON. */
-async function guessKind(file) {
-  const name = file.name.toLowerCase();
-  if (/\.(hdr|exr)$/.test(name)) return "environment";
-  if (!name.endsWith(".json")) return "volume";
-  try {
-    const content = JSON.parse(await file.text());
-    const names = Object.keys(content);
-    // A saved state is flat, with names such as "camera.azimuth"; a transfer function is not
-    return names.some((key) => key.startsWith("camera.")) ? "state" : "transfer";
-  } catch {
-    return "transfer"; // Python says what is wrong with it
-  }
-}
-
 /** Return the files of a drop, those in dropped folders, too: a scan is often a folder. */
 async function listDropped(transfer) {
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter(Boolean);
@@ -74,11 +59,10 @@ function createUploads(session) {
     return true;
   }
 
-  async function sendAll(files, kind) {
+  async function sendAll(files) {
     try {
       for (const [index, file] of files.entries()) {
-        const details = { kind: kind || (await guessKind(file)), count: files.length, index };
-        if (!(await send(file, details))) break;
+        if (!(await send(file, { count: files.length, index }))) break;
       }
     } catch (error) {
       session.emit("error", { text: `The file could not be read: ${error.message}` });
@@ -87,8 +71,8 @@ function createUploads(session) {
     }
   }
 
-  return (files, kind) => {
-    if (files.length) queue = queue.then(() => sendAll([...files], kind));
+  return (files) => {
+    if (files.length) queue = queue.then(() => sendAll([...files]));
   };
 }
 
@@ -111,9 +95,9 @@ function acceptFiles(session, element) {
     upload(await listDropped(event.dataTransfer));
   });
 
-  function pick(kind, accept) {
-    const input = make("input", { type: "file", multiple: !kind, accept });
-    input.addEventListener("change", () => upload(input.files, kind));
+  function pick(accept) {
+    const input = make("input", { type: "file", multiple: !accept, accept });
+    input.addEventListener("change", () => upload(input.files));
     input.click();
   }
   session.on("pick", pick);

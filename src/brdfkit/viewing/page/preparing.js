@@ -26,7 +26,6 @@ function createPreparation(session, stage, picture) {
   let stopped = false; // after an error, or by the user
 
   function say(missing) {
-    if (session.description.volume === null) return "Drop a volume here, or choose Open.";
     if (stopped || !missing.length) return "";
     const { renderer, second } = session.state;
     const names = missing.map((side) => nameRenderer(session, side ? second : renderer));
@@ -46,7 +45,7 @@ function createPreparation(session, stage, picture) {
 
   function show() {
     if (!session.description) return;
-    const missing = listMissing(session, picture);
+    const missing = session.description.start ? [] : listMissing(session, picture);
     if (missing.length) place(missing);
     const words = say(missing);
     // Saying the same again would be announced again

@@ -19,7 +19,7 @@ function createTransferEditor(session) {
   const addButton = makeButton("Add", () => add(findGap(), 0.5));
   const removeButton = makeButton("Remove", () => remove(), { title: "Delete" });
   const tools = make("div", { class: "tools" }, addButton, removeButton,
-    makeButton("Load…", () => session.emit("pick", "transfer", ".json")),
+    makeButton("Load…", () => session.emit("pick", ".json")),
     makeButton("Save", () => session.send({ type: "save", kind: "transfer" })));
   const element = make("div", { class: "transfer", hidden: true }, head, plot, axis.element, fields, tools);
 

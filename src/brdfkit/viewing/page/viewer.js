@@ -104,6 +104,7 @@ function render({ model, el }) {
   markParameters(session, findControl);
 
   const pick = acceptFiles(session, root);
+  createStart(session, stage, pick);
   const views = make("div", { class: "views-area" }, stage, slices.element);
   root.append(
     createToolbar(session, pick, paint.button, help),

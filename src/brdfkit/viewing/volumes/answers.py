@@ -11,7 +11,6 @@ from brdfkit.core.arguments import to_number, to_whole_number
 from brdfkit.viewing.application import unknown_message_error
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.volumes import saving, scripts, slices
-from brdfkit.viewing.volumes.opening import load_raw, load_upload
 from brdfkit.viewing.volumes.painting import paint
 from brdfkit.viewing.volumes.pointer import find_visible_voxel
 from brdfkit.volumes import Volume
@@ -24,13 +23,9 @@ if TYPE_CHECKING:
     Application = Any  # `VolumeApplication`, which imports this file
 
 
-def answer(
-    application: Application, session: Session, message: dict[str, Any], data: bytes
-) -> list[Message]:
+def answer(application: Application, session: Session, message: dict[str, Any]) -> list[Message]:
     """Answer a message; raise `BrdfkitError` for an unknown one."""
     kind = str(message.get("type"))
-    if kind == "upload":
-        return load_upload(application, session, message, data)
     if kind not in ANSWERS:
         raise unknown_message_error(kind)
     return ANSWERS[kind](application, session, message)
@@ -110,6 +105,5 @@ ANSWERS: dict[str, Callable[[Any, Any, dict[str, Any]], list[Any]]] = {
     "probe_slice": _probe_slice,
     "save": _save,
     "copy": _copy,
-    "raw": load_raw,
     "paint": _paint,
 }

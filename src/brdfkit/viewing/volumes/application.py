@@ -18,11 +18,11 @@ from brdfkit.viewing.session import Session
 from brdfkit.viewing.tone_controls import develop, to_tone_mapping
 from brdfkit.viewing.volumes import scripts
 from brdfkit.viewing.volumes.answers import answer, show_slices
+from brdfkit.viewing.volumes.beside import open_beside
 from brdfkit.viewing.volumes.description import describe_box, describe_volume
 from brdfkit.viewing.volumes.live_scene import LiveScene, SceneKind
 from brdfkit.viewing.volumes.source import Source
 from brdfkit.viewing.volumes.state import DRAWN_ONLY, VolumeState
-from brdfkit.viewing.volumes.uploads import Upload
 from brdfkit.volumes import Volume
 from brdfkit.volumes.summary.summary import may_be_labels
 
@@ -39,24 +39,17 @@ class VolumeApplication:
     not possible.
     """
 
+    @in_turn
     def __init__(
         self,
         volume: Volume,
         source: Source | str | None = None,
         changes: Mapping[str, Any] | None = None,
     ) -> None:
-        self.upload = Upload()
-        read_from = Source(source) if isinstance(source, str) else source
-        self.given = volume, read_from, changes
-        self.show(*self.given)
-
-    @in_turn
-    def show(
-        self, volume: Volume, source: Source | None, changes: Mapping[str, Any] | None = None
-    ) -> None:
-        """Show another volume."""
+        self.source = Source(source) if isinstance(source, str) else source
+        self.given = volume, self.source, changes
         given = to_changes(changes)
-        self.volume, self.source, self.loaded = volume, source, volume
+        self.volume, self.loaded = volume, volume
         self.states = VolumeState(volume)
         self.scenes = _make_scenes()
         self.first = self.change(self.states.first(), self._read_files(given))
@@ -82,8 +75,12 @@ class VolumeApplication:
         self.scenes.clear()
 
     def close(self) -> None:
-        """Forget the files of the page, which is gone."""
-        self.upload.clear()
+        """Forget the scenes, because the page is gone or shows something else."""
+        self.scenes.clear()
+
+    def open_beside(self, session: Session, kind: str, path: Path) -> list[Message]:
+        """Open a dropped file beside the volume."""
+        return open_beside(self, session, kind, path)
 
     def first_state(self) -> State:
         """Return the state with which a view begins."""
@@ -196,7 +193,7 @@ class VolumeApplication:
 
     def answer(self, session: Session, message: dict[str, Any], data: bytes) -> list[Message]:
         """Answer a message that is about the volume."""
-        return answer(self, session, message, data)
+        return answer(self, session, message)
 
 
 def _make_scenes() -> Recent[SceneKind, LiveScene]:

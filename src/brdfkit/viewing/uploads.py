@@ -25,8 +25,8 @@ LONGEST_NAME = 200  # bytes, of the 255 that file systems allow
 class Upload:
     """The files of one drop, until they are read.
 
-    `files`: the path and the kind of each, in the order of their arrival. `raw`: the file of voxels
-    whose header the user is asked for.
+    `files`: their paths, in the order of their arrival. `raw`: the file of voxels whose header the
+    user is asked for.
     """
 
     def __init__(self) -> None:
@@ -37,8 +37,9 @@ class Upload:
         """Delete what has arrived."""
         if self.folder is not None:
             self.folder.cleanup()
-        self.folder, self.raw = None, None
-        self.files: list[tuple[Path, str]] = []
+        self.folder = None
+        self.raw: Path | None = None
+        self.files: list[Path] = []
         self.declared, self.end = 0, 0  # bytes: of all files, and those of the last one so far
 
     def add(self, message: dict[str, Any], data: bytes) -> bool:
@@ -62,7 +63,7 @@ class Upload:
         fits = offset == self.end and offset + len(data) <= size and (data or not size)
         if index != len(self.files) - 1 or not fits:
             raise BrdfkitError("The file arrived in the wrong order; drop it again.")
-        with self.files[-1][0].open("ab") as stream:
+        with self.files[-1].open("ab") as stream:
             stream.write(data)
         self.end += len(data)
         return self.end == size and index + 1 == count
@@ -83,7 +84,7 @@ class Upload:
         if path.exists():  # from another folder of the drop
             path = folder / f"{len(self.files)}_{name}"
         path.touch(exist_ok=False)
-        self.files.append((path, str(message.get("kind"))))
+        self.files.append(path)
         self.end = 0
 
 

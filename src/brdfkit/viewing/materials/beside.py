@@ -1,0 +1,36 @@
+"""Opens what is dropped beside a material: fits."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from brdfkit.materials.loading import load
+from brdfkit.regression import Fit
+from brdfkit.viewing import kinds
+from brdfkit.viewing.application import no_use_error
+from brdfkit.viewing.materials.material_state import find_label
+from brdfkit.viewing.materials.parameter_state import to_state
+
+if TYPE_CHECKING:
+    from brdfkit.viewing.application import Message
+    from brdfkit.viewing.session import Session
+
+    Application = Any  # `MaterialApplication`, which imports this file
+
+
+def open_beside(application: Application, session: Session, kind: str, path: Path) -> list[Message]:
+    """Open a file of a kind beside the material; raise `BrdfkitError` if it has no use there."""
+    if kind == kinds.FIT:
+        return _open_fit(application, session, path)
+    raise no_use_error(path.name, "a transfer function shows a volume")
+
+
+def _open_fit(application: Application, session: Session, path: Path) -> list[Message]:
+    """Show the model of a fit with its values."""
+    fit = load(path)
+    assert isinstance(fit, Fit)
+    label = find_label(fit)
+    application.states.keep_fit(label, fit)
+    session.change({"model": label} | to_state(fit.rgb))
+    return [session.describe_state(), *application.describe_model(session.state)]
