@@ -45,7 +45,7 @@ class EmptyApplication:
             "Volumes": [(name, name) for name in made.list_volume_names()],
         }
         start = {"files": FILES, "lists": list(lists.items())}
-        common = {"title": "", "parts": ["files"], "panels": [], "controls": [], "saves": []}
+        common = {"title": "", "parts": [], "panels": [], "controls": [], "saves": []}
         return common | {"start": start}, []
 
     def first_state(self) -> State:

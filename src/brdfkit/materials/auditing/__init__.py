@@ -4,7 +4,7 @@
 brightness near the light and at the horizon with other directions, `symmetries.py` compares values
 that should be equal, and `cosine.py` and `azimuth.py` recognise other conventions of instruments.
 `subsets.py` draws a part of large measurements. `picture.py` draws the audit, and `report.py`
-describes it in words. `data_findings.py` has the warnings that both audits and fits show.
+describes it in words. `data_findings.py` has the findings that both audits and fits show.
 """
 
 from __future__ import annotations
@@ -134,7 +134,7 @@ class Audit(Shown):
 
     def findings(self) -> tuple[str, ...]:
         """Return a sentence on each doubtful property of the measurement."""
-        return list_findings(self)
+        return tuple(map(str, list_findings(self)))
 
     def picture(self) -> Figure:
         """Draw a slice of the BRDF's table, its polar plots and its albedo with matplotlib.

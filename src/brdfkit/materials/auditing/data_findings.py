@@ -11,6 +11,7 @@ import numpy as np
 from brdfkit.core.names import format_percent
 from brdfkit.materials.auditing.azimuth import compute_turned_error_ratio
 from brdfkit.materials.auditing.cosine import explain_suspected_cosine
+from brdfkit.materials.auditing.finding import Finding
 from brdfkit.materials.auditing.noise import estimate_noise
 from brdfkit.materials.auditing.ratios import (
     GRAZING,
@@ -51,11 +52,16 @@ MOST_EQUAL_NEGATIVE = 4
 # that the unit is wrong
 LARGEST_ALBEDO, SMALLEST_ALBEDO = 1.25, 1e-3
 OBLIQUE = 60
+# The angles that a finding concerns, by its topic
+WHERE = {
+    "azimuth": "views at phi_o = phi_i, on the side of the light",
+    "cosine": "all views, most at large theta_o",
+}
 # Directions whose cosine to the normal is larger count as directions along the normal
 ALONG_NORMAL = math.cos(math.radians(5))
 
-# The warnings on each material, kept because every fit to the same material needs them again
-_cache: WeakKeyDictionary[Measured, dict[str, str]] = WeakKeyDictionary()
+# The findings on each material, kept because every fit to the same material needs them again
+_cache: WeakKeyDictionary[Measured, tuple[Finding, ...]] = WeakKeyDictionary()
 
 
 def list_data_findings(data: Measured, max_angle: float = 90.0) -> tuple[str, ...]:
@@ -64,14 +70,24 @@ def list_data_findings(data: Measured, max_angle: float = 90.0) -> tuple[str, ..
     `max_angle` [degrees] is the largest angle to the normal of the samples that a fit uses; faults
     beyond it are not reported.
     """
+    found = find_faults(data)
+    return tuple(str(f) for f in found if f.topic != "horizon" or max_angle > GRAZING)
+
+
+def find_faults(data: Measured) -> tuple[Finding, ...]:
+    """Return the doubtful properties of a `Measured` that quick tests reveal."""
     if data not in _cache:
-        _cache[data] = {topic: text for topic, text in _find_faults(data).items() if text}
-    sentences = _cache[data]
-    return tuple(s for topic, s in sentences.items() if topic != "horizon" or max_angle > GRAZING)
+        findings = (
+            said if isinstance(said, Finding) else Finding(topic, said, WHERE.get(topic, ""))
+            for topic, said in _test(data).items()
+            if said
+        )
+        _cache[data] = tuple(findings)
+    return _cache[data]
 
 
-def _find_faults(data: Measured) -> dict[str, str]:
-    """Test a `Measured` for all kinds of faults; return by topic a sentence on each, or ""."""
+def _test(data: Measured) -> dict[str, str | Finding]:
+    """Test a `Measured` for all kinds of faults; return what was found by topic, or nothing."""
     samples = draw_samples(data)
     cosine = _warn_of_cosine_factor(data)
     return {
@@ -87,7 +103,7 @@ def _find_faults(data: Measured) -> dict[str, str]:
     }
 
 
-def _warn_of_backward_highlight(data: Measured, samples: Samples) -> str:
+def _warn_of_backward_highlight(data: Measured, samples: Samples) -> Finding | str:
     """Return a warning of retroreflection, or of azimuths that are off by 180°, or ""."""
     ratio, near_light = compute_backward_ratio(samples), compute_retroreflection_ratio(samples)
     mendable = can_mend(data, "mirror_azimuth")
@@ -102,14 +118,15 @@ def _warn_of_backward_highlight(data: Measured, samples: Samples) -> str:
     ):
         beginning = "the highlight lies towards the light, and not"
     if beginning:
-        mirrored = "the instrument counts phi_o from the mirror's side"
-        if mendable:
-            mirrored += ", which mirror_azimuth=True (--mirror-azimuth) mends"
-        return (
+        text = (
             f"{beginning} in the mirror direction, phi_o = phi_i + 180°: either the material is "
             "retroreflective, which no lobe about the mirror direction can fit, or "
-            f"{mirrored}"
+            "the instrument counts phi_o from the mirror's side"
         )
+        if not mendable:
+            return text
+        remedy = ", which mirror_azimuth=True (--mirror-azimuth) mends"
+        return Finding("azimuth", text, WHERE["azimuth"], "mirror_azimuth", remedy)
     if near_light > RETROREFLECTIVE:
         return (
             f"the material is retroreflective: the median within 5° of the light is "
@@ -119,15 +136,16 @@ def _warn_of_backward_highlight(data: Measured, samples: Samples) -> str:
     return ""
 
 
-def _warn_of_cosine_factor(data: Measured) -> str:
+def _warn_of_cosine_factor(data: Measured) -> Finding | str:
     """Return a warning of values that seem to be the BRDF times cos theta_o, or ""."""
     why = explain_suspected_cosine(data)
     if not why:
         return ""
-    mend = ""
-    if can_mend(data, "divide_by_cos"):
-        mend = "; if they are, divide_by_cos=True (--divide-by-cos) mends them"
-    return f"the values seem to be the BRDF times cos theta_o, because {why}{mend}"
+    text = f"the values seem to be the BRDF times cos theta_o, because {why}"
+    if not can_mend(data, "divide_by_cos"):
+        return text
+    remedy = "; if they are, divide_by_cos=True (--divide-by-cos) mends them"
+    return Finding("cosine", text, WHERE["cosine"], "divide_by_cos", remedy)
 
 
 def _warn_of_broken_reciprocity(data: Measured) -> str:

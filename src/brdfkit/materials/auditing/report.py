@@ -4,7 +4,8 @@ import math
 from typing import Any
 
 from brdfkit.materials.auditing.albedos import Albedo
-from brdfkit.materials.auditing.data_findings import list_data_findings
+from brdfkit.materials.auditing.data_findings import find_faults
+from brdfkit.materials.auditing.finding import Finding
 from brdfkit.materials.auditing.noise import Noise
 from brdfkit.materials.auditing.spikes import Spike
 from brdfkit.materials.auditing.symmetries import Difference
@@ -42,16 +43,28 @@ def describe_audit(audit: Any) -> dict[str, str]:
     }
 
 
-def list_findings(audit: Any) -> tuple[str, ...]:
-    """Return a sentence on each doubtful property that an `Audit` has found."""
-    findings = [*_describe_spikes(audit.spikes), *_describe_excess_albedo(audit)]
+def list_findings(audit: Any) -> tuple[Finding, ...]:
+    """Return each doubtful property that an `Audit` has found."""
+    findings = [
+        *(Finding("spike", text) for text in _describe_spikes(audit.spikes)),
+        *(Finding("albedo", text) for text in _describe_excess_albedo(audit)),
+    ]
     share = audit.negative / (audit.valid * len(audit.channels))
     if share > NEGATIVE_SHARE:
-        findings.append(
+        text = (
             f"{to_percent(share)} of the values are negative: the losses log and cbrt treat them "
             "as 0"
         )
-    return (*findings, *list_data_findings(audit.data))
+        findings.append(Finding("negative", text, f"most of them at {_format_negative(audit)}"))
+    return (*findings, *find_faults(audit.data))
+
+
+def _format_negative(audit: Any) -> str:
+    """Return the angles at which most of the negative values are."""
+    return (
+        f"{audit.negative_from:.0f}° to {audit.negative_to:.0f}° to the normal, the larger of θi "
+        "and θo"
+    )
 
 
 def _describe_negative_values(audit: Any) -> str:
@@ -61,9 +74,7 @@ def _describe_negative_values(audit: Any) -> str:
     if not audit.negative:
         return count
     return (
-        f"{count}, {to_percent(audit.negative / values)}, most of them at "
-        f"{audit.negative_from:.0f}° to {audit.negative_to:.0f}° to the normal, the larger of θi "
-        "and θo"
+        f"{count}, {to_percent(audit.negative / values)}, most of them at {_format_negative(audit)}"
     )
 
 

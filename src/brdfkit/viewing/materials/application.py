@@ -112,7 +112,7 @@ class MaterialApplication:
         """Return the message "open": the panels, the controls and what can be saved."""
         return {
             "title": self.name,
-            "parts": ["files", "light", *(["fit"] if self.states.is_fittable else [])],
+            "parts": ["light", *(["fit"] if self.states.is_fittable else [])],
             "pin_colours": COLOURS,
             "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
         } | self._describe_controls(), []

@@ -80,7 +80,7 @@ function createUploads(session) {
 function acceptFiles(session, element) {
   const upload = createUploads(session);
   let depth = 0; // enter and leave come for every child, too
-  const holdsFiles = (event) => uses(session, "files") && [...(event.dataTransfer?.types || [])].includes("Files");
+  const holdsFiles = (event) => [...(event.dataTransfer?.types || [])].includes("Files");
   const mark = (change) => {
     depth = change === 0 ? 0 : Math.max(depth + change, 0);
     element.classList.toggle("dropping", depth > 0);

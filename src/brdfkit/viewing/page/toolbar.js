@@ -55,7 +55,6 @@ function createToolbar(session, pick, paint, help) {
   const open = makeButton("Open…", () => pick(), { class: "main" });
   session.on("open", (content) => {
     title.textContent = title.title = content.title || "";
-    open.hidden = !uses(session, "files");
     paint.hidden = !uses(session, "paint");
     save.button.disabled = !content.saves?.length;
     save.fill(...(content.saves || []).map(({ kind, label }) =>

@@ -27,7 +27,7 @@ def describe_volume(application: Application) -> Message:
     counts, joint = make_histograms(volume, (live.low, live.high), live.steepest)
     return {
         "title": volume.name,
-        "parts": ["files", "camera", "paint", "transfer", "slices"],
+        "parts": ["camera", "paint", "transfer", "slices"],
         "panels": [
             {"name": name, "label": label, "open": is_open} for name, label, is_open in PANELS
         ],
