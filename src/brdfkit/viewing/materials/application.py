@@ -32,6 +32,8 @@ from brdfkit.viewing.materials.material_state import (
 from brdfkit.viewing.materials.parameter_controls import list_panels
 from brdfkit.viewing.materials.parameter_state import PREFIX
 from brdfkit.viewing.materials.pins import COLOURS
+from brdfkit.viewing.materials.plot_controls import PLOTS
+from brdfkit.viewing.materials.plots.live_plots import LivePlots
 from brdfkit.viewing.recent import Recent
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.tone_controls import develop, to_tone_mapping
@@ -50,6 +52,7 @@ DRAWN_ONLY = (
     "compare",
     "tone.",
     "fit.",
+    "plots.",
     "pins",
     "solo",
     "view.moving_scale",
@@ -75,7 +78,7 @@ class MaterialApplication:
         self.file = file
         self.given = material, tuple(models), to_changes(changes)
         self.states = MaterialState(*self.given[:2])
-        self.lights = LiveLights()
+        self.lights, self.plots = LiveLights(), LivePlots(self.states)
         # By the model's label, or "" for the measured one
         self.live: Recent[str, LiveMaterial] = Recent(MODELS)
         # Pictures without noise of what no slider changes, by what they show
@@ -114,6 +117,7 @@ class MaterialApplication:
             "title": self.name,
             "parts": ["light", *(["fit"] if self.states.is_fittable else [])],
             "pin_colours": COLOURS,
+            "plots": [{"name": name, "label": label} for name, label, _ in PLOTS],
             "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
         } | self._describe_controls(), []
 
@@ -184,6 +188,14 @@ class MaterialApplication:
         """Return a key of the material at a side, "" for the measured one, and the material."""
         return self.states.find_side(state, state["second" if side else "renderer"])
 
+    def has_plot(self, state: State, moving: bool) -> bool:
+        """Return whether a plot is open that shows another state."""
+        return bool(self.plots.find_stale(state, moving))
+
+    def draw_plots(self, state: State, moving: bool) -> list[Message]:
+        """Return the next plots that show another state; only quick ones while something moves."""
+        return self.plots.draw(state, moving)
+
     def tone_mapping(self, state: State) -> ToneMapping:
         """Return the tone mapping of a state."""
         return to_tone_mapping(state)
@@ -207,6 +219,8 @@ class MaterialApplication:
 
         The pins are among the choices of the controls, too.
         """
+        if not before:  # a page that was loaded, which has no plot yet
+            self.plots.forget()
         model = self.states.to_model(after)
         same = type(model) is type(self.base) and before
         if same and not self.states.exceeds_controls(self.base, after):

@@ -99,7 +99,11 @@ def write_comment(application: Application) -> str:
 def find_changes(application: Application, state: State) -> State:
     """Return what of a state differs from the first one of a view of its model."""
     first = application.states.first() | to_state(type(application.states.to_model(state))())
-    return {name: value for name, value in state.items() if first.get(name) != value}
+    return {
+        name: value
+        for name, value in state.items()
+        if first.get(name) != value and not name.startswith("plots.")  # which no picture shows
+    }
 
 
 def _is_model(name: str) -> bool:

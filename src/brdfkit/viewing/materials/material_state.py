@@ -35,6 +35,7 @@ from brdfkit.viewing.materials.pins import (
     make_model,
     name_pin,
 )
+from brdfkit.viewing.materials.plot_controls import make_plot_controls
 
 LARGEST_WEIGHT = 1e6
 FITS = 32  # that are kept at most
@@ -125,9 +126,10 @@ class MaterialState:
         """Return the controls by name, without those of a model's values."""
         names = [label, *(known for known in self.models if known != label)]
         choices = [(name_pin(pin), label_pin(pin)) for pin in pins]
-        compared = self.measured is not None
+        compared, kind = self.measured is not None, type(self.find_model(label))
         own = make_explorer_controls(self.name, names, label, compared, choices)
-        return {control.name: control for control in own}
+        anisotropic = kind.is_anisotropic() or getattr(self.measured, "anisotropic", False)
+        return {control.name: control for control in [*own, *make_plot_controls(anisotropic)]}
 
     def first(self) -> State:
         """Return the state with which a view begins."""
