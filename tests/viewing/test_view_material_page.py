@@ -39,7 +39,15 @@ def test_the_page_has_what_is_about_materials_alone(page):
     assert page.get_by_role("button", name="Paint").count() == 0
     summaries = page.locator("summary:visible").all_inner_texts()
     assert summaries == [
-        *("Model and fit", "Diffuse term", "Highlight", "Picture", "Light", "Tone mapping")
+        *(
+            "Model and fit",
+            "Fit settings",
+            "Diffuse term",
+            "Highlight",
+            "Picture",
+            "Light",
+            "Tone mapping",
+        )
     ]
     page.get_by_role("button", name="Help").click()
     text = page.get_by_role("dialog").inner_text()

@@ -18,6 +18,7 @@ from brdfkit.core.colours import from_srgb
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.errors.colour_difference import ciede2000
 from brdfkit.lighting.environments.map_files import read_map
+from brdfkit.viewing import background
 from brdfkit.viewing.choosing import is_volume, make_application
 from brdfkit.viewing.materials import fit_task
 from brdfkit.viewing.materials.application import MaterialApplication
@@ -33,8 +34,7 @@ HELLO = {"type": "hello", "width": 64, "height": 64, "state": None}
 @pytest.fixture(scope="module")
 def application(module_in_llvm):
     """The view that all tests share, with its scenes."""
-    # Without plots, so that each step of work is a pass of the picture
-    return MaterialApplication("car_paint", ["ggx", "ward"], {"plots.show.polar": False})
+    return MaterialApplication("car_paint", ["ggx", "ward"])
 
 
 @pytest.fixture
@@ -237,7 +237,7 @@ def test_a_fit_can_be_cancelled_and_fails_in_a_sentence(session, monkeypatch):
     assert "goes on already" in again["text"]
     session.handle({"type": "cancel"})
     end = time.monotonic() + 10
-    while fit_task.NAME in [thread.name for thread in threading.enumerate()]:
+    while background.NAME in [thread.name for thread in threading.enumerate()]:
         assert time.monotonic() < end
         time.sleep(0.01)
     assert session.tasks == []

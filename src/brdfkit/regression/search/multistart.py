@@ -90,14 +90,18 @@ def search_from_starts(
     Return the expansion of E² about the ends on the last problem, the best first, whether each of
     them converged, and the number of evaluations. `problems`: problems on growing parts of the
     samples; `u` (starts, shapes): coordinates of the starts; `report`: a function that is called
-    with the problems done and their number; `iterations`, `tolerance`: see `levenberg_marquardt`.
+    with the rounds and problems done and their number; `iterations`, `tolerance`: see
+    `levenberg_marquardt`.
     """
     first, last, starts = problems[0], problems[-1], u
     weights, evaluations = first.estimate_weights(u), 0
     if first.clamped:
         u, weights = _add_unclamped_starts(first, u, weights)
+    rounds = MANY_SHAPES_ROUNDS if u.shape[1] > FEW_SHAPES else FEW_SHAPES_ROUNDS
+    total = len(rounds) + len(problems)
     # All starts take a few steps, the best of them a few more, and so on
-    for count, steps in MANY_SHAPES_ROUNDS if u.shape[1] > FEW_SHAPES else FEW_SHAPES_ROUNDS:
+    for number, (count, steps) in enumerate(rounds):
+        report(number, total)
         search = levenberg_marquardt(first.expand_loss, u, weights, first.least, steps)
         evaluations += search.evaluations
         ends = search.ends.select_points(search.find_best_ends(count))
@@ -105,7 +109,7 @@ def search_from_starts(
     revived = revive_zero_weights(first, ends.select_points([0]), starts)
     u, weights = (np.concatenate(parts) for parts in zip((u, weights), revived, strict=True))
     for number, problem in enumerate(problems):
-        report(number, len(problems))
+        report(len(rounds) + number, total)
         if number:
             rows = search.find_best_ends(FINALISTS)
             error = search.ends.error
@@ -118,7 +122,7 @@ def search_from_starts(
         part = problems[number - 1] if number else None
         search, count = _search_problem(problem, part, u, weights, iterations, limit)
         evaluations += count
-    report(len(problems), len(problems))
+    report(total, total)
     best = search.find_best_ends(FINALISTS)
     return search.ends.select_points(best), search.converged[best], evaluations
 

@@ -17,7 +17,7 @@ from brdfkit.viewing.application import Message, unknown_message_error
 from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.controls import State, has_other_samples, to_changes
 from brdfkit.viewing.difference_map import compare_colours
-from brdfkit.viewing.materials import fit_task, material_scripts, pin_answers, saving
+from brdfkit.viewing.materials import fit_settings, fit_task, material_scripts, pin_answers, saving
 from brdfkit.viewing.materials.beside import open_beside
 from brdfkit.viewing.materials.explorer_controls import MODEL
 from brdfkit.viewing.materials.idle_parameters import find_idle_parameters
@@ -32,8 +32,6 @@ from brdfkit.viewing.materials.material_state import (
 from brdfkit.viewing.materials.parameter_controls import list_panels
 from brdfkit.viewing.materials.parameter_state import PREFIX
 from brdfkit.viewing.materials.pins import COLOURS
-from brdfkit.viewing.materials.plot_controls import PLOTS
-from brdfkit.viewing.materials.plots.live_plots import LivePlots
 from brdfkit.viewing.recent import Recent
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.tone_controls import develop, to_tone_mapping
@@ -41,7 +39,8 @@ from brdfkit.viewing.tone_controls import develop, to_tone_mapping
 PASSES_BEFORE = 3  # at rest, before the kernels for moves are made
 STILLS = 2  # one at rest and one while something moves
 MODELS = 4  # whose scenes are kept at most
-PANELS = (("fit", "Model and fit", True),)  # before those of the parameters
+# Before those of the parameters; the second one where something can be fitted
+PANELS = ("fit", "Model and fit", True), (fit_settings.PANEL, "Fit settings", False)
 MORE_PANELS = (
     ("picture", "Picture", True),
     ("light", "Light", True),
@@ -52,7 +51,6 @@ DRAWN_ONLY = (
     "compare",
     "tone.",
     "fit.",
-    "plots.",
     "pins",
     "solo",
     "view.moving_scale",
@@ -78,7 +76,7 @@ class MaterialApplication:
         self.file = file
         self.given = material, tuple(models), to_changes(changes)
         self.states = MaterialState(*self.given[:2])
-        self.lights, self.plots = LiveLights(), LivePlots(self.states)
+        self.lights = LiveLights()
         # By the model's label, or "" for the measured one
         self.live: Recent[str, LiveMaterial] = Recent(MODELS)
         # Pictures without noise of what no slider changes, by what they show
@@ -117,19 +115,24 @@ class MaterialApplication:
             "title": self.name,
             "parts": ["light", *(["fit"] if self.states.is_fittable else [])],
             "pin_colours": COLOURS,
-            "plots": [{"name": name, "label": label} for name, label, _ in PLOTS],
+            "copies": material_scripts.MORE
+            if self.states.is_fittable
+            else material_scripts.MORE[:1],
             "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
         } | self._describe_controls(), []
 
     def _describe_controls(self) -> dict[str, Any]:
         """Return the panels and the controls, those of the shown model among them."""
-        panels = [*PANELS, *list_panels(type(self.base)), *MORE_PANELS]
+        first = PANELS if self.states.is_fittable else PANELS[:1]
+        panels = [*first, *list_panels(type(self.base)), *MORE_PANELS]
         controls = self.states.list_controls(self.base, pins=self.pins)
         return {
             "panels": [
                 {"name": name, "label": label, "open": is_open} for name, label, is_open in panels
             ],
             "controls": [c.to_json() for c in controls.values()],
+            "shapes": [PREFIX + name for name in type(self.base).shapes(anisotropic=True)],
+            "fit_all": fit_task.choose_labels(self.states),
         }
 
     def change(self, state: State, changes: Mapping[str, Any]) -> State:
@@ -188,14 +191,6 @@ class MaterialApplication:
         """Return a key of the material at a side, "" for the measured one, and the material."""
         return self.states.find_side(state, state["second" if side else "renderer"])
 
-    def has_plot(self, state: State, moving: bool) -> bool:
-        """Return whether a plot is open that shows another state."""
-        return bool(self.plots.find_stale(state, moving))
-
-    def draw_plots(self, state: State, moving: bool) -> list[Message]:
-        """Return the next plots that show another state; only quick ones while something moves."""
-        return self.plots.draw(state, moving)
-
     def tone_mapping(self, state: State) -> ToneMapping:
         """Return the tone mapping of a state."""
         return to_tone_mapping(state)
@@ -219,8 +214,6 @@ class MaterialApplication:
 
         The pins are among the choices of the controls, too.
         """
-        if not before:  # a page that was loaded, which has no plot yet
-            self.plots.forget()
         model = self.states.to_model(after)
         same = type(model) is type(self.base) and before
         if same and not self.states.exceeds_controls(self.base, after):
@@ -259,14 +252,14 @@ class MaterialApplication:
         return open_beside(self, session, kind, path)
 
     def _fit(self, session: Session, message: dict[str, Any]) -> list[Message]:
-        """Begin to fit the model that is shown."""
+        """Begin to fit the model that is shown, or all."""
         if not self.states.is_fittable:
             raise BrdfkitError(f"{self.name} was not measured, so nothing can be fitted to it.")
         if self.fitting is not None and self.fitting.goes_on:
             raise BrdfkitError("A fit goes on already; wait for it, or cancel it.")
-        self.fitting = fit_task.FitTask(self, session)
+        self.fitting = fit_task.FitTask(self, session, bool(message.get("all")))
         session.tasks.append(self.fitting.run())
-        return [fit_task.describe_progress(session.state["model"], None)]
+        return [self.fitting.describe_progress()]
 
     def _probe(self, session: Session, message: dict[str, Any]) -> list[Message]:
         """Return the linear RGB of each picture under the pointer, and how their colours differ."""
@@ -286,12 +279,15 @@ class MaterialApplication:
 
     def _save(self, session: Session, message: dict[str, Any]) -> list[Message]:
         """Return a file for the page to keep."""
-        return [saving.make_file(self, session, str(message.get("kind")))]
+        kind = str(message.get("kind"))
+        if kind == "report":
+            session.tasks.append(saving.make_report(self, session))
+            return []
+        return [saving.make_file(self, session, kind)]
 
     def _copy(self, session: Session, message: dict[str, Any]) -> list[Message]:
         """Return the view as a script or a command."""
-        kind = str(message.get("kind"))
-        is_command = kind == "command"
-        write = material_scripts.write_command if is_command else material_scripts.write_script
-        title = "The same picture from a command" if is_command else "The same from Python"
+        title, write = material_scripts.KINDS.get(
+            str(message.get("kind")), material_scripts.KINDS["python"]
+        )
         return [({"type": "text", "title": title, "text": write(self, session)}, [])]

@@ -43,9 +43,10 @@ def list_rows(states: MaterialState, state: State) -> list[Row]:
         Row(pin["model"], pins.make_model(states, pin), pins.name_pin(pin), pins.find_colour(pin))
         for pin in state["pins"]
     ]
-    shown = [row.model for row in rows]
-    fits = [Row(label, fit.rgb) for label, fit in states.fits.items() if fit.rgb not in shown]
-    return [*rows, *fits]
+    shown, named_so = [row.model for row in rows], {row.name for row in rows}
+    fits = [(label, fit.rgb) for label, fit in states.fits.items() if fit.rgb not in shown]
+    others = [Row(f"{n}, not pinned" if n in named_so else n, model) for n, model in fits]
+    return [*rows, *others]
 
 
 def describe_errors(states: MaterialState, state: State) -> Iterator[list[Message]]:

@@ -8,8 +8,8 @@ from typing import Any
 
 from brdfkit.core.catalogue import list_environments
 from brdfkit.model import labels
-from brdfkit.regression.losses.named_losses import DEFAULT, named
 from brdfkit.viewing.controls import Control
+from brdfkit.viewing.materials.fit_settings import make_fit_controls
 from brdfkit.viewing.materials.live_light import LAMP
 from brdfkit.viewing.materials.material_scene import PLANE
 from brdfkit.viewing.tone_controls import make_tone_controls
@@ -54,13 +54,10 @@ def _make_fit_controls(models: Sequence[str], label: str, compared: bool) -> lis
     """Return the controls of the model and of its fit."""
     others = [name for name in labels.models() if name not in (*models, *NO_MODELS)]
     known = tuple((name, name) for name in (*models, *others))
-    losses = tuple((name, name) for name in named)
     sums = "A model, or a sum such as ggx+ward."
     control = partial(Control, panel="fit")
     model = control("model", "Model", default=label, kind="text", choices=known, help=sums)
-    meaning = "The error that a fit makes small."
-    loss: dict[str, Any] = {"default": DEFAULT, "kind": "choice", "choices": losses}
-    return [model, *([control("fit.loss", "Loss", help=meaning, **loss)] if compared else [])]
+    return [model, *(make_fit_controls() if compared else [])]
 
 
 def _make_picture_controls(

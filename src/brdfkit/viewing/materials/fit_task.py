@@ -1,98 +1,128 @@
-"""`FitTask`: a fit that a page asked for, which the page can follow and cancel."""
+"""`FitTask`: fits that a page asked for, which the page can follow and cancel."""
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.names import join_words
+from brdfkit.core.progress_bar import Progress
 from brdfkit.fitting.fit import fit
 from brdfkit.regression import Fit
 from brdfkit.viewing.application import Message
+from brdfkit.viewing.background import Background, Cancelled
+from brdfkit.viewing.controls import State
 from brdfkit.viewing.materials.error_table import describe_errors
+from brdfkit.viewing.materials.fit_settings import to_fit_arguments
 from brdfkit.viewing.materials.parameter_state import to_state
+from brdfkit.viewing.materials.pins import COLOURS, add_pin
 from brdfkit.viewing.pictures import describe_error
 
 if TYPE_CHECKING:
+    from brdfkit.viewing.materials.material_state import MaterialState
     from brdfkit.viewing.session import Session
 
-NAME = "brdfkit fit"  # of the threads
-INTERVAL = 0.1  # seconds between two messages of the progress
+USUAL_MODELS = "ggx", "ward", "ggx+ggx"  # fitted by "Fit all" where a page has used only one
+END: Message = {"type": "busy", "task": "fit", "text": "", "fraction": None, "can_cancel": True}, []
 
 
-class _Cancelled(BrdfkitError):
-    """Ends a fit from within, at its next step."""
+def choose_labels(states: MaterialState) -> list[str]:
+    """Return the labels of the models that "Fit all" fits: those of the page, or usual ones."""
+    used = list(states.models)
+    used = used if len(used) > 1 else list(dict.fromkeys([*used, *USUAL_MODELS]))
+    return used[-len(COLOURS) :]
 
 
 class FitTask:
-    """A fit of the model that a session shows, with the page's loss.
+    """Fits with the page's settings: of the model that a session shows, or of all, which it pins.
 
-    It runs in a thread of its own, so that the task of the session only waits for it, in steps.
+    They are made in a thread of their own, so that the task of the session only waits for it.
     """
 
-    def __init__(self, application: Any, session: Session) -> None:
-        self.application, self.session = application, session
-        self.label, self.loss = session.state["model"], session.state["fit.loss"]
-        self.cancelled, self.finished = threading.Event(), threading.Event()
-        self.share = 0.0  # of the steps of the fit that are done
-        self.result: Fit | None = None
-        self.error: Exception | None = None
+    def __init__(self, application: Any, session: Session, fits_all: bool = False) -> None:
+        self.application, self.session, self.fits_all = application, session, fits_all
+        self.state = dict(session.state)
+        own = [self.state["model"]]
+        self.labels = choose_labels(application.states) if fits_all else own
+        self.background = Background(self._fit_each)
+        self.results: dict[str, Fit] = {}
+        self.errors: dict[str, Exception] = {}
 
     @property
     def goes_on(self) -> bool:
-        """Whether the fit is under way."""
-        return not (self.cancelled.is_set() or self.finished.is_set())
+        """Whether the fits are under way."""
+        return self.background.goes_on
 
     def run(self) -> Iterator[list[Message]]:
-        """Fit the model, and show the fit; yields messages for the page.
-
-        If the session gives the task up, the fit ends at its next step.
-        """
-        threading.Thread(target=self._fit, name=NAME, daemon=True).start()
-        try:
-            while not self.finished.wait(INTERVAL):
-                yield [describe_progress(self.label, self.share)]
-        finally:
-            self.cancelled.set()
-        if self.result is None:
-            yield [describe_progress("", None), describe_error(self.error or BrdfkitError(""))]
-        else:
-            yield self._show(self.result)
+        """Fit the models, and show the fits; yields messages for the page."""
+        yield from self.background.follow(self.describe_progress)
+        if self.results:
+            yield self._show()
             yield from describe_errors(self.application.states, self.session.state)
-            yield [describe_progress("", None)]
+        yield [END, *self._describe_failures()]
 
-    def _fit(self) -> None:
-        """Do the work, and keep its result or its error."""
-        states = self.application.states
-        model = type(states.find_model(self.label))
-        try:
-            self.result = fit(states.measured, model, loss=self.loss, progress=self._report)
-        except Exception as error:  # a page must hear of any
-            self.error = error
-        finally:
-            self.finished.set()
+    def _fit_each(self, report: Progress) -> None:
+        """Fit the models, and keep the fits and the errors."""
+        for label in self.labels:
+            self.background.share = 0.0
+            try:
+                self.results[label] = self._fit(label, report)
+            except Cancelled:
+                raise
+            except Exception as error:  # of this model; the others may go well
+                self.errors[label] = error
 
-    def _report(self, done: int, total: int) -> None:
-        """Keep the progress of the fit; end it if it was cancelled."""
-        self.share = done / max(total, 1)
-        if self.cancelled.is_set():
-            raise _Cancelled("The fit was cancelled.")
+    def _fit(self, label: str, report: Progress) -> Fit:
+        """Fit a model with the settings of the page."""
+        states, is_shown = self.application.states, label == self.state["model"]
+        model = type(states.find_model(label))
+        how = to_fit_arguments(self.state, model, is_shown)
+        return fit(states.measured, model, **how, progress=report)
 
-    def _show(self, result: Fit) -> list[Message]:
-        """Give the sliders the fitted values, unless another model is shown by now."""
+    def describe_progress(self) -> Message:
+        """Return the message "busy", without a share before the first step."""
+        number = min(len(self.results) + len(self.errors), len(self.labels) - 1)
+        several = f" ({number + 1} of {len(self.labels)})" if len(self.labels) > 1 else ""
+        share = (number + self.background.share) / len(self.labels)
+        text = f"{self.labels[number]} is fitted{several}"
+        return END[0] | {"text": text, "fraction": share or None}, []
+
+    def _show(self) -> list[Message]:
+        """Pin all fits if several were asked for, and give the sliders the fitted values.
+
+        The sliders stay as they are if another model is shown by now.
+        """
         application, session = self.application, self.session
         with session.lock:
-            application.states.keep_fit(self.label, result)
-            if session.state["model"] != self.label:
-                return []
-            session.change(to_state(result.rgb))
-            state = session.describe_state()
-            return [state, *application.describe_model(session.state)]
+            changes: State = {}
+            for label, result in self.results.items():
+                application.states.keep_fit(label, result)
+                if label == session.state["model"]:
+                    changes |= to_state(result.rgb)
+            if self.fits_all:
+                changes["pins"] = self._pin(session.state["pins"])
+            session.change(changes)
+            return [session.describe_state(), *application.describe_model(session.state)]
 
+    def _pin(self, pins: list[Any]) -> list[Any]:
+        """Return the pins with the fits; those of the same models give way if there are too many.
 
-def describe_progress(label: str, share: float | None) -> Message:
-    """Return the message "busy" of a fit; without a label it ends."""
-    text = f"{label} is fitted" if label else ""
-    progress = {"type": "busy", "task": "fit", "text": text, "fraction": share}
-    return progress | {"can_cancel": True}, []
+        A fit is left out where there is no room even so.
+        """
+        for label, result in self.results.items():
+            if len(pins) == len(COLOURS):
+                same = [pin for pin in pins if pin["model"] == label and pin["loss"]]
+                pins = [pin for pin in pins if pin not in same[:1]]
+            if len(pins) < len(COLOURS):
+                pins = add_pin(pins, label, to_state(result.rgb), result.loss_name)
+        return pins
+
+    def _describe_failures(self) -> list[Message]:
+        """Return a message about the fits that failed, unless all went well."""
+        if not self.errors:
+            return []
+        if len(self.labels) == 1:
+            return [describe_error(next(iter(self.errors.values())))]
+        text = join_words([f"{label}: {error}" for label, error in self.errors.items()])
+        return [describe_error(BrdfkitError(f"Not every model was fitted. {text}"))]

@@ -10,7 +10,10 @@ from typing import TYPE_CHECKING, Any
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import Model
 from brdfkit.viewing.controls import State
+from brdfkit.viewing.materials.fit_settings import find_repeated_arguments, to_fit_arguments
+from brdfkit.viewing.materials.mitsuba_xml import write_xml
 from brdfkit.viewing.materials.parameter_state import PREFIX, to_state
+from brdfkit.viewing.materials.pins import NONE, PIN
 
 if TYPE_CHECKING:
     from brdfkit.viewing.session import Session
@@ -51,9 +54,11 @@ def _write_fit(application: Application, state: State) -> str:
     """Return the expression of a state's model: its fit, or its values."""
     fit, label = application.states.fits.get(state["model"]), state["model"]
     values = to_state(application.states.to_model(state))
-    fitted = fit is not None and to_state(fit.rgb) == values
-    if fitted and not fit.settings.get("spectral"):
-        return f"brdfkit.fit(material, {label!r}, loss={fit.loss_name!r})"
+    if fit is not None and to_state(fit.rgb) == values:
+        how = find_repeated_arguments(fit, application.states.measured.anisotropic)
+        if how is not None:
+            words = [f"{name}={value!r}" for name, value in how.items()]
+            return f"brdfkit.fit(material, {label!r}, {', '.join(words)})"
     return write_model(application.states.to_model(state))
 
 
@@ -96,16 +101,54 @@ def write_comment(application: Application) -> str:
     return f"# Write the folder of {file} before its name; the page hides it\n" if file else ""
 
 
+def write_fit_command(application: Application, session: Session) -> str:
+    """Return a command that fits the model that is shown, with the settings of the page."""
+    states, state = application.states, session.state
+    material = application.given[0]
+    if not states.is_fittable or not isinstance(material, str | os.PathLike):
+        raise BrdfkitError(f"{application.name} is no file, so no command can fit it; copy Python.")
+    how = to_fit_arguments(state, states.find_class(state))
+    if not how.pop("use_standard_error", True):
+        raise BrdfkitError("No command can leave standard errors aside; copy Python.")
+    words = ["brdfkit", "fit", os.fspath(material), "-m", state["model"]]
+    for name, values in (("--fixed", how.pop("fixed", {})), ("--bound", how.pop("bounds", {}))):
+        for key, value in values.items():
+            numbers = value if isinstance(value, tuple) else (value,)
+            words += [name, f"{key}={','.join(map(repr, numbers))}"]
+    if "anisotropic" in how:
+        words.append("--anisotropic" if how.pop("anisotropic") else "--isotropic")
+    for name, value in how.items():
+        words += [f"--{name.replace('_', '-')}", str(value)]
+    return shlex.join([*words, "-o", application.name])
+
+
 def find_changes(application: Application, state: State) -> State:
     """Return what of a state differs from the first one of a view of its model."""
     first = application.states.first() | to_state(type(application.states.to_model(state))())
+    sides = f"{state['renderer']} {state['second']}"
+    unseen = () if PIN in sides else NONE  # the pins are not in the picture
     return {
         name: value
         for name, value in state.items()
-        if first.get(name) != value and not name.startswith("plots.")  # which no picture shows
+        if first.get(name) != value and name not in unseen
     }
 
 
 def _is_model(name: str) -> bool:
     """Return whether a setting is the model, or one of its values."""
     return name == "model" or name.startswith(PREFIX)
+
+
+def write_element(application: Application, session: Session) -> str:
+    """Return the model that is shown as XML of Mitsuba."""
+    return write_xml(application.states.to_model(session.state))
+
+
+KINDS = {  # of copies: a title, and the function that writes
+    "python": ("The same from Python", write_script),
+    "command": ("The same picture from a command", write_command),
+    "xml": ("The model in a scene of Mitsuba", write_element),
+    "fit": ("The fit from a command", write_fit_command),
+}
+# Besides Python and the command of the picture: kinds and labels
+MORE = ("xml", "Copy model as Mitsuba XML"), ("fit", "Copy fit as command")

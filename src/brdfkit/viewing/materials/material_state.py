@@ -17,6 +17,13 @@ from brdfkit.regression import Fit
 from brdfkit.viewing.controls import Control, State, default_state
 from brdfkit.viewing.materials.block_errors import BlockErrors
 from brdfkit.viewing.materials.explorer_controls import MODEL, make_explorer_controls
+from brdfkit.viewing.materials.fit_settings import (
+    BOUNDS,
+    FIXED,
+    UNBOUNDED,
+    check_bounds,
+    check_fixed,
+)
 from brdfkit.viewing.materials.material_scene import Look, SceneKind, make_studio_camera
 from brdfkit.viewing.materials.parameter_controls import make_controls
 from brdfkit.viewing.materials.parameter_state import (
@@ -35,7 +42,6 @@ from brdfkit.viewing.materials.pins import (
     make_model,
     name_pin,
 )
-from brdfkit.viewing.materials.plot_controls import make_plot_controls
 
 LARGEST_WEIGHT = 1e6
 FITS = 32  # that are kept at most
@@ -126,15 +132,15 @@ class MaterialState:
         """Return the controls by name, without those of a model's values."""
         names = [label, *(known for known in self.models if known != label)]
         choices = [(name_pin(pin), label_pin(pin)) for pin in pins]
-        compared, kind = self.measured is not None, type(self.find_model(label))
+        compared = self.measured is not None
         own = make_explorer_controls(self.name, names, label, compared, choices)
-        anisotropic = kind.is_anisotropic() or getattr(self.measured, "anisotropic", False)
-        return {control.name: control for control in [*own, *make_plot_controls(anisotropic)]}
+        return {control.name: control for control in own}
 
     def first(self) -> State:
         """Return the state with which a view begins."""
         model = self.find_model(self.label)
-        return default_state(self.list_controls(model, self.label).values()) | NONE
+        state = default_state(self.list_controls(model, self.label).values()) | NONE
+        return state | ({FIXED: []} if self.measured is not None else {})
 
     def change(self, state: State, changes: Mapping[str, Any]) -> State:
         """Return the state after `changes`; raise `BrdfkitError` if one is not possible."""
@@ -143,6 +149,7 @@ class MaterialState:
         if label != state["model"]:
             new = {name: v for name, v in state.items() if not name.startswith(PREFIX)}
             new |= to_state(self.find_model(label)) | {"model": label}
+            new |= {name: none for name, none in UNBOUNDED.items() if name in new}
         if "pins" in changes:
             new["pins"] = check_pins(self, changes["pins"])
         controls = self._list_own_controls(label, new["pins"])
@@ -152,6 +159,10 @@ class MaterialState:
                 raise no_such_error("setting", name, new)
             if name.startswith(PREFIX):
                 values[name] = value
+            elif name == FIXED:
+                new[name] = check_fixed(self.find_class(new), value)
+            elif name == BOUNDS:
+                new[name] = check_bounds(self.find_class(new), value)
             elif name not in ("model", "pins"):
                 new[name] = controls[name].check(value)
         return forget_missing_pins(self.check_values(label, new, values))

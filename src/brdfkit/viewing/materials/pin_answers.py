@@ -8,8 +8,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing.application import Message
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.materials.error_table import describe_errors
-from brdfkit.viewing.materials.parameter_state import to_state
-from brdfkit.viewing.materials.pins import add_pin, find_pin, select_values
+from brdfkit.viewing.materials.pins import add_pin, find_pin, has_values, select_values
 
 if TYPE_CHECKING:
     from brdfkit.viewing.session import Session
@@ -44,17 +43,6 @@ def show_errors(session: Session, message: dict[str, Any]) -> list[Message]:
     if states.is_fittable:
         session.tasks.append(describe_errors(states, session.state))
     return []
-
-
-def has_values(fit: Any, values: State) -> bool:
-    """Return whether values, as a state has them, are those of a fit."""
-    fitted = to_state(fit.rgb)
-    return all(values[name] == value for name, value in fitted.items() if is_number_name(name))
-
-
-def is_number_name(name: str) -> bool:
-    """Return whether the name of a value is that of a number, and not of a link or a colour."""
-    return not name.endswith((".linked", ".tied", ".colour"))
 
 
 def _change(session: Session, changes: State) -> list[Message]:

@@ -72,6 +72,17 @@ def select_values(state: State) -> State:
     return {name: value for name, value in state.items() if name.startswith(PREFIX)}
 
 
+def has_values(fit: Any, values: State) -> bool:
+    """Return whether values, as a state has them, are those of a fit."""
+    fitted = to_state(fit.rgb)
+    return all(values[name] == value for name, value in fitted.items() if _is_number(name))
+
+
+def _is_number(name: str) -> bool:
+    """Return whether the name of a value is that of a number, and not of a link or a colour."""
+    return not name.endswith((".linked", ".tied", ".colour"))
+
+
 def check_pins(states: States, pins: Any) -> list[Any]:
     """Return the pins that a page or an address gives; raise `BrdfkitError` for others."""
     if not isinstance(pins, list) or len(pins) > len(COLOURS):

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import to_file_stem
+from brdfkit.core.progress_bar import Progress
 from brdfkit.materials.loading import save
+from brdfkit.regression import Fit
+from brdfkit.reporting.report import report
 from brdfkit.viewing import picture_files
+from brdfkit.viewing.background import Background
+from brdfkit.viewing.controls import State
 from brdfkit.viewing.materials.error_table import list_rows, write_csv
+from brdfkit.viewing.materials.pins import has_values
+from brdfkit.viewing.pictures import describe_error
 from brdfkit.viewing.temporary_folders import make_folder
 
 if TYPE_CHECKING:
@@ -18,11 +26,13 @@ if TYPE_CHECKING:
 
     Application = Any  # `MaterialApplication`, which imports this file
 
+SAMPLES = 64  # per pixel of the pictures of a report
 KINDS = {
     **picture_files.KINDS,
     "fit": "Fit (JSON)",
     "bsdf": "Model as shown (Mitsuba's .bsdf)",
     "errors": "Table of errors (CSV)",
+    "report": "Report of the fits (HTML)",
 }
 
 
@@ -46,6 +56,45 @@ def make_file(application: Application, session: Session, kind: str) -> Message:
         content = path.read_bytes()
     mime = mime or "application/octet-stream"
     return {"type": "file", "name": name, "mime": mime}, [content]
+
+
+def make_report(application: Application, session: Session) -> Iterator[list[Message]]:
+    """Return the task that makes the report of the view's fits; raise `BrdfkitError` for none."""
+    fits = find_fits(application.states, session.state)
+    if not fits:
+        raise BrdfkitError("A report is about fits; choose Fit first.")
+    return _write_report(application, fits)
+
+
+def _write_report(application: Application, fits: list[Fit]) -> Iterator[list[Message]]:
+    """Make the report of fits; yields messages for the page, and the file at last."""
+    with make_folder() as folder:
+        path = Path(folder) / "report.html"
+
+        def write(progress: Progress) -> bytes:
+            report(application.states.measured, fits, path=path, spp=SAMPLES, progress=progress)
+            return path.read_bytes()
+
+        work = Background(write)
+        text = "the report is made; its pictures are path-traced"
+        busy = {"type": "busy", "task": "report", "text": text, "can_cancel": True}
+        yield from work.follow(lambda: (busy | {"fraction": work.share or None}, []))
+    yield [({"type": "busy", "task": "report", "text": "", "fraction": None}, [])]
+    if work.result is None:
+        yield [describe_error(work.error or BrdfkitError(""))]
+    else:
+        name = f"{to_file_stem(application.name)}-report.html"
+        yield [({"type": "file", "name": name, "mime": "text/html"}, [work.result])]
+
+
+def find_fits(states: Any, state: State) -> list[Fit]:
+    """Return the fits that are pinned, and those of the models that are not."""
+    pinned = [
+        next((fit for _, fit in states.all_fits if has_values(fit, pin["values"])), None)
+        for pin in state["pins"]
+    ]
+    fits = [*filter(None, pinned), *states.fits.values()]
+    return list({fit.rgb: fit for fit in fits}.values())
 
 
 def _make_table_file(application: Application, session: Session) -> Message:

@@ -124,6 +124,14 @@ function makeText(session, { name, label, choices = [] }) {
   return { row, show, input: select };
 }
 
+/** Make a box for a few words. */
+function makeWords(session, { name, label }) {
+  const box = make("input", {
+    type: "text", spellcheck: false, autocomplete: "off", onchange: () => session.change({ [name]: box.value.trim() }),
+  });
+  return { row: makeRow("words", label, box), show: (value) => (box.value = value), input: box };
+}
+
 /** Put a label before an input. */
 function makeRow(kind, label, input) {
   return make("div", { class: `control ${kind}` },
@@ -132,6 +140,7 @@ function makeRow(kind, label, input) {
 
 const CONTROL_MAKERS = {
   slider: makeSlider, choice: makeChoice, flag: makeFlag, colour: makeColour, text: makeText,
+  words: makeWords,
 };
 
 /** Let a double click on a control's label, and Delete, set it to its default. */

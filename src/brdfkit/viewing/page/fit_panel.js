@@ -8,6 +8,10 @@ function createFitPanel(session, root) {
     session.send({ type: fitting ? "cancel" : "fit" });
     show(!fitting);
   }, { class: "main" });
+  const all = makeButton("Fit all", () => {
+    session.send({ type: "fit", all: true });
+    show(true);
+  });
   const pin = makeButton("Pin", () => session.send({ type: "pin" }), {
     title: "Keep this model with its values under a colour, to compare it with others",
   });
@@ -16,21 +20,27 @@ function createFitPanel(session, root) {
   const table = createErrorTable(([, , usual]) => usual);
   const more = makeButton("All losses …", () => showAllErrors(session, root, errors), { hidden: true });
   const element = make("div", { class: "fit" },
-    make("div", { class: "tools" }, button, pin), note,
+    make("div", { class: "tools" }, button, all, pin), note,
     createPins(session), table.element, verdict, make("div", { class: "tools" }, more));
 
   function show(now) {
     fitting = now;
     button.textContent = now ? "Cancel the fit" : "Fit";
     button.classList.toggle("main", !now);
+    all.disabled = now;
   }
   session.on("open", () => {
-    button.hidden = !uses(session, "fit");
+    button.hidden = all.hidden = !uses(session, "fit");
     table.clear();
     verdict.textContent = "";
     more.hidden = true;
     show(false);
   });
+  const nameAll = ({ fit_all: labels = [] }) => {
+    all.title = `Fits and pins ${labels.join(", ")}: the models that you have looked at`;
+  };
+  session.on("open", nameAll);
+  session.on("controls", nameAll);
   session.on("busy", ({ task, text }) => show(task === "fit" && Boolean(text)));
   session.on("fit", ({ text, notes }) => {
     const lines = [text, ...notes].filter(Boolean);

@@ -50,6 +50,7 @@ function makePauseButton(session) {
 /** Make the toolbar; `pick` opens the file dialog, `paint` is a button, `help` opens the help. */
 function createToolbar(session, pick, paint, help) {
   const save = makeMenu("Save");
+  const copy = makeMenu("More");
   const group = (...buttons) => make("div", { class: "group" }, ...buttons);
   const title = make("span", { class: "title" });
   const open = makeButton("Open…", () => pick(), { class: "main" });
@@ -60,11 +61,17 @@ function createToolbar(session, pick, paint, help) {
     save.fill(...(content.saves || []).map(({ kind, label }) =>
       makeButton(label, () => session.send({ type: "save", kind }))));
   });
+  session.on("open", ({ copies = [] }) => {
+    copy.element.hidden = !copies.length;
+    copy.fill(...copies.map(([kind, label]) =>
+      makeButton(label, () => session.send({ type: "copy", kind }))));
+  });
   return make("div", { class: "toolbar", role: "group", "aria-label": "Files and history" },
     group(open, save.element),
     group(
       makeButton("Copy as Python", () => session.send({ type: "copy", kind: "python" })),
       makeButton("Copy as command", () => session.send({ type: "copy", kind: "command" })),
+      copy.element,
     ),
     group(...makeHistoryButtons(session)),
     group(paint),

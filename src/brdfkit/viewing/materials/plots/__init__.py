@@ -1,1 +1,0 @@
-"""Computes the plots of a material's page: arrays from materials and settings, for the page."""

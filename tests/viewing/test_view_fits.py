@@ -1,0 +1,144 @@
+"""Fits with the settings of a page, several at once, and what a page takes away of them."""
+
+import shlex
+from functools import cache
+
+import pytest
+
+import brdfkit as bk
+from brdfkit.cli import main
+from brdfkit.model import labels
+from brdfkit.viewing.materials import fit_task, saving
+from brdfkit.viewing.materials.application import MaterialApplication
+from brdfkit.viewing.materials.mitsuba_xml import write_xml
+from brdfkit.viewing.session import Session
+
+MODELS = "burley", "ward", "lambert"
+
+
+@pytest.fixture(scope="module")
+def application(module_in_llvm):
+    """The view that all tests share, which renders nothing."""
+    return MaterialApplication("satin_plastic", MODELS)
+
+
+@pytest.fixture
+def session(application):
+    application.states.fits.clear()
+    own = Session(application)
+    own.handle({"type": "hello", "width": 64, "height": 64, "state": None})
+    own.visible = False
+    return own
+
+
+@pytest.fixture
+def quick_fits(monkeypatch):
+    """Each model is fitted only once."""
+    monkeypatch.setattr(fit_task, "fit", lambda material, model, **_: fit_once(model.label()))
+
+
+@cache
+def fit_once(label):
+    """The fit of a model."""
+    return bk.fit("satin_plastic", label)
+
+
+def change(session, **changes):
+    """Change settings, "__" for a dot in their names; return the messages."""
+    named = {name.replace("__", "."): value for name, value in changes.items()}
+    answers = session.handle({"type": "set", "changes": named, "moving": False})
+    return [message for message, _ in answers]
+
+
+def ask(session, **message):
+    """Send a message, wait for its tasks, and return all answers."""
+    answers = session.handle(message)
+    while session.tasks:
+        answers += session.work()
+    return answers
+
+
+def copy(session, kind):
+    """The text of a copy."""
+    ((message, _),) = session.handle({"type": "copy", "kind": kind})
+    return message["text"]
+
+
+def test_a_fit_has_the_settings_of_the_page(session, monkeypatch):
+    given = {}
+
+    def note(material, model, progress, **how):
+        given[model.label()] = how
+        return bk.fit(material, model, **how)
+
+    monkeypatch.setattr(fit_task, "fit", note)
+    change(session, model="ward", fit__loss="log", fit__max_angle=60, fit__anisotropic="no")
+    change(session, model__alpha_u=0.07, fit__fixed=["alpha_u", "alpha_v"])
+    ask(session, type="fit")
+    settings = {"max_angle": 60, "anisotropic": False}  # alpha_v is tied to alpha_u
+    assert given["ward"] == settings | {"loss": "log", "fixed": {"alpha_u": 0.07}}
+    assert session.state["model.alpha_u"] == 0.07
+    fitted = "brdfkit.fit(material, 'ward', loss='log', max_angle=60.0, fixed={'alpha_u': 0.07})"
+    assert f"model = {fitted}" in copy(session, "python")
+    change(session, model="burley")
+    assert (session.state["fit.fixed"], session.state["fit.max_angle"]) == ([], 60)
+
+
+def test_bounds_and_outliers_reach_the_command_and_are_checked(session):
+    change(session, fit__bounds="  roughness=0.2,0.4", fit__robust="bisquare")
+    name, *words = shlex.split(copy(session, "fit"))[1:]
+    given = main.get_command(None, name).make_context(name, words).params
+    expected = {"files": ("satin_plastic",), "names": ("burley",), "robust": "bisquare"}
+    expected |= {"bound": ("roughness=0.2,0.4",), "fixed": (), "max_angle": 80, "loss": "cbrt"}
+    assert given == given | expected
+    for wrong in ("roughness=a", "rough=0,1", "roughness"):
+        (error, _) = change(session, fit__bounds=wrong)
+        assert error["type"] == "error"
+    (error, _) = change(session, fit__fixed=["diffuse_reflectance"])
+    assert "no parameter that a fit searches" in error["text"]
+
+
+def test_fit_all_pins_every_model(session, quick_fits):
+    answers = ask(session, type="fit", all=True)
+    texts = [message["text"] for message, _ in answers if message["type"] == "busy"]
+    assert texts[0] == "burley is fitted (1 of 3)"
+    assert [pin["model"] for pin in session.state["pins"]] == [*MODELS]
+    (table,) = [message for message, _ in answers if message["type"] == "errors"]
+    assert "is best by cbrt" in table["verdict"]
+    assert session.state["model.roughness"] == session.state["pins"][0]["values"]["model.roughness"]
+    session.handle({"type": "undo"})
+    assert session.state == session.first
+    alone = MaterialApplication("satin_plastic", ["ggx"])
+    assert fit_task.choose_labels(alone.states) == ["ggx", "ward", "ggx+ggx"]
+
+
+def test_a_report_has_the_pinned_fits(session, quick_fits, monkeypatch):
+    ((message, _), *_) = ask(session, type="save", kind="report")
+    assert "choose Fit first" in message["text"]
+    ask(session, type="fit", all=True)
+    change(session, model="ward", model__alpha_u=0.5)
+    session.handle({"type": "pin"})  # which is no fit
+
+    def write(material, fits, path, **_):
+        path.write_text(" ".join(fit.name for fit in fits))
+
+    monkeypatch.setattr(saving, "report", write)
+    answers = ask(session, type="save", kind="report")
+    (content,) = answers[-1][1]
+    assert (answers[-1][0]["name"], content) == (
+        *("satin_plastic-report.html", b"burley ward lambert"),
+    )
+
+
+@pytest.mark.parametrize(
+    "label", ["ggx:fresnel=coloured", "ggx+ward", "lafortune:lobe_count=2", "koenderink"]
+)
+def test_mitsuba_loads_the_copied_model(module_in_llvm, label):
+    import mitsuba as mi
+
+    model = labels.model(label)()
+    weight = model.weights()[0]
+    model = model.changed(**{weight: (1.25, 0.5, 0.125)})
+    scene = f'<scene version="3.0.0"><shape type="sphere">{write_xml(model)}</shape></scene>'
+    loaded = mi.load_string(scene).shapes()[0].bsdf()
+    assert str(loaded) == str(mi.load_dict(model.scene_dict()))
