@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from brdfkit.core.array_types import AnyArray
@@ -19,7 +19,7 @@ from brdfkit.rendering.progressive import derive_seed
 from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.passes import Kind, Pass, mix_pictures
-from brdfkit.viewing.pictures import describe_noise, make_pictures
+from brdfkit.viewing.pictures import describe_error, describe_noise, make_pictures
 
 LARGEST_SAMPLES = 1024  # per pixel, after which a picture counts as converged
 FIRST_PASSES = 4  # each of which is shown, since every pass is a visible gain
@@ -38,6 +38,7 @@ class PictureLoop:
         self.number, self.shown = 0, 0  # of the last picture that was sent, and that is shown
         self.opened = 0  # how often something was opened
         self.tasks: list[Iterator[list[Message]]] = []
+        self.ready: list[list[Message]] = []  # that were computed aside
         # The pictures that were sent last, by side: linear, and sRGB in 8 bits
         self.sent: tuple[dict[int, AnyArray], dict[int, AnyArray]] = {}, {}
         self.forget_samples()
@@ -57,9 +58,27 @@ class PictureLoop:
         if not self.lock.acquire(blocking=False):
             return False
         try:
-            return bool(self.tasks) or self._has_pass()
+            return bool(self.ready or self.tasks) or self._has_pass()
         finally:
             self.lock.release()
+
+    def compute_aside(self, make_messages: Callable[[], list[Message]]) -> None:
+        """Compute messages in a thread of their own, while pictures go on; then send them.
+
+        They are left aside if something else was opened meanwhile.
+        """
+        opened = self.opened
+
+        def compute() -> None:
+            try:
+                messages = make_messages()
+            except Exception as error:  # the page must hear of a defect of ours, too
+                messages = [describe_error(error)]
+            with self.lock:
+                if opened == self.opened:
+                    self.ready.append(messages)
+
+        threading.Thread(target=compute, daemon=True).start()
 
     def _has_pass(self) -> bool:
         """Return whether there is a pass of the picture to render, and someone who looks."""
@@ -81,6 +100,8 @@ class PictureLoop:
         with self._lock_briefly() as locked:
             if not locked:
                 return []
+            if self.ready:
+                return self.ready.pop(0)
             changed = self.stale or self.passes < FIRST_PASSES
             task = self.tasks[0] if self.tasks and not (changed and self._has_pass()) else None
             begun = None if task else self._begin_pass()

@@ -18,8 +18,9 @@ from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.controls import State, has_other_samples, to_changes
 from brdfkit.viewing.difference_map import compare_colours
 from brdfkit.viewing.materials import fit_settings, fit_task, material_scripts, pin_answers, saving
+from brdfkit.viewing.materials.audit_panel import begin_audit
 from brdfkit.viewing.materials.beside import open_beside
-from brdfkit.viewing.materials.explorer_controls import MODEL
+from brdfkit.viewing.materials.explorer_controls import FILE, MODEL
 from brdfkit.viewing.materials.idle_parameters import find_idle_parameters
 from brdfkit.viewing.materials.live_light import LiveLights
 from brdfkit.viewing.materials.live_material import LiveMaterial
@@ -29,6 +30,7 @@ from brdfkit.viewing.materials.material_state import (
     make_kind,
     make_look,
 )
+from brdfkit.viewing.materials.mends import Mends
 from brdfkit.viewing.materials.parameter_controls import list_panels
 from brdfkit.viewing.materials.parameter_state import PREFIX
 from brdfkit.viewing.materials.pins import COLOURS
@@ -39,8 +41,12 @@ from brdfkit.viewing.tone_controls import develop, to_tone_mapping
 PASSES_BEFORE = 3  # at rest, before the kernels for moves are made
 STILLS = 2  # one at rest and one while something moves
 MODELS = 4  # whose scenes are kept at most
-# Before those of the parameters; the second one where something can be fitted
-PANELS = ("fit", "Model and fit", True), (fit_settings.PANEL, "Fit settings", False)
+# Before those of the parameters; where nothing can be fitted the second one alone
+PANELS = (
+    ("audit", "Audit of the file", True),
+    ("fit", "Model and fit", True),
+    (fit_settings.PANEL, "Fit settings", False),
+)
 MORE_PANELS = (
     ("picture", "Picture", True),
     ("light", "Light", True),
@@ -77,7 +83,8 @@ class MaterialApplication:
         self.given = material, tuple(models), to_changes(changes)
         self.states = MaterialState(*self.given[:2])
         self.lights = LiveLights()
-        # By the model's label, or "" for the measured one
+        self.audits: dict[Mends, Message] = {}
+        # By the model's label, or the mends of the measured one
         self.live: Recent[str, LiveMaterial] = Recent(MODELS)
         # Pictures without noise of what no slider changes, by what they show
         self.stills: Recent[tuple[SceneKind, Look, Material], AnyArray] = Recent(STILLS)
@@ -113,7 +120,7 @@ class MaterialApplication:
         """Return the message "open": the panels, the controls and what can be saved."""
         return {
             "title": self.name,
-            "parts": ["light", *(["fit"] if self.states.is_fittable else [])],
+            "parts": ["light", *(["audit", "fit"] if self.states.is_fittable else [])],
             "pin_colours": COLOURS,
             "copies": material_scripts.MORE
             if self.states.is_fittable
@@ -123,7 +130,7 @@ class MaterialApplication:
 
     def _describe_controls(self) -> dict[str, Any]:
         """Return the panels and the controls, those of the shown model among them."""
-        first = PANELS if self.states.is_fittable else PANELS[:1]
+        first = PANELS if self.states.is_fittable else PANELS[1:2]
         panels = [*first, *list_panels(type(self.base)), *MORE_PANELS]
         controls = self.states.list_controls(self.base, pins=self.pins)
         return {
@@ -168,8 +175,7 @@ class MaterialApplication:
         key, shown = self._find_side(state, side)
         live = self.live.get(key, lambda: LiveMaterial(shown, self.lights))
         kind, look = make_kind(state, size, moving), make_look(state)
-        if key:
-            live.show(shown)
+        live.show(shown)
         if moving and state["second" if side else "renderer"] != MODEL:  # no slider changes it
             still = kind, look, live.material
             return self.stills.get(still, lambda: live.render(kind, look))
@@ -188,7 +194,7 @@ class MaterialApplication:
         )
 
     def _find_side(self, state: State, side: int) -> tuple[str, Any]:
-        """Return a key of the material at a side, "" for the measured one, and the material."""
+        """Return a key of the material at a side, and the material."""
         return self.states.find_side(state, state["second" if side else "renderer"])
 
     def tone_mapping(self, state: State) -> ToneMapping:
@@ -212,10 +218,11 @@ class MaterialApplication:
     def follow(self, before: State, after: State) -> list[Message]:
         """Return the controls if they are those of another model, or too short for its values.
 
-        The pins are among the choices of the controls, too.
+        The pins, and the file as it says, are among the choices of the controls, too.
         """
+        mended = self.states.mend(after)
         model = self.states.to_model(after)
-        same = type(model) is type(self.base) and before
+        same = not mended and type(model) is type(self.base) and before
         if same and not self.states.exceeds_controls(self.base, after):
             return [] if after["pins"] == self.pins else self.describe_pins(after)
         return self.describe_model(after)
@@ -235,6 +242,7 @@ class MaterialApplication:
         """Answer a message that is about the material."""
         answers: dict[str, Callable[[Session, dict[str, Any]], list[Message]]] = {
             "probe": self._probe,
+            "audit": lambda session, _: begin_audit(self, session),
             "fit": self._fit,
             "pin": pin_answers.pin,
             "show_pin": pin_answers.show,
@@ -257,9 +265,11 @@ class MaterialApplication:
             raise BrdfkitError(f"{self.name} was not measured, so nothing can be fitted to it.")
         if self.fitting is not None and self.fitting.goes_on:
             raise BrdfkitError("A fit goes on already; wait for it, or cancel it.")
+        if session.state["second"] == FILE:
+            session.change({"second": MODEL})
         self.fitting = fit_task.FitTask(self, session, bool(message.get("all")))
         session.tasks.append(self.fitting.run())
-        return [self.fitting.describe_progress()]
+        return [session.describe_state(), self.fitting.describe_progress()]
 
     def _probe(self, session: Session, message: dict[str, Any]) -> list[Message]:
         """Return the linear RGB of each picture under the pointer, and how their colours differ."""

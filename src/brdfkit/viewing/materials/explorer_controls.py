@@ -14,7 +14,8 @@ from brdfkit.viewing.materials.live_light import LAMP
 from brdfkit.viewing.materials.material_scene import PLANE
 from brdfkit.viewing.tone_controls import make_tone_controls
 
-MEASURED, MODEL = "measured", "model"  # what can be left and right of the wipe
+# What can be left and right of the wipe; the file is what it says while something of it is mended
+MEASURED, FILE, MODEL = "measured", "file", "model"
 NO_MODELS = ("mixture",)  # names that make no model by themselves
 SHAPES = (("ball", "ball"), (PLANE, "plane"))
 
@@ -30,21 +31,20 @@ COMPARISON_HELP = (
 
 
 def make_explorer_controls(
-    material: str,
+    measured: Sequence[tuple[str, str]],
     models: Sequence[str],
     label: str,
-    compared: bool,
     pins: Sequence[tuple[str, str]] = (),
 ) -> list[Control]:
-    """Return the controls of a view of a `material`.
+    """Return the controls of a view of a material.
 
-    `models` are the labels that were used so far, and come first in the menu; `label` is that of
-    the model that is shown. With `compared`, the material is shown beside it. `pins` are names and
-    labels of pins.
+    `measured` are names and labels of what shows it; none where a model is shown alone. `models`
+    are the labels that were used so far, and come first in the menu; `label` is that of the model
+    that is shown. `pins` are names and labels of pins.
     """
     return [
-        *_make_fit_controls(models, label, compared),
-        *_make_picture_controls(material, label, compared, pins),
+        *_make_fit_controls(models, label, bool(measured)),
+        *_make_picture_controls(measured, label, pins),
         *_make_light_controls(),
         *make_tone_controls(),
     ]
@@ -61,13 +61,12 @@ def _make_fit_controls(models: Sequence[str], label: str, compared: bool) -> lis
 
 
 def _make_picture_controls(
-    material: str, label: str, compared: bool, pins: Sequence[tuple[str, str]]
+    measured: Sequence[tuple[str, str]], label: str, pins: Sequence[tuple[str, str]]
 ) -> list[Control]:
     """Return the controls of what is shown, and where."""
     control = partial(Control, panel="picture")
-    measured = ((MEASURED, material),) if compared else ()
     shown = *measured, (MODEL, label), *pins
-    first, second = (MEASURED, MODEL) if compared else (MODEL, "")
+    first, second = (MEASURED, MODEL) if measured else (MODEL, "")
     right: dict[str, Any] = {"default": second, "choices": (("", "nothing"), *shown)}
     two = {"second": tuple(name for name, _ in shown)}
     ways: dict[str, Any] = {"default": "wipe", "choices": COMPARISONS, "help": COMPARISON_HELP}

@@ -16,7 +16,12 @@ from brdfkit.model import Model, labels
 from brdfkit.regression import Fit
 from brdfkit.viewing.controls import Control, State, default_state
 from brdfkit.viewing.materials.block_errors import BlockErrors
-from brdfkit.viewing.materials.explorer_controls import MODEL, make_explorer_controls
+from brdfkit.viewing.materials.explorer_controls import (
+    FILE,
+    MEASURED,
+    MODEL,
+    make_explorer_controls,
+)
 from brdfkit.viewing.materials.fit_settings import (
     BOUNDS,
     FIXED,
@@ -25,6 +30,13 @@ from brdfkit.viewing.materials.fit_settings import (
     check_fixed,
 )
 from brdfkit.viewing.materials.material_scene import Look, SceneKind, make_studio_camera
+from brdfkit.viewing.materials.mends import (
+    MendedFile,
+    Mends,
+    find_mends,
+    leave_file,
+    make_mend_controls,
+)
 from brdfkit.viewing.materials.parameter_controls import make_controls
 from brdfkit.viewing.materials.parameter_state import (
     CHANNELS,
@@ -54,7 +66,7 @@ class MaterialState:
     Attributes
     ----------
     measured : Material or None
-        The material left of the wipe; None where a model is shown alone.
+        The material left of the wipe, as it is mended; None where a model is shown alone.
     fits : dict of str to Fit
         The last fit that was made, given or shown of each model, by its label.
     all_fits : deque of (str, Fit)
@@ -69,9 +81,12 @@ class MaterialState:
             self.measured, given = None, [shown]
         if not given:
             given = [labels.model(DEFAULT_MODEL)()]
+        self.mended = MendedFile(self.measured)
+        self.mends: Mends = ()  # of `measured`
         self.name = shown.name
         self.fits: dict[str, Fit] = {}
         self.all_fits: deque[tuple[str, Fit]] = deque(maxlen=FITS)
+        self._other_fits: dict[Mends, tuple[dict[str, Fit], deque[tuple[str, Fit]]]] = {}
         self._errors: BlockErrors | None = None
         self.models: dict[str, Model] = {}  # with the values that were given
         for thing in given:
@@ -85,6 +100,16 @@ class MaterialState:
         """Make a fit the one of its model."""
         self.fits[label] = fit
         self.all_fits.append((label, fit))
+
+    def mend(self, state: State) -> bool:
+        """Make the material that of a state, with the fits to it; return whether it is another."""
+        mends = find_mends(state)
+        if mends == self.mends:
+            return False
+        self._other_fits[self.mends] = self.fits, self.all_fits
+        self.mends, self.measured = mends, self.mended.find(mends)
+        self.fits, self.all_fits = self._other_fits.pop(mends, ({}, deque(maxlen=FITS)))
+        return True
 
     @property
     def errors(self) -> BlockErrors:
@@ -125,16 +150,21 @@ class MaterialState:
         self, model: Model, label: str = "", pins: Sequence[Any] = ()
     ) -> dict[str, Control]:
         """Return all controls by name, those of a model with its values among them."""
-        own = self._list_own_controls(label or find_label(model), pins)
+        own = self._list_own_controls(label or find_label(model), pins, self.mends)
         return own | {control.name: control for control in make_controls(model)}
 
-    def _list_own_controls(self, label: str, pins: Sequence[Any]) -> dict[str, Control]:
+    def _list_own_controls(
+        self, label: str, pins: Sequence[Any], mends: Mends
+    ) -> dict[str, Control]:
         """Return the controls by name, without those of a model's values."""
         names = [label, *(known for known in self.models if known != label)]
         choices = [(name_pin(pin), label_pin(pin)) for pin in pins]
-        compared = self.measured is not None
-        own = make_explorer_controls(self.name, names, label, compared, choices)
-        return {control.name: control for control in own}
+        measured = [(MEASURED, self.name)] if self.measured is not None else []
+        if mends:
+            measured = [(MEASURED, f"{self.name}, mended"), (FILE, f"{self.name} as the file says")]
+        own = make_explorer_controls(measured, names, label, choices)
+        mending = make_mend_controls(self.mended.file)
+        return {control.name: control for control in [*mending, *own]}
 
     def first(self) -> State:
         """Return the state with which a view begins."""
@@ -152,7 +182,8 @@ class MaterialState:
             new |= {name: none for name, none in UNBOUNDED.items() if name in new}
         if "pins" in changes:
             new["pins"] = check_pins(self, changes["pins"])
-        controls = self._list_own_controls(label, new["pins"])
+        mends = find_mends(new | dict(changes))
+        controls = self._list_own_controls(label, new["pins"], mends)
         values: State = {}
         for name, value in changes.items():
             if name not in new:
@@ -165,7 +196,7 @@ class MaterialState:
                 new[name] = check_bounds(self.find_class(new), value)
             elif name not in ("model", "pins"):
                 new[name] = controls[name].check(value)
-        return forget_missing_pins(self.check_values(label, new, values))
+        return forget_missing_pins(leave_file(self.check_values(label, new, values)))
 
     def check_values(self, label: str, state: State, values: State) -> State:
         """Return the state after changes of values of a model; raise `BrdfkitError` for wrong ones.
@@ -199,18 +230,21 @@ class MaterialState:
         )
 
     def find_side(self, state: State, shown: str) -> tuple[str, Any]:
-        """Return what is left or right of the wipe, and a key, "" for the measured material."""
+        """Return what is left or right of the wipe, and a key, "" for the file as it is."""
         if shown == MODEL:
             return state["model"], self.to_model(state)
         pin = find_pin(state["pins"], shown)
         if pin is not None:
             return f"{shown} {pin['model']}", make_model(self, pin)
-        return "", self.measured
+        mends = () if shown == FILE else find_mends(state)
+        return " ".join(mends), self.mended.find(mends)
 
     def name_side(self, state: State, shown: str) -> str:
         """Return the name of what is left or right of the wipe."""
         pin = find_pin(state["pins"], shown)
-        return label_pin(pin) if pin else state["model"] if shown == MODEL else self.name
+        if pin:
+            return label_pin(pin)
+        return {MODEL: state["model"], FILE: "as the file says"}.get(shown, self.name)
 
     def describe_fit(self, label: str) -> dict[str, Any]:
         """Return the message "fit": how good a model's fit is, and its values by control's name."""

@@ -98,7 +98,7 @@ function render({ model, el }) {
   const panels = make("div", { class: "panels" });
   const editors = {
     transfer: transfer.element, clip: createClipBox(session), camera: createTargetBoxes(session),
-    fit: createFitPanel(session, root),
+    audit: createAuditPanel(session), fit: createFitPanel(session, root),
   };
   const findControl = createPanels(session, panels, editors, new Set(TRANSFER_NAMES));
   markParameters(session, findControl);
