@@ -8,9 +8,10 @@ import pytest
 import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.model import labels
-from brdfkit.viewing.materials import fit_task, saving
+from brdfkit.viewing.materials import fit_task, presets, saving
 from brdfkit.viewing.materials.application import MaterialApplication
 from brdfkit.viewing.materials.mitsuba_xml import write_xml
+from brdfkit.viewing.materials.parameter_state import to_state
 from brdfkit.viewing.session import Session
 
 MODELS = "burley", "ward", "lambert"
@@ -128,6 +129,29 @@ def test_a_report_has_the_pinned_fits(session, quick_fits, monkeypatch):
     assert (answers[-1][0]["name"], content) == (
         *("satin_plastic-report.html", b"burley ward lambert"),
     )
+
+
+def test_a_preset_is_a_fit_to_another_material(session, monkeypatch):
+    made = bk.fit("plaster", "burley")
+    monkeypatch.setattr(presets, "fit", lambda name, model, **_: {"plaster": made}[name])
+    ask(session, type="preset", name="plaster")
+    assert session.state == session.state | to_state(made.rgb)
+    ask(session, type="preset", name="")
+    assert session.state == session.first
+    ((message, _), _) = session.handle({"type": "preset", "name": "/etc/passwd"})
+    assert "no preset" in message["text"]
+
+
+def test_a_model_is_described_by_its_page(session):
+    change(session, model="ward+ggx:fresnel=coloured")
+    ((message, _),) = session.handle({"type": "about"})
+    ward, ggx = message["models"]
+    assert ward["formula"][0] == "f = k_d / π + k_s exp[-tan²θ_h (cos²φ_h / α_u² + sin²φ_h / α_v²)]"
+    assert (ward["texts"][0][:17], len(ward["texts"])) == ("N, L and V are th", 1)
+    assert ["α_u", "alpha_u", "0.001 to 1", "Width of the slopes along x."] in ggx["parameters"]
+    assert ggx["references"][1]["link"].startswith("https://jcgt.org")
+    named = dict(session.application.states.list_controls(bk.models()["ggx"]())["model"].choices)
+    assert named["ward+ggx:fresnel=coloured"] == "The sum of ward and ggx:fresnel=coloured."
 
 
 @pytest.mark.parametrize(

@@ -72,17 +72,25 @@ def test_a_slider_changes_the_model_and_a_tie_passes_it_on(page):
 
 
 def test_a_typed_sum_brings_its_parameters(page):
-    box = page.get_by_role("textbox", name="Model, typed")
-    box.fill("ggx + ward")
+    box = page.get_by_role("combobox", name="Model", exact=True)
+    box.fill("ggx+war")
+    page.get_by_role("option", name="ggx+ward A highlight with").wait_for()
     box.press("Enter")
     page.get_by_text("Highlight 2").wait_for()
+    page.get_by_role("button", name="About the model").click()
+    about = page.get_by_role("dialog", name="About ggx and ward")
+    assert "4π α" in about.locator(".formula").last.inner_text()
+    about.get_by_role("button", name="Close").click()
     assert box.input_value() == "ggx+ward"
     box.fill("gxx")
     box.press("Enter")
     page.get_by_role("alert").get_by_text("did you mean ggx").wait_for()
     page.get_by_role("button", name="Close").click()
-    choose(page, "Model", "ward")
+    box.fill("slopes, isotropic")  # words of a description
+    box.press("ArrowDown")
+    page.get_by_role("option", name="ward ", exact=False).first.click()
     page.get_by_text("Highlight 2").wait_for(state="detached")
+    assert box.input_value() == "ward"
     page.get_by_role("button", name="Undo").click()
     page.get_by_text("Highlight 2").wait_for()
 

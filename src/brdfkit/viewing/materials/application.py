@@ -17,7 +17,15 @@ from brdfkit.viewing.application import Message, unknown_message_error
 from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.controls import State, has_other_samples, to_changes
 from brdfkit.viewing.difference_map import compare_colours
-from brdfkit.viewing.materials import fit_settings, fit_task, material_scripts, pin_answers, saving
+from brdfkit.viewing.materials import (
+    about,
+    fit_settings,
+    fit_task,
+    material_scripts,
+    pin_answers,
+    presets,
+    saving,
+)
 from brdfkit.viewing.materials.audit_panel import begin_audit
 from brdfkit.viewing.materials.beside import open_beside
 from brdfkit.viewing.materials.explorer_controls import FILE, MODEL
@@ -90,6 +98,7 @@ class MaterialApplication:
         self.stills: Recent[tuple[SceneKind, Look, Material], AnyArray] = Recent(STILLS)
         self.cosines: Recent[tuple[str, tuple[int, int], Camera], AnyArray] = Recent(STILLS)
         self.first = self.change(self.states.first(), self.given[2])
+        self.presets: dict[tuple[str, str], State] = {}  # values by model's label and material
         self.fitting: fit_task.FitTask | None = None  # the last one
         self.base = self.states.to_model(self.first)  # whose values the controls begin with
         self.pins: list[Any] = self.first["pins"]  # among which the controls choose
@@ -122,6 +131,7 @@ class MaterialApplication:
             "title": self.name,
             "parts": ["light", *(["audit", "fit"] if self.states.is_fittable else [])],
             "pin_colours": COLOURS,
+            "presets_of_models": presets.list_presets(),
             "copies": material_scripts.MORE
             if self.states.is_fittable
             else material_scripts.MORE[:1],
@@ -247,6 +257,8 @@ class MaterialApplication:
             "pin": pin_answers.pin,
             "show_pin": pin_answers.show,
             "errors": pin_answers.show_errors,
+            "preset": presets.answer_preset,
+            "about": lambda session, _: [about.describe_models(session.state["model"])],
             "save": self._save,
             "copy": self._copy,
         }

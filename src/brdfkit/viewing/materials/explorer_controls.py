@@ -9,6 +9,7 @@ from typing import Any
 from brdfkit.core.catalogue import list_environments
 from brdfkit.model import labels
 from brdfkit.viewing.controls import Control
+from brdfkit.viewing.materials.about import describe_label
 from brdfkit.viewing.materials.fit_settings import make_fit_controls
 from brdfkit.viewing.materials.live_light import LAMP
 from brdfkit.viewing.materials.material_scene import PLANE
@@ -53,8 +54,8 @@ def make_explorer_controls(
 def _make_fit_controls(models: Sequence[str], label: str, compared: bool) -> list[Control]:
     """Return the controls of the model and of its fit."""
     others = [name for name in labels.models() if name not in (*models, *NO_MODELS)]
-    known = tuple((name, name) for name in (*models, *others))
-    sums = "A model, or a sum such as ggx+ward."
+    known = tuple((name, describe_label(name)) for name in (*models, *others))
+    sums = "A model, or a sum such as ggx+ward: type to search."
     control = partial(Control, panel="fit")
     model = control("model", "Model", default=label, kind="text", choices=known, help=sums)
     return [model, *(make_fit_controls() if compared else [])]

@@ -103,27 +103,6 @@ function makeColour(session, { name, label }) {
   return { row: makeRow("colour", label, well), show: (value) => (well.value = value), input: well };
 }
 
-/** Make a text box, with a menu of the usual texts before it. */
-function makeText(session, { name, label, choices = [] }) {
-  const other = make("option", { hidden: true });
-  const select = make("select", {
-    onchange: () => session.change({ [name]: choices[select.selectedIndex][0] }),
-  }, ...choices.map(([, text]) => make("option", {}, text)), other);
-  const box = make("input", {
-    type: "text", spellcheck: false, autocomplete: "off", "aria-label": `${label}, typed`,
-    onchange: () => box.value.trim() && session.change({ [name]: box.value.trim() }),
-  });
-  const row = makeRow("text", label, select);
-  row.append(box);
-  const show = (value) => {
-    const known = choices.findIndex(([own]) => own === value);
-    other.textContent = value;
-    select.selectedIndex = known < 0 ? choices.length : known;
-    box.value = value;
-  };
-  return { row, show, input: select };
-}
-
 /** Make a box for a few words. */
 function makeWords(session, { name, label }) {
   const box = make("input", {

@@ -15,12 +15,17 @@ function createFitPanel(session, root) {
   const pin = makeButton("Pin", () => session.send({ type: "pin" }), {
     title: "Keep this model with its values under a colour, to compare it with others",
   });
+  const about = makeButton("About the model", () => session.send({ type: "about" }), {
+    title: "Its formula, its parameters and the works that describe it",
+  });
+  session.on("about", (content) => showAbout(root, content));
+  const preset = createPresets(session);
   const note = make("div", { class: "verdict" });
   const verdict = make("p", { class: "best", "aria-live": "polite" });
   const table = createErrorTable(([, , usual]) => usual);
   const more = makeButton("All losses …", () => showAllErrors(session, root, errors), { hidden: true });
   const element = make("div", { class: "fit" },
-    make("div", { class: "tools" }, button, all, pin), note,
+    make("div", { class: "tools" }, preset, about), make("div", { class: "tools" }, button, all, pin), note,
     createPins(session), table.element, verdict, make("div", { class: "tools" }, more));
 
   function show(now) {
@@ -53,4 +58,22 @@ function createFitPanel(session, root) {
     more.hidden = !content.rows.length;
   });
   return element;
+}
+
+/** Make the menu of presets: values of the model that is shown. */
+function createPresets(session) {
+  const menu = make("select", {
+    "aria-label": "Values of the model",
+    title: "Other values: those at first, or a fit to a material",
+    onchange: () => {
+      session.send({ type: "preset", name: menu.value });
+      menu.selectedIndex = 0; // sliders may change the values at any time
+    },
+  });
+  session.on("open", ({ presets_of_models: presets = [] }) => {
+    menu.replaceChildren(make("option", { hidden: true, value: "-" }, "Values …"),
+      ...presets.map(([value, text]) => make("option", { value }, text)));
+    menu.selectedIndex = 0;
+  });
+  return menu;
 }
