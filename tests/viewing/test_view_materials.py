@@ -34,7 +34,8 @@ HELLO = {"type": "hello", "width": 64, "height": 64, "state": None}
 @pytest.fixture(scope="module")
 def application(module_in_llvm):
     """The view that all tests share, with its scenes."""
-    return MaterialApplication("car_paint", ["ggx", "ward"])
+    # Without plots, so that each step of work is a pass of the picture
+    return MaterialApplication("car_paint", ["ggx", "ward"], {"plots.show.polar": False})
 
 
 @pytest.fixture

@@ -57,6 +57,12 @@ class Application(Protocol):
     ) -> AnyArray:
         """Render a pass: (height, width, 3), linear sRGB."""
 
+    def has_plot(self, state: State, moving: bool) -> bool:
+        """Return whether a plot beside the picture shows another state."""
+
+    def draw_plots(self, state: State, moving: bool) -> list[Message]:
+        """Return the next plots that show another state; only quick ones while something moves."""
+
     def tone_mapping(self, state: State) -> ToneMapping:
         """Return the tone mapping of a state."""
 

@@ -82,6 +82,14 @@ class EmptyApplication:
         """Raise an error, because there is no picture."""
         raise NotImplementedError
 
+    def has_plot(self, state: State, moving: bool) -> bool:
+        """Return False, because there are no plots."""
+        return False
+
+    def draw_plots(self, state: State, moving: bool) -> list[Message]:
+        """Return no plots."""
+        return []
+
     def tone_mapping(self, state: State) -> ToneMapping:
         """Return the usual tone mapping."""
         return ToneMapping()

@@ -11,6 +11,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
@@ -48,6 +49,7 @@ class PictureLoop:
         self.accumulated: dict[int, Accumulated] = {}
         self.previews: dict[int, AnyArray] = {}  # without noise, by side
         self.passes, self.converged, self.stale = 0, False, True
+        self.plots_first = False  # whether plots are drawn before the next picture
         self.started, self.last_sent = time.monotonic(), 0.0
 
     def has_work(self) -> bool:
@@ -58,7 +60,7 @@ class PictureLoop:
         if not self.lock.acquire(blocking=False):
             return False
         try:
-            return bool(self.ready or self.tasks) or self._has_pass()
+            return bool(self.ready or self.tasks) or self._has_pass() or self._has_plots()
         finally:
             self.lock.release()
 
@@ -90,22 +92,35 @@ class PictureLoop:
             return False
         return self.stale or not (self.paused or self.converged or self.moving)
 
+    def _has_plots(self) -> bool:
+        """Return whether plots are to be drawn now: after a picture, or if none is urgent."""
+        first = self.plots_first or not self.stale or not self._has_pass()
+        return first and self.visible and self.application.has_plot(self.state, self.moving)
+
     def work(self) -> list[Message]:
         """Render a pass of the newest state, and return its pictures if the page waits for them.
 
         Tasks, such as a film, come first, step by step, but for the first passes of a changed
-        picture. All is rendered and encoded outside of the lock, so that messages are answered
-        meanwhile.
+        picture. Plots beside it are drawn after each picture, and whenever none is urgent. All is
+        computed outside of the lock, so that messages are answered meanwhile.
         """
         with self._lock_briefly() as locked:
             if not locked:
                 return []
             if self.ready:
                 return self.ready.pop(0)
-            changed = self.stale or self.passes < FIRST_PASSES
-            task = self.tasks[0] if self.tasks and not (changed and self._has_pass()) else None
-            begun = None if task else self._begin_pass()
-        return self._continue_task(task) if begun is None else self._render_pass(begun)
+            do = self._choose_work()
+        return do()
+
+    def _choose_work(self) -> Callable[[], list[Message]]:
+        """Return what `work` does now."""
+        if self._has_plots():
+            self.plots_first = False
+            return partial(self.application.draw_plots, self.state, self.moving)
+        changed = self.stale or self.passes < FIRST_PASSES
+        if self.tasks and not (changed and self._has_pass()):
+            return partial(self._continue_task, self.tasks[0])
+        return partial(self._render_pass, self._begin_pass())
 
     @contextmanager
     def _lock_briefly(self) -> Iterator[bool]:
@@ -120,11 +135,11 @@ class PictureLoop:
             if locked:
                 self.lock.release()
 
-    def _continue_task(self, task: Iterator[list[Message]] | None) -> list[Message]:
+    def _continue_task(self, task: Iterator[list[Message]]) -> list[Message]:
         """Return the messages of the next step of a task, unless it is needed no more."""
         messages, defect = None, None
         try:
-            messages = None if task is None else next(task, None)
+            messages = next(task, None)
         except Exception as error:  # which nobody needs to know of a task that was given up
             defect = error
         with self.lock:
@@ -207,7 +222,7 @@ class PictureLoop:
         if self.shown < self.number or not (urgent or now - self.last_sent > REST_INTERVAL):
             self.stale = self.stale or self.converged  # the last picture is sent later
             return None
-        self.last_sent = now
+        self.last_sent, self.plots_first = now, True
         self.number += 1
         return self.number
 

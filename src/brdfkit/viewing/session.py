@@ -12,12 +12,13 @@ from brdfkit.core.arguments import to_whole_number
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.canvas_sizes import choose_size
-from brdfkit.viewing.controls import State
+from brdfkit.viewing.controls import State, has_other_samples
 from brdfkit.viewing.picture_loop import PictureLoop
 from brdfkit.viewing.pictures import describe_error
 from brdfkit.viewing.undo import UndoSteps
 
 SIDES = "width", "height"
+BESIDE = ("plots.",)  # beginnings of the names that concern nothing in the picture
 
 
 class Session(PictureLoop):
@@ -138,7 +139,8 @@ class Session(PictureLoop):
         if anew or self.moving:
             self.moving = moving
             self.forget_samples()
-        self.state, self.stale = dict(state), True
+        beside = not has_other_samples(self.state, state, BESIDE)
+        self.state, self.stale = dict(state), self.stale or not beside
 
     def _step(self, kind: str) -> list[Message]:
         """Undo, redo, or go back to the first state."""

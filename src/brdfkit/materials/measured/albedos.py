@@ -92,7 +92,7 @@ def make_outgoing_quadrature(wi: FloatArray) -> tuple[FloatArray, FloatArray]:
 def compute_measured_albedo(data: MeasuredData) -> MeasuredAlbedo:
     """Compute the directional albedo of a `Measured` at incidences of 5°, 45°, 75° and 85°."""
     azimuths = ANISOTROPIC_AZIMUTHS if data.anisotropic else ISOTROPIC_AZIMUTHS
-    angles, is_near, values, known = (*ANGLES, GRAZING), _make_measured_test(data), [], []
+    angles, is_near, values, known = (*ANGLES, GRAZING), make_measured_test(data), [], []
     for angle in angles:
         directions = [from_angles(np.radians(angle), phi) for phi in azimuths]
         values.append(np.mean([compute_directional_albedo(data, wi) for wi in directions], axis=0))
@@ -120,7 +120,7 @@ def _compute_known_share(
     return float(weight @ is_near(np.broadcast_to(wi, wo.shape), wo) / weight.sum())
 
 
-def _make_measured_test(data: MeasuredData) -> Callable[[FloatArray, FloatArray], BoolArray]:
+def make_measured_test(data: MeasuredData) -> Callable[[FloatArray, FloatArray], BoolArray]:
     """Return a function of wi and wo (n, 3) that tells which pairs lie near a valid sample.
 
     For a table it tells which pairs lie in a valid cell.
@@ -131,11 +131,11 @@ def _make_measured_test(data: MeasuredData) -> Callable[[FloatArray, FloatArray]
         table = data._table
         known = np.asarray(np.isfinite(table.values).all(axis=-1))
         return lambda wi, wo: known[table.find_cells(wi, wo)]
-    samples = data.samples.at(data.samples.valid)
-    tree = cKDTree(compute_sample_coordinates(samples.wi, samples.wo, data.anisotropic))
+    samples, anisotropic = data.samples.at(data.samples.valid), data.anisotropic
+    tree = cKDTree(compute_sample_coordinates(samples.wi, samples.wo, anisotropic))
 
     def is_near(wi: FloatArray, wo: FloatArray) -> BoolArray:
-        points = compute_coordinates(wi, wo, data.anisotropic)
+        points = compute_coordinates(wi, wo, anisotropic)
         return tree.query(points, distance_upper_bound=REACH)[0] <= REACH
 
     return is_near

@@ -42,6 +42,8 @@ from brdfkit.viewing.materials.mends import Mends
 from brdfkit.viewing.materials.parameter_controls import list_panels
 from brdfkit.viewing.materials.parameter_state import PREFIX
 from brdfkit.viewing.materials.pins import COLOURS
+from brdfkit.viewing.materials.plot_controls import PLOTS
+from brdfkit.viewing.materials.plots.live_plots import LivePlots
 from brdfkit.viewing.recent import Recent
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.tone_controls import develop, to_tone_mapping
@@ -65,6 +67,7 @@ DRAWN_ONLY = (
     "compare",
     "tone.",
     "fit.",
+    "plots.",
     "pins",
     "solo",
     "view.moving_scale",
@@ -90,7 +93,7 @@ class MaterialApplication:
         self.file = file
         self.given = material, tuple(models), to_changes(changes)
         self.states = MaterialState(*self.given[:2])
-        self.lights = LiveLights()
+        self.lights, self.plots = LiveLights(), LivePlots(self.states)
         self.audits: dict[Mends, Message] = {}
         # By the model's label, or the mends of the measured one
         self.live: Recent[str, LiveMaterial] = Recent(MODELS)
@@ -135,6 +138,7 @@ class MaterialApplication:
             "copies": material_scripts.MORE
             if self.states.is_fittable
             else material_scripts.MORE[:1],
+            "plots": [{"name": name, "label": label} for name, label, _ in PLOTS],
             "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
         } | self._describe_controls(), []
 
@@ -207,6 +211,14 @@ class MaterialApplication:
         """Return a key of the material at a side, and the material."""
         return self.states.find_side(state, state["second" if side else "renderer"])
 
+    def has_plot(self, state: State, moving: bool) -> bool:
+        """Return whether a plot is open that shows another state."""
+        return bool(self.plots.find_stale(state, moving))
+
+    def draw_plots(self, state: State, moving: bool) -> list[Message]:
+        """Return the next plots that show another state; only quick ones while something moves."""
+        return self.plots.draw(state, moving)
+
     def tone_mapping(self, state: State) -> ToneMapping:
         """Return the tone mapping of a state."""
         return to_tone_mapping(state)
@@ -230,6 +242,8 @@ class MaterialApplication:
 
         The pins, and the file as it says, are among the choices of the controls, too.
         """
+        if not before:  # a page that was loaded, which has no plot yet
+            self.plots.forget()
         mended = self.states.mend(after)
         model = self.states.to_model(after)
         same = not mended and type(model) is type(self.base) and before

@@ -130,7 +130,7 @@ def find_changes(application: Application, state: State) -> State:
     return {
         name: value
         for name, value in state.items()
-        if first.get(name) != value and name not in unseen
+        if first.get(name) != value and name not in unseen and not _is_beside(name)
     }
 
 
@@ -152,3 +152,8 @@ KINDS = {  # of copies: a title, and the function that writes
 }
 # Besides Python and the command of the picture: kinds and labels
 MORE = ("xml", "Copy model as Mitsuba XML"), ("fit", "Copy fit as command")
+
+
+def _is_beside(name: str) -> bool:
+    """Return whether a setting is about plots, which no picture shows."""
+    return name.startswith("plots.")

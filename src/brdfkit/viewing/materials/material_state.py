@@ -54,6 +54,7 @@ from brdfkit.viewing.materials.pins import (
     make_model,
     name_pin,
 )
+from brdfkit.viewing.materials.plot_controls import make_plot_controls
 
 LARGEST_WEIGHT = 1e6
 FITS = 32  # that are kept at most
@@ -164,7 +165,10 @@ class MaterialState:
             measured = [(MEASURED, f"{self.name}, mended"), (FILE, f"{self.name} as the file says")]
         own = make_explorer_controls(measured, names, label, choices)
         mending = make_mend_controls(self.mended.file)
-        return {control.name: control for control in [*mending, *own]}
+        kind = type(self.find_model(label))
+        anisotropic = kind.is_anisotropic() or getattr(self.measured, "anisotropic", False)
+        plots = make_plot_controls(anisotropic)
+        return {control.name: control for control in [*mending, *own, *plots]}
 
     def first(self) -> State:
         """Return the state with which a view begins."""

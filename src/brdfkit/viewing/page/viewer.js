@@ -106,7 +106,8 @@ function render({ model, el }) {
 
   const pick = acceptFiles(session, root);
   createStart(session, stage, pick);
-  const views = make("div", { class: "views-area" }, stage, slices.element);
+  const plots = createPlots(session);
+  const views = make("div", { class: "views-area" }, stage, slices.element, plots.element);
   root.append(
     createToolbar(session, pick, paint.button, help),
     make("div", { class: "main-area" }, views, panels),
@@ -131,7 +132,7 @@ function render({ model, el }) {
 
   const stops = [
     watchSize(session, stage, find, picture.draw), watchVisibility(session, stage),
-    watchTheme(session), turns.stop, slices.stop, transfer.stop, model.address ? keepAddress(session) : () => {},
+    watchTheme(session), turns.stop, slices.stop, transfer.stop, plots.stop, model.address ? keepAddress(session) : () => {},
   ];
   return () => {
     stops.forEach((stop) => stop());

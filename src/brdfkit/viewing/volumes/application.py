@@ -164,6 +164,14 @@ class VolumeApplication:
         """Return another view of the volume with which this one began, as for another page."""
         return VolumeApplication(*self.given)
 
+    def has_plot(self, state: State, moving: bool) -> bool:
+        """Return False: a volume has no plots."""
+        return False
+
+    def draw_plots(self, state: State, moving: bool) -> list[Message]:
+        """Return no plots."""
+        return []
+
     def tone_mapping(self, state: State) -> ToneMapping:
         """Return the tone mapping of a state."""
         return to_tone_mapping(state)

@@ -1,0 +1,59 @@
+"""Computes the plot of directional albedo: the share of light that is reflected, by incidence."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.array_types import FloatArray
+from brdfkit.materials.measured.albedos import LEAST_KNOWN_SHARE
+from brdfkit.regression.albedo import (
+    ANISOTROPIC_AZIMUTHS,
+    ISOTROPIC_AZIMUTHS,
+    make_albedo_pixels,
+)
+from brdfkit.viewing.materials.curves import Curve
+from brdfkit.viewing.materials.plots.measured_points import is_known
+from brdfkit.viewing.materials.plots.settings import PlotSettings
+
+THETA_I = (0.0, *map(float, range(5, 86, 5)), 88.0)  # angles of incidence [degrees]
+
+
+def compute_albedo_curve(material: Any, settings: PlotSettings) -> dict[str, FloatArray]:
+    """Return the albedo "values" (n, channels) at the incidences "theta_i" (n,) [degrees].
+
+    It is a mean over the azimuths of incidence. "known" (n,) tells where most of the light leaves
+    in measured directions.
+    """
+    several = getattr(material, "anisotropic", False)
+    if hasattr(type(material), "is_anisotropic"):
+        several = type(material).is_anisotropic()
+    azimuths = ANISOTROPIC_AZIMUTHS if several else ISOTROPIC_AZIMUTHS
+    pixels = make_albedo_pixels(THETA_I, azimuths)
+    share = pixels.evaluate(lambda wi, wo: is_known(material, wi, wo)[:, None].astype(float))
+    unit = pixels.evaluate(lambda wi, wo: np.ones((len(wi), 1)))
+    return {
+        "theta_i": np.array(THETA_I),
+        "values": pixels.evaluate(material.eval),
+        "known": (share / unit)[:, 0] >= LEAST_KNOWN_SHARE,
+    }
+
+
+def arrange_albedos(
+    curves: list[tuple[Curve, dict[str, FloatArray]]], settings: PlotSettings
+) -> dict[str, Any]:
+    """Return the albedo plot of curves, in the channels that are shown."""
+    lines = [{**own, "values": settings.pick(own["values"]).T} for _, own in curves]
+    return {"lines": lines}
+
+
+def describe_albedos(curves: list[Curve], content: dict[str, Any]) -> str:
+    """Return the albedo plot in words: the albedos at a few incidences."""
+    parts = []
+    for curve, line in zip(curves, content["lines"], strict=True):
+        mean = line["values"].mean(axis=0)
+        at = [THETA_I.index(angle) for angle in (5.0, 45.0, 75.0)]
+        words = [f"{mean[k]:.3g} at {THETA_I[k]:g}°" for k in at if line["known"][k]]
+        parts.append(f"{curve.name}: " + (", ".join(words) or "not measured"))
+    return "Albedo. " + "; ".join(parts)

@@ -1,0 +1,100 @@
+// The plot of samples: measured values as points over an angle, coloured by what the model makes of them.
+
+const SAMPLE_RADIUS = 2;
+const LOG_SAMPLES = { decades: 9, share: 0.002 }; // an axis that reaches nearly all samples
+
+/** Return the axes of the plot, across θh (even in its square root) or θo, and the values upwards. */
+function makeSampleAxes({ content, session }) {
+  const half = session.state["plots.samples_over"] !== "theta_o";
+  const values = makeValueScale("log", [content.values], LOG_SAMPLES);
+  const across = half ? { ...SLICE_AXES[0], value: (share) => 90 * share ** 2 } : makeAngleAxis("θo", 90, 15);
+  return { angles: half ? content.theta_h : content.theta_o, across, up: { ...values, label: "BRDF [sr⁻¹]" } };
+}
+
+/** Return the index of the sample nearest to a place, within a few pixels, or −1. */
+function findSample(at, plot) {
+  const { angles, across, up } = makeSampleAxes(plot);
+  const place = makePlacer(plot, placeChart(plot), across, up);
+  let [best, least] = [-1, 10];
+  plot.content.values.forEach((value, k) => {
+    const [x, y] = place(angles[k], value);
+    const distance = Math.hypot(x - at[0], y - at[1]);
+    if (distance < least) [best, least] = [k, distance];
+  });
+  return best;
+}
+
+/** Draw a stroke from the value less its noise to the value plus it at each sample. */
+function drawNoise(context, plot, place, angles) {
+  const { noise, values } = plot.content;
+  context.lineWidth = 1;
+  context.globalAlpha = 0.35;
+  context.strokeStyle = plot.colours("soft");
+  context.beginPath();
+  values.forEach((value, k) => {
+    context.moveTo(...place(angles[k], value * Math.max(1 - noise, 0.01)));
+    context.lineTo(...place(angles[k], value * (1 + noise)));
+  });
+  context.stroke();
+  context.globalAlpha = 1;
+}
+
+/** Draw the samples, coloured by the ratio of the first model to them, a batch for each colour. */
+function drawSamples(context, { content }, place, angles) {
+  const ratios = content.models[0]?.ratio;
+  const batches = new Map();
+  content.values.forEach((value, k) => {
+    const share = ratios ? clamp(ratios[k] / Math.log2(content.largest_ratio) / 2 + 0.5, 0, 1) : 0.5;
+    const step = Math.round(share * 16);
+    if (!batches.has(step)) batches.set(step, []);
+    batches.get(step).push(place(angles[k], value));
+  });
+  // Small differences first, so that large ones lie above them
+  for (const [step, places] of [...batches].sort(([a], [b]) => Math.abs(a - 8) - Math.abs(b - 8))) {
+    context.fillStyle = `rgb(${mixColour(content.colours, step / 16).map(Math.round).join(" ")})`;
+    fillDots(context, places, SAMPLE_RADIUS);
+    context.lineWidth = 0.4;
+    context.strokeStyle = "rgb(128 128 128 / 80%)";
+    context.beginPath();
+    for (const [x, y] of places) {
+      context.moveTo(x + SAMPLE_RADIUS, y);
+      context.arc(x, y, SAMPLE_RADIUS, 0, 2 * Math.PI);
+    }
+    context.stroke();
+  }
+}
+
+const SAMPLES = {
+  draw(context, plot) {
+    const { content, colours } = plot;
+    const { angles, across, up } = makeSampleAxes(plot);
+    const area = { ...placeChart(plot) };
+    area.width -= LEGEND_ROOM;
+    const place = makePlacer(plot, area, across, up);
+    drawAxes(context, colours, area, plot.at, [across, up]);
+    context.save();
+    clipTo(context, area);
+    if (content.noise) drawNoise(context, plot, place, angles);
+    drawSamples(context, plot, place, angles);
+    context.restore();
+    const bar = { ...plot, content: { ...content, ratio_colours: content.colours } };
+    drawColourScale(context, bar, "ratio", area);
+  },
+  read(at, plot) {
+    const k = findSample(at, plot);
+    if (k < 0) return "";
+    const { content, curves } = plot;
+    const names = curves.filter(({ measured }) => !measured).map(({ name }) => name);
+    const models = content.models.map(({ values, ratio }, number) => (
+      `${names[number]} ${writeValue(values[k])} (× ${writeValue(2 ** ratio[k])})`));
+    const angles = `θh ${writeAngle(content.theta_h[k])}, θo ${writeAngle(content.theta_o[k])}`;
+    return `${angles}: data ${writeValue(content.values[k])} · ${models.join(" · ")}`;
+  },
+  rows({ content, curves }) {
+    const names = curves.filter(({ measured }) => !measured).map(({ name }) => name);
+    const table = [["theta_h", "theta_o", "measured", ...names]];
+    content.values.forEach((value, k) => table.push(
+      [content.theta_h[k], content.theta_o[k], value, ...content.models.map(({ values }) => values[k])]));
+    return table;
+  },
+};
