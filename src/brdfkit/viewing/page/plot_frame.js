@@ -1,18 +1,18 @@
 // The frame of a plot: its title, settings and buttons, zoom, pointer and keys.
 
 const PLOT_ZOOM = 1.25; // for a press of a button or key
-const LARGEST_ZOOM = 40;
+const LARGEST_PLOT_ZOOM = 40;
 const PLOT_PAN = 24; // pixels for a press of an arrow key with shift
 const CURSOR_STEP = 8; // pixels for a press of an arrow key
 const CLICK = 4; // pixels that a pointer may move in a click
 
 /** Return the zoom of a plot: `at` takes places of the whole plot to the canvas, `back` the reverse. */
-function createZoom(redraw) {
+function createPlotZoom(redraw) {
   const zoom = { factor: 1, x: 0, y: 0 };
   zoom.at = ([x, y]) => [zoom.factor * x + zoom.x, zoom.factor * y + zoom.y];
   zoom.back = ([x, y]) => [(x - zoom.x) / zoom.factor, (y - zoom.y) / zoom.factor];
   zoom.by = (factor, [x, y]) => {
-    const next = clamp(zoom.factor * factor, 1, LARGEST_ZOOM);
+    const next = clamp(zoom.factor * factor, 1, LARGEST_PLOT_ZOOM);
     const [ox, oy] = zoom.back([x, y]);
     Object.assign(zoom, { factor: next, x: x - next * ox, y: y - next * oy });
     if (next === 1) Object.assign(zoom, { x: 0, y: 0 });
@@ -48,7 +48,7 @@ function createPlotFrame(session, { name, label }, kind) {
   }, canvas);
   const readout = make("p", { class: "readout" });
   const settings = make("div", { class: "settings" });
-  const zoom = createZoom(draw);
+  const zoom = createPlotZoom(draw);
   const plot = {
     session, name, canvas, zoom, at: zoom.at, back: zoom.back, content: null, curves: [], cursor: null,
     rectangle: null, width: 0, height: 0,
