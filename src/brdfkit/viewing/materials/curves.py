@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
 
 from brdfkit.core.errors import BrdfkitError
@@ -12,8 +12,7 @@ from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.materials.pins import find_colour, label_pin, make_model, name_pin
 
-if TYPE_CHECKING:
-    from brdfkit.viewing.materials.material_state import MaterialState
+States: TypeAlias = Any  # `MaterialState`, which imports the controls of the plots
 
 # Colours that colour-blind people can tell from each other and from those of pins
 MEASURED_COLOUR, MODEL_COLOUR = "#e09a00", "#009e73"
@@ -38,7 +37,7 @@ class Curve:
         return isinstance(self.material, Measured)
 
 
-def list_curves(states: MaterialState, state: State) -> list[Curve]:
+def list_curves(states: States, state: State) -> list[Curve]:
     """Return what the plots show: the material of the view, the model of the sliders, and pins.
 
     A pin that is alone takes the place of all models.
