@@ -8,12 +8,13 @@ from brdfkit.core.colours import luminance
 from brdfkit.core.geometry.directions import from_angles, from_half_difference
 from brdfkit.viewing.materials.application import MaterialApplication
 from brdfkit.viewing.materials.curves import Curve
-from brdfkit.viewing.materials.plots import albedo, lobe, polar, scatter, slices
+from brdfkit.viewing.materials.plots import albedo, lobe, polar, scatter, selection, slices
 from brdfkit.viewing.materials.plots.live_plots import PLOTS
 from brdfkit.viewing.materials.plots.sampler import compute_density
 from brdfkit.viewing.materials.plots.settings import PlotSettings
 from brdfkit.viewing.session import Session
 
+SHOWN = [name for name in PLOTS if name != "selection"]
 GGX = {"alpha_u": 0.15, "specular_reflectance": [0.3, 0.2, 0.1]}
 
 
@@ -170,6 +171,38 @@ def test_the_solid_lobe_is_largest_in_the_mirror_direction(model):
     assert (abs(shown["theta_o"][at[0]] - 40) < 7, shown["phi_o"][at[1]]) == (True, 0)
 
 
+def test_a_selection_lists_the_samples_within_its_ranges(scattered, model):
+    ranges = (("view", 20.0, 40.0), ("theta_i", 29.0, 31.0), ("plane", 0.0, 5.0))
+    settings = PlotSettings(selection=ranges)
+    brighter = model.changed(specular_reflectance=[0.6, 0.4, 0.2], diffuse_reflectance=0.8)
+    curves = [Curve("data", "", scattered), Curve("ggx", "", brighter)]
+    evaluated = [(c, selection.select_pairs(c.material, settings)) for c in curves]
+    content = selection.arrange_selection(evaluated, settings)
+    theta = np.degrees(np.arccos(scattered.samples.wo[:, 2]))
+    mirror = scattered.samples.wo[:, 0] * np.cos(0.3) < 0
+    inside = mirror & (theta > 19.9) & (theta < 40.1)
+    assert content["count"] == inside.sum() == 5
+    assert content["medians"][0] == pytest.approx(np.median(scattered.values[inside], axis=0))
+    assert content["ratios"] == pytest.approx([1, 2])
+    assert [row["ratio"] for row in content["rows"]] == pytest.approx([2] * 5)
+    angles = {tuple(row["angles"]) for row in content["rows"]}
+    assert (30.0, 30.0, 0.0, 30.0) in angles  # the mirror direction
+    assert np.sort(content["marks"]["view"]) == pytest.approx([20, 25, 30, 35, 40], abs=1e-6)
+
+
+def test_a_selection_without_samples_has_interpolated_values(scattered, model):
+    settings = PlotSettings(theta_i=45, selection=(("view", 69.5, 70.5),))
+    evaluated = [(Curve("ggx", "", model), {})]
+    content = selection.arrange_selection(evaluated, settings)
+    assert (content["count"], content["rows"][0]["angles"][:2]) == (0, [45.0, 70.0])
+    nowhere = PlotSettings(selection=(("theta_h", 80.0, 81.0),))
+    curve = Curve("data", "", scattered)
+    empty = selection.arrange_selection(
+        [(curve, selection.select_pairs(scattered, nowhere))], nowhere
+    )
+    assert selection.describe_selection([curve], empty) == "Nothing was measured there."
+
+
 @pytest.fixture(scope="module")
 def session(module_in_llvm):
     """A session that has sent its first plots."""
@@ -199,7 +232,7 @@ def change(session, moving=False, **changes):
 def test_only_open_plots_are_drawn_and_only_when_they_change(session):
     change(session, light__turn=20, tone__exposure=2)
     assert draw(session) == {}
-    change(session, **{f"plots__show__{name}": name == "polar" for name in PLOTS})
+    change(session, **{f"plots__show__{name}": name == "polar" for name in SHOWN})
     change(session, model__alpha_u=0.4)
     drawn = draw(session)
     assert list(drawn) == ["polar"]
@@ -211,13 +244,15 @@ def test_only_open_plots_are_drawn_and_only_when_they_change(session):
         session.application.states.to_model(session.state), PlotSettings()
     )
     np.testing.assert_allclose(lobes[1]["values"][0], luminance(expected["values"]), rtol=1e-5)
-    change(session, **{f"plots__show__{name}": True for name in PLOTS})
+    ranges = [["theta_h", 1.0, 2.0], ["theta_d", 40.0, 45.0]]
+    change(session, plots__selection=ranges, **{f"plots__show__{name}": True for name in SHOWN})
     texts = {name: message["text"] for name, (message, _) in draw(session).items()}
     assert texts.keys() == PLOTS.keys() - {"polar"}  # which the page has already
     assert all("car_paint" in text or "ggx" in text for text in texts.values()), texts
     change(session, moving=True, model__alpha_u=0.3)
     assert set(draw(session)) == {name for name, plot in PLOTS.items() if plot.quick}
-    change(session, **{f"plots__show__{name}": name == "polar" for name in PLOTS})
+    closed = {f"plots__show__{name}": name == "polar" for name in SHOWN}
+    change(session, plots__selection=[], **closed)
     draw(session)
     session.application.follow({}, session.state)  # a page that was loaded again
     assert "polar" in draw(session)
@@ -244,3 +279,11 @@ def test_plots_come_after_the_picture_while_a_slider_moves(session):
         assert not session.has_work()
         session.handle({"type": "shown", "number": session.number})
     assert kinds == ["picture", "plot"] * 2
+
+
+@pytest.mark.parametrize(
+    "wrong", ["all", [["theta_x", 0, 1]], [["theta_h", 0]], [["view", 0, "a"]]]
+)
+def test_an_impossible_selection_is_a_sentence(session, wrong):
+    answers = session.handle({"type": "set", "changes": {"plots.selection": wrong}})
+    assert "list of ranges" in answers[0][0]["text"]

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
 from typing import Any
 
+from brdfkit.core.arguments import is_number
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing.controls import Control
 from brdfkit.viewing.materials.plots.settings import PREFIX
 
+# Coordinates of what is selected
+SELECTED = "theta_i", "theta_o", "theta_h", "theta_d", "view", "plane", "phi_i", "value"
 # Name, label on its button, and help of each plot
 PLOTS = (
     ("polar", "Lobes", "The BRDF over the angle of view, for one direction of the light."),
@@ -83,8 +88,26 @@ def make_plot_controls(anisotropic: bool) -> list[Control]:
         control("phi_o", "Plane", default=0.0, high=180.0, help=PLANE, **angle, **lobes),
         control("phi_d", "φd", default=90.0, high=180.0, help=PHI_D, **angle),
         control("samples_over", "over", default="theta_h", kind="choice", choices=OVER, help=ANGLE),
+        SelectionControl(PREFIX + "selection", "Selection", "plots", [], "selection"),
         control("sampler", "Sampler", default=False, kind="flag", help=SAMPLER, **lobes),
     ]
+
+
+class SelectionControl(Control):
+    """What is selected in the plots: ranges [name, low, high], as a list; the page draws it."""
+
+    def check(self, value: Any) -> Any:
+        """Return the ranges; raise `BrdfkitError` for what are none."""
+        if not isinstance(value, list) or not all(map(_is_range, value)):
+            raise BrdfkitError("A selection should be a list of ranges [name, low, high].")
+        return [[name, float(low), float(high)] for name, low, high in value]
+
+
+def _is_range(value: Any) -> bool:
+    """Return whether a value is a range [name, low, high] of a coordinate."""
+    if not isinstance(value, list) or len(value) != 3 or value[0] not in SELECTED:
+        return False
+    return all(is_number(number) and math.isfinite(number) for number in value[1:])
 
 
 def make_control(name: str, label: str, **settings: Any) -> Control:

@@ -65,6 +65,13 @@ const ALBEDO = {
     context.setLineDash([2, 4]);
     strokeLine(context, [place(session.state["plots.theta_i"], 0), place(session.state["plots.theta_i"], up.value(1))]);
     context.setLineDash([]);
+    const marked = listMarks(plot).map((mark) => mark.theta_i);
+    const [low, high] = findRange(session, "theta_i") || [Math.min(...marked), Math.max(...marked)];
+    if (high >= low) {
+      const [[left], [right]] = [place(low, 0), place(high, 0)];
+      const [top, bottom] = [area.y + 1, area.y + area.height - 1];
+      outlineRegion(context, plot, [[left, top], [right, top], [right, bottom], [left, bottom]]);
+    }
     content.lines.forEach((line, number) => drawAlbedoLine(context, plot, line, number, place));
     context.restore();
   },
@@ -78,6 +85,11 @@ const ALBEDO = {
       return [angles[k], `${plot.curves[number].name} ${text}${known[k] ? "" : " (extrapolated)"}`];
     });
     return `θi ${writeAngle(parts[0][0])}: ${parts.map(([, text]) => text).join(" · ")}`;
+  },
+  select(from, to, plot) {
+    const { x, width } = placeChart(plot);
+    const [low, high] = [from, to].map((own) => 90 * clamp((plot.back(own)[0] - x) / width, 0, 1)).sort((a, b) => a - b);
+    return selectRanges([["theta_i", Math.max(low - 1, 0), Math.min(high + 1, 90)]]);
   },
   rows({ content: { lines }, curves }) {
     const table = [["material", "theta_i", "known", ...lines[0].values.map((_, k) => `albedo_${k}`)]];

@@ -51,7 +51,7 @@ function createPlotFrame(session, { name, label }, kind) {
   const zoom = createPlotZoom(draw);
   const plot = {
     session, name, canvas, zoom, at: zoom.at, back: zoom.back, content: null, curves: [], cursor: null,
-    rectangle: null, width: 0, height: 0,
+    rectangle: null, selection: null, width: 0, height: 0,
     colours: readColours(canvas), draw: () => draw(),
   };
   const middle = () => [plot.width / 2, plot.height / 2];
@@ -215,6 +215,8 @@ function followPlotKeys(plot, surface, kind, zoomBy, reset) {
         clamp(cursor[0] + CURSOR_STEP * way[0], 0, plot.width), clamp(cursor[1] + CURSOR_STEP * way[1], 0, plot.height),
       ];
       plot.rectangle = corner && [corner, plot.cursor];
+    } else if (event.key === "Escape" && plot.session.state["plots.selection"]?.length) {
+      plot.session.change({ "plots.selection": [] });
     } else if (event.key === "Enter" && kind.select && plot.cursor) {
       if (corner) selectPlaces(plot, kind, corner, cursor);
       corner = corner ? null : cursor;

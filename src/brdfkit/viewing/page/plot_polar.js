@@ -145,11 +145,36 @@ function isOnLight(place, plot) {
   return Math.hypot(place[0] - x, place[1] - y) < 2 * HANDLE;
 }
 
+/** Return the angle between the plane of the views and that of the light, 0 to 90 [degrees]. */
+function findPlane({ session: { state } }) {
+  return Math.min(state["plots.phi_o"], 180 - state["plots.phi_o"]);
+}
+
+/** Return whether a selected pair of directions is near what the plot shows. */
+function isShown({ theta_i: theta, plane }, plot) {
+  const [near, across] = plot.content.reach;
+  return Math.abs(theta - plot.session.state["plots.theta_i"]) <= near + 0.01
+    && Math.abs(plane - findPlane(plot)) <= across + 0.01;
+}
+
+/** Draw the sector of the angles of view that are selected, and the selected samples near by. */
+function drawSelectedViews(context, plot, scale) {
+  const range = findRange(plot.session, "view");
+  if (range) {
+    const arc = Array.from({ length: 21 }, (_, k) => placePolar(plot, range[0] + (k / 20) * (range[1] - range[0]), 1));
+    outlineRegion(context, plot, [placePolar(plot, 0, 0), ...arc]);
+  }
+  const cosine = (degrees) => (plot.content.cosine ? Math.cos((degrees * Math.PI) / 180) : 1);
+  drawMarks(context, plot, listMarks(plot).filter((mark) => isShown(mark, plot)).map(
+    ({ view, value }) => placePolar(plot, view, scale.place(value * cosine(view)))));
+}
+
 const POLAR = {
   draw(context, plot) {
     const scale = makeRadius(plot);
     drawDisc(context, plot, scale);
     plot.curves.forEach((_, number) => drawLobe(context, plot, scale, number));
+    drawSelectedViews(context, plot, scale);
     writeDisc(context, plot, scale);
     drawLight(context, plot);
   },
@@ -172,6 +197,15 @@ const POLAR = {
       const theta = clamp(Math.abs(degrees), 0, LARGEST_INCIDENCE);
       plot.session.drag({ "plots.theta_i": Math.round(2 * theta) / 2 });
     };
+  },
+  select(from, to, plot) {
+    const [near, across] = plot.content.reach;
+    const [low, high] = [from, to].map((place) => clamp(readPolar(plot, place)[0], -90, 90)).sort((a, b) => a - b);
+    const [plane, theta] = [findPlane(plot), plot.session.state["plots.theta_i"]];
+    return selectRanges([
+      ["view", low - 0.5, high + 0.5], ["theta_i", theta - near, theta + near],
+      ["plane", Math.max(plane - across, 0), plane + across],
+    ]);
   },
   rows({ content, curves }) {
     const rows = [["material", "theta_o", "known", ...content.lobes[0].values.map((_, k) => `value_${k}`)]];

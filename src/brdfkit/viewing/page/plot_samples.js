@@ -11,10 +11,16 @@ function makeSampleAxes({ content, session }) {
   return { angles: half ? content.theta_h : content.theta_o, across, up: { ...values, label: "BRDF [sr⁻¹]" } };
 }
 
+/** Return the area of the plot, left of the colours. */
+function placeSamples(plot) {
+  const area = placeChart(plot);
+  return { ...area, width: area.width - LEGEND_ROOM };
+}
+
 /** Return the index of the sample nearest to a place, within a few pixels, or −1. */
 function findSample(at, plot) {
   const { angles, across, up } = makeSampleAxes(plot);
-  const place = makePlacer(plot, placeChart(plot), across, up);
+  const place = makePlacer(plot, placeSamples(plot), across, up);
   let [best, least] = [-1, 10];
   plot.content.values.forEach((value, k) => {
     const [x, y] = place(angles[k], value);
@@ -53,6 +59,7 @@ function drawSamples(context, { content }, place, angles) {
   for (const [step, places] of [...batches].sort(([a], [b]) => Math.abs(a - 8) - Math.abs(b - 8))) {
     context.fillStyle = `rgb(${mixColour(content.colours, step / 16).map(Math.round).join(" ")})`;
     fillDots(context, places, SAMPLE_RADIUS);
+    if (Math.abs(step - 8) > 3) continue; // colours that show on white and on black
     context.lineWidth = 0.4;
     context.strokeStyle = "rgb(128 128 128 / 80%)";
     context.beginPath();
@@ -68,14 +75,21 @@ const SAMPLES = {
   draw(context, plot) {
     const { content, colours } = plot;
     const { angles, across, up } = makeSampleAxes(plot);
-    const area = { ...placeChart(plot) };
-    area.width -= LEGEND_ROOM;
+    const area = placeSamples(plot);
     const place = makePlacer(plot, area, across, up);
     drawAxes(context, colours, area, plot.at, [across, up]);
     context.save();
     clipTo(context, area);
     if (content.noise) drawNoise(context, plot, place, angles);
     drawSamples(context, plot, place, angles);
+    const range = findRange(plot.session, angles === content.theta_h ? "theta_h" : "theta_o");
+    const values = findRange(plot.session, "value");
+    if (range && values) {
+      outlineRegion(context, plot, [[0, 0], [1, 0], [1, 1], [0, 1]].map(([i, j]) => place(range[i], values[j])));
+    } else {
+      drawMarks(context, plot, listMarks(plot).map((mark) => place(
+        angles === content.theta_h ? mark.theta_h : mark.theta_o, mark.value)));
+    }
     context.restore();
     const bar = { ...plot, content: { ...content, ratio_colours: content.colours } };
     drawColourScale(context, bar, "ratio", area);
@@ -89,6 +103,25 @@ const SAMPLES = {
       `${names[number]} ${writeValue(values[k])} (× ${writeValue(2 ** ratio[k])})`));
     const angles = `θh ${writeAngle(content.theta_h[k])}, θo ${writeAngle(content.theta_o[k])}`;
     return `${angles}: data ${writeValue(content.values[k])} · ${models.join(" · ")}`;
+  },
+  select(from, to, plot) {
+    const { content } = plot;
+    if (from === to) {
+      const nearest = findSample(from, plot);
+      if (nearest < 0) return null;
+      const [h, o, value] = [content.theta_h[nearest], content.theta_o[nearest], content.values[nearest]];
+      const near = Math.abs(value) * 1e-4 + 1e-9; // numbers came in single precision
+      return selectRanges([["theta_h", h - 0.01, h + 0.01], ["theta_o", o - 0.01, o + 0.01], ["value", value - near, value + near]]);
+    }
+    const { angles, across, up } = makeSampleAxes(plot);
+    const area = placeSamples(plot);
+    const [start, end] = [from, to].map((own) => {
+      const [x, y] = plot.back(own);
+      const [right, high] = [clamp((x - area.x) / area.width, 0, 1), clamp(1 - (y - area.y) / area.height, 0, 1)];
+      return [across.value(right), up.value(high)];
+    });
+    const name = angles === content.theta_h ? "theta_h" : "theta_o";
+    return selectRanges([[name, start[0], end[0]], ["value", start[1], end[1]]]);
   },
   rows({ content, curves }) {
     const names = curves.filter(({ measured }) => !measured).map(({ name }) => name);

@@ -74,7 +74,12 @@ function drawSlice(context, plot, panel, area, first) {
   context.imageSmoothingEnabled = false;
   panel.cells = panel.cells || paintCells(panel, content);
   context.drawImage(panel.cells, left, top, right - left, bottom - top);
-  drawMarks(context, plot, plot.selection?.theta_h?.length ? placeMarksOnSlice(plot, area) : []);
+  const [h, d] = ["theta_h", "theta_d"].map((name) => findRange(plot.session, name));
+  if (h && d) {
+    outlineRegion(context, plot, [[0, 0], [1, 0], [1, 1], [0, 1]].map(([i, j]) => placeOnSlice(plot, area, h[i], d[j])));
+  } else {
+    drawMarks(context, plot, listMarks(plot).map((mark) => placeOnSlice(plot, area, mark.theta_h, mark.theta_d)));
+  }
   context.restore();
   const up = first ? SLICE_AXES[1] : { ...SLICE_AXES[1], ticks: [], label: "" };
   const ticks = THETA_H_TICKS[area.width < NARROW_AXIS ? 1 : 0].map((value) => [value, `${value}°`]);
@@ -85,12 +90,9 @@ function drawSlice(context, plot, panel, area, first) {
   context.fillText(shorten(context, panel.title, area.width), area.x + area.width / 2, area.y - 3);
 }
 
-/** Return the places of the selected pairs of directions on a slice. */
-function placeMarksOnSlice({ selection, at }, area) {
-  return [...selection.theta_h].map((theta_h, k) => at([
-    area.x + SLICE_AXES[0].place(theta_h) * area.width,
-    area.y + (1 - SLICE_AXES[1].place(selection.theta_d[k])) * area.height,
-  ]));
+/** Return the place of angles θh and θd [degrees] on a slice. */
+function placeOnSlice({ at }, area, h, d) {
+  return at([area.x + SLICE_AXES[0].place(h) * area.width, area.y + (1 - SLICE_AXES[1].place(d)) * area.height]);
 }
 
 /** Return a text that is at most so wide, cut at its end. */
@@ -171,6 +173,15 @@ const SLICES = {
       return `${title} ${text}${known[row][column] ? "" : " (not measured)"}`;
     });
     return `θh ${writeAngle(h)}, θd ${writeAngle(d)}: ${texts.join(" · ")}`;
+  },
+  select(from, to, plot) {
+    const [start, end] = [readSlice(from, plot), readSlice(to, plot)];
+    if (!start || !end) return null;
+    // A click is at least the cell of a table of MERL's
+    const h = [Math.min(start.across, end.across) - 0.008, Math.max(start.across, end.across) + 0.008];
+    const d = [Math.min(start.theta_d, end.theta_d) - 0.75, Math.max(start.theta_d, end.theta_d) + 0.75];
+    const [low, high] = h.map((share) => 90 * clamp(share, 0, 1) ** 2);
+    return selectRanges([["theta_h", low, high], ["theta_d", Math.max(d[0], 0), Math.min(d[1], 90)]]);
   },
   rows({ content: { panels } }) {
     const [rows, columns] = [panels[0].values.length, panels[0].values[0].length];

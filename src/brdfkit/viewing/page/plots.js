@@ -34,6 +34,7 @@ function createPlots(session) {
   const element = make("div", { class: "plots", role: "region", "aria-label": "Plots", hidden: true });
   const splitter = makeSplitter(element);
   element.append(splitter, make("div", { class: "plots-bar" }, toggles, shared, legend), row);
+  const selection = createSelection(session);
   let frames = new Map();
   let buttons = [];
   let controls = [];
@@ -45,13 +46,14 @@ function createPlots(session) {
       .map((described) => [described.name, createPlotFrame(session, described, PLOT_KINDS()[described.name])]));
     buttons = plots.map((described) => makePlotButton(session, described));
     toggles.replaceChildren(...buttons.map(({ button }) => button));
-    row.replaceChildren(...[...frames.values()].map((frame) => frame.element));
+    row.replaceChildren(...[...frames.values()].map((frame) => frame.element), selection.element);
   }
 
   function buildControls({ controls: all = [] }) {
     if (!frames.size) return;
     const focused = controls.find(([, { row: own }]) => own.matches(":focus-within"))?.[0].name;
     controls = all.filter(({ name, panel }) => panel === "plots" && !name.startsWith("plots.show."))
+      .filter(({ kind }) => CONTROL_MAKERS[kind])
       .map((control) => makePlotControl(session, control));
     const rowOf = (wanted) => controls.find(([{ name }]) => name === wanted)?.[1].row;
     const owned = Object.values(OWN_SETTINGS).flat();
@@ -74,6 +76,11 @@ function createPlots(session) {
       if (names.has(control.name)) parts.show(state[control.name]);
       parts.row.hidden = !isWanted(control, state);
     }
+    if (names.has("plots.selection")) {
+      const none = !state["plots.selection"]?.length;
+      selection.element.hidden = none;
+      if (none) frames.forEach(({ plot }) => (plot.selection = null));
+    }
     if ([...names].some((name) => name.startsWith("plots."))) frames.forEach(({ plot }) => plot.draw());
   }
 
@@ -84,8 +91,17 @@ function createPlots(session) {
   session.on("controls", buildControls);
   session.on("state", showState);
   session.on("plot", (content, [bytes]) => {
-    frames.get(content.plot)?.plot.show(bytes ? readArrays(content, bytes) : content);
+    const shown = bytes ? readArrays(content, bytes) : content;
     showLegend(legend, content.curves);
+    if (content.plot !== "selection") {
+      frames.get(content.plot)?.plot.show(shown);
+      return;
+    }
+    selection.show(shown);
+    frames.forEach(({ plot }) => {
+      plot.selection = shown.marks ? shown : null;
+      plot.draw();
+    });
   });
   return { element, stop: () => frames.forEach(({ stop }) => stop()) };
 }
@@ -95,11 +111,7 @@ function showLegend(legend, curves) {
   const key = JSON.stringify(curves);
   if (legend.dataset.key === key) return;
   legend.dataset.key = key;
-  legend.replaceChildren(...curves.map(({ name, colour, measured }) => {
-    const chip = make("span", { class: measured ? "chip dots" : "chip", "aria-hidden": "true" });
-    chip.style.backgroundColor = colour;
-    return make("span", { class: "entry", title: measured ? `${name}, measured` : name }, chip, name);
-  }));
+  legend.replaceChildren(...curves.map((curve) => nameEntry(curve.name, curve)));
 }
 
 /** Make the bar above the plots that a drag or the arrow keys move, to make them higher or lower. */

@@ -12,7 +12,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing.application import Message
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.materials.curves import Curve, list_curves
-from brdfkit.viewing.materials.plots import albedo, lobe, polar, scatter, slices
+from brdfkit.viewing.materials.plots import albedo, lobe, polar, scatter, selection, slices
 from brdfkit.viewing.materials.plots.settings import PREFIX, PlotSettings
 from brdfkit.viewing.recent import Recent
 
@@ -64,6 +64,12 @@ PLOTS = {
         lobe.arrange_solid_lobes,
         lobe.describe_solid_lobes,
     ),
+    "selection": Plot(
+        selection.select_pairs,
+        ("selection",),
+        selection.arrange_selection,
+        selection.describe_selection,
+    ),
 }
 
 
@@ -81,7 +87,7 @@ class LivePlots:
 
     def find_stale(self, state: State, moving: bool = False) -> list[str]:
         """Return the open plots that show another state; while something moves, the quick ones."""
-        open_ones = [name for name in PLOTS if state[f"{PREFIX}show.{name}"]]
+        open_ones = [name for name in PLOTS if is_open(name, state)]
         if not open_ones:
             return []
         curves = list_curves(self.states, state)
@@ -122,8 +128,15 @@ class LivePlots:
         """Return the arrays of a material in a plot, which are kept for a while."""
         plot = PLOTS[name]
         used = tuple(getattr(settings, setting) for setting in plot.uses)
+        if name == "selection":  # whose values are those of a channel
+            used = (*used, settings.channel)
         key = name, used, material
         return self.evaluated.get(key, lambda: plot.evaluate(material, settings))
+
+
+def is_open(name: str, state: State) -> bool:
+    """Return whether a plot is shown in a state; a selection is as long as there is one."""
+    return bool(state[f"{PREFIX}selection" if name == "selection" else f"{PREFIX}show.{name}"])
 
 
 def make_key(plot: Plot, curves: list[Curve], state: State) -> Any:

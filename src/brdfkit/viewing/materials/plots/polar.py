@@ -10,7 +10,7 @@ from brdfkit.core.array_types import FloatArray
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured import Measured
 from brdfkit.viewing.materials.curves import Curve
-from brdfkit.viewing.materials.plots.measured_points import MeasuredPoints, is_known
+from brdfkit.viewing.materials.plots.measured_points import SCATTER_REACH, MeasuredPoints, is_known
 from brdfkit.viewing.materials.plots.sampler import compute_sampler_lobe
 from brdfkit.viewing.materials.plots.settings import PlotSettings, make_grid_around
 
@@ -72,7 +72,13 @@ def arrange_lobes(
         if "sampler" in lobe:
             own["sampler"] = lobe["sampler"]
         shown.append(own)
-    return {"theta_i": settings.theta_i, "cosine": settings.weighted, "lobes": shown}
+    data = next((c.material for c, _ in curves if c.is_measured), None)
+    return {
+        "theta_i": settings.theta_i,
+        "cosine": settings.weighted,
+        "reach": list(MeasuredPoints.of(data).reach if data else SCATTER_REACH),
+        "lobes": shown,
+    }
 
 
 def describe_lobes(curves: list[Curve], content: dict[str, Any]) -> str:

@@ -22,7 +22,7 @@ class PlotSettings:
     between the plane of the views and the plane of incidence [degrees]. `phi_d`: azimuth of the
     difference vector in slices [degrees]. `channel`: "luminance", "R", "G", "B", or "each".
     `cosine`: whether values are multiplied by cosθo. `sampler`: whether the densities of the
-    renderer's samples are shown.
+    renderer's samples are shown. `selection`: ranges (name, low, high), as of `selection.py`.
     """
 
     theta_i: float = 45.0
@@ -32,11 +32,13 @@ class PlotSettings:
     channel: str = "luminance"
     cosine: bool = False
     sampler: bool = False
+    selection: tuple[tuple[str, float, float], ...] = ()
 
     @classmethod
     def from_state(cls, state: State) -> PlotSettings:
         """Return the settings of a state."""
-        return cls(**{name: state[PREFIX + name] for name in cls.__dataclass_fields__})
+        values = {name: state[PREFIX + name] for name in cls.__dataclass_fields__}
+        return cls(**values | {"selection": tuple(map(tuple, values["selection"]))})
 
     @property
     def weighted(self) -> bool:
