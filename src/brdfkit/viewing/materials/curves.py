@@ -10,6 +10,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean
 from brdfkit.viewing.controls import State
+from brdfkit.viewing.materials.explorer_controls import MEASURED
 from brdfkit.viewing.materials.pins import find_colour, label_pin, make_model, name_pin
 
 States: TypeAlias = Any  # `MaterialState`, which imports the controls of the plots
@@ -44,7 +45,8 @@ def list_curves(states: States, state: State) -> list[Curve]:
     """
     curves = []
     if states.measured is not None:
-        curves.append(Curve(states.name, MEASURED_COLOUR, to_shown(states.measured)))
+        _, measured = states.find_side(state, MEASURED)
+        curves.append(Curve(states.name, MEASURED_COLOUR, to_shown(measured)))
     pins = [pin for pin in state["pins"] if state["solo"] in ("", name_pin(pin))]
     if not state["solo"]:
         curves.append(Curve(state["model"], MODEL_COLOUR, states.to_model(state)))
