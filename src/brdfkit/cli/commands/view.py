@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from brdfkit.cli.console import Console
-from brdfkit.cli.options import output_option, writing_options
+from brdfkit.cli.options import mend_options, output_option, writing_options
 from brdfkit.core.errors import BrdfkitError
 
 
@@ -32,6 +32,7 @@ from brdfkit.core.errors import BrdfkitError
 @click.option("--state", metavar="JSON", help="Settings to begin with, as the page copies them.")
 @click.option("--size", default="512x512", show_default=True, help="Size of the written picture.")
 @click.option("--spp", type=click.IntRange(1), default=64, help="Samples of the written picture.")
+@mend_options
 @writing_options
 def view(
     thing: str | None,
@@ -44,6 +45,7 @@ def view(
     state: str | None,
     size: str,
     spp: int,
+    mends: dict[str, bool],
     console: Console,
 ) -> None:
     """Show a volume or a material interactively in the browser.
@@ -63,12 +65,15 @@ def view(
     """
     given = {"downsample": downsample, "labels": labels}
     settings = {name: value for name, value in given.items() if value is not None}
-    changes = _parse_state(state)
+    changes = _parse_state(state) | {f"mend.{name}": True for name in mends}
 
     def make_application() -> Any:
         """Read the volume or the material, and return the view of it."""
-        from brdfkit.viewing.choosing import make_application
+        from brdfkit.cli.arguments import refuse_mends
+        from brdfkit.viewing.choosing import is_volume, make_application
 
+        if mends and is_volume(thing):
+            refuse_mends(str(thing), "a volume", mends)
         with console.progress(f"read {thing}" if thing else "start"):
             return make_application(thing, models, changes, **settings)
 

@@ -8,6 +8,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.auditing import Audit, audit
 from brdfkit.materials.auditing.report import list_findings
 from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.conventions import OPTIONS
 from brdfkit.viewing.materials.mends import LABELS, PREFIX
 
 if TYPE_CHECKING:
@@ -55,8 +56,8 @@ def describe_audit(data: Measured) -> Message:
     findings = [
         {
             "title": TITLES[finding.topic],
-            "text": finding.text,
-            "where": finding.where,
+            "text": to_greek(finding.text),
+            "where": to_greek(finding.where),
             "mend": finding.mend and PREFIX + finding.mend,
             "label": LABELS[finding.mend][0] if finding.mend else "",
         }
@@ -73,4 +74,14 @@ def describe_file(result: Audit) -> list[str]:
         count = f"{result.valid:,} valid of {result.above:,} {unit}"
     kind = f"{result.kind}, {count}" if result.data.is_table else count
     line = [result.data.info.get("format", ""), kind, rows["channels"]]
-    return [", ".join(filter(None, line)), rows["angles"]]
+    info = result.data.info
+    done = [
+        text for notes in OPTIONS.values() for key, text in notes.items() if info.get(key) == text
+    ]
+    mended = [f"Mended: {to_greek(text)}." for text in done]
+    return [", ".join(filter(None, line)), rows["angles"], *mended]
+
+
+def to_greek(text: str) -> str:
+    """Return a text with the letters of angles: φo for phi_o."""
+    return text.replace("phi_", "φ").replace("theta_", "θ")

@@ -10,7 +10,10 @@ from typing import TYPE_CHECKING, Any
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import Model
 from brdfkit.viewing.controls import State
+from brdfkit.viewing.materials.explorer_controls import FILE
 from brdfkit.viewing.materials.fit_settings import find_repeated_arguments, to_fit_arguments
+from brdfkit.viewing.materials.mends import PREFIX as MEND
+from brdfkit.viewing.materials.mends import Mends, find_mends
 from brdfkit.viewing.materials.mitsuba_xml import write_xml
 from brdfkit.viewing.materials.parameter_state import PREFIX, to_state
 from brdfkit.viewing.materials.pins import NONE, PIN
@@ -29,19 +32,22 @@ def write_script(application: Application, session: Session) -> str:
     A model whose values are still those of its fit is fitted again.
     """
     states, state = application.states, session.state
-    file = find_file(application)
-    load = repr(file) if file else "material"
     changes = {k: v for k, v in find_changes(application, state).items() if not _is_model(k)}
+    given = "material"  # what the picture is made of
+    if FILE in (state["renderer"], state["second"]):
+        given = write_load(application, ())  # the state mends it, and both are shown
+    else:
+        changes = {k: v for k, v in changes.items() if not k.startswith(MEND)}
     lines = [f"{write_comment(application)}import brdfkit", ""]
     if states.measured is None:
         lines.append(f"material = {write_model(states.to_model(state))}")
         call = "material, state"
     else:
-        if load != "material":
-            lines.append(f"material = brdfkit.load({load})")
+        load = write_load(application, find_mends(state))
+        lines += [f"material = {load}"] if load != "material" else []
         lines += [f"model = {_write_fit(application, state)}", "print(model)"]
         lines.append("print(brdfkit.compare(material, model))")
-        call = "material, state, models=model"
+        call = f"{given}, state, models=model"
     lines += ["", "state = {", *(f"    {k!r}: {v!r}," for k, v in changes.items()), "}"]
     if not changes:
         lines[-2:] = ["state = {}"]
@@ -82,6 +88,9 @@ def write_command(application: Application, session: Session) -> str:
     words = ["brdfkit", "view", file]
     words += [state["model"]] if application.states.measured is not None else []
     changes.pop("model", None)
+    for name in find_mends(state):
+        words.append(f"--{name.replace('_', '-')}")
+        del changes[MEND + name]
     words += ["--state", json.dumps(changes), "--size", f"{width}x{height}"]
     words += ["--spp", str(max(session.passes, SAMPLES)), "-o", f"{application.name}.png"]
     return write_comment(application) + shlex.join(words)
@@ -95,6 +104,14 @@ def find_file(application: Application) -> str:
     )
 
 
+def write_load(application: Application, mends: Mends) -> str:
+    """Return the expression of the measured material with mends."""
+    file, options = find_file(application), ", ".join(f"{name}=True" for name in mends)
+    if file:
+        return f"brdfkit.load({', '.join(filter(None, [repr(file), options]))})"
+    return f"material.mend({options})" if options else "material"
+
+
 def write_comment(application: Application) -> str:
     """Return a comment for a file that the page sent, whose folder is unknown."""
     file = application.file
@@ -104,13 +121,14 @@ def write_comment(application: Application) -> str:
 def write_fit_command(application: Application, session: Session) -> str:
     """Return a command that fits the model that is shown, with the settings of the page."""
     states, state = application.states, session.state
-    material = application.given[0]
-    if not states.is_fittable or not isinstance(material, str | os.PathLike):
+    file = find_file(application)
+    if not (states.is_fittable and file):
         raise BrdfkitError(f"{application.name} is no file, so no command can fit it; copy Python.")
     how = to_fit_arguments(state, states.find_class(state))
     if not how.pop("use_standard_error", True):
         raise BrdfkitError("No command can leave standard errors aside; copy Python.")
-    words = ["brdfkit", "fit", os.fspath(material), "-m", state["model"]]
+    words = ["brdfkit", "fit", file, "-m", state["model"]]
+    words += [f"--{name.replace('_', '-')}" for name in find_mends(state)]
     for name, values in (("--fixed", how.pop("fixed", {})), ("--bound", how.pop("bounds", {}))):
         for key, value in values.items():
             numbers = value if isinstance(value, tuple) else (value,)
@@ -119,7 +137,7 @@ def write_fit_command(application: Application, session: Session) -> str:
         words.append("--anisotropic" if how.pop("anisotropic") else "--isotropic")
     for name, value in how.items():
         words += [f"--{name.replace('_', '-')}", str(value)]
-    return shlex.join([*words, "-o", application.name])
+    return write_comment(application) + shlex.join([*words, "-o", application.name])
 
 
 def find_changes(application: Application, state: State) -> State:

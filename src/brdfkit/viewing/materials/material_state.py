@@ -30,12 +30,14 @@ from brdfkit.viewing.materials.fit_settings import (
     check_fixed,
 )
 from brdfkit.viewing.materials.material_scene import Look, SceneKind, make_studio_camera
+from brdfkit.viewing.materials.mends import PREFIX as MEND
 from brdfkit.viewing.materials.mends import (
     MendedFile,
     Mends,
     find_mends,
     leave_file,
     make_mend_controls,
+    refuse_mend,
 )
 from brdfkit.viewing.materials.parameter_controls import make_controls
 from brdfkit.viewing.materials.parameter_state import (
@@ -190,6 +192,8 @@ class MaterialState:
         controls = self._list_own_controls(label, new["pins"], mends)
         values: State = {}
         for name, value in changes.items():
+            if name not in new and name.startswith(MEND):
+                raise refuse_mend(self.mended.file, name)
             if name not in new:
                 raise no_such_error("setting", name, new)
             if name.startswith(PREFIX):

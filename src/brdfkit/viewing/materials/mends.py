@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.conventions import can_mend
 from brdfkit.viewing.controls import Control, State
@@ -31,6 +32,19 @@ def make_mend_controls(file: Any) -> list[Control]:
         for name, (label, meaning) in LABELS.items()
         if possible and can_mend(file, name)
     ]
+
+
+def refuse_mend(file: Any, name: str) -> BrdfkitError:
+    """Return the error for a flag that a material does not have, with the reason."""
+    option = name.removeprefix(PREFIX)
+    if option in LABELS and not isinstance(file, Measured):
+        return BrdfkitError("A model is never mended; give a measured material.")
+    if option in LABELS:
+        try:
+            file.mend(**{option: True})
+        except BrdfkitError as error:
+            return error
+    return no_such_error("setting", name, [PREFIX + known for known in LABELS])
 
 
 def find_mends(state: State) -> Mends:
