@@ -183,3 +183,38 @@ def test_axe_finds_no_serious_fault(page, theme):
     page.evaluate("document.querySelectorAll('details').forEach((panel) => (panel.open = true))")
     page.emulate_media(**THEMES[theme])
     assert page.evaluate(FAULTS) == []
+
+
+def test_plots_open_and_mark_what_is_selected(page):
+    page.get_by_role("img", name="Lobes for light at 45°. car_paint: largest at").wait_for()
+    for name in ("Slices", "Albedo", "Samples"):
+        page.get_by_role("button", name=name, exact=True).click()
+    page.get_by_role("img", name="ggx / data: typically a factor of").wait_for()
+    page.get_by_role("img", name="Albedo. car_paint: 0.").wait_for()
+    page.get_by_role("img", name="2,500 samples").wait_for()
+    page.get_by_role("application", name="Samples; arrow keys").focus()
+    for key in ("ArrowLeft", "Enter", *["ArrowDown"] * 12, "ArrowRight", "Enter"):
+        page.keyboard.press(key)
+    chosen = page.get_by_role("region", name="Selection")
+    expect(chosen).to_contain_text("samples")
+    page.keyboard.press("Escape")
+    expect(chosen).to_be_hidden()
+    page.get_by_role("button", name="Undo").click()
+    expect(chosen).to_contain_text("Farthest first")
+    page.get_by_role("button", name="Clear").click()
+
+
+def test_the_light_of_the_lobes_is_dragged(page):
+    box = page.locator(".plot-polar .surface").bounding_box()
+    radius = min(box["width"] / 2 - 30, box["height"] - 42)
+    centre = box["x"] + box["width"] / 2, box["y"] + 22 + radius
+    centre = centre[0], centre[1] + max((box["height"] - 42 - radius) / 2, 0)
+    at = [
+        (centre[0] - radius * np.sin(angle), centre[1] - radius * np.cos(angle))
+        for angle in np.radians([45, 20])
+    ]
+    drag(page, *at)
+    page.get_by_role("img", name="Lobes for light at 20°").wait_for()
+    assert number(page, "θi [°]") == 20
+    page.get_by_role("button", name="Undo").click()
+    page.get_by_role("img", name="Lobes for light at 45°").wait_for()

@@ -11,6 +11,7 @@ import numpy as np
 from brdfkit.core.arguments import to_number
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.jit.threads import in_turn
 from brdfkit.images.tone_mapping import ToneMapping
 from brdfkit.materials.resolve import Material, MaterialLike
 from brdfkit.viewing.application import Message, unknown_message_error
@@ -120,6 +121,7 @@ class MaterialApplication:
         """Return another view of the same material, as for another page."""
         return MaterialApplication(*self.given, self.file)
 
+    @in_turn
     def close(self) -> None:
         """Forget the scenes, because the page is gone."""
         self.live.clear()
