@@ -20,6 +20,7 @@ from brdfkit.viewing.choosing import make_application
 from brdfkit.viewing.empty import EmptyApplication, list_names
 from brdfkit.viewing.materials.application import MaterialApplication
 from brdfkit.viewing.materials.opening import open_material
+from brdfkit.viewing.materials.warm_up import warm_up
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.uploads import Upload
 from brdfkit.viewing.volumes import opening as volumes
@@ -33,6 +34,8 @@ class DropSession(Session):
     def __init__(self, application: Application) -> None:
         super().__init__(application)
         self.upload = Upload()
+        if isinstance(application, EmptyApplication):
+            self.tasks.append(warm_up())
 
     def close(self) -> None:
         """End what goes on, and delete the files of the page, which is gone."""

@@ -111,7 +111,7 @@ class _InverseDistanceMean:
         """
         # Find one neighbour more than are averaged. The weights reach 0 at its distance, so that
         # the mean is continuous. If there are too few points, it is infinitely far away
-        distance, index = self.tree.query(points, k=np.arange(1, NEIGHBOURS + 2))
+        distance, index = self.tree.query(points, np.arange(1, NEIGHBOURS + 2), workers=-1)
         closeness = 1 / np.maximum(distance, 1e-6)
         weight = (closeness - closeness[:, -1:]) ** 2
         weight[~weight.any(axis=1)] = 1.0  # where all neighbours are equally far, weight them alike

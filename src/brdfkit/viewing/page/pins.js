@@ -46,7 +46,8 @@ function createPins(session) {
   });
   session.on("state", (names) => {
     if (names.has("pins") || names.has("solo")) fill();
-    const now = JSON.stringify([session.state.pins, session.state["fit.loss"]]);
+    const mends = Object.entries(session.state).filter(([name]) => name.startsWith(MENDS));
+    const now = JSON.stringify([session.state.pins, session.state["fit.loss"], mends]);
     if (!uses(session, "fit") || now === asked) return;
     asked = now;
     session.send({ type: "errors" });
