@@ -6,9 +6,12 @@ import pytest
 import brdfkit as bk
 from brdfkit.core.colours import luminance
 from brdfkit.core.geometry.directions import from_angles, from_half_difference
+from brdfkit.rendering.scenes._studio import BALL
 from brdfkit.viewing.materials.application import MaterialApplication
 from brdfkit.viewing.materials.curves import Curve
+from brdfkit.viewing.materials.material_scene import make_studio_camera
 from brdfkit.viewing.materials.plots import albedo, lobe, polar, scatter, selection, slices
+from brdfkit.viewing.materials.plots.ball import place_ball
 from brdfkit.viewing.materials.plots.live_plots import PLOTS
 from brdfkit.viewing.materials.plots.sampler import compute_density
 from brdfkit.viewing.materials.plots.settings import PlotSettings
@@ -201,6 +204,24 @@ def test_a_selection_without_samples_has_interpolated_values(scattered, model):
         [(curve, selection.select_pairs(scattered, nowhere))], nowhere
     )
     assert selection.describe_selection([curve], empty) == "Nothing was measured there."
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("size", [(400, 400), (600, 300), (300, 500)])
+def test_the_ball_is_placed_where_the_camera_sees_it(size):
+    camera = make_studio_camera()
+    found = place_ball(camera, size)
+    aspect, eye = size[0] / size[1], camera.to_world[:3, 3]
+    forwards = (np.array(BALL) - eye) / np.linalg.norm(np.array(BALL) - eye)
+    right = np.cross(forwards, [0, 0, 1])
+    for inner in np.radians([0, 30, 60]):  # at the ball's centre
+        normal = np.sin(inner) * right / np.linalg.norm(right) - np.cos(inner) * forwards
+        point = np.array(BALL) + normal
+        view = (eye - point) / np.linalg.norm(eye - point)
+        ray = np.arcsin(found["ratio"] * np.linalg.norm(np.cross(normal, view)))
+        x, y, _ = camera.project(point[None], aspect)[0]
+        expected = found["x"] + found["across"] * np.tan(ray), found["y"]
+        assert (x, y) == pytest.approx(expected, abs=2e-3)
 
 
 @pytest.fixture(scope="module")

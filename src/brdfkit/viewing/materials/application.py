@@ -44,6 +44,7 @@ from brdfkit.viewing.materials.parameter_controls import list_panels
 from brdfkit.viewing.materials.parameter_state import PREFIX
 from brdfkit.viewing.materials.pins import COLOURS
 from brdfkit.viewing.materials.plot_controls import PLOTS
+from brdfkit.viewing.materials.plots.ball import place_ball
 from brdfkit.viewing.materials.plots.live_plots import LivePlots
 from brdfkit.viewing.recent import Recent
 from brdfkit.viewing.session import Session
@@ -237,7 +238,9 @@ class MaterialApplication:
         return {
             "idle": {PREFIX + name: reason for name, reason in idle.items()},
             "renderers": [state["renderer"], state["second"]],
-        }
+        } | (
+            {"ball": place_ball(make_look(state).camera, size)} if state["shape"] == "ball" else {}
+        )
 
     def follow(self, before: State, after: State) -> list[Message]:
         """Return the controls if they are those of another model, or too short for its values.

@@ -70,6 +70,8 @@ function writeDisc(context, plot, scale) {
     context.fillText(`${Math.abs(angle)}°`, x + 6 * Math.sin(turn), y - 9 * Math.cos(turn));
   }
   context.textBaseline = "top";
+  context.textAlign = "left";
+  context.fillText(plot.content.cosine ? "BRDF × cos θo [sr⁻¹]" : "BRDF [sr⁻¹]", 8, 4);
   context.textAlign = "center";
   for (const [value, text] of scale.ticks) {
     const [x, y] = placePolar(plot, 90, scale.place(value));
@@ -123,7 +125,7 @@ function drawLobe(context, plot, scale, number) {
     context.setLineDash([]);
   });
   if (!lobe.sampler) return;
-  context.strokeStyle = several ? colours("ink") : colour;
+  context.strokeStyle = colours("ink"); // over a line that it may cover
   context.lineWidth = 1.5;
   context.setLineDash([1.5, 3]);
   strokeLine(context, [...lobe.sampler].map((value, k) => placePolar(plot, lobe.theta_o[k], scale.place(value))));

@@ -90,6 +90,7 @@ function render({ model, el }) {
   followPointers(session, stage, moves);
   turnLight(session, stage);
   stage.append(makeViewButtons(session, stage, moves));
+  createBallHandle(session, stage, picture);
   createNotices(session, stage);
   probePicture(stage, picture, probe);
 
