@@ -1,17 +1,22 @@
 """Times of `brdfkit view`: the first picture, changed sliders, and pictures a second in turning.
 
 python benchmarks/view_times.py [SIDE]
+python benchmarks/view_times.py MATERIAL [MODEL ...]
 
 The volume is `smoke` with SIDE³ voxels, by default 128³. Each picture is rendered, tone-mapped and
-encoded as the page gets it, in this process; only the way to the browser is left out.
+encoded as the page gets it, in this process; only the way to the browser is left out. Of materials,
+the time of the first picture counts from the start of Python. Other programs may run beside this
+one: so the time of all cores together [s of the processor] stands beside that on the clock.
 """
 
+import os
 import sys
 import time
 
 import numpy as np
 
 import brdfkit as bk
+from brdfkit.viewing.choosing import make_application
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.volumes.application import VolumeApplication
 from brdfkit.viewing.volumes.volume_controls import LABELS
@@ -32,9 +37,40 @@ def show(session: Session, changes: dict, moving: bool) -> float:
                 return time.perf_counter() - start
 
 
-def main() -> None:
+def show_materials(material: str, models: list[str]) -> None:
+    """Print the times of the first picture, and a line for each model and size."""
+    session = Session(make_application(material, models))
+    session.handle({"type": "hello", "width": 960, "height": 640, "state": None})
+    show(session, {}, False)
+    print(f"first picture of 960 × 640 after {since_start()}")
+    while not session.previews:
+        session.work()
+        session.handle({"type": "shown", "number": session.number})
+    print(f"the first one without noise after {since_start()}")
+    for model in models:
+        for width, height in ((256, 256), (960, 640)):
+            session.handle({"type": "resize", "width": width, "height": height})
+            scale = 1.0 if width == height else 0.5  # as the page does while something moves
+            show(session, {"model": model, "view.moving_scale": scale}, True)
+            names = [name for name in session.state if name.startswith("model.")]
+            slider = next(name for name in reversed(names) if is_number(session.state[name]))
+            for name, values in {
+                slider: np.linspace(0.1, 0.5, PICTURES),
+                "light.turn": np.arange(PICTURES) * 5.0,
+            }.items():
+                show(session, {name: 0.07}, True)
+                cores = time.process_time()
+                times = [show(session, {name: float(value)}, True) for value in values]
+                cores = (time.process_time() - cores) / PICTURES
+                print(
+                    f"{model:12} {width:4}×{height} × {scale:g}  {name:28} "
+                    f"{1e3 * min(times):4.0f} ms at least, {1e3 * np.median(times):4.0f} ms in the "
+                    f"median ({1e3 * cores:.0f} ms)"
+                )
+
+
+def show_volume(side: int) -> None:
     """Print a line for each renderer and size."""
-    side = int(sys.argv[1]) if len(sys.argv) > 1 else 128
     start = time.perf_counter()
     volume = bk.volumes.load("smoke", size=side)
     loaded = time.perf_counter() - start
@@ -58,6 +94,17 @@ def main() -> None:
             )
 
 
+def since_start() -> str:
+    """Return the time since Python's start, and that of all cores, in words; on Linux."""
+    started = os.stat(f"/proc/{os.getpid()}").st_ctime
+    return f"{time.time() - started:.1f} s ({time.process_time():.1f} s)"
+
+
+def is_number(value: object) -> bool:
+    """Return whether a setting is a number."""
+    return isinstance(value, float)
+
+
 def raised(session: Session) -> list:
     """Return the control points of the transfer function with A changed in the middle."""
     points = [list(point) for point in session.state["transfer.points"]]
@@ -67,4 +114,8 @@ def raised(session: Session) -> list:
 
 
 if __name__ == "__main__":
-    main()
+    given = sys.argv[1:] or ["128"]
+    if given[0].isdigit():
+        show_volume(int(given[0]))
+    else:
+        show_materials(given[0], given[1:] or ["ggx"])
