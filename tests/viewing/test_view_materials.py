@@ -17,11 +17,12 @@ from brdfkit.cli import main
 from brdfkit.core.colours import from_srgb
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.errors.colour_difference import ciede2000
-from brdfkit.lighting.environments.map_files import read_map
+from brdfkit.lighting.environments.map_files import read_map, write_map
 from brdfkit.viewing import background
 from brdfkit.viewing.choosing import is_volume, make_application
 from brdfkit.viewing.materials import fit_task
 from brdfkit.viewing.materials.application import MaterialApplication
+from brdfkit.viewing.materials.beside import open_beside
 from brdfkit.viewing.materials.parameter_state import to_state
 from brdfkit.viewing.passes import CALM, mix_pictures
 from brdfkit.viewing.picture_files import join_sides
@@ -83,6 +84,51 @@ def test_the_map_of_differences_is_that_of_the_colours_as_shown(session):
     assert probe["text"].endswith("ΔE 0")
     pictures = {side: samples.picture for side, samples in session.accumulated.items()}
     assert join_sides(pictures, session.state).shape == (64, 128, 3)
+
+
+def test_the_lamp_and_the_view_move_without_a_new_scene(session):
+    application = session.application
+
+    def show(**changes):
+        change(session, **changes)
+        return application.render(session.state, 1, session.picture_size(True), True, 0)
+
+    first = show(light__environment="lamp")
+    mirrored = show(light__lamp_azimuth=54)
+    assert mirrored[:, ::-1] == pytest.approx(first, abs=0.01 * float(first.max()))
+    x, y, seen = application.overlay(session.state, (64, 64))["lamp"]
+    row, column = np.unravel_index(mirrored.sum(axis=2).argmax(), mirrored.shape[:2])
+    assert seen
+    assert 0.5 < column / 32 < x  # half-way to the lamp
+    assert y < row / 32 < 0.5
+    scenes = len(application.live.kept["ggx"].scenes.kept)
+    behind = show(view__azimuth=180)
+    assert application.overlay(session.state, (64, 64))["lamp"][2] is False
+    assert behind.mean() < 0.6 * first.mean()
+    assert len(application.live.kept["ggx"].scenes.kept) == scenes
+
+
+def test_a_mesh_and_a_map_are_shown_beside_the_others(session, tmp_path):
+    mesh, probe = tmp_path / "tent.obj", tmp_path / "grey.exr"
+    mesh.write_text("v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0 1 0\nf 1 2 5\nf 3 4 5\n")
+    write_map(np.full((16, 32, 3), 7.0), probe)
+    for path, kind in ((mesh, "mesh"), (probe, "environment")):
+        open_beside(session.application, session, kind, path)
+        path.rename(path.with_name(f"kept_{path.name}"))  # as the page's own are deleted
+    assert (session.state["shape"], session.state["light.environment"]) == ("tent.obj", "grey.exr")
+    session.work()
+    lit = session.accumulated[1].picture
+    mask = session.application.find_mask(session.state, (64, 64))
+    assert (lit[mask] > 0).all()  # from both sides
+    shapes = next(c for c in session.application.describe()[0]["controls"] if c["name"] == "shape")
+    assert ["tent.obj#z", "tent.obj, z up"] in shapes["choices"]
+    files = {
+        "shape": str(mesh.with_name("kept_tent.obj")) + "#y",
+        "light.environment": str(probe.with_name("kept_grey.exr")),
+    }
+    again = MaterialApplication("car_paint", ["ggx"], files)
+    assert again.first["shape"] == "kept_tent.obj#y"
+    session.application.states.scenery.close()
 
 
 def fit(session):

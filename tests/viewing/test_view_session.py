@@ -137,7 +137,7 @@ def test_the_address_has_settings_of_one_volume(session):
 
 def test_what_changes_no_sample_keeps_the_samples(session):
     work(session), work(session)
-    session.handle({"type": "set", "changes": {"tone.exposure": 3, "wipe": 0.2}, "moving": False})
+    session.handle({"type": "set", "changes": {"tone.stops": 1.5, "wipe": 0.2}, "moving": False})
     assert work(session)[-1][0]["samples"] == 2
 
 
@@ -226,7 +226,7 @@ def test_the_copied_script_writes_the_picture_that_the_page_saves(
 ):
     monkeypatch.chdir(tmp_path)
     changes = {"renderer": "emission_absorption", "second": second, "camera.azimuth": 75.0}
-    changes |= {"tone.exposure": 2.0, "tone.curve": curve, "view.scale": 0.5}
+    changes |= {"tone.stops": 1.0, "tone.curve": curve, "view.scale": 0.5}
     session.handle({"type": "set", "changes": changes})
     work(session), work(session)
     ((message, _),) = session.handle({"type": "copy", "kind": "python"})

@@ -12,6 +12,8 @@ from brdfkit.viewing.controls import Control, State
 from brdfkit.viewing.encoding import to_bytes, to_bytes_quickly
 from brdfkit.viewing.picture_files import join_sides
 
+STOPS = "Each stop doubles the light of both sides, before the curve."
+
 
 def make_tone_controls() -> list[Control]:
     """Return the controls of the tone mapping."""
@@ -21,7 +23,7 @@ def make_tone_controls() -> list[Control]:
     means = (("channel", "each channel"), ("luminance", "luminance"))
     return [
         control("tone.curve", "Curve", default="range", kind="choice", choices=curves),
-        control("tone.exposure", "Exposure", default=1.0, low=0.01, high=100, log=True),
+        control("tone.stops", "Exposure", default=0.0, low=-6, high=6, unit="stops", help=STOPS),
         control("tone.low", "Black at", default=0.0, low=0, high=10, when=window),
         control("tone.high", "White at", default=1.0, low=0.01, high=20, when=window),
         control("tone.by", "Applied to", default="channel", kind="choice", choices=means),
@@ -32,7 +34,7 @@ def to_tone_mapping(state: Mapping[str, Any]) -> ToneMapping:
     """Return the tone mapping of a state."""
     high = max(state["tone.high"], state["tone.low"] + 1e-3)
     return ToneMapping(
-        state["tone.curve"], state["tone.exposure"], state["tone.by"], state["tone.low"], high
+        state["tone.curve"], 2.0 ** state["tone.stops"], state["tone.by"], state["tone.low"], high
     )
 
 

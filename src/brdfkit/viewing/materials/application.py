@@ -29,19 +29,18 @@ from brdfkit.viewing.materials import (
 )
 from brdfkit.viewing.materials.audit_panel import begin_audit
 from brdfkit.viewing.materials.beside import open_beside
-from brdfkit.viewing.materials.explorer_controls import FILE, MODEL
 from brdfkit.viewing.materials.idle_parameters import find_idle_parameters
 from brdfkit.viewing.materials.live_light import LiveLights
 from brdfkit.viewing.materials.live_material import LiveMaterial
-from brdfkit.viewing.materials.material_scene import Look, SceneKind
+from brdfkit.viewing.materials.material_scene import Look, SceneKind, find_lamp
 from brdfkit.viewing.materials.material_state import (
     MaterialState,
-    make_kind,
     make_look,
 )
 from brdfkit.viewing.materials.mends import Mends
 from brdfkit.viewing.materials.parameter_controls import list_panels
 from brdfkit.viewing.materials.parameter_state import PREFIX
+from brdfkit.viewing.materials.picture_controls import FILE, MODEL
 from brdfkit.viewing.materials.pins import COLOURS
 from brdfkit.viewing.materials.plot_controls import PLOTS
 from brdfkit.viewing.materials.plots.ball import place_ball
@@ -81,8 +80,8 @@ class MaterialApplication:
 
     `material` is a measured one; or a model or a fit, which is then shown alone. `models` are
     labels, models with values or fits; the first is shown. `changes` are settings that differ from
-    the first ones. `file` is the name of a file that was dropped, whose folder is unknown. Raises
-    `BrdfkitError` if one of them is not possible.
+    the first ones, of which the light and the shape may be files. `file` is the name of a file that
+    was dropped, whose folder is unknown. Raises `BrdfkitError` if one of them is not possible.
     """
 
     def __init__(
@@ -95,14 +94,16 @@ class MaterialApplication:
         self.file = file
         self.given = material, tuple(models), to_changes(changes)
         self.states = MaterialState(*self.given[:2])
-        self.lights, self.plots = LiveLights(), LivePlots(self.states)
+        self.lights = LiveLights(self.states.scenery.maps)
+        self.plots = LivePlots(self.states)
         self.audits: dict[Mends, Message] = {}
         # By the model's label, or the mends of the measured one
         self.live: Recent[str, LiveMaterial] = Recent(MODELS)
         # Pictures without noise of what no slider changes, by what they show
         self.stills: Recent[tuple[SceneKind, Look, Material], AnyArray] = Recent(STILLS)
         self.cosines: Recent[tuple[str, tuple[int, int], Camera], AnyArray] = Recent(STILLS)
-        self.first = self.change(self.states.first(), self.given[2])
+        changes = self.states.scenery.read_files(self.given[2])
+        self.first = self.change(self.states.first(), changes)
         self.presets: dict[tuple[str, str], State] = {}  # values by model's label and material
         self.fitting: fit_task.FitTask | None = None  # the last one
         self.base = self.states.to_model(self.first)  # whose values the controls begin with
@@ -126,6 +127,7 @@ class MaterialApplication:
     def close(self) -> None:
         """Forget the scenes, because the page is gone."""
         self.live.clear()
+        self.states.scenery.close()
 
     def first_state(self) -> State:
         """Return the state with which a view begins."""
@@ -178,7 +180,7 @@ class MaterialApplication:
 
         It makes the kernels for moves, which takes a second at first, and filters the light.
         """
-        kinds = {make_kind(state, size, moving=True) for size in sizes}
+        kinds = {self.states.make_kind(state, size, moving=True) for size in sizes}
         shown = [
             self.live.kept.get(self._find_side(state, side)[0]) for side in range(self.sides(state))
         ]
@@ -191,7 +193,7 @@ class MaterialApplication:
         """Render a pass: (height, width, 3), linear sRGB. Both sides share light and samples."""
         key, shown = self._find_side(state, side)
         live = self.live.get(key, lambda: LiveMaterial(shown, self.lights))
-        kind, look = make_kind(state, size, moving), make_look(state)
+        kind, look = self.states.make_kind(state, size, moving), make_look(state)
         live.show(shown)
         if moving and state["second" if side else "renderer"] != MODEL:  # no slider changes it
             still = kind, look, live.material
@@ -204,7 +206,7 @@ class MaterialApplication:
 
     def find_cosines(self, state: State, size: tuple[int, int]) -> AnyArray:
         """Return the cosine between normal and view (height, width), nan beside the shape."""
-        camera, kind = make_look(state).camera, make_kind(state, size, moving=False)
+        camera, kind = make_look(state).camera, self.states.make_kind(state, size, moving=False)
         live = next(iter(self.live.kept.values()))
         return self.cosines.get(
             (state["shape"], size, camera), lambda: live.find_cosines(kind, camera)
@@ -238,6 +240,7 @@ class MaterialApplication:
         return {
             "idle": {PREFIX + name: reason for name, reason in idle.items()},
             "renderers": [state["renderer"], state["second"]],
+            "lamp": find_lamp(make_look(state), size),
         } | (
             {"ball": place_ball(make_look(state).camera, size)} if state["shape"] == "ball" else {}
         )
@@ -285,6 +288,12 @@ class MaterialApplication:
         if kind not in answers:
             raise unknown_message_error(kind)
         return answers[kind](session, message)
+
+    @in_turn
+    def forget_scenes(self) -> None:
+        """Make the scenes anew, because a map or a mesh may have changed."""
+        for kept in (self.live, self.lights.loaded, self.stills, self.cosines):
+            kept.clear()
 
     def open_beside(self, session: Session, kind: str, path: Path) -> list[Message]:
         """Open a dropped file beside the material."""

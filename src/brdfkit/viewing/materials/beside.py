@@ -1,4 +1,4 @@
-"""Opens what is dropped beside a material: fits."""
+"""Opens what is dropped beside a material: fits, environment maps and meshes."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from brdfkit.materials.loading import load
 from brdfkit.regression import Fit
 from brdfkit.viewing import kinds
 from brdfkit.viewing.application import no_use_error
+from brdfkit.viewing.controls import State
 from brdfkit.viewing.materials.material_state import find_label
 from brdfkit.viewing.materials.parameter_state import to_state
+from brdfkit.viewing.materials.scenery import LIGHT, SHAPE
 
 if TYPE_CHECKING:
     from brdfkit.viewing.application import Message
@@ -23,7 +25,18 @@ def open_beside(application: Application, session: Session, kind: str, path: Pat
     """Open a file of a kind beside the material; raise `BrdfkitError` if it has no use there."""
     if kind == kinds.FIT:
         return _open_fit(application, session, path)
+    if kind == kinds.ENVIRONMENT:
+        return _show(application, session, {LIGHT: application.states.scenery.add_map(path)})
+    if kind == kinds.MESH:
+        return _show(application, session, {SHAPE: application.states.scenery.keep_mesh(path)})
     raise no_use_error(path.name, "a transfer function shows a volume")
+
+
+def _show(application: Application, session: Session, changes: State) -> list[Message]:
+    """Show a map or a mesh that was added to the scenery."""
+    application.forget_scenes()
+    session.change(changes)
+    return [session.describe_state(), *application.describe_pins(session.state)]
 
 
 def _open_fit(application: Application, session: Session, path: Path) -> list[Message]:

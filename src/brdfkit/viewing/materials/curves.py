@@ -10,7 +10,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean
 from brdfkit.viewing.controls import State
-from brdfkit.viewing.materials.explorer_controls import MEASURED
+from brdfkit.viewing.materials.picture_controls import MEASURED
 from brdfkit.viewing.materials.pins import find_colour, label_pin, make_model, name_pin
 
 States: TypeAlias = Any  # `MaterialState`, which imports the controls of the plots

@@ -17,12 +17,15 @@ from brdfkit.rendering.previewing.scene import describe_preview
 from brdfkit.rendering.progressive import to_rgb
 from brdfkit.rendering.scene_input.environment import replace_light
 from brdfkit.rendering.scene_input.loading import find_scene
-from brdfkit.rendering.scenes._studio import CAMERA, FOV, TARGET, make_studio
+from brdfkit.rendering.scenes._studio import BALL, CAMERA, FOV, TARGET, make_studio
+from brdfkit.rendering.volumes.camera import to_direction
 from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.materials.live_light import LiveLight
 
 PLANE = "plane"  # the name of the shape that is a level square
 SIDE = 2.0  # of the plane [m], the diameter of the ball
+LAMP_AZIMUTH, LAMP_ELEVATION = -54.0, 39.0  # of the lamp at first, seen from the ball [degrees]
+LAMP_DISTANCE = 7.0  # from the middle of the ball [m]
 RAYS = 4  # per pixel of a picture without noise
 
 
@@ -141,6 +144,23 @@ def make_plane(bsdf: MitsubaObject, size: tuple[int, int] = (512, 512)) -> dict[
 
     to_world = mi.ScalarTransform4f().translate(list(TARGET)).scale(SIDE / 2)
     return make_studio(size) | {"plane": {"type": "rectangle", "to_world": to_world, "bsdf": bsdf}}
+
+
+def place_lamp(azimuth: float, elevation: float) -> tuple[float, float, float]:
+    """Return the place (3,) of the lamp [m] by its angles [degrees], seen from the ball."""
+    x, y, z = np.add(BALL, LAMP_DISTANCE * to_direction(azimuth, elevation))
+    return float(x), float(y), float(z)
+
+
+def find_lamp(look: Look, size: tuple[int, int]) -> tuple[float, float, bool]:
+    """Return where the ball faces the lamp: 0 to 1 from the picture's top left, and if it is seen.
+
+    `size` is that of the picture [pixels].
+    """
+    towards = np.subtract(look.lamp, BALL) / LAMP_DISTANCE
+    ((x, y, depth),) = look.camera.project(np.add(BALL, towards)[None], size[0] / size[1])
+    ((*_, middle),) = look.camera.project(np.asarray(BALL)[None], 1.0)
+    return float(x), float(y), bool(depth < middle)
 
 
 def make_studio_camera() -> Camera:

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import Model
 from brdfkit.viewing.controls import State
-from brdfkit.viewing.materials.explorer_controls import FILE
 from brdfkit.viewing.materials.fit_settings import find_repeated_arguments, to_fit_arguments
 from brdfkit.viewing.materials.mends import PREFIX as MEND
 from brdfkit.viewing.materials.mends import Mends, find_mends
 from brdfkit.viewing.materials.mitsuba_xml import write_xml
 from brdfkit.viewing.materials.parameter_state import PREFIX, to_state
+from brdfkit.viewing.materials.picture_controls import FILE
 from brdfkit.viewing.materials.pins import NONE, PIN
 
 if TYPE_CHECKING:

@@ -16,12 +16,7 @@ from brdfkit.model import Model, labels
 from brdfkit.regression import Fit
 from brdfkit.viewing.controls import Control, State, default_state
 from brdfkit.viewing.materials.block_errors import BlockErrors
-from brdfkit.viewing.materials.explorer_controls import (
-    FILE,
-    MEASURED,
-    MODEL,
-    make_explorer_controls,
-)
+from brdfkit.viewing.materials.explorer_controls import make_explorer_controls
 from brdfkit.viewing.materials.fit_settings import (
     BOUNDS,
     FIXED,
@@ -29,7 +24,7 @@ from brdfkit.viewing.materials.fit_settings import (
     check_bounds,
     check_fixed,
 )
-from brdfkit.viewing.materials.material_scene import Look, SceneKind, make_studio_camera
+from brdfkit.viewing.materials.material_scene import Look, SceneKind, make_studio_camera, place_lamp
 from brdfkit.viewing.materials.mends import PREFIX as MEND
 from brdfkit.viewing.materials.mends import (
     MendedFile,
@@ -47,6 +42,7 @@ from brdfkit.viewing.materials.parameter_state import (
     to_model,
     to_state,
 )
+from brdfkit.viewing.materials.picture_controls import FILE, MEASURED, MODEL
 from brdfkit.viewing.materials.pins import (
     NONE,
     check_pins,
@@ -57,6 +53,8 @@ from brdfkit.viewing.materials.pins import (
     name_pin,
 )
 from brdfkit.viewing.materials.plot_controls import make_plot_controls
+from brdfkit.viewing.materials.scenery import Scenery
+from brdfkit.viewing.recent import Recent
 
 LARGEST_WEIGHT = 1e6
 FITS = 32  # that are kept at most
@@ -74,6 +72,8 @@ class MaterialState:
         The last fit that was made, given or shown of each model, by its label.
     all_fits : deque of (str, Fit)
         All fits of late, with their labels.
+    scenery : Scenery
+        The environment maps and the meshes of the user.
     """
 
     def __init__(self, material: MaterialLike, models: Iterable[MaterialLike]) -> None:
@@ -84,6 +84,8 @@ class MaterialState:
             self.measured, given = None, [shown]
         if not given:
             given = [labels.model(DEFAULT_MODEL)()]
+        self.scenery = Scenery()
+        self._own_controls: Recent[Any, dict[str, Control]] = Recent(2)  # by what they offer
         self.mended = MendedFile(self.measured)
         self.mends: Mends = ()  # of `measured`
         self.name = shown.name
@@ -121,6 +123,11 @@ class MaterialState:
         if self._errors is None or self._errors.measured is not measured:
             self._errors = BlockErrors(measured)
         return self._errors
+
+    def make_kind(self, state: State, size: tuple[int, int], moving: bool) -> SceneKind:
+        """Return what of a state needs kernels of its own."""
+        shape = self.scenery.find_shape(state["shape"])
+        return SceneKind(shape, state["light.environment"], size, moving)
 
     @property
     def is_fittable(self) -> bool:
@@ -165,12 +172,16 @@ class MaterialState:
         measured = [(MEASURED, self.name)] if self.measured is not None else []
         if mends:
             measured = [(MEASURED, f"{self.name}, mended"), (FILE, f"{self.name} as the file says")]
-        own = make_explorer_controls(measured, names, label, choices)
-        mending = make_mend_controls(self.mended.file)
         kind = type(self.find_model(label))
         anisotropic = kind.is_anisotropic() or getattr(self.measured, "anisotropic", False)
-        plots = make_plot_controls(anisotropic)
-        return {control.name: control for control in [*mending, *own, *plots]}
+        own = tuple(self.scenery.maps), tuple(self.scenery.meshes)
+        given = tuple(measured), tuple(names), label, tuple(choices), *own
+
+        def make() -> dict[str, Control]:
+            mending, plots = make_mend_controls(self.mended.file), make_plot_controls(anisotropic)
+            return {c.name: c for c in [*mending, *make_explorer_controls(*given), *plots]}
+
+        return self._own_controls.get((given, anisotropic), make)
 
     def first(self) -> State:
         """Return the state with which a view begins."""
@@ -282,18 +293,11 @@ def make_marks(fit: Fit) -> dict[str, list[float | None]]:
     return marks
 
 
-def make_kind(state: State, size: tuple[int, int], moving: bool) -> SceneKind:
-    """Return what of a state needs kernels of its own."""
-    return SceneKind(state["shape"], state["light.environment"], size, moving)
-
-
 def make_look(state: State) -> Look:
-    """Return the camera and the light of a state; a lamp is turned like an environment."""
-    look = Look(make_studio_camera())
-    turn = np.radians(state["light.turn"])
-    x, y, z = look.lamp
-    across, along = x * np.cos(turn) - y * np.sin(turn), x * np.sin(turn) + y * np.cos(turn)
-    return replace(look, turn=state["light.turn"], lamp=(float(across), float(along), z))
+    """Return the camera and the light of a state."""
+    angles = {"azimuth": state["view.azimuth"], "elevation": state["view.elevation"]}
+    lamp = place_lamp(state["light.lamp_azimuth"], state["light.lamp_elevation"])
+    return Look(replace(make_studio_camera(), **angles), state["light.turn"], lamp)
 
 
 def find_label(model: Model | Fit) -> str:

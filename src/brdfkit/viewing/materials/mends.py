@@ -12,7 +12,7 @@ from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.conventions import can_mend
 from brdfkit.viewing.controls import Control, State
-from brdfkit.viewing.materials.explorer_controls import FILE, MEASURED, MODEL
+from brdfkit.viewing.materials.picture_controls import FILE, MEASURED, MODEL
 
 PREFIX = "mend."  # of the names in the state
 PANEL = "audit"

@@ -14,8 +14,8 @@ from typing import Any, TypeAlias
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import Model
 from brdfkit.viewing.controls import State
-from brdfkit.viewing.materials.explorer_controls import MODEL
 from brdfkit.viewing.materials.parameter_state import PREFIX, to_model, to_state
+from brdfkit.viewing.materials.picture_controls import MODEL
 
 States: TypeAlias = Any  # `MaterialState`, which imports this file
 

@@ -16,8 +16,9 @@ const listKeys = (views) => [
     ["C", "slices through the voxel under the pointer"],
   ]],
   ["light", "Picture", [
-    ["drag, left and right arrow", "turn the light"],
-    ["R", "light as at the start"],
+    ["drag, arrow keys", "turn the light, or move the lamp"],
+    ["right drag, Shift + arrow keys", "see the shape from elsewhere"],
+    ["R", "light and view as at the start"],
     ["wheel, + and −", "zoom both sides about the pointer; from 2× pixels are squares"],
     ["Shift + drag, middle drag", "move what is enlarged"],
     ["double click, 0", "the whole picture"],

@@ -89,6 +89,7 @@ function render({ model, el }) {
   const moves = makeCameraMoves(session, picture);
   followPointers(session, stage, moves);
   turnLight(session, stage);
+  createLampMark(session, stage, picture);
   stage.append(makeViewButtons(session, stage, moves));
   createBallHandle(session, stage, picture);
   createNotices(session, stage);
