@@ -137,7 +137,7 @@ class MaterialApplication:
         """Return the message "open": the panels, the controls and what can be saved."""
         return {
             "title": self.name,
-            "parts": ["light", *(["audit", "fit"] if self.states.is_fittable else [])],
+            "parts": ["light", "plots", *(["audit", "fit"] if self.states.is_fittable else [])],
             "pin_colours": COLOURS,
             "presets_of_models": presets.list_presets(),
             "copies": material_scripts.MORE

@@ -43,6 +43,13 @@ const listKeys = (views) => [
     ["wheel, Page Up and Page Down", "next slice"],
     ["Shift + drag, right drag", "contrast and brightness"],
   ]],
+  ["plots", "Plots", [
+    ["drag, click; arrow keys, Enter", "select, the arrows with a cursor"],
+    ["wheel, + and −; 0, double click", "zoom; the whole plot"],
+    ["Shift + drag, Shift + arrow keys", "move what is enlarged"],
+    ["drag, arrow keys on the 3-D lobe", "turn it"],
+    ["Escape", "select nothing"],
+  ]],
   ["", "Panels", [
     ["double click on a name, Delete", "the default of a setting"],
   ]],

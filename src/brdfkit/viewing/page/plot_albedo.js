@@ -1,6 +1,6 @@
 // The plot of directional albedo: the share of light that is reflected, over the angle of incidence.
 
-const CHART_MARGIN = { left: 46, right: 12, top: 10, bottom: 34 };
+const CHART_MARGIN = { left: 52, right: 12, top: 10, bottom: 34 };
 
 /** Return the area of a plot with two axes. */
 function placeChart({ width, height }) {

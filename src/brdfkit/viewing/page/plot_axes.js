@@ -3,6 +3,7 @@
 const CHANNEL_COLOURS = ["#d55e00", "#009e73", "#3a8fd9"]; // of R, G and B, for all eyes
 // Most decades of a logarithmic scale, and the share of values that may lie below it
 const LOG_LOBES = { decades: 5, share: 0.02 };
+const LEAST_TICK = 0.13; // of a scale, between two ticks
 const HATCH = 7; // pixels between the lines of unmeasured parts
 
 /** Replace each {at, shape} in a content by the numbers that it stands for, from the bytes. */
@@ -64,7 +65,10 @@ function makeValueScale(kind, arrays, { decades, share } = LOG_LOBES) {
     const coarse = 10 ** Math.floor(Math.log10(top));
     ticks = [coarse / 100, coarse / 10, coarse, ...(top > 4 * coarse ? [4 * coarse] : [])];
   }
-  return { place, value, ticks: ticks.map((tick) => [tick, writeValue(tick)]) };
+  // From the top, those that leave room for the text of the one above
+  const apart = ticks.reverse().reduce((kept, tick) => (
+    kept.length && place(kept[0]) - place(tick) < LEAST_TICK ? kept : [tick, ...kept]), []);
+  return { place, value, ticks: apart.map((tick) => [tick, writeValue(tick)]) };
 }
 
 /** Write a value of a BRDF with three digits, as 0.0123 or 1.2e−5. */
@@ -168,7 +172,7 @@ function drawAxes(context, colours, area, at, [across, up], grid = true) {
   context.textBaseline = "bottom";
   context.fillStyle = colours("ink");
   context.fillText(across.label, x + width / 2, y + height + 31);
-  context.translate(11, y + height / 2);
+  context.translate(x > 60 ? x - 34 : 9, y + height / 2);
   context.rotate(-Math.PI / 2);
   context.textBaseline = "middle";
   context.fillText(up.label, 0, 0);

@@ -90,7 +90,7 @@ function createPlotFrame(session, { name, label }, kind) {
     context.font = readFont(canvas, 11);
     plot.colours = readColours(canvas);
     if (plot.content.failed) {
-      readout.textContent = plot.content.text;
+      writeInMiddle(context, plot, plot.content.text);
       return;
     }
     kind.draw(context, plot);
@@ -119,6 +119,13 @@ function createPlotFrame(session, { name, label }, kind) {
       observer.disconnect();
     },
   };
+}
+
+/** Write in the middle of a plot why it is empty. */
+function writeInMiddle(context, { width, height, colours }, text) {
+  context.fillStyle = colours("soft");
+  context.textAlign = "center";
+  context.fillText(shorten(context, text, width - 16), width / 2, height / 2);
 }
 
 /** Return the place of a pointer on the canvas of a plot. */
@@ -153,7 +160,7 @@ function followPlotPointer(plot, surface, kind, zoomBy, reset) {
   }
 
   surface.addEventListener("pointerdown", (event) => {
-    if (event.button > 1 || !plot.content) return;
+    if (event.button > 1 || !plot.content || plot.content.failed) return;
     surface.setPointerCapture(event.pointerId);
     pinch.set(event.pointerId, placeOf(event, plot));
     move = pinch.size > 1 ? null : begin(event);
@@ -169,7 +176,8 @@ function followPlotPointer(plot, surface, kind, zoomBy, reset) {
       return;
     }
     if (move && pinch.has(event.pointerId)) move(place);
-    surface.style.cursor = move || kind.canGrab?.(place, plot) ? "grab" : "";
+    const grabs = plot.content && !plot.content.failed && kind.canGrab?.(place, plot);
+    surface.style.cursor = move || grabs ? "grab" : "";
     plot.say(place);
   });
   const end = (event) => {
@@ -205,7 +213,7 @@ function selectPlaces(plot, kind, from, to) {
 function followPlotKeys(plot, surface, kind, zoomBy, reset) {
   let corner = null; // where a rectangle of the keyboard began
   surface.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || !plot.content) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || !plot.content || plot.content.failed) return;
     const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
     const cursor = plot.cursor || [plot.width / 2, plot.height / 2];
     if (way && kind.turn) kind.turn(way, plot);
@@ -260,6 +268,7 @@ function makePlotMenu(plot, label, kind) {
   menu.button.title = "Save the plot";
   const named = (suffix) => `${plot.session.description?.title || "material"}-${plot.name}.${suffix}`;
   const csv = makeButton("Numbers (CSV)", () => {
+    if (!plot.content || plot.content.failed) return;
     const text = kind.rows(plot).map((row) => row.join(",")).join("\n");
     download({ name: named("csv"), mime: "text/csv" }, [new TextEncoder().encode(`${text}\n`)]);
   });

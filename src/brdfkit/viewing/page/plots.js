@@ -92,7 +92,7 @@ function createPlots(session) {
   session.on("state", showState);
   session.on("plot", (content, [bytes]) => {
     const shown = bytes ? readArrays(content, bytes) : content;
-    showLegend(legend, content.curves);
+    showLegend(legend, content.curves, session.state["plots.channel"] === "each");
     if (content.plot !== "selection") {
       frames.get(content.plot)?.plot.show(shown);
       return;
@@ -106,12 +106,14 @@ function createPlots(session) {
   return { element, stop: () => frames.forEach(({ stop }) => stop()) };
 }
 
-/** Show which colour is which material. */
-function showLegend(legend, curves) {
-  const key = JSON.stringify(curves);
+/** Show which colour is which material; with `each`, lines have the colours of channels instead. */
+function showLegend(legend, curves, each) {
+  const key = JSON.stringify([curves, each]);
   if (legend.dataset.key === key) return;
   legend.dataset.key = key;
-  legend.replaceChildren(...curves.map((curve) => nameEntry(curve.name, curve)));
+  const channels = [..."RGB"].map((name, k) => nameEntry(name, { colour: CHANNEL_COLOURS[k] }));
+  const models = make("span", { class: "entry" }, "models dashed");
+  legend.replaceChildren(...curves.map((curve) => nameEntry(curve.name, curve)), ...(each ? [...channels, models] : []));
 }
 
 /** Make the bar above the plots that a drag or the arrow keys move, to make them higher or lower. */

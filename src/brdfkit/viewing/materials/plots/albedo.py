@@ -8,6 +8,7 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.materials.measured.albedos import LEAST_KNOWN_SHARE
+from brdfkit.model import Model
 from brdfkit.regression.albedo import (
     ANISOTROPIC_AZIMUTHS,
     ISOTROPIC_AZIMUTHS,
@@ -26,10 +27,7 @@ def compute_albedo_curve(material: Any, settings: PlotSettings) -> dict[str, Flo
     It is a mean over the azimuths of incidence. "known" (n,) tells where most of the light leaves
     in measured directions.
     """
-    several = getattr(material, "anisotropic", False)
-    if hasattr(type(material), "is_anisotropic"):
-        several = type(material).is_anisotropic()
-    azimuths = ANISOTROPIC_AZIMUTHS if several else ISOTROPIC_AZIMUTHS
+    azimuths = ANISOTROPIC_AZIMUTHS if is_anisotropic(material) else ISOTROPIC_AZIMUTHS
     pixels = make_albedo_pixels(THETA_I, azimuths)
     share = pixels.evaluate(lambda wi, wo: is_known(material, wi, wo)[:, None].astype(float))
     unit = pixels.evaluate(lambda wi, wo: np.ones((len(wi), 1)))
@@ -38,6 +36,17 @@ def compute_albedo_curve(material: Any, settings: PlotSettings) -> dict[str, Flo
         "values": pixels.evaluate(material.eval),
         "known": (share / unit)[:, 0] >= LEAST_KNOWN_SHARE,
     }
+
+
+def is_anisotropic(material: Any) -> bool:
+    """Return whether a material changes as the surface turns; for a model, whether with its values.
+
+    A model is isotropic as long as parameters such as alpha_v equal those that they follow.
+    """
+    if isinstance(material, Model):
+        free = material.free_values
+        return any(parameter.follows and n in free for n, parameter in material.parameters.items())
+    return bool(getattr(material, "anisotropic", False))
 
 
 def arrange_albedos(

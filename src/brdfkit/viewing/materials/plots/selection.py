@@ -130,6 +130,8 @@ def describe_selection(curves: list[Curve], content: dict[str, Any]) -> str:
     """Return the selection in words: how many samples, and each material's median ratio."""
     if not content["rows"]:
         return "Nothing was measured there."
-    what = f"{content['count']:,} samples" if content["count"] else "No sample; interpolated values"
+    count = content["count"]
+    samples = f"{count:,} sample{'s' if count > 1 else ''}"
+    what = samples if count else "No sample; interpolated values"
     pairs = zip(content["names"][1:], content["ratios"][1:], strict=True)
     return f"{what} selected. " + "; ".join(f"{name} / data {ratio:.3g}" for name, ratio in pairs)

@@ -6,6 +6,7 @@ the azimuth of the light around the half vector.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -89,6 +90,7 @@ def find_range(values: FloatArray) -> tuple[float, float]:
     return float(min(low, high / 2)), float(high)
 
 
+@cache
 def sample_colours(name: str) -> FloatArray:
     """Return a colour map as an array (steps, 3) of sRGB in 0 to 255."""
     colours: FloatArray = 255 * apply_colour_map(name, np.linspace(0, 1, STEPS))[:, :3]
