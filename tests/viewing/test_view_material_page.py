@@ -150,7 +150,8 @@ def test_a_fit_moves_and_marks_the_sliders_and_shows_errors(page):
     rows = page.locator("table.errors tbody th").all_inner_texts()
     assert rows == ["ggx", "noise"]
     type_number(page, "α_u", 0.3)
-    page.locator(".name", has_text="α_u").first.dblclick()  # back to the fitted value
+    # Back to the fitted value
+    page.locator(".name", has_text="α_u").first.dblclick(position={"x": 5, "y": 5})
     assert number(page, "α_u") == pytest.approx(0.1148, abs=1e-4)
     page.get_by_role("button", name="Copy as Python").click()
     assert "brdfkit.fit(" in page.get_by_role("dialog").get_by_role("textbox").input_value()
@@ -172,6 +173,14 @@ def test_a_pin_has_its_error_and_the_heads_of_the_table_sort(page):
     sorted_by = page.locator("th[aria-sort=descending]")
     assert sorted_by.inner_text() == "plain"
     assert page.locator("table.errors tbody tr").last.inner_text().startswith("noise")
+    back = page.get_by_role("button", name="α_u back to")
+    value = back.get_attribute("aria-label").split()[-1]
+    back.click()
+    assert number(page, "α_u") == float(value)
+    left = page.get_by_role("button", name="Left of the wipe: pin 2")
+    left.click()
+    page.locator(".side.left", has_text="2: ggx").wait_for()
+    left.click()
     entry.get_by_role("button", name="Show pin 1").click()
     page.get_by_role("button", name="Remove pin 1").click()
     page.get_by_role("button", name="Remove pin 1").wait_for(state="detached")

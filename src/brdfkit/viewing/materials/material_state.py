@@ -200,7 +200,9 @@ class MaterialState:
         if "pins" in changes:
             new["pins"] = check_pins(self, changes["pins"])
         mends = find_mends(new | dict(changes))
-        controls = self._list_own_controls(label, new["pins"], mends)
+        # A slider of the model moves often, and needs none of the others
+        is_own = any(not name.startswith(PREFIX) for name in changes)
+        controls = self._list_own_controls(label, new["pins"], mends) if is_own else {}
         values: State = {}
         for name, value in changes.items():
             if name not in new and name.startswith(MEND):

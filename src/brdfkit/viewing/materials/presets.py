@@ -15,23 +15,27 @@ from brdfkit.viewing.controls import State
 from brdfkit.viewing.materials.parameter_state import to_state
 from brdfkit.viewing.pictures import describe_error
 
-FIRST = ""  # the name of the preset that is a model's first values
+FIRST, FITTED = "", "fit"  # the names of presets that are first values, and those of the last fit
 
 
 def list_presets() -> list[list[str]]:
     """Return the name and the title of each preset."""
     shipped = [[name, f"fit to {name}"] for name in list_materials()]
-    return [[FIRST, "first values"], *shipped]
+    return [[FIRST, "first values"], [FITTED, "values of its last fit"], *shipped]
 
 
 def answer_preset(session: Any, message: dict[str, Any]) -> list[Message]:
     """Give the model that is shown the values of a preset, or begin to compute them."""
     name, label = message.get("name"), session.state["model"]
-    if name != FIRST and name not in list_materials():
-        raise no_such_error("preset", name, list_materials())
+    states = session.application.states
     if name == FIRST:
-        model = type(session.application.states.find_model(label))
-        return _show(session, label, to_state(model()))
+        return _show(session, label, to_state(type(states.find_model(label))()))
+    if name == FITTED:
+        if label not in states.fits:
+            raise BrdfkitError(f"{label} is not fitted yet; choose Fit first.")
+        return _show(session, label, to_state(states.fits[label].rgb))
+    if name not in list_materials():
+        raise no_such_error("preset", name, list_materials())
     if (label, name) in session.application.presets:
         return _show(session, label, session.application.presets[label, name])
     session.tasks.append(_fit(session, label, str(name)))

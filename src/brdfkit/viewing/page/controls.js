@@ -70,7 +70,7 @@ function makeSlider(session, control, scale = makeScale(control)) {
   }
   const row = make("div", { class: "control slider" },
     make("label", {}, make("span", { class: "name" }, label), range), number,
-    make("span", { class: "unit" }, unit));
+    make("span", { class: "unit" }, unit), make("span", { class: "extras" }));
   /** Return how far along the slider a value is, 0 to 1. */
   const place = (value) => clamp((scale.toPlace(value) - scale.low) / (scale.high - scale.low), 0, 1);
   return { row, show, input: range, place };
@@ -122,14 +122,26 @@ const CONTROL_MAKERS = {
   words: makeWords,
 };
 
-/** Let a double click on a control's label, and Delete, set it to its default. */
+/**
+ * Let a button, a double click on a control's label, and Delete, set it to its default.
+ *
+ * Only a slider has the button, while its value is another one. Returns a function that shows it.
+ */
 function offerDefault(session, control, row) {
-  if (control.default === undefined) return;
+  if (control.default === undefined) return () => {};
   const restore = () => session.change({ [control.name]: control.default });
   row.querySelector(".name").addEventListener("dblclick", restore);
   row.addEventListener("keydown", (event) => {
     if (event.key === "Delete" && !takesText(event.target)) restore();
   });
+  const extras = row.querySelector(".extras");
+  if (!extras) return () => {};
+  const value = `${writeNumber(control.default)} ${control.unit || ""}`.trim();
+  const button = makeButton("↺", restore, {
+    class: "restore", title: `Back to ${value}`, "aria-label": `${control.label} back to ${value}`,
+  });
+  extras.prepend(button);
+  return (now) => button.classList.toggle("unneeded", now === control.default);
 }
 
 /**
@@ -170,8 +182,9 @@ function createPanels(session, element, editors, edited) {
     shown = controls
       .filter(({ name, kind }) => !edited.has(name) && CONTROL_MAKERS[kind])
       .map((control) => [control, CONTROL_MAKERS[control.kind](session, control)]);
-    for (const [control, { row, input }] of shown) {
-      offerDefault(session, control, row);
+    for (const [control, parts] of shown) {
+      const { row, input } = parts;
+      parts.showDefault = offerDefault(session, control, row);
       if (!control.help) continue;
       row.title = control.help;
       input.setAttribute("aria-description", control.help);
@@ -187,7 +200,10 @@ function createPanels(session, element, editors, edited) {
 
   session.on("state", (names) => {
     for (const [control, parts] of shown) {
-      if (names.has(control.name)) parts.show(session.state[control.name]);
+      if (names.has(control.name)) {
+        parts.show(session.state[control.name]);
+        parts.showDefault(session.state[control.name]);
+      }
       parts.row.hidden = !isWanted(control, session.state);
     }
     for (const panel of element.children) {

@@ -23,10 +23,11 @@ function createFitPanel(session, root) {
   const note = make("div", { class: "verdict" });
   const verdict = make("p", { class: "best", "aria-live": "polite" });
   const table = createErrorTable(([, , usual]) => usual);
-  const more = makeButton("All losses …", () => showAllErrors(session, root, errors), { hidden: true });
+  const more = make("div", { class: "tools", hidden: true },
+    makeButton("All losses …", () => showAllErrors(session, root, errors)));
   const element = make("div", { class: "fit" },
     make("div", { class: "tools" }, preset, about), make("div", { class: "tools" }, button, all, pin), note,
-    createPins(session), table.element, verdict, make("div", { class: "tools" }, more));
+    createPins(session), table.element, verdict, more);
 
   function show(now) {
     fitting = now;

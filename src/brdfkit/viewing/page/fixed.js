@@ -17,7 +17,7 @@ function offerFixing(session, find) {
         const fixed = session.state[FIXED];
         session.change({ [FIXED]: fixed.includes(own) ? fixed.filter((other) => other !== own) : [...fixed, own] });
       }, { class: "fix", "aria-label": `Fix ${label}`, title: "A fit keeps this value" });
-      parts.row.append(button);
+      parts.row.querySelector(".extras").append(button);
       buttons.set(own, button);
     }
   }

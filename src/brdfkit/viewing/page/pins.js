@@ -10,21 +10,34 @@ function createPins(session) {
   let colours = [];
   let asked = ""; // the pins whose errors Python was asked for, and the loss
 
+  /** Show a pin left of the wipe and the model right of it, or what both sides show at first. */
+  function switchLeft(name, isLeft) {
+    const usual = (side) => session.description.controls.find((own) => own.name === side).default;
+    const { second } = session.state;
+    const beside = second && second !== name ? second : "model";
+    session.change(isLeft ? { renderer: usual("renderer"), second: usual("second") } : { renderer: name, second: beside });
+  }
+
   function makeEntry(pin) {
     const name = namePin(pin);
     const called = `pin ${pin.number}, ${pin.model}`;
     const alone = session.state.solo === name;
+    const isLeft = session.state.renderer === name;
     const { pins } = session.state;
     const solo = makeButton("Solo", () => session.change({ solo: alone ? "" : name }), {
       "aria-pressed": String(alone), "aria-label": `Solo ${called}`, title: "Show only this curve in the plots",
     });
     return make("li", {},
       makeChip({ pin: name, colour: colours[pin.number - 1] }),
-      make("span", { class: "name", title: pin.model }, pin.model),
-      make("span", { class: "kind" }, pin.loss ? `fit, ${pin.loss}` : "by hand"),
+      make("span", { class: "name", title: pin.loss ? `${pin.model}, a fit by ${pin.loss}` : `${pin.model}, values by hand` },
+        pin.model, make("small", {}, pin.loss ? "" : " by hand")),
       make("span", { class: "error" }, errors[name] || ""),
       makeButton("Show", () => session.send({ type: "show_pin", pin: name }), {
         "aria-label": `Show ${called}`, title: "Bring this model and its values back to the sliders",
+      }),
+      makeButton("◧", () => switchLeft(name, isLeft), {
+        "aria-pressed": String(isLeft), "aria-label": `Left of the wipe: ${called}`,
+        title: "Show this pin left of the wipe, beside the model",
       }),
       solo,
       makeButton("✕", () => session.change({ pins: pins.filter((own) => own !== pin) }), {
@@ -37,7 +50,7 @@ function createPins(session) {
     const focused = [...list.querySelectorAll("button")].findIndex((button) => button.matches(":focus"));
     list.hidden = !pins.length;
     list.replaceChildren(...pins.map(makeEntry));
-    if (focused >= 0) [...list.querySelectorAll("button")].at(Math.min(focused, 3 * pins.length - 1))?.focus();
+    if (focused >= 0) [...list.querySelectorAll("button")].at(Math.min(focused, 4 * pins.length - 1))?.focus();
   }
   session.on("open", (content) => {
     colours = content.pin_colours || [];
@@ -45,7 +58,7 @@ function createPins(session) {
     asked = "";
   });
   session.on("state", (names) => {
-    if (names.has("pins") || names.has("solo")) fill();
+    if (["pins", "solo", "renderer"].some((name) => names.has(name))) fill();
     const mends = Object.entries(session.state).filter(([name]) => name.startsWith(MENDS));
     const now = JSON.stringify([session.state.pins, session.state["fit.loss"], mends]);
     if (!uses(session, "fit") || now === asked) return;
