@@ -40,6 +40,7 @@ def test_the_page_has_what_is_about_materials_alone(page):
     summaries = page.locator("summary:visible").all_inner_texts()
     assert summaries == [
         *(
+            "Audit of the file",
             "Model and fit",
             "Fit settings",
             "Diffuse term",
