@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, IntArray
+from brdfkit.core.geometry.directions import to_half_difference
 from brdfkit.fitting.noise_floor import compute_noise_floor
 from brdfkit.fitting.ranking.held_out import assign_blocks
 from brdfkit.fitting.ranking.ties import compare_with_best, is_tied
@@ -19,6 +20,12 @@ from brdfkit.regression.losses.named_losses import named
 
 MAX_ANGLE = 80.0  # degrees, as in `compare`
 EQUAL = 0.01  # a share of E² that is not worth a word
+# Where two models differ: words, and the half angles [degrees] from which they hold
+REGIONS = (
+    (0.0, "in the highlight, at θh below 10°"),
+    (10.0, "beside the highlight, at θh 10° to 30°"),
+    (30.0, "far from the highlight, at θh above 30°"),
+)
 MOST = 64  # models whose errors are kept
 
 
@@ -42,6 +49,14 @@ class BlockErrors:
     def blocks(self) -> IntArray:
         """The block of each sample."""
         return assign_blocks(self.samples.wi, self.samples.wo, self.measured.anisotropic)
+
+    @cached_property
+    def regions(self) -> IntArray:
+        """The index in `REGIONS` of each block, by the mean half angle of its samples."""
+        angles = np.degrees(to_half_difference(self.samples.wi, self.samples.wo)[0])
+        count = np.maximum(np.bincount(self.blocks), 1)
+        starts = [start for start, _ in REGIONS]
+        return np.searchsorted(starts, np.bincount(self.blocks, angles) / count, "right") - 1
 
     @cached_property
     def importance(self) -> dict[str, FloatArray]:
@@ -87,3 +102,10 @@ class BlockErrors:
         excess = own.sum() - least.sum()
         small = max(self.floor.get(loss, 0.0) ** 2, EQUAL * least.sum())
         return bool(excess <= small) or is_tied(error, behind, uncertainty)
+
+    def locate_difference(self, one: Model, best: Model, loss: str) -> tuple[float, str]:
+        """Return where most of the difference of two models' E² lies, after its share there."""
+        excess = self.compute(one)[loss] - self.compute(best)[loss]
+        sums = np.bincount(self.regions, excess, len(REGIONS))
+        most = int(np.argmax(sums))
+        return float(min(sums[most] / excess.sum(), 1.0)), REGIONS[most][1]

@@ -151,6 +151,8 @@ def write_verdict(errors: BlockErrors, ordered: Sequence[Row], loss: str) -> str
             f"{_call(best)} is best by {loss}: its error {format_error(own[loss])} is "
             f"{100 * share:.0f} % below that of {_call(ordered[1])}, the next."
         )
+        part, where = errors.locate_difference(ordered[1].model, best.model, loss)
+        text += f" {100 * part:.0f} % of the difference lies {where}."
     return " ".join([text, *_name_other_leaders(errors, ordered, loss)])
 
 

@@ -2,7 +2,7 @@
 
 /** Make the square of a pin, in its colour and with its number; without a pin an empty place. */
 function makeChip({ pin, colour }) {
-  const chip = make("span", { class: "chip" }, pin ? pin.replace(/\D/g, "") : "");
+  const chip = make("span", { class: "pin-chip" }, pin ? pin.replace(/\D/g, "") : "");
   chip.style.background = colour || "transparent";
   return chip;
 }
