@@ -83,12 +83,13 @@ def test_every_format_that_is_written_is_known_by_its_content(tmp_path):
         assert kinds.find_kind(path) == expected, kind
 
 
-def test_another_material_keeps_the_models(session):
+def test_another_material_keeps_the_models_and_the_light(session):
     name, content = small_files.FILES["astm"]
     session.handle({"type": "load", "name": "ward"})
-    session.handle({"type": "set", "changes": {"model.alpha_u": 0.3}})
-    opened = drop(session, {name: content})["open"]
-    assert (opened["state"]["model"], opened["state"]["model.alpha_u"]) == ("ward", 0.3)
+    changes = {"model.alpha_u": 0.3, "light.turn": 30, "shape": "plane", "second": ""}
+    session.handle({"type": "set", "changes": changes})
+    state = drop(session, {name: content})["open"]["state"]
+    assert state == state | changes | {"model": "ward", "second": "model"}
 
 
 @pytest.mark.parametrize("beside", ["car_paint", "sphere", None])

@@ -16,8 +16,10 @@ from helpers.view_pages import (
     type_number,
     wait_for_change,
 )
+from mirrored_samples import mirrored_samples
 from playwright.sync_api import expect
 
+import brdfkit as bk
 from brdfkit.viewing import server
 from brdfkit.viewing.materials.application import MaterialApplication
 from brdfkit.viewing.render_thread import is_rendering
@@ -228,3 +230,17 @@ def test_the_light_of_the_lobes_is_dragged(page):
     assert number(page, "θi [°]") == 20
     page.get_by_role("button", name="Undo").click()
     page.get_by_role("img", name="Lobes for light at 45°").wait_for()
+
+
+def test_a_mirrored_file_is_mended_by_its_button(page, tmp_path):
+    """It is dropped on the page, which then shows it; so this test is the last one."""
+    bk.save(mirrored_samples(), tmp_path / "mirrored.csv")
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Open…").click()
+    chooser.value.set_files(tmp_path / "mirrored.csv")
+    panel = page.locator(".audit")
+    expect(panel).to_contain_text("Highlight towards the light", timeout=60_000)
+    expect(panel).to_contain_text("CSV, 192 samples")
+    panel.get_by_role("button", name="Mirror azimuths").click()
+    expect(page.get_by_label("Mirror azimuths")).to_be_checked()
+    expect(page.get_by_label("Right of the wipe")).to_have_value("mirrored as the file says")

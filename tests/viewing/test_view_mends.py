@@ -1,6 +1,5 @@
 """A file whose azimuths are mirrored: its audit, and the view that mends it."""
 
-import itertools
 import shlex
 import time
 from unittest import mock
@@ -9,29 +8,23 @@ import numpy as np
 import pytest
 import small_files
 from click.testing import CliRunner
+from mirrored_samples import mirrored_samples
 
 import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.cli.commands import view
 from brdfkit.core.errors import BrdfkitError
-from brdfkit.core.geometry.directions import from_angles
 from brdfkit.viewing.choosing import make_application
 from brdfkit.viewing.drops import DropSession
 from brdfkit.viewing.materials.application import MaterialApplication
 
-ANGLES = [*itertools.product((20, 40, 60), range(0, 76, 10), range(0, 360, 45))]
 HELLO = {"type": "hello", "width": 64, "height": 64, "state": None}
 MIRROR = {"mend.mirror_azimuth": True}
 
 
 @pytest.fixture(scope="module")
 def mirrored():
-    """Samples of which φo is counted from the mirror's side."""
-    theta_i, theta_o, phi_o = np.radians(ANGLES).T
-    wi, wo = from_angles(theta_i, 0 * theta_i), from_angles(theta_o, phi_o)
-    model = bk.models()["ggx"](alpha_u=0.2, diffuse_reflectance=0.2, specular_reflectance=0.5)
-    values = np.repeat(model.eval(wi, wo)[:, :1], 3, axis=1)
-    return bk.Measured.from_samples(wi, wo * [-1, -1, 1], values, name="mirrored")
+    return mirrored_samples()
 
 
 @pytest.fixture

@@ -39,6 +39,7 @@ function makeMenu(label) {
 function makePauseButton(session) {
   let paused = false;
   const button = makeButton("Pause", () => session.emit("pause"), { title: "Space" });
+  session.on("open", ({ start }) => (button.hidden = Boolean(start)));
   session.on("pause", () => session.send({ type: "pause", paused: !paused }));
   session.on("progress", (progress) => {
     paused = Boolean(progress.paused);
@@ -57,6 +58,7 @@ function createToolbar(session, pick, paint, help) {
   session.on("open", (content) => {
     title.textContent = title.title = content.title || "";
     paint.hidden = !uses(session, "paint");
+    save.element.hidden = Boolean(content.start);
     save.button.disabled = !content.saves?.length;
     save.fill(...(content.saves || []).map(({ kind, label }) =>
       makeButton(label, () => session.send({ type: "save", kind }))));
