@@ -213,6 +213,8 @@ def test_plots_open_and_mark_what_is_selected(page):
     expect(chosen).to_be_hidden()
     page.get_by_role("button", name="Undo").click()
     expect(chosen).to_contain_text("Farthest first")
+    page.evaluate(read_axe())
+    assert page.evaluate(FAULTS) == []
     page.get_by_role("button", name="Clear").click()
 
 

@@ -6,21 +6,22 @@ the azimuth of the light around the half vector.
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
 
-from brdfkit.core.array_types import FloatArray
+from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.geometry.directions import from_half_difference
 from brdfkit.core.pages.images import apply_colour_map
 from brdfkit.viewing.materials.curves import Curve
 from brdfkit.viewing.materials.plots.measured_points import is_known
 from brdfkit.viewing.materials.plots.settings import PlotSettings
 
-CELLS = 72  # along each axis; those of θh are even in its square root, as highlights are narrow
+CELLS = 64  # along each axis; those of θh are even in its square root, as highlights are narrow
 VALUE_COLOURS, RATIO_COLOURS, STEPS = "viridis", "RdBu_r", 64
 LARGEST_RATIO = 4.0  # at the end of the colours of ratios, which begin at its inverse
+LEAST_COSINE = 1e-3  # to the normal, of a direction above the surface
 FLOOR = 1e-3  # smallest value in a ratio, over the darkest colour's value
 
 
@@ -29,16 +30,28 @@ def compute_slice(material: Any, settings: PlotSettings) -> dict[str, FloatArray
 
     Values are NaN where a direction lies below the surface.
     """
+    wi, wo, above = make_slice_directions(settings.phi_d, settings.phi_i)
+    values = material.eval(wi, wo)
+    values[~above] = np.nan
+    known = is_known(material, wi, wo) & above
+    return {"values": values.reshape(CELLS, CELLS, -1), "known": known.reshape(CELLS, CELLS)}
+
+
+@lru_cache(maxsize=2)
+def make_slice_directions(phi_d: float, phi_h: float) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Return the directions wi, wo (n, 3) of the cells of a slice, and whether both are above.
+
+    `phi_d` and `phi_h` are azimuths [degrees]. Pairs below the surface have the normal instead.
+    """
     theta_h, theta_d = make_cells()
-    phi_d, phi_h = np.radians(settings.phi_d), np.radians(settings.phi_i)
     h, d = np.meshgrid(np.radians(theta_h), np.radians(theta_d))
-    wi, wo = (w.reshape(-1, 3) for w in from_half_difference(h, d, phi_d, phi_h))
-    above = (wi[:, 2] > 1e-3) & (wo[:, 2] > 1e-3)
-    up = np.array([0.0, 0.0, 1.0])
-    values = material.eval(*(np.where(above[:, None], w, up) for w in (wi, wo)))
-    shape = len(theta_d), len(theta_h)
-    values = np.where(above[:, None], values, np.nan).reshape(*shape, -1)
-    return {"values": values, "known": (is_known(material, wi, wo) & above).reshape(shape)}
+    wi, wo = (
+        w.reshape(-1, 3) for w in from_half_difference(h, d, np.radians(phi_d), np.radians(phi_h))
+    )
+    above = (wi[:, 2] > LEAST_COSINE) & (wo[:, 2] > LEAST_COSINE)
+    for w in (wi, wo):
+        w[~above] = 0, 0, 1
+    return wi, wo, above
 
 
 def make_cells() -> tuple[FloatArray, FloatArray]:
