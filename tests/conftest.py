@@ -7,6 +7,7 @@ import signal
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import kernel_compilation
 import pytest
 
 import brdfkit as bk
@@ -30,6 +31,7 @@ def pytest_configure(config):
         signal.signal(signal.SIGINT, signal.default_int_handler)
     workers = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", 1))
     dr.set_thread_count(max(1, (os.cpu_count() or 1) // workers))
+    kernel_compilation.shorten()
 
 
 @pytest.fixture
