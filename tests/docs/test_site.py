@@ -16,8 +16,10 @@ from brdfkit.core.discovery import plugin_files
 from brdfkit.materials.formats import list_formats
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-# The list of all pages beside each page takes a third of the time, and is the same on all
+# The list of all pages beside each page takes a third of the time, and is the same on all; the
+# module is of no use, see tests/conftest.py
 BUILD = """import sys, furo, sphinx.cmd.build
+sys.modules["rfc3987_syntax"] = None
 whole = furo._compute_navigation_tree
 furo._compute_navigation_tree = lambda page: whole(page) if page["pagename"] == "index" else ""
 sys.exit(sphinx.cmd.build.main(sys.argv[1:]))
