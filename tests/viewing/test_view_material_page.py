@@ -109,6 +109,20 @@ def test_a_drag_turns_the_light(page):
     assert number(page, "Rotation [°]") == 45
 
 
+def test_a_drag_moves_the_lamp_and_the_right_button_the_view(page):
+    choose(page, "Light", "a lamp")
+    expect(page.get_by_role("spinbutton", name="Rotation [°]")).to_be_hidden()
+    drag(page, (150, 150), (170, 130))
+    assert (number(page, "Lamp, around [°]"), number(page, "Lamp, above [°]")) == (-44, 49)
+    page.keyboard.press("ArrowDown")
+    assert number(page, "Lamp, above [°]") == 44
+    drag(page, (150, 150), (50, 150), button="right")
+    assert number(page, "View, around [°]") == 50
+    expect(page.locator(".lamp")).to_be_visible(timeout=20_000)
+    page.keyboard.press("r")
+    assert (number(page, "Lamp, above [°]"), number(page, "View, around [°]")) == (39, 0)
+
+
 def test_both_sides_are_compared_and_enlarged_in_step(page):
     names = page.locator(".caption:visible")
     choose(page, "Compare", "side by side")

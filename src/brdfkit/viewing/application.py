@@ -74,6 +74,9 @@ class Application(Protocol):
     def find_mask(self, state: State, size: tuple[int, int]) -> AnyArray | None:
         """Return where a picture shows what is compared (height, width); None for everywhere."""
 
+    def find_unmeasured(self, state: State, size: tuple[int, int]) -> AnyArray | None:
+        """Return where a picture is to be hatched (height, width), if anywhere."""
+
     def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
         """Return what the page draws over the picture."""
 

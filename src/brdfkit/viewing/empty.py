@@ -76,6 +76,10 @@ class EmptyApplication:
         """Return None, because there is no picture."""
         return None
 
+    def find_unmeasured(self, state: State, size: tuple[int, int]) -> AnyArray | None:
+        """Return None, because there is no picture."""
+        return None
+
     def render(
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
     ) -> AnyArray:

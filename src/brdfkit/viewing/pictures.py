@@ -12,6 +12,7 @@ from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.difference_map import draw_differences, shows_differences
 from brdfkit.viewing.encoding import encode_jpeg, encode_png
+from brdfkit.viewing.hatching import hatch
 
 
 def make_pictures(
@@ -28,15 +29,19 @@ def make_pictures(
     """
     encode, mime = (encode_png, "image/png") if lossless else (encode_jpeg, "image/jpeg")
     messages: list[Message] = []
+    height, width = colours[0].shape[:2]
+    hatched = application.find_unmeasured(state, (width, height))
+
+    def add(described: dict[str, Any], picture: AnyArray) -> None:
+        shown = picture if hatched is None else hatch(picture, hatched)
+        messages.append((described | {"mime": mime}, [encode(shown)]))
+
     for side, picture in sorted(colours.items()):
-        described = {"type": "picture", "side": side, "mime": mime}
-        messages.append((described | common, [encode(picture)]))
+        add({"type": "picture", "side": side} | common, picture)
     if shows_differences(state, colours):
-        height, width = colours[0].shape[:2]
         mask = application.find_mask(state, (width, height))
         drawn, described = draw_differences(colours[0], colours[1], mask)
-        described |= {"type": "difference", "mime": mime, "number": common["number"]}
-        messages.append((described, [encode(drawn)]))
+        add({"type": "difference", "number": common["number"]} | described, drawn)
     return messages
 
 

@@ -13,9 +13,9 @@ from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.images.tone_mapping import ToneMapping
+from brdfkit.materials.measured import Measured
 from brdfkit.materials.resolve import Material, MaterialLike
 from brdfkit.viewing.application import Message, unknown_message_error
-from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.controls import State, has_other_samples, to_changes
 from brdfkit.viewing.difference_map import compare_colours
 from brdfkit.viewing.materials import (
@@ -30,7 +30,7 @@ from brdfkit.viewing.materials import (
 from brdfkit.viewing.materials.audit_panel import begin_audit
 from brdfkit.viewing.materials.beside import open_beside
 from brdfkit.viewing.materials.idle_parameters import find_idle_parameters
-from brdfkit.viewing.materials.live_light import LiveLights
+from brdfkit.viewing.materials.live_light import LAMP, LiveLights
 from brdfkit.viewing.materials.live_material import LiveMaterial
 from brdfkit.viewing.materials.material_scene import Look, SceneKind, find_lamp
 from brdfkit.viewing.materials.material_state import (
@@ -45,6 +45,7 @@ from brdfkit.viewing.materials.pins import COLOURS
 from brdfkit.viewing.materials.plot_controls import PLOTS
 from brdfkit.viewing.materials.plots.ball import place_ball
 from brdfkit.viewing.materials.plots.live_plots import LivePlots
+from brdfkit.viewing.materials.unmeasured import MeasuredAngles
 from brdfkit.viewing.recent import Recent
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.tone_controls import develop, to_tone_mapping
@@ -66,6 +67,7 @@ MORE_PANELS = (
 DRAWN_ONLY = (
     "wipe",
     "compare",
+    "show.",
     "tone.",
     "fit.",
     "plots.",
@@ -101,7 +103,9 @@ class MaterialApplication:
         self.live: Recent[str, LiveMaterial] = Recent(MODELS)
         # Pictures without noise of what no slider changes, by what they show
         self.stills: Recent[tuple[SceneKind, Look, Material], AnyArray] = Recent(STILLS)
-        self.cosines: Recent[tuple[str, tuple[int, int], Camera], AnyArray] = Recent(STILLS)
+        # In each pixel, to the camera and to the lamp
+        self.directions: Recent[Any, tuple[AnyArray, AnyArray]] = Recent(STILLS)
+        self.angles: tuple[Measured, MeasuredAngles] | None = None
         changes = self.states.scenery.read_files(self.given[2])
         self.first = self.change(self.states.first(), changes)
         self.presets: dict[tuple[str, str], State] = {}  # values by model's label and material
@@ -202,14 +206,30 @@ class MaterialApplication:
 
     def find_mask(self, state: State, size: tuple[int, int]) -> AnyArray:
         """Return where a picture shows the shape (height, width)."""
-        return np.isfinite(self.find_cosines(state, size))
+        return np.isfinite(self._find_directions(state, size)[0][..., 2])
 
-    def find_cosines(self, state: State, size: tuple[int, int]) -> AnyArray:
-        """Return the cosine between normal and view (height, width), nan beside the shape."""
-        camera, kind = make_look(state).camera, self.states.make_kind(state, size, moving=False)
+    def find_unmeasured(self, state: State, size: tuple[int, int]) -> AnyArray | None:
+        """Return where a picture shows what was not measured (height, width), if it shall tell."""
+        measured = self.states.measured
+        if not (state.get("show.unmeasured") and isinstance(measured, Measured)):
+            return None
+        if self.angles is None or self.angles[0] is not measured:
+            self.angles = measured, MeasuredAngles(measured)
+        view, light = self._find_directions(state, size)
+        mask, angles = view[..., 2] > 0, self.angles[1]
+        if state["light.environment"] == LAMP:
+            mask &= light[..., 2] > 0
+            mask[mask] = ~angles.knows(light[mask], view[mask])
+        else:
+            mask[mask] = ~angles.knows_views(view[mask])
+        return mask
+
+    def _find_directions(self, state: State, size: tuple[int, int]) -> tuple[AnyArray, AnyArray]:
+        """Return the directions to the camera and to the lamp in each pixel."""
+        kind, look = self.states.make_kind(state, size, moving=False), make_look(state)
         live = next(iter(self.live.kept.values()))
-        return self.cosines.get(
-            (state["shape"], size, camera), lambda: live.find_cosines(kind, camera)
+        return self.directions.get(
+            (kind.shape, size, look), lambda: live.find_directions(kind, look)
         )
 
     def _find_side(self, state: State, side: int) -> tuple[str, Any]:
@@ -292,7 +312,7 @@ class MaterialApplication:
     @in_turn
     def forget_scenes(self) -> None:
         """Make the scenes anew, because a map or a mesh may have changed."""
-        for kept in (self.live, self.lights.loaded, self.stills, self.cosines):
+        for kept in (self.live, self.lights.loaded, self.stills, self.directions):
             kept.clear()
 
     def open_beside(self, session: Session, kind: str, path: Path) -> list[Message]:

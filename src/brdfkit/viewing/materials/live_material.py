@@ -12,7 +12,6 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.materials.resolve import Material
 from brdfkit.rendering.scene_input import mesh_file
 from brdfkit.rendering.scene_input.loading import find_scene_suffix
-from brdfkit.viewing.camera import Camera
 from brdfkit.viewing.materials.live_bsdf import LiveBsdf
 from brdfkit.viewing.materials.live_light import LiveLights
 from brdfkit.viewing.materials.material_scene import Look, MaterialScene, SceneKind
@@ -58,9 +57,9 @@ class LiveMaterial:
         return self.scenes.get(kind, lambda: self._load(kind)).render(look, seed)
 
     @in_turn
-    def find_cosines(self, kind: SceneKind, camera: Camera) -> AnyArray:
-        """Return the cosine between normal and view (height, width), nan beside the shape."""
-        return self.scenes.get(kind, lambda: self._load(kind)).find_cosines(camera)
+    def find_directions(self, kind: SceneKind, look: Look) -> tuple[AnyArray, AnyArray]:
+        """Return the directions to the camera and to the lamp in each pixel."""
+        return self.scenes.get(kind, lambda: self._load(kind)).find_directions(look)
 
     def _load(self, kind: SceneKind) -> MaterialScene:
         """Load the scene of a kind."""

@@ -91,17 +91,23 @@ class MaterialScene:
             integrator = self.scene.integrator()
             return to_rgb(integrator.render(self.scene, seed=mi.UInt32(seed), spp=spp))
 
-    def find_cosines(self, camera: Camera) -> AnyArray:
-        """Return the cosine between normal and view (height, width), nan beside the shape."""
+    def find_directions(self, look: Look) -> tuple[AnyArray, AnyArray]:
+        """Return the directions to the camera and to the lamp, nan beside the shape.
+
+        Both are (height, width, 3), about the normal z of the place that a pixel's middle shows.
+        """
+        import drjit as dr
         import mitsuba as mi
 
         width, height = self.kind.size
         x, y = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
-        origin, directions = camera.cast_ray(x.ravel(), y.ravel(), width / height)
+        origin, directions = look.camera.cast_ray(x.ravel(), y.ravel(), width / height)
         ray = mi.Ray3f(mi.Point3f(*map(float, origin)), mi.Vector3f(directions.T))
         si = self.scene.ray_intersect(ray)
-        cosines = np.array(mi.Frame3f.cos_theta(si.wi)).reshape(height, width)
-        return np.where(np.array(si.is_valid()).reshape(height, width), cosines, np.nan)
+        towards = si.to_local(dr.normalize(mi.Point3f(*look.lamp) - si.p))
+        hit = np.array(si.is_valid())[:, None]
+        view, light = (np.where(hit, np.array(w).T, np.nan) for w in (si.wi, towards))
+        return view.reshape(height, width, 3), light.reshape(height, width, 3)
 
     def _place(self, camera: Camera) -> None:
         """Place the camera."""

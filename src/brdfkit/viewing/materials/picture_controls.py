@@ -61,9 +61,20 @@ def make_picture_controls(
         control("shape", "Shape", default="ball", kind="choice", choices=shapes),
         make_angle("view.azimuth", "View, around", camera.azimuth, 180, panel="picture"),
         make_angle("view.elevation", "View, above", camera.elevation, 89, panel="picture"),
+        *([make_unmeasured_control()] if measured else []),
         control("view.scale", "Resolution", default=1.0, low=0.25, high=2, step=0.25, help=pixels),
         control("view.moving_scale", "Resolution while moving", default=0.5, **scales),
     ]
+
+
+def make_unmeasured_control() -> Control:
+    """Return the control that hatches what was not measured."""
+    meaning = (
+        "Stripes where the lamp and the view, or most of an environment's light for the view, are "
+        "beyond what was measured."
+    )
+    label = "hatch what was not measured"
+    return Control("show.unmeasured", label, "picture", False, kind="flag", help=meaning)
 
 
 def _label_mesh(name: str) -> str:

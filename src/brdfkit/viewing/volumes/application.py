@@ -186,6 +186,10 @@ class VolumeApplication:
         """Return None: all of a picture is compared."""
         return None
 
+    def find_unmeasured(self, state: State, size: tuple[int, int]) -> AnyArray | None:
+        """Return None: volumes are not hatched."""
+        return None
+
     def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
         """Return what the page draws over the picture, and the renderers that it shows."""
         drawn = describe_box(self.volume, self.states.camera(state), size[0] / size[1])
