@@ -202,6 +202,8 @@ class PictureLoop:
         if begun.kind == Kind.PREVIEW and begun.number:  # the first move would wait for kernels
             sizes.insert(0, self.picture_size(moving=True))
         for size in sizes:
+            if begun.samples is not self.accumulated and not begun.moving:
+                return {}  # something moves by now
             rendered = {
                 side: app.render(state, side, size, calm, seed) for side in range(app.sides(state))
             }
