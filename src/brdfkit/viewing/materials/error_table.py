@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 FLOOR = "noise"  # the name of the last row
 SMALL = 1e-3  # an error of fewer digits
+FAR = 100.0  # times the noise, beyond which the factor is not said
 EQUAL = 1.005  # a factor between errors that is not worth a word
 
 
@@ -173,6 +174,8 @@ def _compare_with_noise(errors: BlockErrors, error: float, loss: str) -> str:
         return ""
     if error <= EQUAL * floor:
         return "No model can be better: the noise of the measurement is as large."
+    if error > FAR * floor:
+        return f"The error by {loss} is far above the noise of the measurement."
     return f"The error by {loss} is {error / floor:.2g} times that of a perfect model, the noise."
 
 

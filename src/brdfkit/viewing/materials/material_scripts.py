@@ -48,6 +48,8 @@ def write_script(application: Application, session: Session) -> str:
         lines += [f"model = {_write_fit(application, state)}", "print(model)"]
         lines.append("print(brdfkit.compare(material, model))")
         call = f"{given}, state, models=model"
+    name = "material" if states.measured is None else "model"
+    lines.append(f"# In a scene of Mitsuba: mitsuba.load_dict({name}.scene_dict())")
     lines += ["", "state = {", *(f"    {k!r}: {v!r}," for k, v in changes.items()), "}"]
     if not changes:
         lines[-2:] = ["state = {}"]

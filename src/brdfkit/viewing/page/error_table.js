@@ -71,7 +71,7 @@ function showAllErrors(session, root, content) {
   const table = createErrorTable(() => true);
   table.fill(content);
   const meanings = content.columns.map(([name, meaning]) =>
-    make("div", {}, make("dt", {}, name), make("dd", {}, meaning)));
+    make("div", {}, make("dt", {}, name), make("dd", {}, ...lowerIndices(meaning))));
   const notes = content.rows.filter(({ note }) => note?.startsWith("not"))
     .map((row) => make("p", {}, makeChip(row), `${row.name} is ${row.note}.`));
   const save = makeButton("Save as CSV", () => session.send({ type: "save", kind: "errors" }));
