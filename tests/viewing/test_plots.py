@@ -8,8 +8,9 @@ from brdfkit.core.colours import luminance
 from brdfkit.core.geometry.directions import from_angles, from_half_difference
 from brdfkit.rendering.scenes._studio import BALL
 from brdfkit.viewing.materials.application import MaterialApplication
-from brdfkit.viewing.materials.curves import Curve
+from brdfkit.viewing.materials.curves import Curve, list_curves
 from brdfkit.viewing.materials.material_scene import make_studio_camera
+from brdfkit.viewing.materials.pins import COLOURS, add_pin, select_values
 from brdfkit.viewing.materials.plots import albedo, lobe, polar, scatter, selection, slices
 from brdfkit.viewing.materials.plots.ball import place_ball
 from brdfkit.viewing.materials.plots.live_plots import PLOTS
@@ -308,3 +309,21 @@ def test_plots_come_after_the_picture_while_a_slider_moves(session):
 def test_an_impossible_selection_is_a_sentence(session, wrong):
     answers = session.handle({"type": "set", "changes": {"plots.selection": wrong}})
     assert "list of ranges" in answers[0][0]["text"]
+
+
+def test_pins_are_curves_and_one_can_be_alone(session):
+    states, state = session.application.states, session.application.first
+    pins = add_pin([], "ggx", select_values(state), "")
+    pins = add_pin(pins, "ggx", select_values(state) | {"model.alpha_u": 0.7}, "")
+    curves = list_curves(states, state | {"pins": pins})
+    assert [c.name for c in curves] == ["car_paint", "ggx", "1: ggx", "2: ggx"]
+    assert [c.colour for c in curves][2:] == list(COLOURS[:2])
+    assert len({c.colour for c in curves}) == 4
+    assert curves[3].material.alpha_u == 0.7
+    alone = list_curves(states, state | {"pins": pins, "solo": "pin2"})
+    assert [c.name for c in alone] == ["car_paint", "2: ggx"]
+    evaluated = [(c, slices.compute_slice(c.material, PlotSettings())) for c in curves]
+    content = slices.arrange_slices(evaluated, PlotSettings())
+    assert [panel["title"] for panel in content["panels"]] == [
+        *("car_paint", "ggx", "ggx / data", "1: ggx / data", "2: ggx / data")
+    ]
