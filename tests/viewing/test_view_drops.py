@@ -139,3 +139,21 @@ def test_what_belongs_to_another_subject_says_what_to_open(session):
     session.exchange(VolumeApplication(bk.volumes.load("smoke", size=8)))
     answers = drop(session, {"a.obj": b"v 0 0 0\n"})
     assert "a mesh shows a material" in answers["error"]["text"]
+
+
+MESH = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n"
+
+
+def test_a_mesh_on_an_empty_page_shows_a_model(session):
+    answers = drop(session, {"a.obj": MESH})
+    assert {"open", "state"} <= answers.keys()
+    assert (session.state["shape"], session.application.name) == ("a.obj", "ggx")
+
+
+@pytest.mark.parametrize(("name", "content"), [("a.obj", b"v 0 0\n"), ("a.exr", b"v/1\x01x")])
+def test_what_was_opened_stays_if_a_file_beside_it_is_damaged(session, name, content):
+    answers = drop(session, {"paint.astm": small_files.astm(), name: content})
+    assert answers["error"]["text"].startswith(f"{name}: ")
+    assert "brdfkit-view" not in answers["error"]["text"]
+    assert answers["open"]["title"] == "paint"
+    assert session.state["shape"] == "ball"

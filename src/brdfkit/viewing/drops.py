@@ -21,6 +21,7 @@ from brdfkit.viewing.empty import EmptyApplication, list_names
 from brdfkit.viewing.materials.application import MaterialApplication
 from brdfkit.viewing.materials.opening import open_material
 from brdfkit.viewing.materials.warm_up import warm_up
+from brdfkit.viewing.pictures import describe_error
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.uploads import Upload
 from brdfkit.viewing.volumes import opening as volumes
@@ -34,8 +35,13 @@ class DropSession(Session):
     def __init__(self, application: Application) -> None:
         super().__init__(application)
         self.upload = Upload()
-        if isinstance(application, EmptyApplication):
+        if self.is_empty:
             self.tasks.append(warm_up())
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is shown yet."""
+        return isinstance(self.application, EmptyApplication)
 
     def close(self) -> None:
         """End what goes on, and delete the files of the page, which is gone."""
@@ -68,10 +74,9 @@ class DropSession(Session):
         try:
             with _collect_warnings() as notes:
                 messages = self._open(list(upload.files))
-            return _join_notes(messages, notes)
-        except BrdfkitError as error:  # the folder means nothing to the user
-            text = str(error).replace(f"{folder}{os.sep}", "").replace(folder, "the dropped files")
-            raise BrdfkitError(text) from error
+            return _hide_folder(_join_notes(messages, notes), folder)
+        except BrdfkitError as error:
+            return _hide_folder([describe_error(error), self.describe_state()], folder)
         finally:
             if upload.raw is None:
                 upload.clear()
@@ -83,8 +88,15 @@ class DropSession(Session):
             raise kinds.unknown_file_error(files)
         messages = self._open_subject(found)
         for path, kind in found:
+            if kind in (kinds.ENVIRONMENT, kinds.MESH) and self.is_empty:
+                messages += self.exchange(make_application(MODEL))
             if kind not in (kinds.VOLUME, kinds.MATERIAL, kinds.UNKNOWN):
-                messages += self._open_beside(path, kind)
+                try:
+                    messages += self._open_beside(path, kind)
+                except BrdfkitError as error:
+                    if not messages:
+                        raise
+                    messages.append(describe_error(error))  # and what was opened before is shown
         return messages
 
     def _open_subject(self, found: list[tuple[Path, str]]) -> list[Message]:
@@ -112,13 +124,9 @@ class DropSession(Session):
         if kind == kinds.STATE:
             changes = kinds.read_json(path)
             return self.handle({"type": "set", "changes": changes, "moving": False})
-        shown: Application = self.application
-        messages: list[Message] = []
-        if kind == kinds.FIT and not isinstance(shown, MaterialApplication):
+        if kind == kinds.FIT and not isinstance(self.application, MaterialApplication):
             return self.exchange(open_material(self, path))
-        if isinstance(shown, EmptyApplication) and kind in (kinds.ENVIRONMENT, kinds.MESH):
-            messages = self.exchange(make_application(MODEL))
-        return [*messages, *self.application.open_beside(self, kind, path)]
+        return self.application.open_beside(self, kind, path)
 
     def _open_raw(self, message: dict[str, Any]) -> list[Message]:
         """Open the file of voxels that waits for its header, as the user typed it; None cancels."""
@@ -150,3 +158,14 @@ def _join_notes(messages: list[Message], notes: list[str]) -> list[Message]:
     others = [pair for pair in messages if pair[0]["type"] != "error"]
     text = " ".join([*notes, *texts])
     return [*others, ({"type": "error", "text": text}, [])] if text else others
+
+
+def _hide_folder(messages: list[Message], folder: str) -> list[Message]:
+    """Return messages without the folder of the upload, which means nothing to the user."""
+
+    def hide(text: str) -> str:
+        return text.replace(f"{folder}{os.sep}", "").replace(folder, "the dropped files")
+
+    return [
+        (m | {"text": hide(m["text"])} if m["type"] == "error" else m, data) for m, data in messages
+    ]

@@ -9,6 +9,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from brdfkit.core.array_types import AnyArray
+from brdfkit.core.jit.llvm import use_variant
+from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.locate import split_file_and_part
 from brdfkit.lighting.environments.map_files import load_radiance
 from brdfkit.rendering.scene_input import mesh_file
@@ -49,7 +51,12 @@ class Scenery:
         return path.name
 
     def keep_mesh(self, path: Path) -> str:
-        """Offer a mesh whose file will be deleted, and return its name."""
+        """Offer a mesh whose file will be deleted, and return its name.
+
+        Raises `BrdfkitError` for a file that is no mesh, and warns if the axis that points up is
+        guessed.
+        """
+        _read(path)
         if self.folder is None:
             self.folder = make_folder()
         own = Path(self.folder.name) / path.name
@@ -77,3 +84,10 @@ class Scenery:
         if self.folder is not None:
             self.folder.cleanup()
             self.folder = None
+
+
+@in_turn
+def _read(path: Path) -> None:
+    """Read a mesh for its errors and warnings alone."""
+    use_variant()
+    mesh_file.read_mesh(path)
