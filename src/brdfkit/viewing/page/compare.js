@@ -116,7 +116,8 @@ function createCaptions(session, stage, picture) {
       const part = comparison === "wipe" || comparison === "" ? null : picture.parts[k];
       name.hidden = !part || part.side === 2;
       if (name.hidden) return;
-      name.textContent = nameRenderer(session, picture.renderers[part.side]);
+      const shown = nameRenderer(session, picture.renderers[part.side]);
+      name.textContent = comparison === "difference" ? "The ΔE map comes …" : shown;
       name.style.left = `${part.area.x + part.area.width / 2}px`;
     });
     scale.hidden = picture.parts[0]?.side !== 2;
