@@ -1,6 +1,7 @@
 // The 3-D lobe: a surface whose distance from the centre is the BRDF; a drag turns it.
 
 const LOBE_TURN = 0.5; // degrees for a pixel of a drag
+const LOBE_REACH = 3; // degrees between the light of a selected sample and that of the plot
 const LOBE_KEY_TURN = 5; // degrees for a press of an arrow key
 const LOBE_VIEW = { azimuth: -60, elevation: 22, zoom: 1 };
 const LIGHT_OF_LOBE = [-0.35, -0.5, 0.8]; // from where the surface is shaded
@@ -87,6 +88,17 @@ function shadeColour(colour, bright, opacity) {
   return `rgb(${parts.map((part) => Math.round(Math.min(part * share, 255))).join(" ")} / ${opacity})`;
 }
 
+/** Return the places of the selected samples whose light comes from about where the plot's does. */
+function placeSolidMarks(plot, scale, project) {
+  const { content, session } = plot;
+  const cosine = (degrees) => (session.state["plots.cosine"] ? Math.cos((degrees * Math.PI) / 180) : 1);
+  return listMarks(plot).filter(({ theta_i: theta }) => Math.abs(theta - content.theta_i) <= LOBE_REACH)
+    .map(({ theta_o: theta, view, plane, value }) => {
+      const radius = scale.place(value * cosine(theta));
+      return project(toDirection(theta, view < 0 ? 180 - plane : plane).map((x) => radius * x));
+    });
+}
+
 const LOBE = {
   draw(context, plot) {
     const { content, curves, session } = plot;
@@ -110,6 +122,7 @@ const LOBE = {
       context.strokeStyle = shadeColour(curve.colour, curve.measured ? 0.75 : bright, known ? (curve.measured ? 0.9 : 0.5) : 0.15);
       context.stroke();
     }
+    drawMarks(context, plot, placeSolidMarks(plot, scale, project));
   },
   read: (_, { content }) => (content ? "drag or arrow keys turn, wheel zooms; faint: not measured" : ""),
   grab(place, plot) {
