@@ -59,9 +59,10 @@ class BlockErrors:
         return np.searchsorted(starts, np.bincount(self.blocks, angles) / count, "right") - 1
 
     @cached_property
-    def importance(self) -> dict[str, FloatArray]:
-        """The weights (samples,) of the samples under each loss."""
-        return {name: loss.importance(self.samples) for name, loss in named.by_sample.items()}
+    def shares(self) -> dict[str, FloatArray]:
+        """The weights (blocks,) of the blocks under each loss."""
+        weights = {n: own.importance(self.samples) for n, own in named.by_sample.items()}
+        return {n: np.asarray(np.bincount(self.blocks, own), float) for n, own in weights.items()}
 
     @cached_property
     def floor(self) -> dict[str, float]:
@@ -81,7 +82,7 @@ class BlockErrors:
         values = np.broadcast_to(model.eval(samples.wi, samples.wo), samples.values.shape)
         parts = {}
         for name, loss in named.by_sample.items():
-            weights = self.importance[name]
+            weights = loss.importance(samples)
             squares = weights * sum_squared_differences(loss, values, samples)
             parts[name] = np.bincount(self.blocks, squares) + (0.0 if weights.any() else np.nan)
         return parts
@@ -96,9 +97,8 @@ class BlockErrors:
         It is if the difference of both E² varies from block to block as much as it is large, if it
         is below that of a perfect model, or if the errors are equal to a few digits.
         """
-        shares = np.bincount(self.blocks, self.importance[loss])
         own, least = (self.compute(model)[loss] for model in (one, best))
-        error, behind, uncertainty = compare_with_best(own, least, shares)
+        error, behind, uncertainty = compare_with_best(own, least, self.shares[loss])
         excess = own.sum() - least.sum()
         small = max(self.floor.get(loss, 0.0) ** 2, EQUAL * least.sum())
         return bool(excess <= small) or is_tied(error, behind, uncertainty)

@@ -58,7 +58,7 @@ class FitTask:
         """Fit the models, and show the fits; yields messages for the page."""
         yield from self.background.follow(self.describe_progress)
         if self.results:
-            yield self._show()
+            yield [*self._show(), END]  # the errors of large measurements take a while
             yield from describe_errors(self.application.states, self.session.state)
         yield [END, *self._describe_failures()]
 
