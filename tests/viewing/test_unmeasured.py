@@ -38,7 +38,7 @@ def test_the_rim_of_the_ball_is_hatched_and_what_the_lamp_grazes(module_in_llvm,
     view = MaterialApplication(measured, ["lambert"], {"show.unmeasured": True})
     state, size = view.first, (64, 64)
     view.render(state, 1, size, False, 0)
-    cosine = view._find_directions(state, size)[0][..., 2]
+    cosine = view.masks.find_directions(state, size)[0][..., 2]
     rim, ball = view.find_unmeasured(state, size), np.isfinite(cosine)
     assert np.array_equal(ball, view.find_mask(state, size))
     assert (cosine[rim] < np.cos(np.radians(HIGHEST))).all()

@@ -2,36 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from brdfkit.core.arguments import to_number
 from brdfkit.core.array_types import AnyArray
-from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.images.tone_mapping import ToneMapping
-from brdfkit.materials.measured import Measured
 from brdfkit.materials.resolve import Material, MaterialLike
-from brdfkit.viewing.application import Message, unknown_message_error
+from brdfkit.viewing.application import Message
 from brdfkit.viewing.controls import State, has_other_samples, to_changes
-from brdfkit.viewing.difference_map import compare_colours
 from brdfkit.viewing.materials import (
-    about,
     fit_settings,
     fit_task,
     material_scripts,
-    pin_answers,
     presets,
     saving,
 )
-from brdfkit.viewing.materials.audit_panel import begin_audit
 from brdfkit.viewing.materials.beside import open_beside
+from brdfkit.viewing.materials.fit_marks import describe_fit
 from brdfkit.viewing.materials.idle_parameters import find_idle_parameters
-from brdfkit.viewing.materials.live_light import LAMP, LiveLights
+from brdfkit.viewing.materials.live_light import LiveLights
 from brdfkit.viewing.materials.live_material import LiveMaterial
+from brdfkit.viewing.materials.material_answers import answer
 from brdfkit.viewing.materials.material_scene import Look, SceneKind, find_lamp
 from brdfkit.viewing.materials.material_state import (
     MaterialState,
@@ -40,12 +33,12 @@ from brdfkit.viewing.materials.material_state import (
 from brdfkit.viewing.materials.mends import Mends
 from brdfkit.viewing.materials.parameter_controls import list_panels
 from brdfkit.viewing.materials.parameter_state import PREFIX
-from brdfkit.viewing.materials.picture_controls import FILE, MODEL
+from brdfkit.viewing.materials.picture_controls import MODEL
+from brdfkit.viewing.materials.picture_masks import PictureMasks
 from brdfkit.viewing.materials.pins import COLOURS
 from brdfkit.viewing.materials.plot_controls import PLOTS
 from brdfkit.viewing.materials.plots.ball import place_ball
 from brdfkit.viewing.materials.plots.live_plots import LivePlots
-from brdfkit.viewing.materials.unmeasured import MeasuredAngles
 from brdfkit.viewing.recent import Recent
 from brdfkit.viewing.session import Session
 from brdfkit.viewing.tone_controls import develop, to_tone_mapping
@@ -103,9 +96,7 @@ class MaterialApplication:
         self.live: Recent[str, LiveMaterial] = Recent(MODELS)
         # Pictures without noise of what no slider changes, by what they show
         self.stills: Recent[tuple[SceneKind, Look, Material], AnyArray] = Recent(STILLS)
-        # In each pixel, to the camera and to the lamp
-        self.directions: Recent[Any, tuple[AnyArray, AnyArray]] = Recent(STILLS)
-        self.angles: tuple[Measured, MeasuredAngles] | None = None
+        self.masks = PictureMasks(self.states, self.live)
         changes = self.states.scenery.read_files(self.given[2])
         self.first = self.change(self.states.first(), changes)
         self.presets: dict[tuple[str, str], State] = {}  # values by model's label and material
@@ -206,31 +197,11 @@ class MaterialApplication:
 
     def find_mask(self, state: State, size: tuple[int, int]) -> AnyArray:
         """Return where a picture shows the shape (height, width)."""
-        return np.isfinite(self._find_directions(state, size)[0][..., 2])
+        return self.masks.find_shape(state, size)
 
     def find_unmeasured(self, state: State, size: tuple[int, int]) -> AnyArray | None:
         """Return where a picture shows what was not measured (height, width), if it shall tell."""
-        measured = self.states.measured
-        if not (state.get("show.unmeasured") and isinstance(measured, Measured)):
-            return None
-        if self.angles is None or self.angles[0] is not measured:
-            self.angles = measured, MeasuredAngles(measured)
-        view, light = self._find_directions(state, size)
-        mask, angles = view[..., 2] > 0, self.angles[1]
-        if state["light.environment"] == LAMP:
-            mask &= light[..., 2] > 0
-            mask[mask] = ~angles.knows(light[mask], view[mask])
-        else:
-            mask[mask] = ~angles.knows_views(view[mask])
-        return mask
-
-    def _find_directions(self, state: State, size: tuple[int, int]) -> tuple[AnyArray, AnyArray]:
-        """Return the directions to the camera and to the lamp in each pixel."""
-        kind, look = self.states.make_kind(state, size, moving=False), make_look(state)
-        live = next(iter(self.live.kept.values()))
-        return self.directions.get(
-            (kind.shape, size, look), lambda: live.find_directions(kind, look)
-        )
+        return self.masks.find_unmeasured(state, size) if state["show.unmeasured"] else None
 
     def _find_side(self, state: State, side: int) -> tuple[str, Any]:
         """Return a key of the material at a side, and the material."""
@@ -288,76 +259,18 @@ class MaterialApplication:
         """Return the controls, whose choices have the pins of a state, and the model's fit."""
         self.pins = state["pins"]
         controls = {"type": "controls", "state": state} | self._describe_controls()
-        return [(controls, []), (self.states.describe_fit(state["model"]), [])]
+        return [(controls, []), (describe_fit(self.states.fits.get(state["model"])), [])]
 
     def answer(self, session: Session, message: dict[str, Any], data: bytes) -> list[Message]:
         """Answer a message that is about the material."""
-        answers: dict[str, Callable[[Session, dict[str, Any]], list[Message]]] = {
-            "probe": self._probe,
-            "audit": lambda session, _: begin_audit(self, session),
-            "fit": self._fit,
-            "pin": pin_answers.pin,
-            "show_pin": pin_answers.show,
-            "errors": pin_answers.show_errors,
-            "preset": presets.answer_preset,
-            "about": lambda session, _: [about.describe_models(session.state["model"])],
-            "save": self._save,
-            "copy": self._copy,
-        }
-        kind = str(message.get("type"))
-        if kind not in answers:
-            raise unknown_message_error(kind)
-        return answers[kind](session, message)
+        return answer(self, session, message)
 
     @in_turn
     def forget_scenes(self) -> None:
         """Make the scenes anew, because a map or a mesh may have changed."""
-        for kept in (self.live, self.lights.loaded, self.stills, self.directions):
+        for kept in (self.live, self.lights.loaded, self.stills, self.masks.directions):
             kept.clear()
 
     def open_beside(self, session: Session, kind: str, path: Path) -> list[Message]:
         """Open a dropped file beside the material."""
         return open_beside(self, session, kind, path)
-
-    def _fit(self, session: Session, message: dict[str, Any]) -> list[Message]:
-        """Begin to fit the model that is shown, or all."""
-        if not self.states.is_fittable:
-            raise BrdfkitError(f"{self.name} was not measured, so nothing can be fitted to it.")
-        if self.fitting is not None and self.fitting.goes_on:
-            raise BrdfkitError("A fit goes on already; wait for it, or cancel it.")
-        if session.state["second"] == FILE:
-            session.change({"second": MODEL})
-        self.fitting = fit_task.FitTask(self, session, bool(message.get("all")))
-        session.tasks.append(self.fitting.run())
-        return [session.describe_state(), self.fitting.describe_progress()]
-
-    def _probe(self, session: Session, message: dict[str, Any]) -> list[Message]:
-        """Return the linear RGB of each picture under the pointer, and how their colours differ."""
-        x, y = (min(max(to_number(name, message.get(name)), 0.0), 1.0) for name in "xy")
-        pictures, colours = session.sent
-        texts, seen = [], []
-        for side, picture in sorted(pictures.items()):
-            height, width = picture.shape[:2]
-            at = min(int(y * height), height - 1), min(int(x * width), width - 1)
-            value = " ".join(f"{v:.3g}" for v in picture[at])
-            shown = session.state["second" if side else "renderer"]
-            texts.append(f"{self.states.name_side(session.state, shown)}: {value}")
-            seen.append(colours[side][at])
-        if len(seen) > 1:
-            texts.append(f"ΔE {compare_colours(*seen):.2g}")
-        return [({"type": "probe", "text": "RGB of " + " · ".join(texts) if texts else ""}, [])]
-
-    def _save(self, session: Session, message: dict[str, Any]) -> list[Message]:
-        """Return a file for the page to keep."""
-        kind = str(message.get("kind"))
-        if kind == "report":
-            session.tasks.append(saving.make_report(self, session))
-            return []
-        return [saving.make_file(self, session, kind)]
-
-    def _copy(self, session: Session, message: dict[str, Any]) -> list[Message]:
-        """Return the view as a script or a command."""
-        title, write = material_scripts.KINDS.get(
-            str(message.get("kind")), material_scripts.KINDS["python"]
-        )
-        return [({"type": "text", "title": title, "text": write(self, session)}, [])]

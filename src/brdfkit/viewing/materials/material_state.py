@@ -7,8 +7,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.resolve import Material, MaterialLike, to_material
@@ -34,11 +32,10 @@ from brdfkit.viewing.materials.mends import (
     make_mend_controls,
     refuse_mend,
 )
+from brdfkit.viewing.materials.parameter_checks import check_values
 from brdfkit.viewing.materials.parameter_controls import make_controls
 from brdfkit.viewing.materials.parameter_state import (
-    CHANNELS,
     PREFIX,
-    change_values,
     to_model,
     to_state,
 )
@@ -56,7 +53,6 @@ from brdfkit.viewing.materials.plot_controls import make_plot_controls
 from brdfkit.viewing.materials.scenery import Scenery
 from brdfkit.viewing.recent import Recent
 
-LARGEST_WEIGHT = 1e6
 FITS = 32  # that are kept at most
 DEFAULT_MODEL = "ggx"  # beside a measured material without another one
 
@@ -217,20 +213,7 @@ class MaterialState:
                 new[name] = check_bounds(self.find_class(new), value)
             elif name not in ("model", "pins"):
                 new[name] = controls[name].check(value)
-        return forget_missing_pins(leave_file(self.check_values(label, new, values)))
-
-    def check_values(self, label: str, state: State, values: State) -> State:
-        """Return the state after changes of values of a model; raise `BrdfkitError` for wrong ones.
-
-        The names of the values are in the state.
-        """
-        model = self.find_model(label)
-        controls = {control.name: control for control in make_controls(model)}
-        checked = {
-            name: _check_parameter(controls[name], type(model), value)
-            for name, value in values.items()
-        }
-        return change_values(type(model), state, _without_colours(checked))
+        return forget_missing_pins(leave_file(check_values(self.find_model(label), new, values)))
 
     def check_label(self, label: Any) -> str:
         """Return the usual label of a known model; raise `BrdfkitError` for another text.
@@ -267,33 +250,6 @@ class MaterialState:
             return label_pin(pin)
         return {MODEL: state["model"], FILE: "as the file says"}.get(shown, self.name)
 
-    def describe_fit(self, label: str) -> dict[str, Any]:
-        """Return the message "fit": how good a model's fit is, and its values by control's name."""
-        fit = self.fits.get(label)
-        if fit is None:
-            return {"type": "fit", "text": "", "notes": [], "marks": {}}
-        seconds = f"{fit.seconds:.1f} s" if fit.seconds else ""
-        texts = [f"{fit.loss_name} loss {fit.loss:.4g}", f"{fit.samples:,} samples", seconds]
-        text = ", ".join(filter(None, texts))
-        return {"type": "fit", "text": text, "notes": fit.warnings, "marks": make_marks(fit)}
-
-
-def make_marks(fit: Fit) -> dict[str, list[float | None]]:
-    """Return the fitted values and their standard errors, None if unknown, by control's name."""
-    errors: dict[str, Any] = {} if fit.wavelengths else fit.standard_errors
-    fitted = fit.rgb
-    marks: dict[str, list[float | None]] = {}
-    for name, parameter in fitted.parameters.items():
-        value, error = getattr(fitted, name), errors.get(name, np.nan)
-        if parameter.linear:
-            pairs = zip(np.broadcast_to(value, 3), np.broadcast_to(error, 3), strict=True)
-            named = {f"{name}.{c}": pair for c, pair in zip(CHANNELS, pairs, strict=True)}
-        else:
-            named = {name: (value, error)}
-        for key, (number, own) in named.items():
-            marks[PREFIX + key] = [float(number), float(own) if np.isfinite(own) else None]
-    return marks
-
 
 def make_look(state: State) -> Look:
     """Return the camera and the light of a state."""
@@ -315,22 +271,3 @@ def _find_model(thing: MaterialLike) -> Fit | Model:
     if not isinstance(found, Fit | Model):
         raise BrdfkitError(f"{found.name} is no model; name the measured material first.")
     return found
-
-
-def _check_parameter(control: Control, model: type[Model], value: Any) -> Any:
-    """Return the value of a parameter's control; a weight may be beyond the end of its slider."""
-    name, _, ending = control.name.removeprefix(PREFIX).partition(".")
-    if ending in CHANNELS:
-        low, high = np.clip(model.parameters[name].bounds, -LARGEST_WEIGHT, LARGEST_WEIGHT)
-        control = replace(control, low=float(low), high=float(high))
-    return control.check(value)
-
-
-def _without_colours(values: State) -> State:
-    """Return values without the colours of weights whose channels are given, which say more."""
-    given = {name.rpartition(".")[0] for name in values if name.rpartition(".")[2] in CHANNELS}
-    return {
-        name: value
-        for name, value in values.items()
-        if not (name.endswith(".colour") and name.rpartition(".")[0] in given)
-    }

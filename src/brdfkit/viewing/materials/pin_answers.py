@@ -8,6 +8,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.viewing.application import Message
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.materials.error_table import describe_errors
+from brdfkit.viewing.materials.fit_marks import describe_fit
 from brdfkit.viewing.materials.pins import add_pin, find_pin, has_values, select_values
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ def show(session: Session, message: dict[str, Any]) -> list[Message]:
         states.fits[label] = fits[-1]
     answers = _change(session, {"model": label, **values})
     described = any(answer["type"] == "fit" for answer, _ in answers)
-    return answers if described else [*answers, (states.describe_fit(label), [])]
+    return answers if described else [*answers, (describe_fit(states.fits.get(label)), [])]
 
 
 def show_errors(session: Session, message: dict[str, Any]) -> list[Message]:

@@ -14,6 +14,7 @@ from typing import Any, TypeAlias
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.model import Model
 from brdfkit.viewing.controls import State
+from brdfkit.viewing.materials.parameter_checks import check_values
 from brdfkit.viewing.materials.parameter_state import PREFIX, to_model, to_state
 from brdfkit.viewing.materials.picture_controls import MODEL
 
@@ -104,7 +105,7 @@ def _check_pin(states: States, pin: Any) -> dict[str, Any]:
     values = to_state(states.find_model(label))
     if values.keys() != pin["values"].keys():
         raise BrdfkitError(f"Pin {number} has other parameters than {label}.")
-    values = states.check_values(label, values, pin["values"])
+    values = check_values(states.find_model(label), values, pin["values"])
     return {"number": int(number), "model": label, "values": values, "loss": loss}
 
 

@@ -1,0 +1,60 @@
+"""`PictureMasks`: where a picture shows the shape, and where it shows what was not measured."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from brdfkit.core.array_types import AnyArray
+from brdfkit.materials.measured import Measured
+from brdfkit.viewing.controls import State
+from brdfkit.viewing.materials.live_light import LAMP
+from brdfkit.viewing.materials.live_material import LiveMaterial
+from brdfkit.viewing.materials.material_state import MaterialState, make_look
+from brdfkit.viewing.materials.unmeasured import MeasuredAngles
+from brdfkit.viewing.recent import Recent
+
+KEPT = 2  # views whose directions are kept: at rest and while something moves
+
+
+class PictureMasks:
+    """Finds pixels of a view's pictures; `live` are the materials that it renders."""
+
+    def __init__(self, states: MaterialState, live: Recent[str, LiveMaterial]) -> None:
+        self.states, self.live = states, live
+        # In each pixel, to the camera and to the lamp
+        self.directions: Recent[Any, tuple[AnyArray, AnyArray]] = Recent(KEPT)
+        self.angles: tuple[Measured, MeasuredAngles] | None = None
+
+    def find_shape(self, state: State, size: tuple[int, int]) -> AnyArray:
+        """Return where a picture shows the shape (height, width)."""
+        return np.isfinite(self.find_directions(state, size)[0][..., 2])
+
+    def find_unmeasured(self, state: State, size: tuple[int, int]) -> AnyArray | None:
+        """Return where a picture shows what was not measured (height, width).
+
+        That is a view, and with the lamp a pair of directions, without samples near it. None where
+        the material was not measured at all.
+        """
+        measured = self.states.measured
+        if not isinstance(measured, Measured):
+            return None
+        if self.angles is None or self.angles[0] is not measured:
+            self.angles = measured, MeasuredAngles(measured)
+        view, light = self.find_directions(state, size)
+        mask, angles = view[..., 2] > 0, self.angles[1]
+        if state["light.environment"] == LAMP:
+            mask &= light[..., 2] > 0
+            mask[mask] = ~angles.knows(light[mask], view[mask])
+        else:
+            mask[mask] = ~angles.knows_views(view[mask])
+        return mask
+
+    def find_directions(self, state: State, size: tuple[int, int]) -> tuple[AnyArray, AnyArray]:
+        """Return the directions to the camera and to the lamp in each pixel."""
+        kind, look = self.states.make_kind(state, size, moving=False), make_look(state)
+        live = next(iter(self.live.kept.values()))
+        return self.directions.get(
+            (kind.shape, size, look), lambda: live.find_directions(kind, look)
+        )
