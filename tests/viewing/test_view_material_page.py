@@ -74,6 +74,40 @@ def test_a_slider_changes_the_model_and_a_tie_passes_it_on(page):
     assert not page.get_by_label("α_v equal to α_u").is_checked()
 
 
+def test_undo_in_a_number_box_is_the_pages(page):
+    type_number(page, "α_u", 0.05)
+    type_number(page, "α_u", 1)
+    box = page.get_by_role("spinbutton", name="α_u", exact=True)
+    box.press("Control+z")
+    expect(box).to_have_value("0.05")
+    box.fill("7")  # is not taken over, and so no step
+    box.press("Control+z")
+    expect(box).to_have_value("0.05")
+    box.press("Control+y")
+    expect(box).to_have_value("1")
+    page.get_by_role("button", name="Undo").click()
+    expect(box).to_have_value("0.05")
+
+
+def test_a_number_box_says_what_it_does_not_take(page):
+    box = page.get_by_role("spinbutton", name="α_u", exact=True)
+    note = page.locator(".slider", has=box).get_by_role("status")
+    box.fill("")
+    box.press_sequentially("0,3")
+    box.press("Enter")
+    assert (box.input_value(), note.inner_text()) == ("0.3", "")
+    box.press("ArrowUp")
+    assert box.input_value() == "0.3001"
+    for typed, shown, says in (
+        ("5", "1", "α_u is between 0.001 and 1."),
+        ("-1", "0.001", "α_u is between 0.001 and 1."),
+        ("much", "0.001", "“much” is no number."),
+        ("0.2", "0.2", ""),
+    ):
+        type_number(page, "α_u", typed)
+        assert (box.input_value(), note.inner_text()) == (shown, says)
+
+
 def test_a_typed_sum_brings_its_parameters(page):
     box = page.get_by_role("combobox", name="Model", exact=True)
     box.fill("ggx+war")

@@ -2,11 +2,6 @@
 
 const LOG_STEPS = 400; // places of a slider whose scale is logarithmic
 
-/** Return a round step for a number box, about a hundredth of the way from `low` to `high`. */
-function chooseStep(low, high) {
-  return 10 ** Math.round(Math.log10((high - low) / 100) - 0.2);
-}
-
 /**
  * Return how a control's value and the place of its slider belong together.
  *
@@ -28,21 +23,11 @@ function makeScale({ low = 0, high = 1, step, log }) {
   return { low: 0, high: values.length - 1, step: 1, toPlace, toValue: (place) => values[place] };
 }
 
-/** Return the number in a number box, or null while it is not one that the box allows. */
-function readNumber(box) {
-  const { badInput, rangeOverflow, rangeUnderflow } = box.validity;
-  return box.value === "" || badInput || rangeOverflow || rangeUnderflow ? null : Number(box.value);
-}
-
 /** Make a slider with a number box; both change `control.name` in the session. */
 function makeSlider(session, control, scale = makeScale(control)) {
   const { name, label, unit = "" } = control;
   const range = make("input", { type: "range", min: scale.low, max: scale.high, step: scale.step });
-  const number = make("input", {
-    type: "number", min: control.low, max: control.high,
-    step: control.step || chooseStep(control.low, control.log ? 10 * control.low : control.high),
-    "aria-label": unit ? `${label} [${unit}]` : label,
-  });
+  const number = makeNumberBox(session, control);
   let byKey = false;
   range.addEventListener("keydown", () => (byKey = true));
   range.addEventListener("pointerdown", () => (byKey = false));
@@ -53,24 +38,14 @@ function makeSlider(session, control, scale = makeScale(control)) {
     else session.drag(changes);
   });
   range.addEventListener("change", () => byKey || session.finish());
-  number.addEventListener("input", () => {
-    const value = readNumber(number);
-    if (value !== null) session.nudge({ [name]: value });
-  });
-  number.addEventListener("change", () => {
-    session.finish();
-    show(session.state[name]);
-  });
-
   function show(value) {
     range.value = scale.toPlace(value);
     range.setAttribute("aria-valuetext", `${roundNumber(value)} ${unit}`.trim());
-    const typing = number.matches(":focus") && Number(number.value) === value;
-    if (!typing) number.value = roundNumber(value);
+    number.show(value);
   }
   const row = make("div", { class: "control slider" },
-    make("label", {}, make("span", { class: "name" }, label), range), number,
-    make("span", { class: "unit" }, unit), make("span", { class: "extras" }));
+    make("label", {}, make("span", { class: "name" }, label), range), number.box,
+    make("span", { class: "unit" }, unit), make("span", { class: "extras" }), number.note);
   /** Return how far along the slider a value is, 0 to 1. */
   const place = (value) => clamp((scale.toPlace(value) - scale.low) / (scale.high - scale.low), 0, 1);
   return { row, show, input: range, place };

@@ -52,10 +52,12 @@ function makeHistoryButtons(session) {
   return [undo, redo, reset];
 }
 
-/** Undo and redo by the usual keys wherever the focus is, except where text is typed. */
+/** Undo and redo by the usual keys wherever the focus is, except where words are typed. */
 function listenForUndo(session, element) {
   element.addEventListener("keydown", (event) => {
-    if (!(event.ctrlKey || event.metaKey) || event.altKey || takesText(event.target)) return;
+    const { target } = event;
+    const takesWords = takesText(target) && target.role !== "spinbutton";
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || takesWords) return;
     const key = event.key.toLowerCase();
     const type = key === "y" || (key === "z" && event.shiftKey) ? "redo" : key === "z" ? "undo" : "";
     if (!type) return;
