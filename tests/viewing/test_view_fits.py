@@ -1,6 +1,7 @@
 """Fits with the settings of a page, several at once, and what a page takes away of them."""
 
 import shlex
+import threading
 from functools import cache
 
 import pytest
@@ -14,6 +15,7 @@ from brdfkit.viewing.materials.mitsuba_xml import write_xml
 from brdfkit.viewing.materials.parameter_state import to_state
 from brdfkit.viewing.session import Session
 
+SIZE = {"width": 64, "height": 64}
 MODELS = "burley", "ward", "lambert"
 
 
@@ -27,7 +29,7 @@ def application(module_in_llvm):
 def session(application):
     application.states.fits.clear()
     own = Session(application)
-    own.handle({"type": "hello", "width": 64, "height": 64, "state": None})
+    own.handle({"type": "hello", "state": None} | SIZE)
     own.visible = False
     return own
 
@@ -99,10 +101,46 @@ def test_bounds_and_outliers_reach_the_command_and_are_checked(session):
     assert "no parameter that a fit searches" in error["text"]
 
 
+def test_a_cancelled_fit_refuses_none_and_ends_before_the_next(session, monkeypatch):
+    end, running = threading.Event(), []
+
+    def fit_slowly(material, model, progress, **_):
+        running.append(model.label())
+        assert len(running) == 1
+        end.wait(10)
+        running.pop()
+        progress(1, 2)
+        return fit_once(model.label())
+
+    monkeypatch.setattr(fit_task, "fit", fit_slowly)
+    session.handle({"type": "fit"})  # which is cancelled before it begins
+    for _ in range(3):
+        session.handle({"type": "cancel"})
+        answers = session.handle({"type": "fit"})
+        assert [message["type"] for message, _ in answers] == ["state", "busy"]
+        session.work()
+    ((message, _),) = session.work()
+    assert message["text"] == fit_task.WAITS
+    end.set()
+    texts = [message.get("text") for message, _ in ask(session, type="resize", **SIZE)]
+    assert texts[-1] == ""
+    assert list(session.application.states.fits) == ["burley"]
+
+
+def test_a_fit_is_shown_before_its_errors_are_computed(session, quick_fits):
+    session.application.states.errors.kept.clear()
+    messages = [message for message, _ in ask(session, type="fit")]
+    types = [message["type"] for message in messages]
+    computing = [m.get("text") for m in messages].index("Computing errors …")
+    assert types.index("fit") < computing < types.index("errors")
+    assert messages[computing - 1] == fit_task.END[0]
+    assert "can_cancel" not in messages[computing]
+
+
 def test_fit_all_pins_every_model(session, quick_fits):
     answers = ask(session, type="fit", all=True)
     texts = [message["text"] for message, _ in answers if message["type"] == "busy"]
-    assert texts[0] == "burley is fitted (1 of 3)"
+    assert texts[0] == "Fitting burley … (1 of 3)"
     assert [pin["model"] for pin in session.state["pins"]] == [*MODELS]
     (table,) = [message for message, _ in answers if message["type"] == "errors"]
     assert "is best by cbrt" in table["verdict"]

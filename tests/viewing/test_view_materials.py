@@ -279,7 +279,7 @@ def test_a_fit_can_be_cancelled_and_fails_in_a_sentence(session, monkeypatch):
     monkeypatch.setattr(fit_task, "fit", fit_for_ever)
     session.handle({"type": "fit"})
     texts = [message.get("text") for _ in range(8) for message, _ in session.work()]
-    assert "ggx is fitted" in texts
+    assert "Fitting ggx …" in texts
     ((again, _), *_) = session.handle({"type": "fit"})
     assert "goes on already" in again["text"]
     session.handle({"type": "cancel"})

@@ -275,7 +275,7 @@ def test_an_orbit_is_cancelled(page, way):
     else:
         cancel.click()
     cancel.wait_for(state="hidden")
-    page.get_by_text("The orbit is rendered").wait_for(state="hidden")
+    page.get_by_text("Rendering the orbit").wait_for(state="hidden")
 
 
 @pytest.fixture

@@ -34,11 +34,6 @@ class Background(Generic[T]):
         self.error: Exception | None = None
         self._cancelled, self._finished = threading.Event(), threading.Event()
 
-    @property
-    def goes_on(self) -> bool:
-        """Whether the work is under way."""
-        return not (self._cancelled.is_set() or self._finished.is_set())
-
     def follow(self, describe: Callable[[], Message]) -> Iterator[list[Message]]:
         """Do the work; yields a message about its progress from time to time.
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import threading
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +101,8 @@ class MaterialApplication:
         changes = self.states.scenery.read_files(self.given[2])
         self.first = self.change(self.states.first(), changes)
         self.presets: dict[tuple[str, str], State] = {}  # values by model's label and material
-        self.fitting: fit_task.FitTask | None = None  # the last one
+        self.fitting: Callable[[], Any] = lambda: None  # returns the task of the last fit
+        self.fit_turn = threading.Lock()  # of the fit that goes on
         self.base = self.states.to_model(self.first)  # whose values the controls begin with
         self.pins: list[Any] = self.first["pins"]  # among which the controls choose
 

@@ -45,18 +45,22 @@ def list_rows(states: MaterialState, state: State) -> list[Row]:
         for pin in state["pins"]
     ]
     shown, named_so = [row.model for row in rows], {row.name for row in rows}
-    fits = [(label, fit.rgb) for label, fit in states.fits.items() if fit.rgb not in shown]
+    fits = [(label, fit.rgb) for label, fit in list(states.fits.items()) if fit.rgb not in shown]
     others = [Row(f"{n}, not pinned" if n in named_so else n, model) for n, model in fits]
     return [*rows, *others]
 
 
 def describe_errors(states: MaterialState, state: State) -> Iterator[list[Message]]:
-    """Yield nothing while errors are computed, one model at a time, and then the table."""
+    """Yield progress while errors are computed, one model at a time, and then the table."""
     errors, rows = states.errors, list_rows(states, state)
-    for row in rows:
-        errors.compute(row.model)
-        yield []
-    yield [make_error_table(errors, rows, state["fit.loss"])]
+    busy: dict[str, Any] = {"type": "busy", "task": "errors", "text": "Computing errors …"}
+    end: list[Message] = []
+    new = [row.model for row in rows if row.model not in errors.kept]
+    for number, model in enumerate(new):
+        yield [(busy | {"fraction": number / len(new) or None}, [])]
+        errors.compute(model)
+        end = [(busy | {"text": "", "fraction": None}, [])]
+    yield [make_error_table(errors, rows, state["fit.loss"]), *end]
 
 
 def make_error_table(errors: BlockErrors, rows: Sequence[Row], loss: str) -> Message:

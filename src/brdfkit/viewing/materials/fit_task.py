@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from brdfkit.viewing.session import Session
 
 USUAL_MODELS = "ggx", "ward", "ggx+ggx"  # fitted by "Fit all" where a page has used only one
+WAITS = "Waiting for the end of the fit before …"
 END: Message = {"type": "busy", "task": "fit", "text": "", "fraction": None, "can_cancel": True}, []
 
 
@@ -37,7 +38,8 @@ def choose_labels(states: MaterialState) -> list[str]:
 class FitTask:
     """Fits with the page's settings: of the model that a session shows, or of all, which it pins.
 
-    They are made in a thread of their own, so that the task of the session only waits for it.
+    They are made in a thread of their own, so that the task of the session only waits for it. It
+    begins when a fit that was cancelled before has ended.
     """
 
     def __init__(self, application: Any, session: Session, fits_all: bool = False) -> None:
@@ -46,32 +48,30 @@ class FitTask:
         own = [self.state["model"]]
         self.labels = choose_labels(application.states) if fits_all else own
         self.background = Background(self._fit_each)
+        self.waits = application.fit_turn.locked()  # by a fit that was cancelled
         self.results: dict[str, Fit] = {}
         self.errors: dict[str, Exception] = {}
-
-    @property
-    def goes_on(self) -> bool:
-        """Whether the fits are under way."""
-        return self.background.goes_on
 
     def run(self) -> Iterator[list[Message]]:
         """Fit the models, and show the fits; yields messages for the page."""
         yield from self.background.follow(self.describe_progress)
         if self.results:
-            yield [*self._show(), END]  # the errors of large measurements take a while
-            yield from describe_errors(self.application.states, self.session.state)
+            yield self._show()
         yield [END, *self._describe_failures()]
 
     def _fit_each(self, report: Progress) -> None:
         """Fit the models, and keep the fits and the errors."""
-        for label in self.labels:
-            self.background.share = 0.0
-            try:
-                self.results[label] = self._fit(label, report)
-            except Cancelled:
-                raise
-            except Exception as error:  # of this model; the others may go well
-                self.errors[label] = error
+        with self.application.fit_turn:
+            report(0, 1)  # it may be cancelled by now
+            self.waits = False
+            for label in self.labels:
+                self.background.share = 0.0
+                try:
+                    self.results[label] = self._fit(label, report)
+                except Cancelled:
+                    raise
+                except Exception as error:  # of this model; the others may go well
+                    self.errors[label] = error
 
     def _fit(self, label: str, report: Progress) -> Fit:
         """Fit a model with the settings of the page."""
@@ -85,16 +85,19 @@ class FitTask:
         number = min(len(self.results) + len(self.errors), len(self.labels) - 1)
         several = f" ({number + 1} of {len(self.labels)})" if len(self.labels) > 1 else ""
         share = (number + self.background.share) / len(self.labels)
-        text = f"{self.labels[number]} is fitted{several}"
+        text = f"Fitting {self.labels[number]} …{several}" if not self.waits else WAITS
         return END[0] | {"text": text, "fraction": share or None}, []
 
     def _show(self) -> list[Message]:
         """Pin all fits if several were asked for, and give the sliders the fitted values.
 
-        The sliders stay as they are if another model is shown by now.
+        The sliders stay as they are if another model is shown by now. The errors follow, because
+        those of large measurements take a while.
         """
         application, session = self.application, self.session
         with session.lock:
+            if application.fitting() not in session.tasks:
+                return []  # it was cancelled just now
             changes: State = {}
             for label, result in self.results.items():
                 application.states.keep_fit(label, result)
@@ -103,6 +106,7 @@ class FitTask:
             if self.fits_all:
                 changes["pins"] = self._pin(session.state["pins"])
             session.change(changes)
+            session.tasks.append(describe_errors(application.states, session.state))
             return [session.describe_state(), *application.describe_model(session.state)]
 
     def _pin(self, pins: list[Any]) -> list[Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable
 from typing import Any
 
@@ -31,13 +32,15 @@ def begin_fit(application: Any, session: Session, message: dict[str, Any]) -> li
     """Begin to fit the model that is shown, or all models."""
     if not application.states.is_fittable:
         raise BrdfkitError(f"{application.name} was not measured, so nothing can be fitted to it.")
-    if application.fitting is not None and application.fitting.goes_on:
+    if application.fitting() in session.tasks:
         raise BrdfkitError("A fit goes on already; wait for it, or cancel it.")
     if session.state["second"] == FILE:
         session.change({"second": MODEL})
-    application.fitting = FitTask(application, session, bool(message.get("all")))
-    session.tasks.append(application.fitting.run())
-    return [session.describe_state(), application.fitting.describe_progress()]
+    task = FitTask(application, session, bool(message.get("all")))
+    steps = task.run()
+    application.fitting = weakref.ref(steps)  # the fit ends as soon as the session forgets it
+    session.tasks.insert(0, steps)  # before the errors of other fits
+    return [session.describe_state(), task.describe_progress()]
 
 
 def probe(application: Any, session: Session, message: dict[str, Any]) -> list[Message]:

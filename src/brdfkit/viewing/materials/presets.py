@@ -50,7 +50,7 @@ def _fit(session: Any, label: str, name: str) -> Iterator[list[Message]]:
         return to_state(fit(name, model, progress=progress).rgb)
 
     work = Background(find_values)
-    text = f"{label} is fitted to {name}"
+    text = f"Fitting {label} to {name} …"
     busy: dict[str, Any] = {"type": "busy", "task": "preset", "text": text, "can_cancel": True}
     yield from work.follow(lambda: (busy | {"fraction": work.share or None}, []))
     end: Message = busy | {"text": "", "fraction": None}, []

@@ -76,7 +76,7 @@ def _write_report(application: Application, fits: list[Fit]) -> Iterator[list[Me
             return path.read_bytes()
 
         work = Background(write)
-        text = "the report is made; its pictures are path-traced"
+        text = "Making the report, with path-traced pictures …"
         busy = {"type": "busy", "task": "report", "text": text, "can_cancel": True}
         yield from work.follow(lambda: (busy | {"fraction": work.share or None}, []))
     yield [({"type": "busy", "task": "report", "text": "", "fraction": None}, [])]

@@ -110,7 +110,7 @@ def _make_orbit(
 
 def _describe_orbit(number: int, passes: int) -> dict[str, Any]:
     """Return the message "busy" after some passes of the frame of a `number`, from 0."""
-    text = f"The orbit is rendered: frame {number + 1} of {FRAMES}"
+    text = f"Rendering the orbit: frame {number + 1} of {FRAMES}"
     fraction = (number + passes / FILM_SAMPLES) / FRAMES
     return {"type": "busy", "text": text, "fraction": fraction, "can_cancel": True}
 
