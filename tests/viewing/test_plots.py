@@ -292,15 +292,17 @@ def test_a_change_of_plots_renders_no_picture(session):
     session.paused = False
 
 
-def test_plots_come_after_the_picture_while_a_slider_moves(session):
+@pytest.mark.parametrize("steps", [1, 2])  # of work between two changes
+def test_plots_and_pictures_take_turns_while_a_slider_moves(session, steps):
     kinds = []
-    for alpha in (0.2, 0.3):
+    for alpha in (0.2, 0.25, 0.3, 0.35):
         change(session, moving=True, model__alpha_u=alpha)
-        for _ in range(2):
-            kinds.append(session.work()[0][0]["type"])
-        assert not session.has_work()
         session.handle({"type": "shown", "number": session.number})
-    assert kinds == ["picture", "plot"] * 2
+        kinds += [session.work()[0][0]["type"] for _ in range(steps)]
+    first, second = kinds[:2]
+    assert ({first, second}, kinds) == ({"plot", "picture"}, [first, second] * (2 * steps))
+    change(session, model__alpha_u=0.1)  # the end of the drag
+    assert session.work()[0][0]["type"] == "picture"
 
 
 @pytest.mark.parametrize(

@@ -40,6 +40,7 @@ class PictureLoop:
         self.opened = 0  # how often something was opened
         self.tasks: list[Iterator[list[Message]]] = []
         self.ready: list[list[Message]] = []  # that were computed aside
+        self.plots_first = False  # whether plots are drawn before the next picture
         # The pictures that were sent last, by side: linear, and sRGB in 8 bits
         self.sent: tuple[dict[int, AnyArray], dict[int, AnyArray]] = {}, {}
         self.forget_samples()
@@ -49,7 +50,7 @@ class PictureLoop:
         self.accumulated: dict[int, Accumulated] = {}
         self.previews: dict[int, AnyArray] = {}  # without noise, by side
         self.passes, self.converged, self.stale = 0, False, True
-        self.plots_first = False  # whether plots are drawn before the next picture
+        self.plots_first = self.plots_first and self.moving  # else a new model's picture is first
         self.started, self.last_sent = time.monotonic(), 0.0
 
     def has_work(self) -> bool:
@@ -101,8 +102,8 @@ class PictureLoop:
         """Render a pass of the newest state, and return its pictures if the page waits for them.
 
         Tasks, such as a film, come first, step by step, but for the first passes of a changed
-        picture. Plots beside it are drawn after each picture, and whenever none is urgent. All is
-        computed outside of the lock, so that messages are answered meanwhile.
+        picture. Plots beside it and passes take turns, so that none of them waits for the end of a
+        drag. All is computed outside of the lock, so that messages are answered meanwhile.
         """
         with self._lock_briefly() as locked:
             if not locked:
@@ -153,7 +154,7 @@ class PictureLoop:
 
     def _begin_pass(self) -> Pass:
         kind, size = self._choose_kind(), self.picture_size(self.moving)
-        self.stale = False
+        self.stale, self.plots_first = False, True
         samples, previews = self.accumulated, self.previews
         application, state = self.application, self.state
         return Pass(application, kind, state, size, self.passes, samples, previews, self.opened)
@@ -224,7 +225,7 @@ class PictureLoop:
         if self.shown < self.number or not (urgent or now - self.last_sent > REST_INTERVAL):
             self.stale = self.stale or self.converged  # the last picture is sent later
             return None
-        self.last_sent, self.plots_first = now, True
+        self.last_sent = now
         self.number += 1
         return self.number
 
