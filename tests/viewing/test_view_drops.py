@@ -92,6 +92,22 @@ def test_another_material_keeps_the_models_and_the_light(session):
     assert state == state | changes | {"model": "ward", "second": "model"}
 
 
+def test_another_material_keeps_the_bonds_of_the_shown_model(session):
+    name, content = small_files.FILES["astm"]
+    session.handle({"type": "load", "name": "ggx"})
+    key = "model.diffuse_reflectance"
+    changes = {
+        f"{key}.linked": False,
+        f"{key}.R": 0.5,
+        f"{key}.G": 0.1,
+        "model.alpha_v.tied": False,
+    }
+    for one in changes:
+        session.handle({"type": "set", "changes": {one: changes[one]}})
+    state = drop(session, {name: content})["open"]["state"]
+    assert state == state | changes
+
+
 @pytest.mark.parametrize("beside", ["car_paint", "sphere", None])
 def test_a_dropped_fit_is_shown(session, beside):
     """Beside the material that is shown, or alone."""
@@ -113,6 +129,9 @@ def test_a_copied_command_of_a_dropped_file_says_that_its_folder_is_hidden(sessi
         assert name in message["text"].partition("\n")[2]
 
 
+TWO = dict.fromkeys(["a.astm", "b.astm"], small_files.astm())
+
+
 @pytest.mark.parametrize(
     ("files", "sentence"),
     [
@@ -122,7 +141,8 @@ def test_a_copied_command_of_a_dropped_file_says_that_its_folder_is_hidden(sessi
         ({"a.json": b'{"brdfkit": "1", "model": "x.py"}'}, "a.json: "),
         ({"a.pkl": b"\x80\x04cbuiltins\nexec\n"}, "is no file that the page opens"),
         ({"a.npz": b"PK\x03\x04"}, "a.npz: "),
-        (dict.fromkeys(["a.astm", "b.astm"], small_files.astm()), "are two materials"),
+        (TWO, "a.astm and b.astm are two materials; drop one of them."),
+        (TWO | {"m.obj": b""}, "None of a.astm, b.astm and m.obj is used."),
     ],
     ids=str,
 )
@@ -141,6 +161,11 @@ def test_what_belongs_to_another_subject_says_what_to_open(session):
     assert "a mesh shows a material" in answers["error"]["text"]
 
 
+def test_json_of_no_use_beside_a_material_says_what_is(session):
+    session.handle({"type": "load", "name": "ggx"})
+    assert "is neither a fit nor settings" in drop(session, {"a.json": b"null"})["error"]["text"]
+
+
 MESH = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 3 4\n"
 
 
@@ -150,10 +175,14 @@ def test_a_mesh_on_an_empty_page_shows_a_model(session):
     assert (session.state["shape"], session.application.name) == ("a.obj", "ggx")
 
 
-@pytest.mark.parametrize(("name", "content"), [("a.obj", b"v 0 0\n"), ("a.exr", b"v/1\x01x")])
+@pytest.mark.parametrize(
+    ("name", "content"), [("a.obj", b"v 0 0\n"), ("a.ply", b"ply\nx"), ("a.exr", b"v/1\x01x")]
+)
 def test_what_was_opened_stays_if_a_file_beside_it_is_damaged(session, name, content):
     answers = drop(session, {"paint.astm": small_files.astm(), name: content})
     assert answers["error"]["text"].startswith(f"{name}: ")
     assert "brdfkit-view" not in answers["error"]["text"]
+    assert ".cpp" not in answers["error"]["text"]
+    assert "dictionary" not in answers["error"]["text"]
     assert answers["open"]["title"] == "paint"
     assert session.state["shape"] == "ball"

@@ -135,6 +135,19 @@ def test_the_address_has_settings_of_one_volume(session):
         assert opened["state"]["camera.azimuth"] == 77
 
 
+@pytest.mark.parametrize(
+    ("state", "says"),
+    [
+        ("damaged", "The address is damaged"),
+        ({"camera.fov": "x", "camera.azimuth": 9.0}, "All settings of the address are left aside"),
+    ],
+)
+def test_an_address_that_cannot_be_shown_is_said(session, state, says):
+    _, (error, _) = session.handle({"type": "hello", "width": 64, "height": 64, "state": state})
+    assert error["text"].startswith(says)
+    assert session.state == session.first
+
+
 def test_what_changes_no_sample_keeps_the_samples(session):
     work(session), work(session)
     session.handle({"type": "set", "changes": {"tone.stops": 1.5, "wipe": 0.2}, "moving": False})

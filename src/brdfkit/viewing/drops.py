@@ -26,6 +26,7 @@ from brdfkit.viewing.session import Session
 from brdfkit.viewing.uploads import Upload
 from brdfkit.viewing.volumes import opening as volumes
 
+NAMES = 6  # that an error lists at most
 MODEL = "ggx"  # shown where a light or a mesh is dropped on an empty page
 
 
@@ -113,8 +114,7 @@ class DropSession(Session):
             return self.exchange(volumes.open_volume(chosen, voxels))
         materials = [path for path, kind in found if kind == kinds.MATERIAL]
         if len(materials) > 1:
-            names = " and ".join(path.name for path in materials[:2])
-            raise BrdfkitError(f"{names} are two materials; drop one of them.")
+            raise _several_materials_error(materials, [path for path, _ in found])
         if materials:
             return self.exchange(open_material(self, materials[0]))
         return []
@@ -140,6 +140,22 @@ class DropSession(Session):
             return _join_notes(messages, notes)
         finally:
             upload.clear()
+
+
+def _several_materials_error(materials: list[Path], files: list[Path]) -> BrdfkitError:
+    """Return the error for a drop with several materials, which names all that is not used."""
+    count = "two" if len(materials) == 2 else f"{len(materials)}"
+    text = f"{_join_names(materials)} are {count} materials; drop one of them."
+    others = len(files) > len(materials)
+    return BrdfkitError(f"{text} None of {_join_names(files)} is used." if others else text)
+
+
+def _join_names(files: list[Path]) -> str:
+    """Return the names of several files, of many the first ones, as a part of a sentence."""
+    names = [path.name for path in files]
+    if len(names) > NAMES:
+        names[NAMES - 1 :] = [f"{len(names) - NAMES + 1} more"]
+    return ", ".join(names[:-1]) + f" and {names[-1]}"
 
 
 @contextmanager

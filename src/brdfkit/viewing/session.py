@@ -87,10 +87,13 @@ class Session(PictureLoop):
     def _restore(self, state: Any) -> list[Message]:
         """Show the state of the page's address, with the subject that it shows.
 
-        The state of another subject, and an impossible one, is said, and left aside.
+        A damaged state, that of another subject, and an impossible one are said, and left aside.
         """
-        if not isinstance(state, dict):
+        if state is None:
             return []
+        if not isinstance(state, dict):
+            text = "The address is damaged: its settings cannot be read, and are left aside."
+            return [({"type": "error", "text": text}, [])]
         state, shown = dict(state), self.application.subject
         subject = state.pop("subject", shown)
         if subject != shown:
@@ -102,7 +105,8 @@ class Session(PictureLoop):
         try:
             self.change(state, moving=False)
         except BrdfkitError as error:
-            return [({"type": "error", "text": f"The address has another state: {error}"}, [])]
+            text = f"All settings of the address are left aside, because one is wrong: {error}"
+            return [({"type": "error", "text": text}, [])]
         return []
 
     def describe_view(self) -> Message:

@@ -1,5 +1,6 @@
 """Loads objects by Mitsuba with brdfkit's errors, and pictures as pixels in linear sRGB."""
 
+import re
 from collections.abc import Callable
 from os import PathLike
 from pathlib import Path
@@ -14,6 +15,13 @@ from brdfkit.core.jit.threads import use_two_threads
 from brdfkit.mitsuba_bridge.properties.radiance_rows import require_intact_rows
 
 OWN_ERROR = "BrdfkitError: "  # marks an error of brdfkit's plugins in a message of Mitsuba
+
+# Where in its own code, and in its description of a single mesh, Mitsuba met an error
+PLACE = re.compile(
+    r'\[\w+\.(?:cpp|h):\d+\] (?:"[^"]*": )?|At dictionary node "root": '
+    r'|\[\w+\] (?=Error while loading)|failed to instantiate shape plugin of type "(?:obj|ply)": '
+    r'|Error while loading \w+ file "[^"]*": '
+)
 
 
 def load_by_mitsuba(function: Callable[..., Any], source: Any, name: object) -> Any:
@@ -45,7 +53,8 @@ def load_by_mitsuba(function: Callable[..., Any], source: Any, name: object) -> 
         if OWN_ERROR in reason:
             reason = reason.partition(OWN_ERROR)[2]
             raise BrdfkitError(f"{name}: {reason.removeprefix(f'{name}: ')}") from error
-        raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason.rstrip('.')}).") from error
+        reason = PLACE.sub("", reason).rstrip(".!")
+        raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason}).") from error
 
 
 LINEAR = ".exr", ".hdr", ".pfm", ".rgbe"  # formats of linear values, without the curve of sRGB

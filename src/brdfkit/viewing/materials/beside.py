@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from brdfkit.core.errors import BrdfkitError
 from brdfkit.materials.loading import load
 from brdfkit.regression import Fit
 from brdfkit.viewing import kinds
-from brdfkit.viewing.application import no_use_error
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.materials.material_state import find_label
 from brdfkit.viewing.materials.parameter_state import to_state
@@ -29,7 +29,10 @@ def open_beside(application: Application, session: Session, kind: str, path: Pat
         return _show(application, session, {LIGHT: application.states.scenery.add_map(path)})
     if kind == kinds.MESH:
         return _show(application, session, {SHAPE: application.states.scenery.keep_mesh(path)})
-    raise no_use_error(path.name, "a transfer function shows a volume")
+    raise BrdfkitError(
+        f"{path.name}: is neither a fit nor settings, which are the JSON that a material takes; a "
+        "transfer function is for a volume."
+    )
 
 
 def _show(application: Application, session: Session, changes: State) -> list[Message]:

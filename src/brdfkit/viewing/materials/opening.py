@@ -12,6 +12,7 @@ from brdfkit.viewing.session import Session
 
 # Beginnings of the names of settings that another material takes over
 KEPT = "light.", "shape", "camera.", "view.", "tone.", "plots.", "compare"
+BONDS = ".linked", ".tied"  # ends of the names of settings that the shown model keeps
 
 
 def open_material(session: Session, path: Path) -> MaterialApplication:
@@ -26,7 +27,7 @@ def open_material(session: Session, path: Path) -> MaterialApplication:
     models = before.states.list_models(session.state)
     after = MaterialApplication(material, models, file=path.name)
     for name, value in session.state.items():
-        if name.startswith(KEPT):
+        if name.startswith(KEPT) or name.endswith(BONDS):
             with suppress(BrdfkitError):  # a map or a mesh that was dropped is not known any more
                 after.first = after.change(after.first, {name: value})
     return after

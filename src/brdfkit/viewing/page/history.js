@@ -7,7 +7,7 @@ function nameState({ state, description }) {
   return description && { ...state, subject: description.subject };
 }
 
-/** Return the state that an address such as `…#state=eyJ…` carries, or null. */
+/** Return the state that an address such as `…#state=eyJ…` carries, null without one. */
 function readAddress(hash) {
   const coded = new URLSearchParams(hash.replace(/^#/, "")).get("state");
   if (!coded) return null;
@@ -16,7 +16,7 @@ function readAddress(hash) {
     const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
     return JSON.parse(new TextDecoder().decode(bytes));
   } catch {
-    return null; // a link that was cut short opens the page as if it had none
+    return "damaged"; // which Python says, because it is no state
   }
 }
 
