@@ -13,6 +13,14 @@ FAULTS = """async () => {
     return violations.filter(({ impact }) => ["serious", "critical"].includes(impact)).map(
         ({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html).join(" | ")}`);
 }"""
+# What the page says over the picture, and its statistics, at each change
+SAID = """() => {
+    const said = [];
+    const note = () => said.push([".hint", ".samples"].map(
+        (name) => document.querySelector(name).textContent));
+    new MutationObserver(note).observe(document.querySelector(".hint"), { childList: true });
+    return said;
+}"""
 THEMES = {
     "light": {"color_scheme": "light", "forced_colors": "none"},
     "dark": {"color_scheme": "dark", "forced_colors": "none"},

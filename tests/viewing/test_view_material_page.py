@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from helpers.view_pages import (
     FAULTS,
+    SAID,
     THEMES,
     choose,
     drag,
@@ -144,7 +145,9 @@ def test_a_drag_turns_the_light(page):
 
 
 def test_a_drag_moves_the_lamp_and_the_right_button_the_view(page):
+    said = page.evaluate_handle(SAID)
     choose(page, "Light", "a lamp")
+    assert said.json_value()[0] == ["Preparing car_paint and ggx …", ""]
     expect(page.get_by_role("spinbutton", name="Rotation [°]")).to_be_hidden()
     drag(page, (150, 150), (170, 130))
     assert (number(page, "Lamp, around [°]"), number(page, "Lamp, above [°]")) == (-44, 49)
@@ -291,6 +294,10 @@ def test_a_mirrored_file_is_mended_by_its_button(page, tmp_path):
     panel = page.locator(".audit")
     expect(panel).to_contain_text("Highlight towards the light", timeout=60_000)
     expect(panel).to_contain_text("CSV, 192 samples")
-    panel.get_by_role("button", name="Mirror azimuths").click()
+    click = "(own) => (own.click(), [own.disabled, own.closest('.audit').textContent])"
+    disabled, text = panel.get_by_role("button", name="Mirror azimuths").evaluate(click)
+    assert (disabled, "Examining the mended file …" in text) == (True, True)
     expect(page.get_by_label("Mirror azimuths")).to_be_checked()
     expect(page.get_by_label("Right of the wipe")).to_have_value("mirrored as the file says")
+    panel.get_by_role("button", name="Show ggx there").click()
+    expect(page.get_by_label("Right of the wipe")).to_have_value("ggx")

@@ -86,6 +86,26 @@ def test_the_map_of_differences_is_that_of_the_colours_as_shown(session):
     assert join_sides(pictures, session.state).shape == (64, 128, 3)
 
 
+def test_the_pointer_and_the_pictures_name_what_is_shown(session):
+    def describe():
+        sent = [message for message, _ in session.work() if message["type"] == "picture"]
+        session.handle({"type": "shown", "number": session.number})
+        ((read, _),) = session.handle({"type": "probe", "x": 0.5, "y": 0.5})
+        return [message["name"] for message in sent], read["text"]
+
+    names, text = describe()
+    assert (names, text.count("ggx: ")) == (["car_paint", "ggx"], 1)
+    change(session, model="ward")
+    ((read, _),) = session.handle({"type": "probe", "x": 0.5, "y": 0.5})
+    assert read["text"] == text  # of the old picture still
+    names, text = describe()
+    assert (names, text.count("ward: ")) == (["car_paint", "ward"], 1)
+    before = session.application.describe_side(session.state, 1)["needs"]
+    for name, value in {"shape": "plane", "light.environment": "sky", "model": "ggx"}.items():
+        state = session.application.change(session.state, {name: value})
+        assert state[name] != before[name]
+
+
 def test_the_lamp_and_the_view_move_without_a_new_scene(session):
     application = session.application
 

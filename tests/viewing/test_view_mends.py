@@ -64,7 +64,8 @@ def test_a_mirrored_file_is_told_and_mended_by_one_change(session, mirrored):
     assert "mirror_azimuth" not in finding["text"]
 
     states = session.application.states
-    answers = change(session, mend__mirror_azimuth=True, second="file")
+    answers = change(session, mend__mirror_azimuth=True)  # by its box or its button
+    assert session.state["second"] == "file"
     assert find_choices(answers, "second") == ["", "measured", "file", "model"]
     np.testing.assert_array_equal(states.measured.samples.wo, mirrored.samples.wo * [-1, -1, 1])
     shown = [
@@ -85,6 +86,12 @@ def test_the_file_is_no_side_after_its_mend_is_taken_back(session):
     change(session, mend__mirror_azimuth=True, second="file")
     answers = change(session, mend__mirror_azimuth=False)
     assert (session.state["second"], find_choices(answers, "second")[2]) == ("model", "model")
+
+
+def test_a_mend_leaves_what_is_asked_for_beside_it(session):
+    change(session, mend__mirror_azimuth=True, second="model")
+    assert session.state["second"] == "model"
+    assert make_application(session.application.given[0], [], MIRROR).first["second"] == "model"
 
 
 def test_each_mend_has_fits_of_its_own(session):

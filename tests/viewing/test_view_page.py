@@ -6,7 +6,7 @@ import re
 import nibabel
 import numpy as np
 import pytest
-from helpers.view_pages import choose, drag, number, pixels, type_number, wait_for_change
+from helpers.view_pages import SAID, choose, drag, number, pixels, type_number, wait_for_change
 from PIL import Image
 from playwright.sync_api import expect
 
@@ -21,13 +21,6 @@ DROP = """async ([name, letters]) => {
 }"""
 
 
-SAID = """() => {
-    const said = [];
-    const note = () => said.push([".hint", ".samples"].map(
-        (name) => document.querySelector(name).textContent));
-    new MutationObserver(note).observe(document.querySelector(".hint"), { childList: true });
-    return said;
-}"""
 WRITTEN = """() => {
     const written = [];
     const { fillText, clearRect } = CanvasRenderingContext2D.prototype;

@@ -375,7 +375,7 @@ def test_a_picture_says_what_it_shows_and_fits_its_overlay(session):
     ((picture, (content,)), _) = work(session)
     width, height = Image.open(io.BytesIO(content)).size
     assert width / height == session.size[0] / session.size[1]
-    assert picture["overlay"]["renderers"] == ["isosurface", ""]
+    assert (picture["name"], picture["needs"]) == ("Isosurface", {"renderer": "isosurface"})
     camera = session.application.states.camera(session.state)
     side = np.array(camera.target) + camera.axes[0] * picture["overlay"]["across"] / 2
     assert camera.project(side[None], width / height)[0, 0] == pytest.approx(

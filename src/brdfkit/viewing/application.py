@@ -40,6 +40,13 @@ class Application(Protocol):
     def sides(self, state: State) -> int:
         """Return the number of pictures beside each other: 1 or 2, or 0 without any."""
 
+    def describe_side(self, state: State, side: int) -> dict[str, Any]:
+        """Return the "name" of what a side shows, and what it "needs".
+
+        Those are the settings with other values of which the picture is another one, for which the
+        page waits.
+        """
+
     def needs_samples_anew(self, before: State, after: State) -> bool:
         """Return whether the samples of one state are not those of another."""
 

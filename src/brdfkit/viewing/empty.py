@@ -62,6 +62,10 @@ class EmptyApplication:
         """Return 0, because there is no picture."""
         return 0
 
+    def describe_side(self, state: State, side: int) -> dict[str, Any]:
+        """Raise an error, because there is no picture."""
+        raise NotImplementedError
+
     def needs_samples_anew(self, before: State, after: State) -> bool:
         """Return False, because there is no picture."""
         return False

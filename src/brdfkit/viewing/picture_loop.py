@@ -43,6 +43,7 @@ class PictureLoop:
         self.plots_first = False  # whether plots are drawn before the next picture
         # The pictures that were sent last, by side: linear, and sRGB in 8 bits
         self.sent: tuple[dict[int, AnyArray], dict[int, AnyArray]] = {}, {}
+        self.sent_state = self.state  # that they show
         self.forget_samples()
 
     def forget_samples(self) -> None:
@@ -189,7 +190,7 @@ class PictureLoop:
         previews = {} if lossless else done.previews
         pictures = rendered if begun.moving else mix_pictures(done.samples, previews)
         colours = app.develop(state, pictures, begun.moving)
-        self.sent = pictures, colours
+        self.sent, self.sent_state = (pictures, colours), state
         messages = make_pictures(app, state, colours, common, lossless)
         return [*messages, self.describe_progress()]
 

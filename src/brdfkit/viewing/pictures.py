@@ -37,7 +37,8 @@ def make_pictures(
         messages.append((described | {"mime": mime}, [encode(shown)]))
 
     for side, picture in sorted(colours.items()):
-        add({"type": "picture", "side": side} | common, picture)
+        shown = application.describe_side(state, side)
+        add({"type": "picture", "side": side} | shown | common, picture)
     if shows_differences(state, colours):
         mask = application.find_mask(state, (width, height))
         drawn, described = draw_differences(colours[0], colours[1], mask)

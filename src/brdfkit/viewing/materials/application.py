@@ -31,7 +31,7 @@ from brdfkit.viewing.materials.material_state import (
     MaterialState,
     make_look,
 )
-from brdfkit.viewing.materials.mends import Mends
+from brdfkit.viewing.materials.mends import Mends, show_file
 from brdfkit.viewing.materials.parameter_controls import list_panels
 from brdfkit.viewing.materials.parameter_state import PREFIX
 from brdfkit.viewing.materials.picture_controls import MODEL
@@ -99,7 +99,7 @@ class MaterialApplication:
         self.stills: Recent[tuple[SceneKind, Look, Material], AnyArray] = Recent(STILLS)
         self.masks = PictureMasks(self.states, self.live)
         changes = self.states.scenery.read_files(self.given[2])
-        self.first = self.change(self.states.first(), changes)
+        self.first = self.states.change(self.states.first(), changes)
         self.presets: dict[tuple[str, str], State] = {}  # values by model's label and material
         self.fitting: Callable[[], Any] = lambda: None  # returns the task of the last fit
         self.fit_turn = threading.Lock()  # of the fit that goes on
@@ -160,11 +160,15 @@ class MaterialApplication:
 
     def change(self, state: State, changes: Mapping[str, Any]) -> State:
         """Return the state after changes; raise `BrdfkitError` if one is not possible."""
-        return self.states.change(state, changes)
+        return self.states.change(state, show_file(state, changes))
 
     def sides(self, state: State) -> int:
         """Return the number of pictures: 2 if there is one right of the wipe."""
         return 2 if state["second"] else 1
+
+    def describe_side(self, state: State, side: int) -> dict[str, Any]:
+        """Return the name of the material at a side, and the settings that the page waits for."""
+        return self.states.describe_side(state, "second" if side else "renderer")
 
     def needs_samples_anew(self, before: State, after: State) -> bool:
         """Return whether the samples of one state are not those of another."""
@@ -232,7 +236,6 @@ class MaterialApplication:
         idle = find_idle_parameters(self.states.to_model(state))
         return {
             "idle": {PREFIX + name: reason for name, reason in idle.items()},
-            "renderers": [state["renderer"], state["second"]],
             "lamp": find_lamp(make_look(state), size),
         } | (
             {"ball": place_ball(make_look(state).camera, size)} if state["shape"] == "ball" else {}

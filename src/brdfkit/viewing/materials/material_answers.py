@@ -46,14 +46,13 @@ def begin_fit(application: Any, session: Session, message: dict[str, Any]) -> li
 def probe(application: Any, session: Session, message: dict[str, Any]) -> list[Message]:
     """Return the linear RGB of each picture under the pointer, and how their colours differ."""
     x, y = (min(max(to_number(name, message.get(name)), 0.0), 1.0) for name in "xy")
-    pictures, colours = session.sent
+    (pictures, colours), state = session.sent, session.sent_state
     texts, places = [], []
     for side, picture in sorted(pictures.items()):
         height, width = picture.shape[:2]
         at = min(int(y * height), height - 1), min(int(x * width), width - 1)
         value = " ".join(f"{v:.3g}" for v in picture[at])
-        shown = session.state["second" if side else "renderer"]
-        texts.append(f"{application.states.name_side(session.state, shown)}: {value}")
+        texts.append(f"{application.describe_side(state, side)['name']}: {value}")
         places.append(colours[side][at])
     if len(places) > 1:
         texts.append(f"ΔE {compare_colours(*places):.2g}")

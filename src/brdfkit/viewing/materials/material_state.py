@@ -30,6 +30,7 @@ from brdfkit.viewing.materials.mends import (
     find_mends,
     leave_file,
     make_mend_controls,
+    name_file,
     refuse_mend,
 )
 from brdfkit.viewing.materials.parameter_checks import check_values
@@ -167,7 +168,7 @@ class MaterialState:
         choices = [(name_pin(pin), label_pin(pin)) for pin in pins]
         measured = [(MEASURED, self.name)] if self.measured is not None else []
         if mends:
-            measured = [(MEASURED, f"{self.name}, mended"), (FILE, f"{self.name} as the file says")]
+            measured = [(shown, name_file(self.name, shown)) for shown in (MEASURED, FILE)]
         kind = type(self.find_model(label))
         anisotropic = kind.is_anisotropic() or getattr(self.measured, "anisotropic", False)
         own = tuple(self.scenery.maps), tuple(self.scenery.meshes)
@@ -248,7 +249,17 @@ class MaterialState:
         pin = find_pin(state["pins"], shown)
         if pin:
             return label_pin(pin)
-        return {MODEL: state["model"], FILE: "as the file says"}.get(shown, self.name)
+        if shown == MODEL:
+            return str(state["model"])
+        return name_file(self.name, shown) if find_mends(state) else self.name
+
+    def describe_side(self, state: State, side: str) -> dict[str, Any]:
+        """Return the name of what a side shows, and the settings with which it is another one."""
+        shown = state[side]
+        own = {MODEL: ["model"], MEASURED: [name for name in state if name.startswith(MEND)]}
+        names = side, "shape", "light.environment", *own.get(shown, ())
+        needs = {name: state[name] for name in names}
+        return {"name": self.name_side(state, shown), "needs": needs}
 
 
 def make_look(state: State) -> Look:

@@ -6,6 +6,7 @@ one is set, `FILE` stands for the material as the file says on a side of the wip
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 from brdfkit.core.errors import BrdfkitError, no_such_error
@@ -50,6 +51,22 @@ def refuse_mend(file: Any, name: str) -> BrdfkitError:
 def find_mends(state: State) -> Mends:
     """Return the mends that a state sets."""
     return tuple(name for name in LABELS if state.get(PREFIX + name))
+
+
+def show_file(state: State, changes: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return changes that, where they mend something, show the file as it says, too.
+
+    It is right of the wipe, and the mended one left, unless the changes say what is right.
+    """
+    mends = set(find_mends({**state, **changes}))
+    if mends <= set(find_mends(state)) or "second" in changes:
+        return changes
+    return {"renderer": MEASURED, "second": FILE, **changes}
+
+
+def name_file(name: str, shown: str) -> str:
+    """Return the name of a file of which something is mended, or of the file as it says."""
+    return f"{name} as the file says" if shown == FILE else f"{name}, mended"
 
 
 def leave_file(state: State) -> State:

@@ -1,6 +1,7 @@
 // Compares the pictures of both sides: by the wipe, in turn, by the map of differences, or in halves.
 
 const FLICKER_TIME = 500; // ms for which a side is shown while both are shown in turn
+const LIKE = 1.1; // proportions that differ less are the same, as Python chooses them in steps
 const SHARP_ZOOM = 2; // from which on pixels are shown as squares
 
 /** Return how both sides are compared; "" without a second one. */
@@ -15,13 +16,14 @@ function divideStage({ clientWidth: width, clientHeight: height }, comparison) {
 }
 
 /**
- * Return where a picture of some proportions is in an area: it covers a stage, and its middle square
- * fits into a half. `view` says how far it is enlarged, and which place of it is in the middle.
+ * Return where a picture of some proportions is in an area: it covers a stage of nearly the same, as
+ * Python chooses them; elsewhere, as in a half, its middle square fits, so that a stage that becomes
+ * lower shows the same things, smaller, as the next picture will. `view` says how far it is enlarged, and which place of it is in the middle.
  */
 function placePicture({ width, height }, area, view, whole) {
-  const [across, down] = [area.width / width, area.height / height];
+  const cover = Math.max(area.width / width, area.height / height);
   const fit = Math.min(area.width, area.height) / Math.min(width, height);
-  const scale = view.zoom * (whole ? Math.max(across, down) : fit);
+  const scale = view.zoom * (whole && cover < LIKE * fit ? cover : fit);
   const size = { width: scale * width, height: scale * height };
   return {
     x: area.x + area.width / 2 - view.x * size.width,
@@ -116,7 +118,7 @@ function createCaptions(session, stage, picture) {
       const part = comparison === "wipe" || comparison === "" ? null : picture.parts[k];
       name.hidden = !part || part.side === 2;
       if (name.hidden) return;
-      const shown = nameRenderer(session, picture.renderers[part.side]);
+      const shown = picture.shown[part.side]?.name ?? "";
       name.textContent = comparison === "difference" ? "The ΔE map comes …" : shown;
       name.style.left = `${part.area.x + part.area.width / 2}px`;
     });

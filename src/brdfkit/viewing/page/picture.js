@@ -7,15 +7,15 @@ const RESIZE_DELAY = 150; // ms without a change after which Python hears of a n
  *
  * `parts` are what is drawn, as `layOut` returns it, of which `place` is the first one's rectangle
  * [pixels of CSS]; `view` is how far it is enlarged, about which place. A picture has its own
- * proportions, so that a few pixels may lie beside the stage. `renderers` are those of the pictures
- * that are shown left and right. `turns` exchanges the sides. Listeners to "drawn" receive the
+ * proportions, so that a few pixels may lie beside the stage. `shown` says of the pictures left and
+ * right their "name", and the settings that they "need", as Python does. `turns` exchanges the sides. Listeners to "drawn" receive the
  * picture.
  */
 function createPicture(session, stage, turns) {
   const canvas = make("canvas", { class: "picture", "aria-hidden": "true" });
   const picture = {
     place: { x: 0, y: 0, width: 1, height: 1 }, parts: [], view: { zoom: 1, x: 0.5, y: 0.5 },
-    described: null, renderers: [undefined, undefined],
+    described: null, shown: [null, null],
   };
   const latest = [null, null, null]; // for each side, and the differences, what createImageBitmap made
   const numbers = [-1, -1, -1];
@@ -42,7 +42,7 @@ function createPicture(session, stage, turns) {
   function forget(side) {
     latest[side]?.close();
     latest[side] = null;
-    if (side < 2) picture.renderers[side] = undefined;
+    if (side < 2) picture.shown[side] = null;
     if (side === 0) picture.described = null;
   }
 
@@ -57,7 +57,7 @@ function createPicture(session, stage, turns) {
         numbers[side] = number;
         if (side < 2) {
           picture.described = content;
-          picture.renderers[side] = content.overlay?.renderers?.[side] ?? "";
+          picture.shown[side] = { name: content.name ?? "", needs: content.needs ?? {} };
         }
         picture.draw();
       } else bitmap.close();

@@ -1,19 +1,23 @@
-// Says that a picture is being prepared, as long as none or one of another renderer is shown.
+// Says that a picture is being prepared, as long as none or one of something else is shown.
 
-/** Return the label of a renderer, as the menus show it. */
+/** Return the name of what a side is to show, as the menus have it. */
 function nameRenderer(session, value) {
+  if (value === "model") return session.state.model;
   const menu = session.description?.controls.find(({ name }) => name === "second");
   return (value && menu?.choices.find(([own]) => own === value)?.[1]) || "";
 }
 
-/** Return the sides of the wipe, 0 or 1, at which the picture of the state's renderer is missing. */
+/** Return the sides of the wipe, 0 or 1, whose picture is missing or shows other settings. */
 function listMissing({ state }, picture) {
-  const wanted = [state.renderer ?? "", ...(state.second ? [state.second] : [])];
-  return [0, 1].filter((side) => side in wanted && picture.renderers[side] !== wanted[side]);
+  const sides = state.second ? [0, 1] : [0];
+  return sides.filter((side) => {
+    const { needs } = picture.shown[side] ?? {};
+    return !needs || Object.entries(needs).some(([name, value]) => name in state && state[name] !== value);
+  });
 }
 
 /**
- * Dim what is shown of another renderer, and write over it what is being prepared.
+ * Dim what is shown of something else, and write over it what is being prepared.
  *
  * Listeners to "preparing" hear whether something is. The style sheet shows both with a delay, so
  * that a picture that comes at once does not flicker.
@@ -51,6 +55,7 @@ function createPreparation(session, stage, picture) {
     // Saying the same again would be announced again
     if (text.textContent !== words) text.textContent = words;
     stage.classList.toggle("prepares", Boolean(missing.length || words));
+    stage.classList.toggle("prepares-all", missing.length > 1); // then the words are over the wipe
     session.emit("preparing", missing.length > 0);
   }
 
@@ -59,7 +64,8 @@ function createPreparation(session, stage, picture) {
     show();
   });
   session.on("state", (names) => {
-    if (names.has("renderer") || names.has("second")) stopped = false;
+    const isShown = (name) => picture.shown.some((own) => own && name in own.needs);
+    if (["renderer", "second"].some((name) => names.has(name)) || [...names].some(isShown)) stopped = false;
     show();
   });
   session.on("drawn", show);

@@ -15,14 +15,14 @@ function createWipe(session, stage, picture) {
 
   function place() {
     const { state } = session;
-    handle.hidden = findComparison(state) !== "wipe";
+    handle.hidden = findComparison(state) !== "wipe" || !picture.parts.length;
     const { x, width } = picture.place;
     handle.style.left = `${clamp(x + (state.wipe ?? 0.5) * width, 0, stage.clientWidth)}px`;
     const percent = Math.round(100 * (state.wipe ?? 0.5));
     handle.setAttribute("aria-valuenow", percent);
     handle.setAttribute("aria-valuetext", `${percent} % of the first picture`);
     names.forEach((name, k) => {
-      name.textContent = nameRenderer(session, picture.renderers[picture.parts[k]?.side ?? k]);
+      name.textContent = picture.shown[picture.parts[k]?.side ?? k]?.name ?? "";
     });
   }
 

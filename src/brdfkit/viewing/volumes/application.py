@@ -23,6 +23,7 @@ from brdfkit.viewing.volumes.description import describe_box, describe_volume
 from brdfkit.viewing.volumes.live_scene import LiveScene, SceneKind
 from brdfkit.viewing.volumes.source import Source
 from brdfkit.viewing.volumes.state import DRAWN_ONLY, VolumeState
+from brdfkit.viewing.volumes.volume_controls import LABELS
 from brdfkit.volumes import Volume
 from brdfkit.volumes.summary.summary import may_be_labels
 
@@ -125,6 +126,11 @@ class VolumeApplication:
         """Return the number of pictures: 2 if there is a renderer right of the wipe."""
         return 2 if state["second"] else 1
 
+    def describe_side(self, state: State, side: int) -> dict[str, Any]:
+        """Return the renderer of a side, which the page waits for."""
+        name = "second" if side else "renderer"
+        return {"name": LABELS[state[name]], "needs": {name: state[name]}}
+
     def needs_samples_anew(self, before: State, after: State) -> bool:
         """Return whether the samples of one state are not those of another."""
         return has_other_samples(before, after, DRAWN_ONLY)
@@ -191,9 +197,8 @@ class VolumeApplication:
         return None
 
     def overlay(self, state: State, size: tuple[int, int]) -> dict[str, Any]:
-        """Return what the page draws over the picture, and the renderers that it shows."""
-        drawn = describe_box(self.volume, self.states.camera(state), size[0] / size[1])
-        return drawn | {"renderers": [state["renderer"], state["second"]]}
+        """Return what the page draws over the picture."""
+        return describe_box(self.volume, self.states.camera(state), size[0] / size[1])
 
     def follow(self, before: State, after: State) -> list[Message]:
         """Return what a change of the state shows beside the picture: doubts, and slices."""
