@@ -2,6 +2,7 @@
 
 import shlex
 import threading
+from dataclasses import replace
 from functools import cache
 
 import pytest
@@ -11,6 +12,7 @@ from brdfkit.cli import main
 from brdfkit.model import labels
 from brdfkit.viewing.materials import fit_task, presets, saving
 from brdfkit.viewing.materials.application import MaterialApplication
+from brdfkit.viewing.materials.fit_marks import describe_fit
 from brdfkit.viewing.materials.mitsuba_xml import write_xml
 from brdfkit.viewing.materials.parameter_state import to_state
 from brdfkit.viewing.session import Session
@@ -149,6 +151,76 @@ def test_fit_all_pins_every_model(session, quick_fits):
     assert session.state == session.first
     alone = MaterialApplication("satin_plastic", ["ggx"])
     assert fit_task.choose_labels(alone.states) == ["ggx", "ward", "ggx+ggx"]
+
+
+def test_fit_all_keeps_the_fits_with_the_same_settings(session, monkeypatch):
+    asked = []
+
+    def note(material, model, progress, **how):
+        asked.append(model.label())
+        return bk.fit(material, model, **how)
+
+    monkeypatch.setattr(fit_task, "fit", note)
+    change(session, model="lambert")
+    for loss, repeated in ("cbrt", 1), ("log", 0):
+        change(session, fit__loss=loss)
+        for _ in range(1 + repeated):
+            ask(session, type="fit", all=True)
+    assert sorted(asked) == sorted([*MODELS, *MODELS])
+
+
+def test_fit_all_begins_with_the_models_that_were_given():
+    states = MaterialApplication("satin_plastic", ["burley", "ward"]).states
+    for label in labels.models():
+        if label != "mixture":
+            states.find_model(label)
+    assert fit_task.choose_labels(states)[:2] == ["burley", "ward"]
+    assert len(fit_task.choose_labels(states)) == 8
+
+
+def test_another_page_of_the_same_data_has_the_fits(session, quick_fits):
+    change(session, model="ward")
+    ask(session, type="fit")
+    application = session.application.again()
+    other = Session(application)
+    answers = other.handle({"type": "hello", "state": session.state} | SIZE)
+    described = next(message for message, _ in answers if message["type"] == "fit")
+    assert described["text"].startswith("cbrt loss")
+    other.visible = False
+    (table,) = [m for m, _ in ask(other, type="errors") if m["type"] == "errors"]
+    assert table["rows"][0]["name"] == "ward"
+    assert application.first == session.application.first
+    another = MaterialApplication("plaster")
+    another.states.share_fits(application.states)
+    assert another.states.fits == {}
+
+
+def test_the_notes_of_a_fit_are_in_words_of_the_page():
+    made = fit_once("burley")
+    notes = (
+        "it reflects 1.2 of the light at 80°, more than arrives; a constraint prevents it: "
+        "AlbedoAtMost(1), or --albedo-at-most 1",
+        "f0 and specular_reflectance trade off",
+        "the lobe towards phi_o is wrong, which mirror_azimuth=True (--mirror-azimuth) mends",
+    )
+    assert describe_fit(replace(made, notes=notes))["notes"] == [
+        "it reflects 1.2 of the light at 80°, more than arrives",
+        "f0 and specular_reflectance trade off",
+        "the lobe towards φo is wrong",
+    ]
+    assert describe_fit(made)["notes"] == list(made.notes)
+
+
+def test_files_that_take_long_are_made_aside(session, monkeypatch):
+    monkeypatch.setattr(saving, "save", lambda thing, path: path.write_text(thing.name))
+    assert session.handle({"type": "save", "kind": "bsdf"}) == []
+    *_, (message, (content,)) = ask(session, type="save", kind="bsdf")
+    assert (message["name"], content) == ("satin_plastic-burley.bsdf", b"burley")
+
+
+def test_a_model_alone_offers_no_files_of_fits(module_in_llvm):
+    offered = {own["kind"] for own in MaterialApplication("ggx").describe()[0]["saves"]}
+    assert offered == saving.KINDS.keys() - {"fit", "errors", "report"}
 
 
 def test_a_report_has_the_pinned_fits(session, quick_fits, monkeypatch):

@@ -118,7 +118,9 @@ class MaterialApplication:
 
     def again(self) -> MaterialApplication:
         """Return another view of the same material, as for another page."""
-        return MaterialApplication(*self.given, self.file)
+        other = MaterialApplication(*self.given, self.file)
+        other.states.share_fits(self.states)
+        return other
 
     @in_turn
     def close(self) -> None:
@@ -141,7 +143,9 @@ class MaterialApplication:
             if self.states.is_fittable
             else material_scripts.MORE[:1],
             "plots": [{"name": name, "label": label} for name, label, _ in PLOTS],
-            "saves": [{"kind": kind, "label": label} for kind, label in saving.KINDS.items()],
+            "saves": [
+                {"kind": kind, "label": label} for kind, label in saving.list_kinds(self).items()
+            ],
         } | self._describe_controls(), []
 
     def _describe_controls(self) -> dict[str, Any]:

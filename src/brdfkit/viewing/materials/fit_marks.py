@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
 
 from brdfkit.regression import Fit
+from brdfkit.viewing.materials.audit_panel import to_greek
 from brdfkit.viewing.materials.parameter_state import CHANNELS, PREFIX
+
+# What notes tell scripts and commands to do; the page has no such control, or the audit has it
+HINTS = re.compile(
+    r"(; a constraint prevents it)?: AlbedoAtMost.*"
+    r"|, which mirror_azimuth=True.* mends|; if they are, divide_by_cos=True.* mends them"
+)
 
 
 def describe_fit(fit: Fit | None) -> dict[str, Any]:
@@ -20,7 +28,8 @@ def describe_fit(fit: Fit | None) -> dict[str, Any]:
     seconds = f"{fit.seconds:.1f} s" if fit.seconds else ""
     texts = [f"{fit.loss_name} loss {fit.loss:.4g}", f"{fit.samples:,} samples", seconds]
     text = ", ".join(filter(None, texts))
-    return {"type": "fit", "text": text, "notes": fit.warnings, "marks": make_marks(fit)}
+    notes = [to_greek(HINTS.sub("", note)) for note in fit.notes]
+    return {"type": "fit", "text": text, "notes": notes, "marks": make_marks(fit)}
 
 
 def make_marks(fit: Fit) -> dict[str, list[float | None]]:

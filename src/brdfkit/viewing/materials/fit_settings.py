@@ -11,6 +11,7 @@ from typing import Any
 
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.fitting.settings import FitSettings
+from brdfkit.materials.measured import Measured
 from brdfkit.model import Model
 from brdfkit.regression import Fit
 from brdfkit.regression.losses.named_losses import DEFAULT, named
@@ -133,6 +134,14 @@ def to_fit_arguments(state: State, model: type[Model], is_shown: bool = True) ->
             given["anisotropic"] = True
     changed = {name: value for name, value in given.items() if value != getattr(USUAL, name)}
     return {"loss": state["fit.loss"]} | changed
+
+
+def was_made_with(fit: Fit, measured: Measured, how: dict[str, Any]) -> bool:
+    """Return whether a fit is the one of a material with the arguments of `to_fit_arguments`."""
+    usual = "anisotropic", measured.anisotropic
+    given = {name: value for name, value in how.items() if (name, value) != usual}
+    same = find_repeated_arguments(fit, measured.anisotropic) == given
+    return same and fit.checksum == measured.checksum
 
 
 def find_repeated_arguments(fit: Fit, anisotropic: bool) -> dict[str, Any] | None:

@@ -14,7 +14,7 @@ from brdfkit.viewing.application import Message
 from brdfkit.viewing.background import Background, Cancelled
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.materials.error_table import describe_errors
-from brdfkit.viewing.materials.fit_settings import to_fit_arguments
+from brdfkit.viewing.materials.fit_settings import to_fit_arguments, was_made_with
 from brdfkit.viewing.materials.parameter_state import to_state
 from brdfkit.viewing.materials.pins import COLOURS, add_pin
 from brdfkit.viewing.pictures import describe_error
@@ -30,9 +30,11 @@ END: Message = {"type": "busy", "task": "fit", "text": "", "fraction": None, "ca
 
 def choose_labels(states: MaterialState) -> list[str]:
     """Return the labels of the models that "Fit all" fits: those of the page, or usual ones."""
-    used = list(states.models)
+    used = list(dict.fromkeys([*states.models, *states.fits]))
     used = used if len(used) > 1 else list(dict.fromkeys([*used, *USUAL_MODELS]))
-    return used[-len(COLOURS) :]
+    given = [*states.given][: len(COLOURS)]
+    others = [label for label in used if label not in given]
+    return [*given, *others[len(given) - len(COLOURS) :]] if len(given) < len(COLOURS) else given
 
 
 class FitTask:
@@ -78,6 +80,9 @@ class FitTask:
         states, is_shown = self.application.states, label == self.state["model"]
         model = type(states.find_model(label))
         how = to_fit_arguments(self.state, model, is_shown)
+        kept = states.fits.get(label) if self.fits_all else None
+        if kept is not None and was_made_with(kept, states.measured, how):
+            return kept
         return fit(states.measured, model, **how, progress=report)
 
     def describe_progress(self) -> Message:

@@ -60,10 +60,10 @@ def probe(application: Any, session: Session, message: dict[str, Any]) -> list[M
 
 
 def save(application: Any, session: Session, message: dict[str, Any]) -> list[Message]:
-    """Return a file for the page to keep; a report comes later, because it takes long."""
+    """Return a file for the page to keep; one that takes long comes later."""
     kind = str(message.get("kind"))
-    if kind == "report":
-        session.tasks.append(saving.make_report(application, session))
+    if kind in saving.TASKS:
+        session.tasks.append(saving.TASKS[kind](application, session))
         return []
     return [saving.make_file(application, session, kind)]
 

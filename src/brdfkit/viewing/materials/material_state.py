@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -22,6 +22,7 @@ from brdfkit.viewing.materials.fit_settings import (
     check_bounds,
     check_fixed,
 )
+from brdfkit.viewing.materials.kept_fits import KeptFits
 from brdfkit.viewing.materials.material_scene import Look, SceneKind, make_studio_camera, place_lamp
 from brdfkit.viewing.materials.mends import PREFIX as MEND
 from brdfkit.viewing.materials.mends import (
@@ -54,7 +55,6 @@ from brdfkit.viewing.materials.plot_controls import make_plot_controls
 from brdfkit.viewing.materials.scenery import Scenery
 from brdfkit.viewing.recent import Recent
 
-FITS = 32  # that are kept at most
 DEFAULT_MODEL = "ggx"  # beside a measured material without another one
 
 
@@ -65,10 +65,8 @@ class MaterialState:
     ----------
     measured : Material or None
         The material left of the wipe, as it is mended; None where a model is shown alone.
-    fits : dict of str to Fit
-        The last fit that was made, given or shown of each model, by its label.
-    all_fits : deque of (str, Fit)
-        All fits of late, with their labels.
+    kept : dict of Mends to KeptFits
+        The fits to the material, by what mends it.
     scenery : Scenery
         The environment maps and the meshes of the user.
     """
@@ -86,9 +84,7 @@ class MaterialState:
         self.mended = MendedFile(self.measured)
         self.mends: Mends = ()  # of `measured`
         self.name = shown.name
-        self.fits: dict[str, Fit] = {}
-        self.all_fits: deque[tuple[str, Fit]] = deque(maxlen=FITS)
-        self._other_fits: dict[Mends, tuple[dict[str, Fit], deque[tuple[str, Fit]]]] = {}
+        self.kept: defaultdict[Mends, KeptFits] = defaultdict(KeptFits)
         self._errors: BlockErrors | None = None
         self.models: dict[str, Model] = {}  # with the values that were given
         for thing in given:
@@ -96,21 +92,30 @@ class MaterialState:
             self.models[label] = thing.rgb
             if isinstance(thing, Fit):
                 self.keep_fit(label, thing)
+        self.given = tuple(self.models)  # the labels
         self.label = next(iter(self.models))  # of the model that is shown first
+
+    @property
+    def fits(self) -> dict[str, Fit]:
+        """The last fit of each model to the material as it is mended, by its label."""
+        return self.kept[self.mends].latest
 
     def keep_fit(self, label: str, fit: Fit) -> None:
         """Make a fit the one of its model."""
-        self.fits[label] = fit
-        self.all_fits.append((label, fit))
+        self.kept[self.mends].keep(label, fit)
+
+    def share_fits(self, other: MaterialState) -> None:
+        """Keep the fits with another view, unless the file of the material has changed since."""
+        own, known = self.mended.file, other.mended.file
+        if isinstance(own, Measured) and own.checksum == known.checksum:
+            self.kept = other.kept
 
     def mend(self, state: State) -> bool:
         """Make the material that of a state, with the fits to it; return whether it is another."""
         mends = find_mends(state)
         if mends == self.mends:
             return False
-        self._other_fits[self.mends] = self.fits, self.all_fits
         self.mends, self.measured = mends, self.mended.find(mends)
-        self.fits, self.all_fits = self._other_fits.pop(mends, ({}, deque(maxlen=FITS)))
         return True
 
     @property

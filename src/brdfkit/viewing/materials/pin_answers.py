@@ -30,7 +30,11 @@ def show(session: Session, message: dict[str, Any]) -> list[Message]:
     """Give the sliders the model and the values of a pin, and the marks of its fit."""
     states, found = _find_application(session).states, _require_pin(session, message)
     label, values = found["model"], found["values"]
-    fits = [fit for own, fit in states.all_fits if own == label and has_values(fit, values)]
+    fits = [
+        fit
+        for own, fit in list(states.kept[states.mends].all)
+        if own == label and has_values(fit, values)
+    ]
     if fits:
         states.fits[label] = fits[-1]
     answers = _change(session, {"model": label, **values})

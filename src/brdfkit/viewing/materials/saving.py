@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +10,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.names import to_file_stem
 from brdfkit.core.progress_bar import Progress
 from brdfkit.materials.loading import save
+from brdfkit.model import Model
 from brdfkit.regression import Fit
 from brdfkit.reporting.report import report
 from brdfkit.viewing import picture_files
@@ -34,10 +35,17 @@ KINDS = {
     "errors": "Table of errors (CSV)",
     "report": "Report of the fits (HTML)",
 }
+OF_FITS = "fit", "errors", "report"  # which a model alone never has
+
+
+def list_kinds(application: Application) -> dict[str, str]:
+    """Return the labels of what can ever be saved of a view, by kind."""
+    fittable = application.states.is_fittable
+    return {kind: label for kind, label in KINDS.items() if fittable or kind not in OF_FITS}
 
 
 def make_file(application: Application, session: Session, kind: str) -> Message:
-    """Return the message "file" of a kind of `KINDS`."""
+    """Return the message "file" of a kind of `KINDS`, but for those of `TASKS`."""
     if kind in picture_files.KINDS:
         return picture_files.make_picture_file(application, session, kind)
     if kind not in KINDS:
@@ -45,17 +53,32 @@ def make_file(application: Application, session: Session, kind: str) -> Message:
     states, label = application.states, session.state["model"]
     if kind == "errors":
         return _make_table_file(application, session)
-    if kind == "fit" and label not in states.fits:
+    if label not in states.fits:
         raise BrdfkitError(f"{label} is not fitted yet; choose Fit first.")
-    thing = states.fits[label] if kind == "fit" else states.to_model(session.state)
-    suffix, mime = (".json", "application/json") if kind == "fit" else (".bsdf", "")
-    name = to_file_stem(f"{application.name}-{label}" if states.measured else label) + suffix
+    file = {"name": f"{_name_model(application, label)}.json", "mime": "application/json"}
+    return {"type": "file"} | file, [_write(states.fits[label], "fit.json")]
+
+
+def _name_model(application: Application, label: str) -> str:
+    """Return the name of a file of a model, without its suffix."""
+    measured = application.states.measured
+    return to_file_stem(label if measured is None else f"{application.name}-{label}")
+
+
+def _write(thing: Fit | Model, name: str) -> bytes:
+    """Return the content of a file of a material, whose name has the suffix of the format."""
     with make_folder() as folder:
-        path = Path(folder) / f"material{suffix}"
+        path = Path(folder) / name
         save(thing, path)
-        content = path.read_bytes()
-    mime = mime or "application/octet-stream"
-    return {"type": "file", "name": name, "mime": mime}, [content]
+        return path.read_bytes()
+
+
+def make_bsdf(application: Application, session: Session) -> Iterator[list[Message]]:
+    """Return the task that tabulates the model as it is shown, which takes long for some."""
+    model, label = application.states.to_model(session.state), session.state["model"]
+    file = {"name": f"{_name_model(application, label)}.bsdf", "mime": "application/octet-stream"}
+    text = f"Tabulating {label} for Mitsuba …"
+    return _make_aside(lambda _: _write(model, "model.bsdf"), text, file)
 
 
 def make_report(application: Application, session: Session) -> Iterator[list[Message]]:
@@ -63,37 +86,50 @@ def make_report(application: Application, session: Session) -> Iterator[list[Mes
     fits = find_fits(application.states, session.state)
     if not fits:
         raise BrdfkitError("A report is about fits; choose Fit first.")
-    return _write_report(application, fits)
+    measured = application.states.measured
 
-
-def _write_report(application: Application, fits: list[Fit]) -> Iterator[list[Message]]:
-    """Make the report of fits; yields messages for the page, and the file at last."""
-    with make_folder() as folder:
-        path = Path(folder) / "report.html"
-
-        def write(progress: Progress) -> bytes:
-            report(application.states.measured, fits, path=path, spp=SAMPLES, progress=progress)
+    def write(progress: Progress) -> bytes:
+        with make_folder() as folder:
+            path = Path(folder) / "report.html"
+            report(measured, fits, path=path, spp=SAMPLES, progress=progress)
             return path.read_bytes()
 
-        work = Background(write)
-        text = "Making the report, with path-traced pictures …"
-        busy = {"type": "busy", "task": "report", "text": text, "can_cancel": True}
-        yield from work.follow(lambda: (busy | {"fraction": work.share or None}, []))
-    yield [({"type": "busy", "task": "report", "text": "", "fraction": None}, [])]
+    text = "Making the report, with path-traced pictures …"
+    name = f"{to_file_stem(application.name)}-report.html"
+    return _make_aside(write, text, {"name": name, "mime": "text/html"})
+
+
+def _make_aside(
+    write: Callable[[Progress], bytes], text: str, file: dict[str, str]
+) -> Iterator[list[Message]]:
+    """Make a file in a thread; yields messages for the page, with `text`, and the file at last."""
+    work = Background(write)
+    busy: dict[str, Any] = {"type": "busy", "task": "save", "text": text, "can_cancel": True}
+    yield from work.follow(lambda: (busy | {"fraction": work.share or None}, []))
+    yield [(busy | {"text": "", "fraction": None}, [])]
     if work.result is None:
         yield [describe_error(work.error or BrdfkitError(""))]
     else:
-        name = f"{to_file_stem(application.name)}-report.html"
-        yield [({"type": "file", "name": name, "mime": "text/html"}, [work.result])]
+        yield [({"type": "file"} | file, [work.result])]
+
+
+TASKS = {"bsdf": make_bsdf, "report": make_report}  # of files that take long
 
 
 def find_fits(states: Any, state: State) -> list[Fit]:
     """Return the fits that are pinned, and those of the models that are not."""
     pinned = [
-        next((fit for _, fit in states.all_fits if has_values(fit, pin["values"])), None)
+        next(
+            (
+                fit
+                for _, fit in list(states.kept[states.mends].all)
+                if has_values(fit, pin["values"])
+            ),
+            None,
+        )
         for pin in state["pins"]
     ]
-    fits = [*filter(None, pinned), *states.fits.values()]
+    fits = [*filter(None, pinned), *list(states.fits.values())]
     return list({fit.rgb: fit for fit in fits}.values())
 
 

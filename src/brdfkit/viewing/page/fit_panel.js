@@ -43,7 +43,7 @@ function createFitPanel(session, root) {
     show(false);
   });
   const nameAll = ({ fit_all: labels = [] }) => {
-    all.title = `Fits and pins ${labels.join(", ")}: the models that you have looked at`;
+    all.title = `Fits and pins ${labels.join(", ")}: models that were given or looked at, or usual ones; fits with these settings are kept`;
   };
   session.on("open", nameAll);
   session.on("controls", nameAll);
