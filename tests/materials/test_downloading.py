@@ -412,6 +412,7 @@ def test_wrong_words(lab, cache, words, said):
 @pytest.mark.quick
 def test_the_index_is_complete():
     found = public.list_collections()
+    assert public.list_collections() == found  # what was read before is as it was
     assert {name: len(c.files) for name, c in found.items()} == {
         "merl": 100, "rgl": 62, "cornell": 6, "curet": 1, "utia": 0,
     }  # fmt: skip

@@ -6,6 +6,7 @@ by name. An installed package contains both folders; a checkout has them at its 
 
 import tomllib
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +19,16 @@ MEASURED, ENVIRONMENTS = "measured", "environments"
 def read_index(kind: str = MEASURED) -> dict[str, Any]:
     """Return the content of `data/KIND/index.toml`: the description of each file by its name.
 
-    Under the key "collections" are public collections, which do not come with brdfkit.
+    Under the key "collections" are public collections, which do not come with brdfkit. All callers
+    share the content, because to read it takes longer than most files of samples.
     """
-    with (find_data_folder(kind) / "index.toml").open("rb") as stream:
+    return _read_index_file(find_data_folder(kind) / "index.toml")
+
+
+@cache
+def _read_index_file(file: Path) -> dict[str, Any]:
+    """Return the content of an index, which does not change while a program runs."""
+    with file.open("rb") as stream:
         return tomllib.load(stream)
 
 

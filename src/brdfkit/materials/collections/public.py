@@ -151,12 +151,13 @@ def _make_collection(name: str, entry: dict[str, Any]) -> Collection:
 
     The entry lists the collection's files, or it names a table of text that lists them.
     """
-    rows, url = entry.pop("files"), entry.pop("url", "")
+    described = entry.copy()  # the index is shared by all who read it
+    rows, url = described.pop("files"), described.pop("url", "")
     if isinstance(rows, str):
         with (catalogue.find_data_folder() / rows).open(encoding="utf-8", newline="") as stream:
             rows = list(csv.DictReader(stream, delimiter="\t"))
     listed = [_make_listed_file(name, url=row.get("url", url), row=row) for row in rows]
-    return Collection(name, **entry, files={file.name: file for file in listed})
+    return Collection(name, **described, files={file.name: file for file in listed})
 
 
 def _make_listed_file(collection: str, url: str, row: dict[str, Any]) -> ListedFile:
