@@ -253,7 +253,7 @@ def test_plots_open_and_mark_what_is_selected(page):
         page.get_by_role("button", name=name, exact=True).click()
     page.get_by_role("img", name="Lobes for light at 45°. car_paint: largest at").wait_for()
     page.get_by_role("img", name="ggx / data: typically a factor of").wait_for()
-    page.get_by_role("img", name="Albedo. car_paint: 0.").wait_for()
+    page.get_by_role("img", name="Albedo, luminance. car_paint: 0.").wait_for()
     page.get_by_role("img", name="2,500 samples").wait_for()
     page.get_by_role("application", name="Samples; arrow keys").focus()
     for key in ("ArrowLeft", "Enter", *["ArrowDown"] * 12, "ArrowRight", "Enter"):
@@ -263,7 +263,7 @@ def test_plots_open_and_mark_what_is_selected(page):
     page.keyboard.press("Escape")
     expect(chosen).to_be_hidden()
     page.get_by_role("button", name="Undo").click()
-    expect(chosen).to_contain_text("Farthest first")
+    expect(chosen).to_contain_text("Farthest first, by ggx / car_paint")
     page.evaluate(read_axe())
     assert page.evaluate(FAULTS) == []
     page.get_by_role("button", name="Clear").click()

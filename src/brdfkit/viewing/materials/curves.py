@@ -25,12 +25,14 @@ class Curve:
     """A material in the plots.
 
     `name`: its name in legends; `colour`: its colour, such as "#e09a00"; `material`: the material,
-    in linear sRGB or with one channel.
+    in linear sRGB or with one channel. `twin`: whether it is a pin with the values of the shown
+    model, whose curve lies exactly over that one.
     """
 
     name: str
     colour: str
     material: Any
+    twin: bool = False
 
     @property
     def is_measured(self) -> bool:
@@ -48,11 +50,13 @@ def list_curves(states: States, state: State) -> list[Curve]:
         _, measured = states.find_side(state, MEASURED)
         curves.append(Curve(states.name, MEASURED_COLOUR, to_shown(measured)))
     pins = [pin for pin in state["pins"] if state["solo"] in ("", name_pin(pin))]
-    if not state["solo"]:
-        curves.append(Curve(state["model"], MODEL_COLOUR, states.to_model(state)))
-    return curves + [
-        Curve(label_pin(pin), find_colour(pin), make_model(states, pin)) for pin in pins
-    ]
+    shown = None if state["solo"] else states.to_model(state)
+    if shown is not None:
+        curves.append(Curve(state["model"], MODEL_COLOUR, shown))
+    for pin in pins:
+        model = make_model(states, pin)
+        curves.append(Curve(label_pin(pin), find_colour(pin), model, twin=model == shown))
+    return curves
 
 
 def to_shown(material: Any) -> Any:

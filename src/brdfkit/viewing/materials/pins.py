@@ -21,7 +21,7 @@ from brdfkit.viewing.materials.picture_controls import MODEL
 States: TypeAlias = Any  # `MaterialState`, which imports this file
 
 # By number: different from each other also for the colour-blind, on white and on black
-COLOURS = "#d55e00", "#6622ff", "#889988", "#bb0033", "#0072b2", "#33aacc", "#446677", "#6677ff"
+COLOURS = "#cc4fa0", "#6622ff", "#889988", "#bb0033", "#0072b2", "#33aacc", "#446677", "#6677ff"
 PIN = "pin"  # before the number of a pin in its name
 KEYS = {"number", "model", "values", "loss"}
 NONE: State = {"pins": [], "solo": ""}  # the state without pins

@@ -34,7 +34,8 @@ function makeErrorTable({ columns, rows }, order, shown, sort) {
   }, makeButton(text, () => sort(column)));
   const wanted = columns.map((_, k) => k).filter((k) => shown(columns[k]));
   const makeBodyRow = (row) => make("tr", { title: row.note ?? "What the noise of the measurement leaves to a perfect model." },
-    make("th", { scope: "row" }, makeChip(row), row.name, row.note?.startsWith("not") ? make("span", { class: "tied" }, " ≈") : ""),
+    make("th", { scope: "row" }, make("span", { class: "named" }, makeChip(row),
+      make("span", {}, row.name, row.note?.startsWith("not") ? make("span", { class: "tied" }, " ≈") : ""))),
     ...wanted.map((k) => make("td", { class: row.best[k] ? "best" : "" }, row.cells[k])));
   return make("table", { class: "errors" },
     make("thead", {}, make("tr", {}, head("error", -1), ...wanted.map((k) => head(columns[k][0], k, columns[k][1])))),

@@ -16,12 +16,12 @@ function makeAngleAxis(label, high, step) {
 }
 
 /** Return the axis of the albedo, which reaches to 1 if that is near. */
-function makeAlbedoAxis({ lines }) {
+function makeAlbedoAxis({ lines, channel }) {
   const largest = findLargest(lines.flatMap(({ values }) => values)) || 1;
   const top = largest > 0.6 ? Math.max(1.05, 1.05 * Math.min(largest, 10)) : 1.15 * largest;
   return {
     place: (value) => value / top, value: (share) => share * top,
-    ticks: chooseTicks(0, top, 4).map((tick) => [tick, writeValue(tick)]), label: "reflected share",
+    ticks: chooseTicks(0, top, 4).map((tick) => [tick, writeValue(tick)]), label: `reflected share, ${channel}`,
   };
 }
 
@@ -72,7 +72,7 @@ const ALBEDO = {
       const [top, bottom] = [area.y + 1, area.y + area.height - 1];
       outlineRegion(context, plot, [[left, top], [right, top], [right, bottom], [left, bottom]]);
     }
-    content.lines.forEach((line, number) => drawAlbedoLine(context, plot, line, number, place));
+    orderCurves(curves).forEach((number) => drawAlbedoLine(context, plot, content.lines[number], number, place));
     context.restore();
   },
   read(at, plot) {
@@ -101,14 +101,14 @@ const ALBEDO = {
 
 /** Draw the albedo of one material, dotted where it is extrapolated. */
 function drawAlbedoLine(context, { curves }, { theta_i: angles, values, known }, number, place) {
-  const { colour, measured } = curves[number];
+  const { colour, measured, twin } = curves[number];
   values.forEach((own, channel) => {
     const tint = values.length > 1 ? CHANNEL_COLOURS[channel] : colour;
     const places = [...own].map((value, k) => place(angles[k], value));
     context.strokeStyle = context.fillStyle = tint;
     context.lineWidth = measured ? 2.5 : 1.75;
     for (let k = 1; k < places.length; k++) {
-      context.setLineDash(known[k] && known[k - 1] ? (values.length > 1 && !measured ? [7, 3] : []) : [1.5, 3]);
+      context.setLineDash(known[k] && known[k - 1] ? (twin ? [7, 7] : values.length > 1 && !measured ? [7, 3] : []) : [1.5, 3]);
       strokeLine(context, [places[k - 1], places[k]]);
     }
     context.setLineDash([]);

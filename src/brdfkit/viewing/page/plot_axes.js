@@ -24,6 +24,13 @@ function readArrays(content, bytes) {
   return read(content);
 }
 
+/** Return the indices of curves as they are drawn: the shown model last, but for the dashes of its twins. */
+function orderCurves(curves) {
+  const shown = curves.findIndex(({ measured }) => !measured);
+  const rank = (k) => (curves[k].twin ? 2 : k === shown ? 1 : 0);
+  return [...curves.keys()].sort((a, b) => rank(a) - rank(b));
+}
+
 /** Return the largest of the numbers in arrays that are finite, or 0. */
 function findLargest(arrays) {
   let largest = 0;

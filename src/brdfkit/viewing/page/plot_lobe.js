@@ -106,20 +106,21 @@ const LOBE = {
     const project = makeProjection(plot);
     drawGround(context, plot, project);
     const several = curves.length > 1;
-    const quads = content.lobes.flatMap((lobe, number) => (
-      listQuads(lobe, scale, project).map((quad) => ({ ...quad, curve: curves[number] }))));
-    quads.sort((a, b) => b.depth - a.depth);
+    // One over the other, the shown model last, so that each can be seen
+    const quads = orderCurves(curves).filter((number) => !curves[number].twin).flatMap((number) => (
+      listQuads(content.lobes[number], scale, project).sort((a, b) => b.depth - a.depth)
+        .map((quad) => ({ ...quad, curve: curves[number] }))));
     context.lineWidth = 0.7;
     for (const { corners, bright, known, curve } of quads) {
       context.beginPath();
       corners.forEach(([x, y], k) => (k ? context.lineTo(x, y) : context.moveTo(x, y)));
       context.closePath();
-      // The measured lobe is a mesh, so that the model's surface shows through it
-      if (!(several && curve.measured) && known) {
-        context.fillStyle = shadeColour(curve.colour, bright, several ? 0.75 : 0.95);
+      // Several lobes are meshes, so that each shows through the others
+      if (!several && known) {
+        context.fillStyle = shadeColour(curve.colour, bright, 0.95);
         context.fill();
       }
-      context.strokeStyle = shadeColour(curve.colour, curve.measured ? 0.75 : bright, known ? (curve.measured ? 0.9 : 0.5) : 0.15);
+      context.strokeStyle = shadeColour(curve.colour, several ? 0.5 : bright, known ? (several ? 0.75 : 0.5) : 0.15);
       context.stroke();
     }
     drawMarks(context, plot, placeSolidMarks(plot, scale, project));

@@ -81,12 +81,17 @@ function createSelection(session) {
     const summary = makeNumberTable(["median", "R G B", ...(several ? [quotient] : [])], names.map((name, k) => (
       [nameEntry(name, curves[k]), writeChannels(medians[k]), ...(several ? [`× ${writeValue(ratios[k])}`] : [])])));
     const list = makeNumberTable(
-      ["θi θo θh θd [°]", ...(several ? [`${names[names.length - 1]} ${quotient}`] : []), ...names],
+      [...(several ? ["ratio"] : []), "θi θo θh θd [°]", ...names],
       rows.map(({ angles, colours, ratio }) => (
-        [angles.join("  "), ...(several ? [`× ${writeValue(ratio)}`] : []), ...colours.map(writeChannels)])));
-    body.replaceChildren(ranges, make("p", {}, what), summary, make("p", { class: "soft" }, "Farthest first:"), list);
+        [...(several ? [`× ${writeValue(ratio)}`] : []), angles.join("  "), ...colours.map(writeChannels)])));
+    const order = several ? `Farthest first, by ${names[1]} ${quotient}:` : "Samples:";
+    body.replaceChildren(ranges, make("p", {}, what), summary, make("p", { class: "soft" }, order), list);
   }
-  return { element, show };
+  /** Show what is selected, until its numbers come. */
+  function wait() {
+    body.replaceChildren(make("p", {}, writeSelection(session.state["plots.selection"])), make("p", { class: "soft" }, "Loading…"));
+  }
+  return { element, show, wait };
 }
 
 /** Make the name of a material with its colour. */

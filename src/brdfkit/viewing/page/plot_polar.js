@@ -107,7 +107,7 @@ function drawLight(context, plot) {
 function drawLobe(context, plot, scale, number) {
   const { content, curves, colours } = plot;
   const lobe = content.lobes[number];
-  const { colour, measured } = curves[number];
+  const { colour, measured, twin } = curves[number];
   const several = lobe.values.length > 1;
   const tint = (channel) => (several ? CHANNEL_COLOURS[channel] : colour);
   (lobe.point_values || []).forEach((values, channel) => {
@@ -119,7 +119,7 @@ function drawLobe(context, plot, scale, number) {
   lobe.values.forEach((values, channel) => {
     context.strokeStyle = tint(channel);
     context.lineWidth = measured ? 2.5 : 1.75;
-    context.setLineDash(several && !measured ? [7, 3] : []);
+    context.setLineDash(twin ? [7, 7] : several && !measured ? [7, 3] : []);
     strokeLine(context, [...values].map((value, k) => (
       lobe.known[k] && Number.isFinite(value) ? placePolar(plot, lobe.theta_o[k], scale.place(value)) : null)));
     context.setLineDash([]);
@@ -175,7 +175,7 @@ const POLAR = {
   draw(context, plot) {
     const scale = makeRadius(plot);
     drawDisc(context, plot, scale);
-    plot.curves.forEach((_, number) => drawLobe(context, plot, scale, number));
+    orderCurves(plot.curves).forEach((number) => drawLobe(context, plot, scale, number));
     drawSelectedViews(context, plot, scale);
     writeDisc(context, plot, scale);
     drawLight(context, plot);

@@ -21,7 +21,10 @@ function makePlotControl(session, control) {
 /** Make the button that opens and closes a plot. */
 function makePlotButton(session, { name, label, help }) {
   const key = `plots.show.${name}`;
-  const button = makeButton(label, () => session.change({ [key]: !session.state[key] }), { title: help });
+  const button = makeButton(label, () => {
+    session.change({ [key]: !session.state[key] });
+    document.querySelector(`.plot-${name}`)?.scrollIntoView({ block: "nearest" });
+  }, { title: help });
   return { key, button };
 }
 
@@ -31,10 +34,11 @@ function createPlots(session) {
   const shared = make("div", { class: "settings" });
   const legend = make("p", { class: "legend" });
   const row = make("div", { class: "plots-row" });
+  const selection = createSelection(session);
+  const area = make("div", { class: "plots-area" }, row, selection.element);
   const element = make("div", { class: "plots", role: "region", "aria-label": "Plots", hidden: true });
   const splitter = makeSplitter(element);
-  element.append(splitter, make("div", { class: "plots-bar" }, toggles, shared, legend), row);
-  const selection = createSelection(session);
+  element.append(splitter, make("div", { class: "plots-bar" }, toggles, shared, legend), area);
   let frames = new Map();
   let buttons = [];
   let controls = [];
@@ -46,7 +50,7 @@ function createPlots(session) {
       .map((described) => [described.name, createPlotFrame(session, described, PLOT_KINDS()[described.name])]));
     buttons = plots.map((described) => makePlotButton(session, described));
     toggles.replaceChildren(...buttons.map(({ button }) => button));
-    row.replaceChildren(...[...frames.values()].map((frame) => frame.element), selection.element);
+    row.replaceChildren(...[...frames.values()].map((frame) => frame.element));
   }
 
   function buildControls({ controls: all = [] }) {
@@ -70,16 +74,20 @@ function createPlots(session) {
     for (const { key, button } of buttons) button.setAttribute("aria-pressed", String(Boolean(state[key])));
     for (const [name, frame] of frames) frame.element.hidden = !state[`plots.show.${name}`];
     const anyOpen = [...frames.keys()].some((name) => state[`plots.show.${name}`]);
-    row.hidden = splitter.hidden = shared.hidden = legend.hidden = !anyOpen;
+    area.hidden = splitter.hidden = shared.hidden = legend.hidden = !anyOpen;
     element.classList.toggle("closed", !anyOpen);
     for (const [control, parts] of controls) {
       if (names.has(control.name)) parts.show(state[control.name]);
-      parts.row.hidden = !isWanted(control, state);
+      // What means nothing now keeps its place, so that the plots do not move
+      const idle = !isWanted(control, state);
+      parts.row.classList.toggle("idle", idle);
+      for (const input of parts.row.querySelectorAll("input, select")) input.disabled = idle;
     }
     if (names.has("plots.selection")) {
       const none = !state["plots.selection"]?.length;
       selection.element.hidden = none;
-      if (none) frames.forEach(({ plot }) => (plot.selection = null));
+      if (!none) selection.wait();
+      else frames.forEach(({ plot }) => (plot.selection = null));
     }
     if ([...names].some((name) => name.startsWith("plots."))) frames.forEach(({ plot }) => plot.draw());
   }

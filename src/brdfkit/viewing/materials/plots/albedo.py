@@ -54,7 +54,8 @@ def arrange_albedos(
 ) -> dict[str, Any]:
     """Return the albedo plot of curves, in the channels that are shown."""
     lines = [{**own, "values": settings.pick(own["values"]).T} for _, own in curves]
-    return {"lines": lines}
+    channel = "RGB" if settings.channel == "each" else settings.channel
+    return {"lines": lines, "channel": channel}
 
 
 def describe_albedos(curves: list[Curve], content: dict[str, Any]) -> str:
@@ -65,4 +66,4 @@ def describe_albedos(curves: list[Curve], content: dict[str, Any]) -> str:
         at = [THETA_I.index(angle) for angle in (5.0, 45.0, 75.0)]
         words = [f"{mean[k]:.3g} at {THETA_I[k]:g}°" for k in at if line["known"][k]]
         parts.append(f"{curve.name}: " + (", ".join(words) or "not measured"))
-    return "Albedo. " + "; ".join(parts)
+    return f"Albedo, {content['channel']}. " + "; ".join(parts)

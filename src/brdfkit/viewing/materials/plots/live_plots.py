@@ -112,7 +112,8 @@ class LivePlots:
             "type": "plot",
             "plot": name,
             "curves": [
-                {"name": c.name, "colour": c.colour, "measured": c.is_measured} for c in curves
+                {"name": c.name, "colour": c.colour, "measured": c.is_measured, "twin": c.twin}
+                for c in curves
             ],
         }
         try:

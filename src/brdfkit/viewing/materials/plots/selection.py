@@ -99,7 +99,8 @@ def arrange_selection(
     shown = [settings.pick_one(own) for own in values]
     least = LEAST_RATIO * max((float(own.max()) for own in shown if own.size), default=1.0)
     ratios = [np.maximum(own, least) / np.maximum(shown[0], least) for own in shown]
-    worst = np.argsort(-np.abs(np.log(ratios[-1])), kind="stable")[:MOST_ROWS]
+    model = ratios[min(1, len(ratios) - 1)]  # that is shown; pins follow
+    worst = np.argsort(-np.abs(np.log(model)), kind="stable")[:MOST_ROWS]
     marked = np.arange(len(wi))[:: -(-len(wi) // MOST_MARKS) or 1]
     return {
         "count": count,
@@ -109,7 +110,7 @@ def arrange_selection(
             {
                 "angles": [round(float(coordinates[name][k]), 1) for name in COORDINATES[:4]],
                 "colours": [own[k].tolist() for own in colours],
-                "ratio": float(ratios[-1][k]),
+                "ratio": float(model[k]),
             }
             for k in worst
         ],

@@ -63,14 +63,14 @@ def make_cells() -> tuple[FloatArray, FloatArray]:
 def arrange_slices(
     curves: list[tuple[Curve, dict[str, FloatArray]]], settings: PlotSettings
 ) -> dict[str, Any]:
-    """Return the panels of the plot: a slice of each material, and the models' ratios to the data.
+    """Return the panels of the plot: the data, the shown model, and its ratio to the data.
 
-    Ratios are logarithms to base 2.
+    Pins are left out, for which there is no room. Ratios are logarithms to base 2.
     """
-    shown = [(curve, settings.pick_one(own["values"]), own["known"]) for curve, own in curves]
+    shown = [(curve, settings.pick_one(own["values"]), own["known"]) for curve, own in curves[:2]]
     _, first, known = shown[0]
     low, high = find_range(first[known] if known.any() else first)
-    panels = [make_panel(curve.name, "value", values, known) for curve, values, known in shown[:2]]
+    panels = [make_panel(curve.name, "value", values, known) for curve, values, known in shown]
     if shown[0][0].is_measured:
         for curve, values, _ in shown[1:]:
             ratio = np.log2(np.maximum(values, FLOOR * low) / np.maximum(first, FLOOR * low))
