@@ -69,7 +69,12 @@ function createSelection(session) {
   const element = make("section", { class: "plot-frame selection", "aria-label": "Selection", hidden: true },
     make("header", {}, make("h3", {}, "Selection"), make("div", { class: "plot-buttons" }, close)), body);
 
-  function show({ text, count, names, medians, ratios, rows, curves }) {
+  let last = null; // the content that was shown last, and of which selection it is
+  const write = () => JSON.stringify(session.state["plots.selection"]);
+
+  function show(content) {
+    const { text, count, names, medians, ratios, rows, curves } = content;
+    last = { content, selection: write() };
     const ranges = make("p", {}, writeSelection(session.state["plots.selection"] || []));
     if (!rows?.length) {
       body.replaceChildren(ranges, make("p", {}, text));
@@ -87,8 +92,12 @@ function createSelection(session) {
     const order = several ? `Farthest first, by ${names[1]} ${quotient}:` : "Samples:";
     body.replaceChildren(ranges, make("p", {}, what), summary, make("p", { class: "soft" }, order), list);
   }
-  /** Show what is selected, until its numbers come. */
+  /** Show what is selected, until its numbers come; Python does not send again what it sent last. */
   function wait() {
+    if (last?.selection === write()) {
+      show(last.content);
+      return;
+    }
     body.replaceChildren(make("p", {}, writeSelection(session.state["plots.selection"])), make("p", { class: "soft" }, "Loading…"));
   }
   return { element, show, wait };
