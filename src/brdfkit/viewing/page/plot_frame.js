@@ -206,6 +206,7 @@ function followPlotPointer(plot, surface, kind, zoomBy, reset) {
 function selectPlaces(plot, kind, from, to) {
   const changes = kind.select?.(from, to, plot);
   if (changes) plot.session.change(changes);
+  plot.canvas.closest(".plot-frame").scrollIntoView({ block: "nearest" }); // which the list of numbers may move
   plot.draw();
 }
 
