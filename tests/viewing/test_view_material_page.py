@@ -176,6 +176,12 @@ def test_both_sides_are_compared_and_enlarged_in_step(page):
     expect(names).to_have_text(["ggx"])
     page.keyboard.up("x")
     expect(names).to_have_text(["car_paint"])
+    for focus in ("label:has-text('channels linked') input", "summary", "body"):
+        page.locator(focus).first.evaluate("(own) => (document.activeElement.blur(), own.focus())")
+        page.keyboard.down("x")
+        expect(names).to_have_text(["ggx"])
+        page.keyboard.up("x")
+        expect(names).to_have_text(["car_paint"])
     page.emulate_media(reduced_motion="no-preference")
     choose(page, "Compare", "ΔE map")
     expect(page.locator(".scale")).to_contain_text("95 % below")
@@ -189,6 +195,32 @@ def test_both_sides_are_compared_and_enlarged_in_step(page):
     page.keyboard.press("0")
     expect(page.locator(".scale")).to_be_visible()
     assert np.abs(pixels(page) - whole).mean() < 5
+
+
+def test_the_colours_under_the_pointer_are_those_of_the_picture(page):
+    value = page.locator(".status .value")
+    page.mouse.move(200, 200)  # beside the wipe
+    expect(value).to_contain_text("RGB of car_paint")
+    before = value.inner_text()
+    page.locator(".stage").focus()
+    page.keyboard.press("ArrowLeft")
+    expect(value).not_to_have_text(before)
+    page.get_by_role("button", name="Undo").hover()
+    expect(value).to_have_text("")
+
+
+def test_an_error_stands_below_the_labels_until_the_next_action(page):
+    box = page.get_by_role("combobox", name="Model", exact=True)
+    box.fill("gxx")
+    box.press("Enter")
+    notice = page.get_by_role("alert")
+    top = notice.bounding_box()["y"]
+    for label in page.locator(".side:visible").all():
+        below = label.bounding_box()
+        assert below["y"] + below["height"] <= top
+    type_number(page, "α_u", 0.3)
+    expect(notice).to_have_count(0)
+    expect(page.get_by_role("button", name="Picture on the whole screen")).to_be_visible()
 
 
 def test_a_fit_moves_and_marks_the_sliders_and_shows_errors(page):

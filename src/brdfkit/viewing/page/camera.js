@@ -151,9 +151,11 @@ function makeViewButtons(session, stage, moves) {
   const full = makeButton("⤢", () => switchFullScreen(stage), {
     "aria-label": "Picture on the whole screen", title: "Picture on the whole screen (f)",
   });
-  const row = make("div", { class: "views", role: "group", "aria-label": "View from", hidden: true });
+  const row = make("div", { class: "views", role: "group" });
   session.on("open", ({ volume }) => {
-    row.hidden = !hasCamera(session);
+    const whole = document.fullscreenEnabled ? [full] : [];
+    row.setAttribute("aria-label", hasCamera(session) ? "View from" : "View");
+    if (!hasCamera(session)) return row.replaceChildren(...whole);
     const buttons = listViews(volume?.axes).map(([name, azimuth, elevation, side], k) => {
       const label = side ? `${name}: view from the patient's ${side}` : `${name}: view from this side`;
       const onclick = () => session.change(moves.look(azimuth, elevation));
@@ -162,7 +164,7 @@ function makeViewButtons(session, stage, moves) {
     const home = makeButton("⌂", () => session.change(moves.home()), {
       "aria-label": "View as at the start", title: "View as at the start (r)",
     });
-    row.replaceChildren(...buttons, home, ...(document.fullscreenEnabled ? [full] : []));
+    return row.replaceChildren(...buttons, home, ...whole);
   });
   return row;
 }

@@ -69,7 +69,7 @@ function drawPart(context, bitmap, { area, place }, sharp) {
  *
  * `turn(side)` is the side to be shown in place of another one.
  */
-function createTurns(session, stage) {
+function createTurns(session) {
   const still = window.matchMedia("(prefers-reduced-motion: reduce)");
   let odd = false; // of the turns by time
   let held = false; // the key
@@ -85,8 +85,8 @@ function createTurns(session, stage) {
     held = wanted;
     session.emit("redraw");
   }
-  stage.addEventListener("keyup", ({ key }) => key.toLowerCase() === "x" && hold(false));
-  stage.addEventListener("blur", () => hold(false));
+  const release = ({ type, key }) => (type === "blur" || key.toLowerCase() === "x") && hold(false);
+  for (const type of ["keyup", "blur"]) window.addEventListener(type, release);
   return {
     turn: (side) => (side < 2 && odd !== held ? 1 - side : side),
     key: (event) => {
@@ -94,7 +94,10 @@ function createTurns(session, stage) {
       hold(true);
       return true;
     },
-    stop: () => clearInterval(timer),
+    stop: () => {
+      clearInterval(timer);
+      for (const type of ["keyup", "blur"]) window.removeEventListener(type, release);
+    },
   };
 }
 

@@ -20,7 +20,8 @@ function uses(session, part) {
  * `state` holds the value of each name; `description` is Python's last "open" message, with the
  * controls of a later "controls" message. Parts of
  * the page listen with `on(type, listener)` to the messages of Python by their type, and to
- * "state", which carries the set of names that have changed, whoever changed them.
+ * "state", which carries the set of names that have changed, whoever changed them. "sent" carries
+ * each message to Python.
  */
 function createSession(model) {
   const session = { model, state: {}, description: null };
@@ -32,7 +33,10 @@ function createSession(model) {
   session.emit = (type, ...details) => {
     for (const listener of listeners.get(type) || []) listener(...details);
   };
-  session.send = (content, buffers) => model.send(content, undefined, buffers);
+  session.send = (content, buffers) => {
+    model.send(content, undefined, buffers);
+    session.emit("sent", content);
+  };
   const edits = createEdits(session);
 
   function receive(content, buffers = []) {

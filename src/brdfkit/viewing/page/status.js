@@ -1,4 +1,9 @@
-// The status line, and the notices that stand over the picture until they are closed.
+// The status line, and the notices that stand over the picture until the next action.
+
+// Types of messages to Python that are no action of the user's, or none that an error is about
+const NO_ACTIONS = new Set([
+  "hello", "shown", "probe", "probe_slice", "resize", "visible", "pause", "cancel", "audit", "errors",
+]);
 
 /** Write the size of a volume: 256 × 256 × 128 voxels of 0.8 × 0.8 × 1.6 mm. */
 function writeVolume({ size, spacing, unit }) {
@@ -47,7 +52,13 @@ function createStatus(session) {
     samples.textContent = statistics;
     say();
   });
-  session.on("probe", ({ text }) => (value.textContent = text || ""));
+  let asks = false; // not after the pointer has left, when an answer may still come
+  session.on("sent", ({ type }) => (asks = asks || type.startsWith("probe")));
+  session.on("left", () => {
+    asks = false;
+    value.textContent = "";
+  });
+  session.on("probe", ({ text }) => asks && (value.textContent = text || ""));
   session.on("busy", ({ text, fraction, can_cancel }) => {
     busy = text || "";
     bar.hidden = !busy;
@@ -60,7 +71,7 @@ function createStatus(session) {
   return make("div", { class: "status" }, size, samples, message, bar, cancel, value);
 }
 
-/** Put notices on the stage: errors, which are closed, and the loss of the connection. */
+/** Put notices on the stage: errors, until the next action, and the loss of the connection. */
 function createNotices(session, stage) {
   const notices = make("div", { class: "notices" });
   stage.append(notices);
@@ -77,11 +88,19 @@ function createNotices(session, stage) {
     notices.replaceChildren();
     stage.focus(); // which the button had, and would lose
   }
-  session.on("error", ({ text }) => show(text, makeButton("Close", close)));
+  let passes = false; // at the next action
+  session.on("error", ({ text }) => {
+    show(text, makeButton("Close", close));
+    passes = true;
+  });
+  session.on("sent", ({ type, moving }) => {
+    if (passes && !moving && !NO_ACTIONS.has(type)) notices.replaceChildren();
+  });
   session.on("open", () => notices.replaceChildren());
   session.on("lost", () => {
     const { reconnect } = session.model;
     const buttons = reconnect ? [makeButton("Reconnect", () => reconnect(), { class: "main" })] : [];
     show("The connection to Python is lost.", ...buttons);
+    passes = false;
   });
 }

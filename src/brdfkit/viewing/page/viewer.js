@@ -1,9 +1,16 @@
 // The viewer: puts the parts together, and connects them to a model of anywidget's kind.
 
+/** Return whether a key means nothing to the control that receives it, so that the picture may. */
+function isFree(event) {
+  const { key, target, defaultPrevented } = event;
+  const takesLetters = takesText(target) || target.closest("select, dialog, [role=application]:not(.stage)");
+  return /^[a-z]$/.test(key) && !takesLetters && !defaultPrevented;
+}
+
 /** Do what a key means to the whole viewer; the picture's own keys come first. */
 function listenForKeys(session, root, stage, { pictureKeys, moveCross, switchWipe, help }) {
-  stage.addEventListener("keydown", (event) => {
-    if (event.target !== stage) return;
+  root.addEventListener("keydown", (event) => {
+    if (event.target !== stage && !isFree(event)) return;
     const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
     if (pictureKeys.some((key) => key(event))) event.preventDefault();
     else if (plain && event.key === " ") {
@@ -24,25 +31,46 @@ function listenForKeys(session, root, stage, { pictureKeys, moveCross, switchWip
   root.addEventListener("keydown", (event) => event.stopPropagation());
 }
 
-/** Ask for the value under the pointer while it is over the picture and no button is pressed. */
-function probePicture(stage, picture, probe) {
+/**
+ * Ask for the value under the pointer while it is over the picture and no button is pressed.
+ *
+ * A new picture of a material has other values there, so that they are asked for again.
+ */
+function probePicture(session, stage, picture, probe) {
+  let question = null; // about where the pointer is
+  function leave() {
+    question = null;
+    probe(null);
+    session.emit("left");
+  }
   stage.addEventListener("pointermove", (event) => {
-    if (event.buttons || event.target !== stage) return;
     const [x, y] = picture.locate(event);
-    if (x >= 0 && x <= 1 && y >= 0 && y <= 1) probe({ type: "probe", x, y });
+    const inside = event.target === stage && x >= 0 && x <= 1 && y >= 0 && y <= 1;
+    if (!inside) return leave();
+    question = { type: "probe", x, y };
+    if (!event.buttons) probe(question);
   });
+  stage.addEventListener("pointerleave", leave);
+  session.on("picture", () => question && uses(session, "light") && probe(question));
 }
 
 /**
- * Give the picture the focus that nothing else has, so that its keys work: only in the server's
- * page, since a notebook has other things to focus.
+ * Give the picture the focus that nothing else has, and the keys of nothing, so that they work: only
+ * in the server's page, since a notebook has other things to focus. Returns a function that ends it.
  */
 function keepFocus(session, root, stage) {
   const take = () => {
     if (document.activeElement === document.body) stage.focus({ preventScroll: true, focusVisible: false });
   };
+  function pass(event) {
+    if (event.target !== document.body || root.querySelector("dialog[open]")) return;
+    take();
+    if (!stage.dispatchEvent(new KeyboardEvent("keydown", event))) event.preventDefault();
+  }
   session.on("open", take);
   root.addEventListener("click", take);
+  document.addEventListener("keydown", pass);
+  return () => document.removeEventListener("keydown", pass);
 }
 
 /** Tell the parts that draw on canvases when the colours of the style sheet change. */
@@ -78,7 +106,7 @@ function render({ model, el }) {
   const help = () => showHelp(session, root);
   const probe = makeProbe(session);
 
-  const turns = createTurns(session, stage);
+  const turns = createTurns(session);
   const picture = createPicture(session, stage, turns);
   createOverlay(session, stage);
   createPreparation(session, stage, picture);
@@ -93,7 +121,7 @@ function render({ model, el }) {
   stage.append(makeViewButtons(session, stage, moves));
   createBallHandle(session, stage, picture);
   createNotices(session, stage);
-  probePicture(stage, picture, probe);
+  probePicture(session, stage, picture, probe);
 
   const slices = createSlices(session, probe);
   const transfer = createTransferEditor(session);
@@ -121,7 +149,6 @@ function render({ model, el }) {
     pictureKeys: [makeCameraKeys(session, moves), paint.key, makeLightKeys(session), zoomKey, turns.key],
     moveCross: makeCrossKey(session), switchWipe: makeWipeSwitch(session), help,
   });
-  if (model.address) keepFocus(session, root, stage);
   session.on("redraw", picture.draw);
   session.on("file", download);
   session.on("text", (content) => showText(root, content));
@@ -134,7 +161,8 @@ function render({ model, el }) {
 
   const stops = [
     watchSize(session, stage, find, picture.draw), watchVisibility(session, stage),
-    watchTheme(session), turns.stop, slices.stop, transfer.stop, plots.stop, model.address ? keepAddress(session) : () => {},
+    watchTheme(session), turns.stop, slices.stop, transfer.stop, plots.stop,
+    ...(model.address ? [keepAddress(session), keepFocus(session, root, stage)] : []),
   ];
   return () => {
     stops.forEach((stop) => stop());
