@@ -23,6 +23,12 @@ function makeScale({ low = 0, high = 1, step, log }) {
   return { low: 0, high: values.length - 1, step: 1, toPlace, toValue: (place) => values[place] };
 }
 
+/** Return the number in a box for numbers alone, or null while it is not one that the box allows. */
+function readNumber(box) {
+  const { badInput, rangeOverflow, rangeUnderflow } = box.validity;
+  return box.value === "" || badInput || rangeOverflow || rangeUnderflow ? null : Number(box.value);
+}
+
 /** Make a slider with a number box; both change `control.name` in the session. */
 function makeSlider(session, control, scale = makeScale(control)) {
   const { name, label, unit = "" } = control;

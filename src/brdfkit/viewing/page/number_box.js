@@ -6,7 +6,7 @@ function chooseStep(low, high) {
 }
 
 /** Return the number that a text says, with a decimal point or comma, or null if it says none. */
-function readNumber(text) {
+function parseNumber(text) {
   const plain = text.trim().replace(",", ".").replace("−", "-");
   const number = Number(plain);
   return /^[-+.\d]/.test(plain) && Number.isFinite(number) ? number : null;
@@ -29,11 +29,11 @@ function makeNumberBox(session, { name, label, low, high, step, log, unit = "" }
 
   box.addEventListener("input", () => {
     note.textContent = "";
-    const value = readNumber(box.value);
+    const value = parseNumber(box.value);
     if (value !== null && value === clamp(value, low, high)) session.nudge({ [name]: value });
   });
   box.addEventListener("change", () => {
-    const value = readNumber(box.value);
+    const value = parseNumber(box.value);
     const text = box.value.trim();
     const allowed = value === null ? null : clamp(value, low, high);
     if (allowed !== null && allowed !== value) session.nudge({ [name]: allowed });
@@ -60,7 +60,7 @@ function makeNumberBox(session, { name, label, low, high, step, log, unit = "" }
 
   /** Return whether the box shows the value, perhaps in other words. */
   function isCommitted() {
-    const value = readNumber(box.value);
+    const value = parseNumber(box.value);
     return value === session.state[name] || value === roundNumber(session.state[name]);
   }
 
@@ -69,7 +69,7 @@ function makeNumberBox(session, { name, label, low, high, step, log, unit = "" }
     if (value !== last) note.textContent = "";
     last = value;
     box.setAttribute("aria-valuenow", roundNumber(value));
-    const typing = box.matches(":focus") && readNumber(box.value) === value;
+    const typing = box.matches(":focus") && parseNumber(box.value) === value;
     if (!typing) write();
   }
   return { box, note, show };
