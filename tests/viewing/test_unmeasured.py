@@ -51,6 +51,12 @@ def test_the_rim_of_the_ball_is_hatched_and_what_the_lamp_grazes(module_in_llvm,
 
 
 @pytest.mark.quick
+def test_a_model_alone_has_nothing_to_hatch():
+    view = MaterialApplication("ggx")
+    assert view.find_unmeasured(view.first, (64, 64)) is None
+
+
+@pytest.mark.quick
 def test_stripes_are_where_the_mask_is_and_seen_on_every_colour():
     mask = np.zeros((40, 80), bool)
     mask[:, 40:] = True

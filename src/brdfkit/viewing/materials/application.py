@@ -211,7 +211,8 @@ class MaterialApplication:
 
     def find_unmeasured(self, state: State, size: tuple[int, int]) -> AnyArray | None:
         """Return where a picture shows what was not measured (height, width), if it shall tell."""
-        return self.masks.find_unmeasured(state, size) if state["show.unmeasured"] else None
+        shall = state.get("show.unmeasured")  # which a model alone does not have
+        return self.masks.find_unmeasured(state, size) if shall else None
 
     def _find_side(self, state: State, side: int) -> tuple[str, Any]:
         """Return a key of the material at a side, and the material."""
