@@ -26,7 +26,7 @@ REGIONS = (
     (10.0, "beside the highlight, at θh 10° to 30°"),
     (30.0, "far from the highlight, at θh above 30°"),
 )
-MOST = 64  # models whose errors are kept
+KEPT = 64  # models whose errors are kept
 
 
 class BlockErrors:
@@ -72,7 +72,7 @@ class BlockErrors:
     def compute(self, model: Model) -> dict[str, FloatArray]:
         """Return the parts (blocks,) of a model's E² under each loss; nan where none counts."""
         if model not in self.kept:
-            self.kept = dict(list(self.kept.items())[1 - MOST :])
+            self.kept = dict(list(self.kept.items())[1 - KEPT :])
             self.kept[model] = self._compute(model)
         return self.kept[model]
 

@@ -21,9 +21,9 @@ from brdfkit.viewing.materials.plots.settings import PlotSettings
 # Angles of a pair of directions [degrees]. "view" is θo, negative on the light's side; "plane" is
 # the angle between the plane of the view and that of the light, 0 to 180
 COORDINATES = "theta_i", "theta_o", "theta_h", "theta_d", "view", "plane", "phi_i"
-MOST_EVALUATED = 2000  # pairs at which models are evaluated
-MOST_MARKS = 60  # pairs that are marked in the plots
-MOST_ROWS = 30  # pairs whose numbers are listed, those with the largest ratios
+LARGEST_SAMPLE = 2000  # pairs at which models are evaluated
+LARGEST_MARKS = 60  # pairs that are marked in the plots
+LARGEST_LIST = 30  # pairs whose numbers are listed, those with the largest ratios
 LEAST_RATIO = 1e-3  # smallest value in a ratio, over the largest selected one
 
 
@@ -53,7 +53,7 @@ def find_within(
 def select_pairs(material: Any, settings: PlotSettings) -> dict[str, Any]:
     """Return the selected samples of a measurement: "wi", "wo" (n, 3), "values" (n, channels).
 
-    At most `MOST_EVALUATED` of them, evenly chosen; "count" tells how many there are. Of a model,
+    At most `LARGEST_SAMPLE` of them, evenly chosen; "count" tells how many there are. Of a model,
     nothing.
     """
     if not isinstance(material, Measured):
@@ -63,7 +63,7 @@ def select_pairs(material: Any, settings: PlotSettings) -> dict[str, Any]:
     coordinates = compute_coordinates(samples.wi[rows], samples.wo[rows])
     coordinates["value"] = settings.pick_one(samples.values[rows])
     rows = rows[find_within(settings.selection, coordinates)]
-    shown = rows[:: -(-len(rows) // MOST_EVALUATED) or 1]
+    shown = rows[:: -(-len(rows) // LARGEST_SAMPLE) or 1]
     return {
         "count": len(rows),
         "wi": samples.wi[shown],
@@ -100,8 +100,8 @@ def arrange_selection(
     least = LEAST_RATIO * max((float(own.max()) for own in shown if own.size), default=1.0)
     ratios = [np.maximum(own, least) / np.maximum(shown[0], least) for own in shown]
     model = ratios[min(1, len(ratios) - 1)]  # that is shown; pins follow
-    worst = np.argsort(-np.abs(np.log(model)), kind="stable")[:MOST_ROWS]
-    marked = np.arange(len(wi))[:: -(-len(wi) // MOST_MARKS) or 1]
+    worst = np.argsort(-np.abs(np.log(model)), kind="stable")[:LARGEST_LIST]
+    marked = np.arange(len(wi))[:: -(-len(wi) // LARGEST_MARKS) or 1]
     return {
         "count": count,
         "medians": [_median(own) for own in colours],
