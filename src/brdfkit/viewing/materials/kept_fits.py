@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from brdfkit.regression import Fit
 
-MOST = 32  # fits that are kept
+LARGEST_COUNT = 32  # fits that are kept
 
 
 @dataclass
@@ -19,7 +19,7 @@ class KeptFits:
     """
 
     latest: dict[str, Fit] = field(default_factory=dict)
-    all: deque[tuple[str, Fit]] = field(default_factory=lambda: deque(maxlen=MOST))
+    all: deque[tuple[str, Fit]] = field(default_factory=lambda: deque(maxlen=LARGEST_COUNT))
 
     def keep(self, label: str, fit: Fit) -> None:
         """Make a fit the one of its model."""
