@@ -185,7 +185,8 @@ def test_the_application_at_a_small_size(monkeypatch):
             same,
             "not confirmed",
         ]
-        monkeypatch.setattr(application, "PARTS", {"camera": ({}, application.RENDERERS)})
+        beside = {"show.slices": True}  # which the same samples are drawn with
+        monkeypatch.setattr(application, "PARTS", {"camera": (beside, application.RENDERERS)})
 
 
 @pytest.mark.quick
