@@ -38,7 +38,7 @@ NOTES = """
 - **256², 512²**: pictures a second while the camera turns, the median of 12, or of as many as take
   15 seconds. brdfkit's are rendered, tone-mapped and encoded; the others' are drawn and read back.
 - **In brackets**: CPU time of all cores, for a picture or until the first one. It is the fairer
-  figure where other programs run on the same machine, as they did{busy}.
+  figure where other programs run on the same machine. Here {busy}.
 - **PSNR** over the cases of emission and absorption of the
   [conformance set](../data/conformance/README.md), and in the worst of them: 10 log₁₀(1 / MSE)
   against exact pictures. [The same volume in every program](volume_programs.md) says where errors
@@ -55,7 +55,9 @@ def write_page(found: dict, side: int) -> None:
     rows = [format_row(*row, found[row]) for row in ROWS]
     lines = [HEAD, ["---"] * len(HEAD), *rows]
     table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
-    notes = NOTES.format(busy=f": {os.getloadavg()[2]:.0f} wanted to run at a time")
+    load = os.getloadavg()[2]
+    busy = "no other did" if load < 1.5 else f"{load:.0f} wanted to run at a time"
+    notes = NOTES.format(busy=busy)
     machine = f" on {platform.machine()} with {count_cores()} cores"
     PAGE.write_text(
         INTRODUCTION.format(side=side, machine=machine) + table + notes, encoding="utf-8"
