@@ -92,7 +92,7 @@ class LiveVolume:
                 voxels[..., 1] = self.volume.gradient_magnitude
             described = {
                 "type": "gridvolume",
-                "grid": mi.VolumeGrid(voxels),
+                "data": mi.TensorXf(voxels),
                 "raw": True,
                 "filter_type": "nearest" if self.volume.labels else "trilinear",
                 "to_world": mi.ScalarTransform4f(self.volume.cube_to_world.tolist()),
