@@ -15,15 +15,17 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.core.geometry.latitude_rows import solid_angles
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.filtering import paraboloid_levels as levels
-from brdfkit.lighting.filtering.filtered_light import filter_irradiance
 from brdfkit.lighting.filtering.filtered_map import (
     FilteredMap,
     LobeMaps,
     Mips,
+    make_finest_level,
     make_latlong_picture,
 )
+from brdfkit.lighting.filtering.light_filtering import filter_irradiance
 from brdfkit.lighting.filtering.lobe_light import LobeLight
 from brdfkit.lighting.filtering.scene_bsdfs import (
+    find_period,
     has_separate_diffuse_part,
     is_isotropic,
     is_uniform_over_surface,
@@ -49,6 +51,11 @@ def sky(w):
     waves = np.sin(5 * w[:, 1]) * np.cos(4 * w[:, 2] + np.sin(6 * w[:, 0]))
     grey = 1 + 0.4 * np.tanh(10 * w[:, 2]) + lamp
     return np.stack([grey, grey + 0.5 * waves, 0.8 * grey - 0.3 * waves], axis=-1)
+
+
+def filter_sky(kind):
+    """The filtered sky, of one of both kinds."""
+    return kind(kind.make_levels(make_finest_level(sky, SIDE), make_latlong_picture(sky, SIDE)))
 
 
 def quadrature(axes, kernel, height=256):
@@ -120,7 +127,7 @@ def test_a_look_up_is_the_mean_over_the_lobe(module_in_llvm):
     """Of the root mean square within 1 % at the κ of a level, and 2 % halfway between two; the mips
     of graphics hardware are off by tens of per cent."""
     mi = module_in_llvm
-    found = LobeMaps(sky, make_latlong_picture(sky, SIDE))
+    found = filter_sky(LobeMaps)
     w = axes()
     direction = mi.Vector3f(w.T.astype(np.float32))
     for level, tolerance in ((2, 0.01), (3.5, 0.02), (8, 0.01), (9.5, 0.02), (12, 0.01)):
@@ -130,7 +137,7 @@ def test_a_look_up_is_the_mean_over_the_lobe(module_in_llvm):
             error(np.array(found.mean_over_lobe(direction, mi.Float(kappa))).T, expected)
             < tolerance
         )
-    mips = Mips(sky, make_latlong_picture(sky, SIDE))
+    mips = filter_sky(Mips)
     assert error(np.array(mips.mean_over_lobe(direction, mi.Float(kappa))).T, expected) > 0.1
     sharp = np.array(found.mean_over_lobe(direction, mi.Float(np.inf))).T
     np.testing.assert_allclose(
@@ -150,7 +157,7 @@ def test_irradiance_is_that_of_the_quadrature(module_in_llvm):
 def test_levels_meet_at_the_rim(module_in_llvm):
     """Just above and just below the plane z = 0, where one disc ends and the other begins."""
     mi = module_in_llvm
-    found = LobeMaps(sky, make_latlong_picture(sky, SIDE))
+    found = filter_sky(LobeMaps)
     phi = np.linspace(0, 2 * np.pi, 50)
     above, below = (
         mi.Vector3f(from_angles(np.pi / 2 - tilt, phi).T.astype(np.float32))
@@ -244,18 +251,19 @@ def test_it_follows_the_light_and_the_material(llvm_variant):
 @pytest.mark.quick
 def test_what_is_told_apart(llvm_variant):
     mi = llvm_variant
-    for entries, matte, even in (
-        (WARD, True, True),
-        (TURNED, True, False),
-        ({"type": "twosided", "inside": WARD}, True, True),
-        ({"type": "ward", "alpha_u": 0.005, "alpha_v": 0.006}, True, False),
-        ({"type": "oren_nayar"}, False, True),
-        ({"type": "principled"}, False, True),
-        ({"type": "conductor"}, False, True),
+    for entries, matte, period in (
+        (WARD, True, 0),
+        (TURNED, True, np.pi),
+        ({"type": "twosided", "inside": WARD}, True, 0),
+        ({"type": "ward", "alpha_u": 0.005, "alpha_v": 0.006}, True, np.pi),
+        ({"type": "oren_nayar"}, False, 0),
+        ({"type": "principled"}, False, 0),
+        ({"type": "conductor"}, False, 0),
     ):
         bsdf = mi.load_dict(entries)
         assert has_separate_diffuse_part(bsdf) == matte, entries
-        assert is_isotropic(bsdf) == even, entries
+        assert find_period(bsdf) == period, entries
+        assert is_isotropic(bsdf) == (period == 0), entries
 
 
 LAMP = {"type": "point", "position": [0, -5, 0]}
@@ -283,12 +291,19 @@ def test_what_it_cannot_light_is_said(llvm_variant, light, more, settings, varia
 
 
 @pytest.mark.parametrize(
-    ("bsdf", "alike"),
-    [(WARD, 42), ({"type": "twosided", "bsdf": TURNED}, 38), ({"type": "principled"}, 42)],
+    ("bsdf", "period", "alike"),
+    [
+        (WARD, 0, 42),
+        ({"type": "twosided", "bsdf": TURNED}, np.pi, 38),
+        ({"type": "twosided", "bsdf": TURNED}, 2 * np.pi, 38),
+        ({"type": "principled"}, 0, 42),
+    ],
 )
-def test_directions_of_views_are_those_of_points(llvm_variant, monkeypatch, bsdf, alike):
+def test_directions_of_views_are_those_of_points(llvm_variant, monkeypatch, bsdf, period, alike):
     """Pictures by directions that are drawn once for a grid of views, and at each point; PSNR."""
     mi, module = llvm_variant, import_module("brdfkit.lighting.filtering.filtered_sampling")
+    stored = import_module("brdfkit.lighting.filtering.view_directions")
+    monkeypatch.setattr(stored, "find_period", lambda bsdf: period)
     light = make_example("kdtree_envmap")
     by_views = shown(scene(mi, ours(), bsdf, light), 4)
     monkeypatch.setattr(module, "is_uniform_over_surface", lambda bsdf: False)

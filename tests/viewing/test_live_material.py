@@ -1,5 +1,6 @@
 """Live materials, beside previews and renderings of the same materials; their kernels counted."""
 
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ import brdfkit as bk
 from brdfkit.model.labels import model as find_model
 from brdfkit.rendering.progressive import derive_seed
 from brdfkit.rendering.scenes._studio import BALL, TARGET
-from brdfkit.viewing.materials.live_light import LAMP, LiveLights
+from brdfkit.viewing.materials.live_light import LAMP, PICTURES_BEFORE, LiveLights
 from brdfkit.viewing.materials.live_material import LiveMaterial
 from brdfkit.viewing.materials.material_scene import PLANE, Look, SceneKind, make_studio_camera
 
@@ -82,6 +83,23 @@ def test_turning_the_light_is_turning_the_camera(lights):
     expected = np.mean([live.render(RESTING, STUDIO, s) for s in range(64)], axis=0)
     turned = np.mean([live.render(RESTING, Look(camera, 50.0), s) for s in range(64)], axis=0)
     assert turned.mean() == pytest.approx(expected.mean(), rel=0.01)
+
+
+def test_the_light_is_filtered_beside_the_first_pictures(lights):
+    """In a thread of its own; it may turn meanwhile."""
+    material, own = make_materials()["measured"], LiveLights()
+    live = LiveMaterial(material, own)
+    turned = replace(STUDIO, turn=30.0)
+    for seed in range(PICTURES_BEFORE):
+        assert not own.get("studio").is_filtered
+        live.render(RESTING, STUDIO, seed)
+    end = time.monotonic() + 60
+    while not own.get("studio").is_filtered and time.monotonic() < end:
+        live.render(RESTING, turned)
+    assert own.get("studio").noise_free.light.source is None  # nobody has waited for it
+    expected = LiveMaterial(material, lights).render(MOVING, turned)
+    assert live.render(MOVING, turned) == pytest.approx(expected, abs=2e-3)
+    assert own.get("studio").is_filtered
 
 
 def test_a_lamp_lights_the_plane(lights):

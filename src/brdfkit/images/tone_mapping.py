@@ -125,7 +125,10 @@ class ToneMapping:
         array([0.  , 0.25, 1.  ])
         """
         values = np.asarray(picture)
-        light = np.where(np.isfinite(values), np.maximum(self.exposure * values, 0), np.nan)
+        light = np.maximum(self.exposure * values, 0)
+        finite = np.isfinite(values)
+        if not finite.all():
+            light = np.where(finite, light, np.nan)
         highest = self.brightest_of(values) if brightest is None else brightest
         highest = max(self.exposure * highest, float(np.finfo(np.float32).tiny))
         curve = CURVES[self.curve]

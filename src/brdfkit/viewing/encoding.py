@@ -19,7 +19,8 @@ def to_bytes(linear: AnyArray) -> AnyArray:
 
 def to_bytes_quickly(linear: AnyArray) -> AnyArray:
     """Convert linear brightness, 0 to 1, to sRGB in 8 bits by a table, at most one level off."""
-    return SRGB_LEVELS[np.nan_to_num(linear * (LEVELS - 1) + 0.5).astype(np.uint16)]
+    codes = np.fmax(linear, 0) * (LEVELS - 1) + 0.5  # the number, also of nan and 0
+    return SRGB_LEVELS.take(codes.astype(np.intp))
 
 
 def encode_jpeg(colours: AnyArray) -> bytes:

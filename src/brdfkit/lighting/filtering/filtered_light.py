@@ -17,18 +17,10 @@ from brdfkit.core.array_types import (
     MitsubaObject,
 )
 from brdfkit.core.jit.padding import pad
-from brdfkit.lighting.filtering.filtered_map import (
-    FilteredMap,
-    LobeMaps,
-    Mips,
-    make_latlong_picture,
-)
-from brdfkit.lighting.filtering.paraboloid_levels import resample_to_discs
-from brdfkit.lighting.filtering.sphere_filter import convolve_on_sphere, halve_resolution
+from brdfkit.lighting.filtering.filtered_map import FilteredMap, LobeMaps, Mips
+from brdfkit.lighting.filtering.light_filtering import LightFiltering
 from brdfkit.mitsuba_bridge.arrays import Rows
 
-# texels along a side of the map of irradiance; few suffice, because it is smooth
-IRRADIANCE_SIDE = 64
 WAVELENGTHS = 96  # evenly spaced wavelengths at which an emitter is evaluated in spectral variants
 # number of directions drawn by an emitter that are tested for shadows of the irradiance
 LIGHT_DIRECTIONS = 256
@@ -49,7 +41,8 @@ class FilteredLight:
     """The light of an environment emitter, filtered for look-ups: means over lobes, and irradiance.
 
     `kind` is one of the classes in `FILTERS`, which store means over lobes, and `side` the size of
-    the filtered map's finest level [texels].
+    the filtered map's finest level [texels]. Who knows that the emitter never changes but turns
+    sets `only_turns`, so that a large map is not compared before every picture.
     """
 
     def __init__(self, kind: type[LobeMaps | Mips], side: int) -> None:
@@ -60,27 +53,68 @@ class FilteredLight:
         self.filtered_axes: FloatArray = np.eye(3)
         self.axes: FloatArray = np.eye(3)
         self.directions: LightDirections | None = None
+        self.only_turns = False
+        # What was begun before it is needed, and the axes of its emitter
+        self.begun: tuple[LightFiltering, tuple[MitsubaObject, bytes], FloatArray] | None = None
+
+    @property
+    def is_filtered(self) -> bool:
+        """Whether an emitter was filtered, or the thread that `begin` has started is at its end."""
+        return self.source is not None or (self.begun is not None and self.begun[0].done)
+
+    def begin(self, emitter: MitsubaObject) -> None:
+        """Begin to filter the first emitter in a thread, for `filter_if_changed`.
+
+        The emitter may turn meanwhile.
+        """
+        if self.source is None:
+            source, axes = self._describe_emitter(emitter)
+            filtering = LightFiltering(make_radiance_function(emitter), self.kind, self.side)
+            self.begun = filtering, source, axes
+            filtering.begin()
 
     def filter_if_changed(self, emitter: MitsubaObject) -> FilteredLight:
         """Filter the `emitter` unless it is unchanged since the last call; return this object.
 
         If it has only turned, look-ups are turned instead, without a new kernel.
         """
-        import mitsuba as mi
-
-        parameters = mi.traverse(emitter)
-        axes, source = _find_axes(parameters), (emitter, _digest_parameters(parameters))
-        turn = np.eye(3) if self.source is None else _find_turn(self.filtered_axes, axes)
+        source, axes = self._describe_emitter(emitter)
+        turn = _find_turn(self.filtered_axes, axes)
         if self.source != source or turn is None:
-            radiance = make_radiance_function(emitter)
-            picture = make_latlong_picture(radiance, self.side)
-            self.lobes = self.kind(radiance, picture)
-            self.irradiances = FilteredMap([filter_irradiance(picture)])
-            self.source, self.filtered_axes, turn = source, axes, np.eye(3)
+            filtering, before = self._find_filtering(source, axes)
+            levels, irradiance = filtering.finish()
+            self.lobes, self.irradiances = self.kind(levels), FilteredMap([irradiance])
+            self.source, self.filtered_axes, self.begun = source, before, None
+            turn = _find_turn(before, axes)
+            assert turn is not None, "it was begun with axes that are only turned by now"
             self._turn_look_ups(axes, turn)
         elif not np.array_equal(axes, self.axes):
             self._turn_look_ups(axes, turn)
         return self
+
+    def _describe_emitter(
+        self, emitter: MitsubaObject
+    ) -> tuple[tuple[MitsubaObject, bytes], FloatArray]:
+        """Return the emitter with a digest of its parameters, and its axes (3, 3)."""
+        import mitsuba as mi
+
+        parameters = mi.traverse(emitter)
+        digest = b"" if self.only_turns else _digest_parameters(parameters)
+        return (emitter, digest), _find_axes(parameters)
+
+    def _find_filtering(
+        self, source: tuple[MitsubaObject, bytes], axes: FloatArray
+    ) -> tuple[LightFiltering, FloatArray]:
+        """Return what was begun of an emitter, or begin now; and the emitter's axes at that time.
+
+        It was begun in vain if the emitter has done more than turn since.
+        """
+        if self.begun is not None:
+            filtering, begun, before = self.begun
+            if begun == source and _find_turn(before, axes) is not None:
+                return filtering, before
+        radiance = make_radiance_function(source[0])
+        return LightFiltering(radiance, self.kind, self.side), axes
 
     def _turn_look_ups(self, axes: FloatArray, turn: FloatArray) -> None:
         """Turn the directions of look-ups by a matrix (3, 3), for an emitter with these axes."""
@@ -134,18 +168,6 @@ class LightDirections:
 
         place = ray * self.per_ray + i
         return self.directions.at(place, mi.Vector3f), self.powers.at(place, mi.Color3f)
-
-
-def filter_irradiance(picture: FloatArray) -> FloatArray:
-    """Return a map of the irradiance divided by π for all normals, from a map of the radiance.
-
-    `picture` is (height, 2 height, channels) by latitude and longitude. The result is a pair of
-    discs (2, IRRADIANCE_SIDE, IRRADIANCE_SIDE, channels) as in `paraboloid_levels.py`.
-    """
-    while len(picture) > 4 * IRRADIANCE_SIDE:
-        picture = halve_resolution(picture)
-    irradiance = convolve_on_sphere(picture, lambda cos: np.maximum(cos, 0) / np.pi, np.pi / 2)
-    return resample_to_discs(irradiance, IRRADIANCE_SIDE)
 
 
 def make_radiance_function(emitter: MitsubaObject) -> Callable[[FloatArray], FloatArray]:

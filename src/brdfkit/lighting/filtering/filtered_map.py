@@ -1,8 +1,9 @@
 """Filtered environment maps in Mitsuba: the mean radiance over a lobe by one trilinear look-up.
 
-`LobeMaps` and `Mips` are made from the function `radiance`, which returns values (n, 3) for
-directions (n, 3), and from a `picture` of it by latitude and longitude. `mean_over_lobe` returns
-the mean radiance over the von Mises-Fisher lobe with an `axis` and the concentration `kappa`.
+`LobeMaps` and `Mips` are made of their levels. `make_levels` makes these in NumPy alone, in any
+thread: of the finest one, and of a `picture` of the light by latitude and longitude.
+`mean_over_lobe` returns the mean radiance over the von Mises-Fisher lobe with an `axis` and the
+concentration `kappa`.
 """
 
 import math
@@ -29,7 +30,7 @@ class FilteredMap:
     def __init__(self, levels: list[FloatArray]) -> None:
         sides = np.array([level.shape[1] for level in levels])
         starts = np.cumsum(2 * sides**2) - 2 * sides**2
-        texels = np.concatenate([level.reshape(-1, 3) for level in levels])
+        texels = np.concatenate([level.reshape(-1, 3).astype(np.float32) for level in levels])
         # A fourth channel is added, since a texel of four numbers is read by one memory access
         self.texels = Rows(np.pad(texels, ((0, 0), (0, 1))))
         self.places = Rows(np.stack([starts, sides], axis=1))
@@ -70,9 +71,14 @@ class Mips(FilteredMap):
     A lobe is looked up at the level that [Ergun 2015, eq. 8.9] gives.
     """
 
-    def __init__(self, radiance: Radiance, picture: FloatArray) -> None:
-        self.side = len(picture)
-        super().__init__(levels.make_mips(make_finest_level(radiance, self.side)))
+    def __init__(self, maps: list[FloatArray]) -> None:
+        self.side = maps[0].shape[1]
+        super().__init__(maps)
+
+    @staticmethod
+    def make_levels(finest: FloatArray, picture: FloatArray) -> list[FloatArray]:
+        """Return the levels (2, side, side, 3); they do not depend on the `picture`."""
+        return levels.make_mips(finest)
 
     def mean_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
         """Return the approximate mean radiance over a lobe of concentration `kappa`."""
@@ -82,12 +88,14 @@ class Mips(FilteredMap):
 class LobeMaps(FilteredMap):
     """A filtered map whose levels, after the map itself, are convolved with ever wider lobes."""
 
-    def __init__(self, radiance: Radiance, picture: FloatArray) -> None:
-        side = len(picture)
-        self.sharpest = levels.sharpest_kappa(side)
-        super().__init__(
-            [make_finest_level(radiance, side), *levels.convolve_with_lobes(picture, side)]
-        )
+    def __init__(self, maps: list[FloatArray]) -> None:
+        self.sharpest = levels.sharpest_kappa(maps[0].shape[1])
+        super().__init__(maps)
+
+    @staticmethod
+    def make_levels(finest: FloatArray, picture: FloatArray) -> list[FloatArray]:
+        """Return the levels (2, side, side, 3)."""
+        return [finest, *levels.convolve_with_lobes(picture, finest.shape[1])]
 
     def mean_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
         """Return the mean radiance over a von Mises-Fisher lobe of concentration `kappa`."""

@@ -93,8 +93,21 @@ def _list_children(parent: MitsubaObject) -> list[MitsubaObject]:
 
 def is_isotropic(bsdf: MitsubaObject) -> bool:
     """Return whether a BSDF is isotropic: unchanged if both directions turn about the normal."""
-    value, turned = eval_bsdf(bsdf, *PAIRS), eval_bsdf(bsdf, *rotate_z(PAIRS, 1.0))
-    return bool(np.abs(value - turned).max() <= TOLERANCE * value.max())
+    return find_period(bsdf) == 0
+
+
+def find_period(bsdf: MitsubaObject) -> float:
+    """Return the turn of both directions about the normal that leaves a BSDF unchanged [rad].
+
+    It is 0 for any turn, of an isotropic BSDF; π, as for an ellipse; or 2π.
+    """
+    turns = [PAIRS, rotate_z(PAIRS, 1.0), rotate_z(PAIRS, np.pi)]
+    values = eval_bsdf(bsdf, *np.concatenate(turns, axis=1))
+    value, turned, half_turned = np.split(values, len(turns))
+    for period, other in ((0.0, turned), (np.pi, half_turned)):
+        if np.abs(value - other).max() <= TOLERANCE * value.max():
+            return period
+    return 2 * np.pi
 
 
 def is_uniform_over_surface(bsdf: MitsubaObject) -> bool:

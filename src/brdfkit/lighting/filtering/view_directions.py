@@ -24,15 +24,16 @@ from brdfkit.core.geometry.vectors import reflect
 from brdfkit.lighting.filtering.bsdf_directions import Directions, split_off_constant
 from brdfkit.lighting.filtering.filtered_light import Light
 from brdfkit.lighting.filtering.scene_bsdfs import (
+    find_period,
     has_separate_diffuse_part,
-    is_isotropic,
     split_component_types,
 )
 from brdfkit.mitsuba_bridge.arrays import Rows, find_cell
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
-# Numbers of (polar angles, azimuths) of the views that are stored for a BSDF
-ISOTROPIC, ANISOTROPIC = (256, 1), (96, 64)
+# Numbers of (polar angles, azimuths) of the views that are stored for a BSDF, by the turn that
+# leaves it unchanged, within which the azimuths are
+GRIDS = {0.0: (256, 1), np.pi: (96, 32), 2 * np.pi: (96, 64)}
 ADJACENT = 5  # number of adjacent polar angles whose median weight replaces outliers
 
 
@@ -49,11 +50,13 @@ class ViewDirections:
 
         self.directions = directions
         self.has_back = mi.has_flag(bsdf.flags(), mi.BSDFFlags.BackSide)
-        angles, azimuths = ISOTROPIC if is_isotropic(bsdf) else ANISOTROPIC
-        views = _load_views(str(mi.variant()), angles, azimuths, self.has_back)
+        period = find_period(bsdf)
+        angles, azimuths = GRIDS[period]
+        views = _load_views(str(mi.variant()), period, self.has_back)
         self.angles, self.azimuths = mi.UInt32(angles), mi.UInt32(azimuths)
         self.angles_per_radian = mi.Float(2 / np.pi * angles)
-        dr.make_opaque(self.angles, self.azimuths, self.angles_per_radian)
+        self.period = mi.Float(period or 2 * np.pi)
+        dr.make_opaque(self.angles, self.azimuths, self.angles_per_radian, self.period)
 
         index = dr.arange(mi.UInt32, views.count * directions.count)
         view, number = index // directions.count, index % directions.count
@@ -93,17 +96,23 @@ class ViewDirections:
             adjacent.append(dr.gather(mi.Vector4f, weights, row))
         return dr.ravel(_median(adjacent))
 
-    def find_nearest_view(self, wi: JitVector) -> JitInt:
-        """Return the number of the stored view that is nearest to the direction `wi`."""
+    def find_nearest_view(self, wi: JitVector) -> tuple[JitInt, JitFloat]:
+        """Return the number of the view that is nearest to the direction `wi` when it is turned.
+
+        The second number is this turn about the normal [rad].
+        """
         import drjit as dr
         import mitsuba as mi
 
         azimuths = mi.Float(self.azimuths)
         row = find_cell(dr.safe_acos(dr.abs(wi.z)) * self.angles_per_radian, mi.Float(self.angles))
-        turn = dr.atan2(wi.y, wi.x) / (2 * dr.pi) * azimuths + 0.5
-        turn -= azimuths * dr.floor(turn / azimuths)
-        view = row * self.azimuths + find_cell(turn, azimuths)
-        return view + dr.select(wi.z < 0, self.angles * self.azimuths, 0)
+        azimuth = dr.atan2(wi.y, wi.x)
+        place = azimuth / self.period * azimuths + 0.5
+        periods = dr.floor(place / azimuths)
+        view = row * self.azimuths + find_cell(place - azimuths * periods, azimuths)
+        # An isotropic BSDF has views of one azimuth alone
+        turn = dr.select(self.azimuths == 1, azimuth, periods * self.period)
+        return view + dr.select(wi.z < 0, self.angles * self.azimuths, 0), turn
 
     def radiance(self, si: MitsubaObject, light: Light, active: JitMask) -> JitColour:
         """Return the radiance that the points `si` reflect towards `si.wi`, as a spectrum."""
@@ -111,9 +120,7 @@ class ViewDirections:
         import mitsuba as mi
 
         active = mi.Bool(active) if self.has_back else active & (si.wi.z > 0)
-        directions, view = self.directions, self.find_nearest_view(si.wi)
-        # An isotropic BSDF has views of one azimuth alone
-        turn = dr.select(self.azimuths == 1, dr.atan2(si.wi.y, si.wi.x), 0)
+        directions, (view, turn) = self.directions, self.find_nearest_view(si.wi)
         sin, cos = dr.sincos(turn)
 
         def add_direction(i: JitInt, total: JitColour) -> tuple[JitInt, JitColour]:
@@ -145,10 +152,11 @@ class Views:
 
 
 @lru_cache(maxsize=8)
-def _load_views(variant: str, angles: int, azimuths: int, has_back: bool) -> Views:
+def _load_views(variant: str, period: float, has_back: bool) -> Views:
     """Return the views of a grid; the `variant` of Mitsuba is a key of the cache only."""
+    angles, azimuths = GRIDS[period]
     theta = (np.arange(angles) + 0.5) / angles * np.pi / 2
-    phi = np.arange(azimuths) / azimuths * 2 * np.pi
+    phi = np.arange(azimuths) / azimuths * period
     front = from_angles(theta[:, None], phi).reshape(-1, 3)
     views = np.concatenate([front, front * [1, 1, -1]]) if has_back else front
     return Views(Rows(views), len(views))

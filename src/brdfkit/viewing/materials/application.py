@@ -183,14 +183,15 @@ class MaterialApplication:
     ) -> bool:
         """Return whether a picture without noise is made now: soon, or at once if that is quick.
 
-        It makes the kernels for moves, which takes a second at first, and filters the light.
+        It makes the kernels for moves, which takes a second at first, after the light is filtered.
         """
         kinds = {self.states.make_kind(state, size, moving=True) for size in sizes}
         shown = [
             self.live.kept.get(self._find_side(state, side)[0]) for side in range(self.sides(state))
         ]
         ready = all(live and kinds <= live.scenes.kept.keys() for live in shown)
-        return ready or passes == PASSES_BEFORE
+        light = self.lights.loaded.kept.get(state["light.environment"])
+        return ready or (passes >= PASSES_BEFORE and light is not None and light.is_filtered)
 
     def render(
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int

@@ -18,6 +18,7 @@ from brdfkit.viewing.recent import Recent
 LIGHTS = 4  # kept at most
 LAMP = "lamp"  # the name of the light that is a lamp at a point
 DEPTH = 6  # largest number of segments of a path
+PICTURES_BEFORE = 3  # at rest, before a map is filtered for moves, which takes two seconds
 
 
 class LiveLight:
@@ -40,6 +41,20 @@ class LiveLight:
         filtered = {"type": "filtered_environment"}
         self.noise_free = mi.load_dict(direct if self.is_lamp else filtered)
         self.traced = mi.load_dict({"type": "path", "max_depth": DEPTH})
+        self.pictures = 0  # at rest, so far
+        if not self.is_lamp:
+            self.noise_free.light.only_turns = True  # no other parameter is changed here
+
+    @property
+    def is_filtered(self) -> bool:
+        """Whether a picture without noise needs no filtering that is still to be done."""
+        return self.is_lamp or self.noise_free.light.is_filtered
+
+    def count_picture(self) -> None:
+        """Count a picture at rest; after a few, begin to filter the map in a thread of its own."""
+        self.pictures += 1
+        if not self.is_lamp and self.pictures == PICTURES_BEFORE:
+            self.noise_free.light.begin(self.emitter)
 
     def show(self, turn: float, lamp: FloatArray) -> None:
         """Turn the map about the vertical axis [degrees], or move the lamp to a place (3,).

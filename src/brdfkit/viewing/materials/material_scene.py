@@ -89,7 +89,10 @@ class MaterialScene:
         seed, spp = (0, RAYS) if self.kind.moving else (seed, 1)
         with raise_first_cause():
             integrator = self.scene.integrator()
-            return to_rgb(integrator.render(self.scene, seed=mi.UInt32(seed), spp=spp))
+            picture = to_rgb(integrator.render(self.scene, seed=mi.UInt32(seed), spp=spp))
+        if not self.kind.moving:
+            self.light.count_picture()
+        return picture
 
     def find_directions(self, look: Look) -> tuple[AnyArray, AnyArray]:
         """Return the directions to the camera and to the lamp, nan beside the shape.
