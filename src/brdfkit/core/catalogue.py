@@ -13,7 +13,7 @@ from typing import Any
 from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import compute_sha256
 
-MEASURED, ENVIRONMENTS = "measured", "environments"
+MEASURED, ENVIRONMENTS, PRIORS = "measured", "environments", "priors"
 
 
 def read_index(kind: str = MEASURED) -> dict[str, Any]:

@@ -53,6 +53,9 @@ class Measured(Shown, FromAngles):
         Whether the BRDF changes as the surface turns about its normal.
     standard_error : ndarray, shape (n, channels), or None
         Standard errors of `values` [sr⁻¹], or None where the measurement does not state them.
+    evidence : ndarray of uint8, shape (n,), or None
+        Of a material from `complete`: 0 where the value was measured, 1 where it was inferred from
+        measured ones, 2 where it is a guess. None for other materials.
 
     Examples
     --------

@@ -44,6 +44,7 @@ class MeasuredData:
     info: dict[str, str] = field(default_factory=dict)
     anisotropic: bool = False
     standard_error: Floats | None = field(default=None, repr=False)
+    evidence: NDArray[np.uint8] | None = field(default=None, repr=False, kw_only=True)
     _samples: Samples | None = field(default=None, repr=False)
     _table: Table | None = field(default=None, repr=False)
     _lookup: Lookup | None = field(default=None, repr=False)
