@@ -2,8 +2,8 @@
 
 The cells are those of a `Table` with `SHAPE` cells, of which an isotropic, reciprocal material
 without handedness needs only half: φd and π - φd have the same value. A prior holds in every cell
-the logarithm y of the BRDF f, times cosines, relative to a reference material [Nielsen et al. 2015, On
-Optimal, Minimal BRDF Sampling for Reflectance Acquisition]:
+the logarithm y of the BRDF f, times cosines, relative to a reference material [Nielsen et al.
+2015]:
 
     y = ln((f c + e) / (f_ref c + e)),    c = max(cosθi cosθo, 0.05),    e = 10⁻³ sr⁻¹
 """
