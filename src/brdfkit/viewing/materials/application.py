@@ -197,14 +197,20 @@ class MaterialApplication:
         self, state: State, side: int, size: tuple[int, int], moving: bool, seed: int
     ) -> AnyArray:
         """Render a pass: (height, width, 3), linear sRGB. Both sides share light and samples."""
-        key, shown = self._find_side(state, side)
-        live = self.live.get(key, lambda: LiveMaterial(shown, self.lights))
+        # First both sides, because they then have one kernel: it has the code of all materials
+        sides = [self._find_live(state, other) for other in range(self.sides(state))]
+        live, (_, shown) = sides[side], self._find_side(state, side)
         kind, look = self.states.make_kind(state, size, moving), make_look(state)
         live.show(shown)
         if moving and state["second" if side else "renderer"] != MODEL:  # no slider changes it
             still = kind, look, live.material
             return self.stills.get(still, lambda: live.render(kind, look))
         return live.render(kind, look, seed)
+
+    def _find_live(self, state: State, side: int) -> LiveMaterial:
+        """Return the scenes of the material at a side, with the values that they had last."""
+        key, shown = self._find_side(state, side)
+        return self.live.get(key, lambda: LiveMaterial(shown, self.lights))
 
     def find_mask(self, state: State, size: tuple[int, int]) -> AnyArray:
         """Return where a picture shows the shape (height, width)."""

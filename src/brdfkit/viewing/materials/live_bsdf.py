@@ -16,7 +16,6 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.materials.resolve import Material
 from brdfkit.model import Model
-from brdfkit.rendering.previewing.cache import load_bsdf
 from brdfkit.rendering.scene_input.material import load_material
 
 
@@ -34,7 +33,7 @@ class LiveBsdf:
     def __init__(self, material: Material) -> None:
         import mitsuba as mi
 
-        variant = use_variant()
+        use_variant()
         self.material = material
         self.parameters: Any = None
         if isinstance(material, Model):
@@ -45,7 +44,9 @@ class LiveBsdf:
                 self._assign(name, getattr(shown, name))
             self.parameters.update()
         else:
-            self.front = load_bsdf(material, material.name, variant, both_sides=False)
+            # Not from the cache of previews, because a path tracer's kernel has the code of every
+            # kind of BSDF that is alive, and a new set of them would be compiled for seconds
+            self.front = load_material(material.scene_dict(), material.name)
         self._both: MitsubaObject = None
 
     @property
