@@ -122,8 +122,13 @@ class DropSession(Session):
     def _open_beside(self, path: Path, kind: str) -> list[Message]:
         """Open a file that is neither a volume nor a measured material."""
         if kind == kinds.STATE:
-            changes = kinds.read_json(path)
-            return self.handle({"type": "set", "changes": changes, "moving": False})
+            changes: Any = kinds.read_json(path)
+            try:
+                return self._set({"changes": changes, "moving": False})
+            except BrdfkitError as error:
+                raise BrdfkitError(
+                    f"{path.name}: all its settings are left aside, because one is wrong: {error}"
+                ) from None
         if kind == kinds.FIT and not isinstance(self.application, MaterialApplication):
             return self.exchange(open_material(self, path))
         return self.application.open_beside(self, kind, path)

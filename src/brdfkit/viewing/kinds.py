@@ -58,6 +58,11 @@ def _find_kind_of_json(path: Path, head: bytes) -> str:
     if fit_json.sniff(head):
         return FIT
     content = read_json(path)
+    if not isinstance(content, dict | list):
+        raise BrdfkitError(
+            f"{path.name}: is neither a fit nor settings, nor a transfer function: its JSON is "
+            f"only {json.dumps(content):.40}."
+        )
     return STATE if isinstance(content, dict) and "kind" not in content else TRANSFER
 
 

@@ -23,6 +23,9 @@ PLACE = re.compile(
     r'|Error while loading \w+ file "[^"]*": '
 )
 
+# What Mitsuba says of a file that ends too early
+CUT_SHORT = re.compile(r"I/O error while attempting to read|read \d+ out of \d+ bytes")
+
 
 def load_by_mitsuba(function: Callable[..., Any], source: Any, name: object) -> Any:
     """Load an object from `source` by a function of Mitsuba, such as `load_dict`.
@@ -53,6 +56,8 @@ def load_by_mitsuba(function: Callable[..., Any], source: Any, name: object) -> 
         if OWN_ERROR in reason:
             reason = reason.partition(OWN_ERROR)[2]
             raise BrdfkitError(f"{name}: {reason.removeprefix(f'{name}: ')}") from error
+        if CUT_SHORT.search(reason):
+            raise BrdfkitError(f"{name}: it is cut short.") from error
         reason = PLACE.sub("", reason).rstrip(".!")
         raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason}).") from error
 

@@ -16,12 +16,13 @@ function makeAngleAxis(label, high, step) {
 }
 
 /** Return the axis of the albedo, which reaches to 1 if that is near. */
-function makeAlbedoAxis({ lines, channel }) {
+function makeAlbedoAxis(plot) {
+  const { lines } = plot.content;
   const largest = findLargest(lines.flatMap(({ values }) => values)) || 1;
   const top = largest > 0.6 ? Math.max(1.05, 1.05 * Math.min(largest, 10)) : 1.15 * largest;
   return {
     place: (value) => value / top, value: (share) => share * top,
-    ticks: chooseTicks(0, top, 4).map((tick) => [tick, writeValue(tick)]), label: `reflected share, ${channel}`,
+    ticks: chooseTicks(0, top, 4).map((tick) => [tick, writeValue(tick)]), label: `reflected share, ${nameChannel(plot)}`,
   };
 }
 
@@ -41,7 +42,7 @@ const ALBEDO = {
   draw(context, plot) {
     const { content, colours, curves, session } = plot;
     const area = placeChart(plot);
-    const [across, up] = [makeAngleAxis("θi", 90, 15), makeAlbedoAxis(content)];
+    const [across, up] = [makeAngleAxis("θi", 90, 15), makeAlbedoAxis(plot)];
     const place = makePlacer(plot, area, across, up);
     context.save();
     clipTo(context, area);
@@ -84,7 +85,7 @@ const ALBEDO = {
       const text = values.map((own) => writeValue(own[k])).join(" ");
       return [angles[k], `${plot.curves[number].name} ${text}${known[k] ? "" : " (extrapolated)"}`];
     });
-    return `θi ${writeAngle(parts[0][0])}: ${parts.map(([, text]) => text).join(" · ")}`;
+    return `albedo, ${nameChannel(plot)}, at θi ${writeAngle(parts[0][0])}: ${parts.map(([, text]) => text).join(" · ")}`;
   },
   select(from, to, plot) {
     const { x, width } = placeChart(plot);

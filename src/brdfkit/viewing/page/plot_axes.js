@@ -185,3 +185,9 @@ function drawAxes(context, colours, area, at, [across, up], grid = true) {
   context.fillText(up.label, 0, 0);
   context.restore();
 }
+
+/** Return what of the colour a plot shows; one that has a single value shows luminance for all. */
+function nameChannel({ session }, single = false) {
+  const channel = session.state["plots.channel"];
+  return channel === "each" ? (single ? "luminance" : "R, G, B") : channel;
+}

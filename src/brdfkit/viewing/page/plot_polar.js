@@ -71,7 +71,7 @@ function writeDisc(context, plot, scale) {
   }
   context.textBaseline = "top";
   context.textAlign = "left";
-  context.fillText(plot.content.cosine ? "BRDF × cos θo [sr⁻¹]" : "BRDF [sr⁻¹]", 8, 4);
+  context.fillText(`${plot.content.cosine ? "BRDF × cos θo" : "BRDF"} [sr⁻¹], ${nameChannel(plot)}`, 8, 4);
   context.textAlign = "center";
   for (const [value, text] of scale.ticks) {
     const [x, y] = placePolar(plot, 90, scale.place(value));
@@ -189,7 +189,7 @@ const POLAR = {
       return `${plot.curves[number].name} ${text}`;
     });
     const side = degrees < -0.5 ? " on the light’s side" : "";
-    return `θo ${writeAngle(Math.abs(degrees))}${side}: ${parts.join(" · ")}`;
+    return `θo ${writeAngle(Math.abs(degrees))}${side}, ${nameChannel(plot)}: ${parts.join(" · ")}`;
   },
   canGrab: isOnLight,
   grab(place, plot) {

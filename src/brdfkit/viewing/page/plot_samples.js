@@ -4,11 +4,12 @@ const SAMPLE_RADIUS = 2;
 const LOG_SAMPLES = { decades: 9, share: 0.002 }; // an axis that reaches nearly all samples
 
 /** Return the axes of the plot, across θh (even in its square root) or θo, and the values upwards. */
-function makeSampleAxes({ content, session }) {
+function makeSampleAxes(plot) {
+  const { content, session } = plot;
   const half = session.state["plots.samples_over"] !== "theta_o";
   const values = makeValueScale("log", [content.values], LOG_SAMPLES);
   const across = half ? { ...SLICE_AXES[0], value: (share) => 90 * share ** 2 } : makeAngleAxis("θo", 90, 15);
-  return { angles: half ? content.theta_h : content.theta_o, across, up: { ...values, label: "BRDF [sr⁻¹]" } };
+  return { angles: half ? content.theta_h : content.theta_o, across, up: { ...values, label: `BRDF [sr⁻¹], ${nameChannel(plot, true)}` } };
 }
 
 /** Return the area of the plot, left of the colours. */
@@ -102,7 +103,7 @@ const SAMPLES = {
     const models = content.models.map(({ values, ratio }, number) => (
       `${names[number]} ${writeValue(values[k])} (× ${writeValue(2 ** ratio[k])})`));
     const angles = `θh ${writeAngle(content.theta_h[k])}, θo ${writeAngle(content.theta_o[k])}`;
-    return `${angles}: data ${writeValue(content.values[k])} · ${models.join(" · ")}`;
+    return `${angles}, ${nameChannel(plot, true)}: data ${writeValue(content.values[k])} · ${models.join(" · ")}`;
   },
   select(from, to, plot) {
     const { content } = plot;

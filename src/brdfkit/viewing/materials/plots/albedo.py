@@ -52,9 +52,12 @@ def is_anisotropic(material: Any) -> bool:
 def arrange_albedos(
     curves: list[tuple[Curve, dict[str, FloatArray]]], settings: PlotSettings
 ) -> dict[str, Any]:
-    """Return the albedo plot of curves, in the channels that are shown."""
+    """Return the albedo plot of curves, in the channels that are shown.
+
+    "channel" says what `describe_albedos` takes of them.
+    """
     lines = [{**own, "values": settings.pick(own["values"]).T} for _, own in curves]
-    channel = "RGB" if settings.channel == "each" else settings.channel
+    channel = "mean of R, G and B" if settings.channel == "each" else settings.channel
     return {"lines": lines, "channel": channel}
 
 
