@@ -22,6 +22,9 @@ from .inverse.scenes import refine as refine
 from .lighting import environments as environments
 from .materials.auditing import Audit as Audit
 from .materials.auditing import audit as audit
+from .materials.completion import complete as complete
+from .materials.completion.plan import Plan as Plan
+from .materials.completion.plan import plan as plan
 from .materials.converting import convert as convert
 from .materials.evaluating import albedo as albedo
 from .materials.evaluating import evaluate as evaluate

@@ -22,6 +22,11 @@ COMMANDS = {
         [bk.render, bk.render_volume, bk.preview, render_orbit, bk.volumes.load],
         {"things", "folders", "preview", "values", "up", "orbit"},
     ),
+    "complete": ([bk.complete], {"file"}),
+    "plan": (
+        [bk.plan],
+        {"max_theta_i", "max_theta_o", "separation", "step", "in_plane", "theta_i", "channels"},
+    ),
     "convert": ([bk.environments.convert], {"thing", "values"}),
     "measure": (
         [bk.measure],

@@ -20,11 +20,11 @@ from brdfkit.materials.completion.prior_choice import PriorLike, to_prior
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import make_measured_test
 from brdfkit.materials.measured.coverage import is_near_sample
+from brdfkit.materials.measured.evidence import GUESSED, INFERRED, MEASURED
 from brdfkit.materials.measured.spectrum_to_rgb import has_wavelengths, wavelengths
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model.samples import Table
 
-MEASURED, INFERRED, GUESSED = 0, 1, 2  # `Measured.evidence`
 FEWEST_VALUES = 4
 MOST_SAMPLES = 6_000  # of more samples, so many are drawn; they count as few anyway
 # A value that was not measured is a guess if its 95 % interval is wider than a factor of 2 each way

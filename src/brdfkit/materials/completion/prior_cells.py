@@ -22,13 +22,12 @@ from brdfkit.core.geometry.multilinear import (
     list_corners,
     to_flat_index,
 )
+from brdfkit.materials.measured.evidence import LEAST_COSINE, OFFSET
 from brdfkit.model.samples import Table
 
 SHAPE = (90, 30, 32)  # numbers of cells along theta_h, theta_d and phi_d, of which half are kept
 KEPT_SHAPE = (90, 30, 16)
 CELLS = 90 * 30 * 16
-LEAST_COSINE = 0.05  # the least c: towards the horizon, values grow but their light does not
-OFFSET = 1e-3  # e [sr⁻¹]: much smaller values count as equal
 LARGEST_ANGLE = radians(85)  # values nearer to the horizon are those of the last cell before it
 
 

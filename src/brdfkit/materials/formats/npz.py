@@ -4,7 +4,8 @@
 name, channels, info, anisotropic and phi_d_period. A table is the member ``table`` ([n_phi_h,]
 n_theta_h, n_theta_d, n_phi_d, channels). Samples are the members ``wi``, ``wo`` (n, 3), ``values``
 (n, channels) [sr⁻¹] and ``valid`` (n,). Known standard errors are ``standard_error``
-(n, channels), where n is the number of samples or of the table's cells.
+(n, channels), where n is the number of samples or of the table's cells. A completed table has
+``evidence`` (n,): 0 where the value was measured, 1 inferred, 2 guessed.
 
 Some formats define their own interpolation function, which no file can store. Its values at the
 cells of a table are stored beside the samples, as ``table``, and replace the function when the file
@@ -33,13 +34,14 @@ from brdfkit.core.version import __version__
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats._writing import require_measured
 from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.evidence import GUESSED
 
 NAME = "brdfkit"
 SUFFIXES = (".npz",)
 
 FIRST = "about"
 SAMPLES = ("wi", "wo", "values", "valid")
-MEMBERS = tuple(f"{name}.npy" for name in (FIRST, "table", *SAMPLES, "standard_error"))
+MEMBERS = tuple(f"{name}.npy" for name in (FIRST, "table", *SAMPLES, "standard_error", "evidence"))
 EPOCH = (1980, 1, 1, 0, 0, 0)  # date of all files in the archive: equal data give equal bytes
 REMEDY = "save it again or fetch it again"
 # The header that numpy.save writes for arrays of the types that brdfkit saves. It is parsed here
@@ -94,6 +96,8 @@ def write(obj: object, stream: IO[bytes]) -> None:
         arrays |= {name: getattr(data.samples, name) for name in SAMPLES}
     if data.standard_error is not None:
         arrays["standard_error"] = data.standard_error
+    if data.evidence is not None:
+        arrays["evidence"] = data.evidence.astype(np.uint8)
     text = np.frombuffer(json.dumps(about).encode(), np.uint8)
     stream.write(_pack_arrays_into_zip({FIRST: text, **arrays}))
 
@@ -112,9 +116,17 @@ def _make_measured(about: dict[str, Any], arrays: Mapping[str, AnyArray]) -> Mea
         return _make_measured_from_samples(about, arrays, details, errors)
     if errors is not None:
         errors = errors.reshape(arrays["table"].shape)
-    return Measured.from_table(
+    measured = Measured.from_table(
         arrays["table"], phi_d_period=float(about["phi_d_period"]), **details, standard_error=errors
     )
+    evidence = arrays.get("evidence")
+    if evidence is None:
+        return measured
+    if evidence.dtype != np.uint8 or evidence.shape != measured.samples.valid.shape:
+        raise ValueError(f"evidence has the shape {evidence.shape}")
+    if evidence.max() > GUESSED:
+        raise ValueError(f"evidence is {evidence.max()}, where 0, 1 or 2 belongs")
+    return replace(measured, evidence=evidence)
 
 
 def _make_measured_from_samples(

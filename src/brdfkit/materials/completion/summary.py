@@ -1,0 +1,27 @@
+"""Describes a completed material in words: from what it was made, how sure it is, its albedo."""
+
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.albedos import ANGLES
+from brdfkit.materials.measured.evidence import describe_evidence
+
+MOST_CHANNELS = 3  # albedos of more channels are told in linear sRGB
+
+
+def describe_completion(completed: Measured) -> dict[str, str]:
+    """Return what to tell about a material from `complete`, as texts by their headings."""
+    info = completed.info
+    prior = [key for key in ("prior", "prior terms") if key in info]
+    return {
+        "completed": info["completed"],
+        **describe_evidence(completed),
+        "albedo": describe_albedo(completed),
+        **{key: info[key] for key in prior},
+    }
+
+
+def describe_albedo(completed: Measured) -> str:
+    """Return the directional albedos at 5°, 45° and 75° in words, one number for each channel."""
+    data = completed if len(completed.channels) <= MOST_CHANNELS else completed.rgb
+    rows = zip(ANGLES, data.albedo.values, strict=False)
+    texts = [f"{' '.join(f'{a:.3f}' for a in albedo)} at {angle:g}°" for angle, albedo in rows]
+    return f"{', '.join(texts)} ({' '.join(data.channels)})"

@@ -1,0 +1,143 @@
+"""What a completed table knows: which of its values were measured, inferred or guessed, how surely.
+
+`complete` gives such tables. Their standard errors are those of ln(f c + e), with the BRDF f, the
+cosines c and an offset e below which values count as equal, times f + e/c.
+"""
+
+from __future__ import annotations
+
+from math import exp, nan
+
+import numpy as np
+
+from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, IntArray
+from brdfkit.materials.measured.measured_data import MeasuredData
+from brdfkit.model.samples import Table
+
+MEASURED, INFERRED, GUESSED = 0, 1, 2
+NAMES = "measured", "inferred", "guessed"
+LEAST_COSINE = 0.05  # the least c: towards the horizon, values grow but their light does not
+OFFSET = 1e-3  # e [sr⁻¹]
+NORMAL_95 = 1.96  # half-width of a 95 % interval [standard errors]
+GRAZING = np.cos(np.radians(80.0))  # a direction with a smaller cosine is grazing
+LARGEST_SHARE = 0.5  # wider intervals are told as factors
+
+
+def find_evidence(data: MeasuredData, wi: AnyArray, wo: AnyArray) -> IntArray:
+    """Return the evidence (n,) of the cells in which pairs of directions (n, 3) lie.
+
+    `data` has evidence. Directions below the surface are guesses.
+    """
+    assert data.evidence is not None
+    assert data._table is not None
+    grid, found = data.evidence.reshape(data._table.shape), np.full(len(wi), GUESSED)
+    above = (wi[:, 2] > 0) & (wo[:, 2] > 0)
+    found[above] = grid[data._table.find_cells(wi[above], wo[above])]
+    return found
+
+
+def find_measured_rows(data: MeasuredData) -> BoolArray:
+    """Return a mask (n,) of the samples that are valid and, in a completed table, measured."""
+    valid: BoolArray = data.samples.valid
+    return valid if data.evidence is None else valid & (data.evidence == MEASURED)
+
+
+def compute_shares(data: MeasuredData) -> tuple[float, float, float]:
+    """Return the shares of all pairs of directions that were measured, inferred and guessed."""
+    assert data.evidence is not None
+    weight = _compute_weights(data)
+    shares = [float(weight[data.evidence == kind].sum() / weight.sum()) for kind in range(3)]
+    return shares[0], shares[1], shares[2]
+
+
+def compute_deviation(values: AnyArray, errors: AnyArray, cosine: AnyArray) -> FloatArray:
+    """Return the standard deviation of ln(f c + e) for BRDF values f and their standard errors."""
+    result: FloatArray = errors / (
+        np.maximum(values, 0) + OFFSET / np.maximum(cosine, LEAST_COSINE)
+    )
+    return result
+
+
+def compute_interval(
+    values: AnyArray, errors: AnyArray, cosine: AnyArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the ends of the 95 % intervals of BRDF values, at least 0."""
+    factor = np.exp(NORMAL_95 * compute_deviation(values, errors, cosine))
+    offset = OFFSET / np.maximum(cosine, LEAST_COSINE)
+    return np.maximum((values + offset) / factor - offset, 0), (values + offset) * factor - offset
+
+
+def evaluate_errors(data: MeasuredData, wi: AnyArray, wo: AnyArray) -> FloatArray:
+    """Return the standard errors (n, channels) of a table, interpolated at pairs (n, 3)."""
+    assert data.standard_error is not None
+    assert data._table is not None
+    grid = data.standard_error.reshape(data._table.values.shape)
+    return Table(grid, data._table.phi_d_period).eval(wi, wo)
+
+
+def compute_half_widths(data: MeasuredData) -> dict[str, float]:
+    """Return typical half-widths of the 95 % intervals of ln f, by the place of the directions.
+
+    "inside": both angles to the normal are within the measured ones; "outside": they are not, but
+    below 80°; "at grazing angles": the larger one is above 80°. NaN where there is no such cell.
+    """
+    samples, errors = data.samples, data.standard_error
+    assert errors is not None
+    low, high = _sort_cosines(data)
+    known = find_measured_rows(data)
+    within = (low >= low[known].min()) & (high >= high[known].min()) if known.any() else known
+    grazing = low < GRAZING
+    cosine = (low * high)[:, None]
+    widths = NORMAL_95 * compute_deviation(samples.values, errors, cosine).mean(axis=1)
+    masks = {
+        "inside": within & ~grazing,
+        "outside": ~within & ~grazing,
+        "at grazing angles": grazing,
+    }
+    return {
+        place: float(np.median(widths[mask & samples.valid])) if mask.any() else nan
+        for place, mask in masks.items()
+    }
+
+
+def describe_evidence(data: MeasuredData) -> dict[str, str]:
+    """Return in words which shares of a completed table were measured, and how sure it is.
+
+    The texts are in a dictionary by their headings, which is empty for any other material.
+    """
+    if data.evidence is None or data._table is None:
+        return {}
+    shares = zip(NAMES, compute_shares(data), strict=True)
+    rows = {"evidence": ", ".join(f"{name} {100 * share:.3g} %" for name, share in shares)}
+    if data.standard_error is not None:
+        widths = {k: w for k, w in compute_half_widths(data).items() if np.isfinite(w)}
+        words = ", ".join(f"{format_half_width(w)} {place}" for place, w in widths.items())
+        rows["95 % intervals"] = f"{words} (medians)"
+    return rows
+
+
+def format_half_width(width: float) -> str:
+    """Return the half-width of an interval of a logarithm in words.
+
+    >>> format_half_width(0.12), format_half_width(1.1)
+    ('±12 %', 'a factor of 3.0 each way')
+    """
+    return (
+        f"±{100 * width:.2g} %"
+        if width < LARGEST_SHARE
+        else f"a factor of {exp(width):.1f} each way"
+    )
+
+
+def _sort_cosines(data: MeasuredData) -> tuple[FloatArray, FloatArray]:
+    """Return the smaller and the larger cosine to the normal of all pairs, both (n,)."""
+    wi, wo = data.samples.wi[:, 2], data.samples.wo[:, 2]
+    return np.minimum(wi, wo), np.maximum(wi, wo)
+
+
+def _compute_weights(data: MeasuredData) -> FloatArray:
+    """Return the products of solid angles (n,) of the cells of a table, 0 below the surface."""
+    assert data._table is not None
+    size = data._table.extents[..., 1:]
+    weight = np.broadcast_to(size, data._table.shape).reshape(-1)
+    return np.where(_sort_cosines(data)[0] > 0, weight, 0.0)
