@@ -39,6 +39,8 @@ def build() -> None:
     assert_type(ward.changed(alpha_u=0.2), bk.Model)
     assert_type(ward.values, Values)
     assert_type(bk.measure(gaussian(slope=0.3), {"type": "diffuse"}), bk.Measured)
+    assert_type(bk.plan(20, reach={"max_theta_o": 60, "in_plane": True}), bk.Plan)
+    assert_type(bk.complete(samples, noise=0.05), bk.Measured)
 
 
 def describe(paint: bk.Measured) -> None:

@@ -178,7 +178,8 @@ def plan(
     }
     if already is not None:
         info["measured"] = f"{len(already[0]):,} directions were measured before"
-    return Plan(wi[rows], wo[rows], candidates[rows], errors, info)
+    arrays: Any = wi[rows], wo[rows], candidates[rows], errors
+    return Plan(*arrays, info)
 
 
 def list_measured_pairs(measured: MaterialLike) -> tuple[AnyArray, AnyArray]:
