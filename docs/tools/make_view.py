@@ -17,8 +17,8 @@ DOCS = Path(__file__).parents[1]
 SIZE = {"width": 1280, "height": 800}  # of the window [pixels]
 VOLUME = {"show.slices": True, "camera.azimuth": 40.0, "light.sun": True}
 MODELS = ["ggx", "ward", "ggx+ggx"]
-# Whether the status line says that each pixel has 64 samples
-ENOUGH = "() => /(\\d+) samples/.exec(document.body.innerText)?.[1] >= 64"
+# Whether the status line says that each pixel has 64 samples; a fit says how many it has, too
+ENOUGH = "() => /(\\d+) samples ·/.exec(document.body.innerText)?.[1] >= 64"
 PATIENCE = 600_000  # [ms]
 
 
