@@ -176,8 +176,8 @@ def _serve_page(listening: Any, first: Any, no_browser: bool) -> None:
     with server.serve(make_application, listening) as address:
         opened = not no_browser and _open_browser(address)
         click.echo(_describe_page(first.name, address, opened))
-        while True:  # until Ctrl-C
-            time.sleep(3600)
+        while True:  # until Ctrl-C, which takes effect after a step if another thread receives it
+            time.sleep(0.25)
 
 
 def _exit_at_once() -> None:
