@@ -1,4 +1,4 @@
-"""Makes data/priors/models.npz, the prior of brdfkit's own models, in about a minute.
+"""Makes data/priors/models.npz, the prior of random models, in one to three minutes.
 
 python data/priors/make.py
 """

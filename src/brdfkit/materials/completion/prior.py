@@ -13,6 +13,7 @@ its intervals with the second.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import sqrt
 
 import numpy as np
 
@@ -76,33 +77,47 @@ class Prior:
 
 
 def learn(
-    logarithms: AnyArray, groups: AnyArray, rank: int = RANK
+    logarithms: AnyArray, groups: AnyArray, base: Prior | None = None, rank: int = RANK
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return mean, components, remainder and new remainder of rows of `logarithms` (m, CELLS).
 
     `groups` (m,) are the rows' materials: channels of one material are in one fold. The components
-    are each multiplied by their standard deviation.
+    are each multiplied by their standard deviation. The materials of a `base` count as many as all
+    rows together.
     """
-    mean, components = find_components(logarithms, rank)
-    remainder = np.mean(leave(logarithms, mean, components) ** 2, axis=0)
+    mean, components = find_components(logarithms, rank, base)
     names = np.unique(groups)
     fold = np.random.default_rng(SEED).permutation(len(names)) % FOLDS
     squares = np.zeros_like(mean)
     for k in range(FOLDS):
         out = np.isin(groups, names[fold == k])
-        own_mean, own_components = find_components(logarithms[~out], rank)
-        squares += np.sum(leave(logarithms[out], own_mean, own_components) ** 2, axis=0)
-    return mean, components, remainder, squares / len(logarithms)
+        others = find_components(logarithms[~out], rank, base)
+        squares += np.sum(leave(logarithms[out], *others) ** 2, axis=0)
+    remainder = np.mean(leave(logarithms, mean, components) ** 2, axis=0)
+    new_remainder = squares / len(logarithms)
+    if base is not None:
+        # What the new components leave of the base's materials, beside what they left of them
+        # before
+        left = leave(base.mean[None], mean, components)[0] ** 2
+        left = left + np.sum(leave(base.components.T, np.zeros_like(mean), components) ** 2, axis=0)
+        remainder = (remainder + base.remainder + left) / 2
+        new_remainder = (new_remainder + base.new_remainder + left) / 2
+    return mean, components, remainder, new_remainder
 
 
-def find_components(logarithms: AnyArray, rank: int) -> tuple[FloatArray, FloatArray]:
+def find_components(
+    logarithms: AnyArray, rank: int, base: Prior | None = None
+) -> tuple[FloatArray, FloatArray]:
     """Return the mean (CELLS,) and the first principal components (CELLS, rank), scaled."""
     mean = logarithms.mean(axis=0)
-    rows = logarithms - mean
+    rows = (logarithms - mean) / np.sqrt(max(len(logarithms) - 1, 1))
+    if base is not None:
+        # The covariance of a mixture of two distributions, half of each
+        rows = np.concatenate([rows, base.components.T, [(base.mean - mean) / sqrt(2)]]) / sqrt(2)
+        mean = (mean + base.mean) / 2
     # The Gram matrix of the rows is far smaller than the covariance of the cells
-    values, vectors = np.linalg.eigh(rows @ rows.T)
-    order = np.argsort(values)[::-1][: min(rank, len(rows) - 1)]
-    return mean, (rows.T @ vectors[:, order]) / np.sqrt(max(len(rows) - 1, 1))
+    _, vectors = np.linalg.eigh(rows @ rows.T)
+    return mean, rows.T @ vectors[:, ::-1][:, : min(rank, len(rows) - 1)]
 
 
 def leave(logarithms: AnyArray, mean: AnyArray, components: AnyArray) -> FloatArray:

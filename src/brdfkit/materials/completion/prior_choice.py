@@ -29,5 +29,5 @@ def to_prior(prior: PriorLike) -> Prior:
 
 @cache
 def get_default_prior() -> Prior:
-    """Return the prior that comes with brdfkit, made of its own models."""
+    """Return the prior that comes with brdfkit, made of random models."""
     return read_prior(find_data_folder(PRIORS) / "models.npz")

@@ -19,6 +19,12 @@ EPOCH = (1980, 1, 1, 0, 0, 0)  # date of all members: equal priors give equal by
 LARGEST_RANK = 200
 
 
+def require_npz(path: Path) -> None:
+    """Raise `BrdfkitError` unless a path has the suffix of priors."""
+    if path.suffix.lower() != ".npz":
+        raise BrdfkitError(f"{path}: a prior is written as .npz; name such a file.")
+
+
 def write_prior(prior: Prior, path: str | Path) -> None:
     """Write a prior; its components have 11 bits of precision, all else 24."""
     about = {

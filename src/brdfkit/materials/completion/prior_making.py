@@ -1,4 +1,4 @@
-"""Makes a prior: of materials of brdfkit's own models, or of a folder of measured files."""
+"""Makes a prior of rows of logarithms, and the one of models that comes with brdfkit."""
 
 from __future__ import annotations
 
@@ -8,39 +8,53 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.progress_bar import Progress
-from brdfkit.materials.completion.model_materials import draw_material, evaluate_parts
+from brdfkit.materials.completion.model_materials import draw_material
 from brdfkit.materials.completion.prior import Prior, learn
-from brdfkit.materials.completion.prior_cells import get_cells, to_logarithm
+from brdfkit.materials.completion.prior_cells import CELLS, get_cells, to_logarithm
 
-# Models lack what real materials have: this variance of the logarithm is added to what folds over
-# materials leave. Without it, 95 % intervals of real materials cover 87 to 91 %
-MODEL_FLOOR = 0.08**2
-MODEL_MATERIALS = 1_200
+# Models lack what real materials have, so variances are added to what folds over them leave: a
+# constant one, and a share of the variance among materials, which is large in highlights. Without
+# them, 95 % intervals of real materials cover 87 to 91 %
+MODEL_FLOOR, MODEL_SHARE = 0.06**2, 0.05**2
+MODEL_MATERIALS = 2_400
 SEED = 0
 
 
 def make_model_prior(count: int = MODEL_MATERIALS, progress: Progress | None = None) -> Prior:
-    """Make the prior that comes with brdfkit, of `count` random materials of its models."""
-    rng, cells, rows = np.random.default_rng(SEED), get_cells(), []
+    """Make the prior that comes with brdfkit, of `count` random materials of models."""
+    rows = np.empty((count, CELLS), np.float32)
     for k in range(count):
-        values = evaluate_parts(draw_material(rng), cells.wi, cells.wo)
-        rows.append(to_logarithm(values, cells.cosine))
+        rows[k] = draw_row(k)
         if progress:
             progress(k + 1, count)
-    return make_prior("brdfkit's models", np.array(rows), np.arange(count), MODEL_FLOOR)
+    return make_prior(
+        "brdfkit's models", rows, np.arange(count), floor=MODEL_FLOOR, share=MODEL_SHARE
+    )
+
+
+def draw_row(number: int) -> AnyArray:
+    """Return the logarithms (CELLS,) of the random material of this number."""
+    return to_logarithm(draw_material(np.random.default_rng([SEED, number])), get_cells().cosine)
 
 
 def make_prior(
-    name: str, logarithms: AnyArray, groups: AnyArray, floor: float = 0.0, **details: Any
+    name: str,
+    logarithms: AnyArray,
+    groups: AnyArray,
+    *,
+    floor: float = 0.0,
+    share: float = 0.0,
+    base: Prior | None = None,
+    **details: Any,
 ) -> Prior:
     """Make a prior of rows of logarithms (m, CELLS), which belong to the materials `groups` (m,).
 
-    `floor` is a variance to add to the remainders of other materials, and `details` are attributes
-    of the `Prior`.
+    `floor` is a variance that is added to the remainders of other materials, and `share` that
+    part of the variance among materials. The materials of a `base` count as many as all rows.
+    `details` are attributes of the `Prior`.
     """
-    reference = np.median(logarithms, axis=0)
-    mean, components, remainder, new_remainder = learn(logarithms - reference, groups)
+    arrays = [array.astype(float) for array in learn(logarithms, groups, base)]
+    mean, components, remainder, new_remainder = arrays
+    new_remainder = new_remainder + floor + share * np.sum(components**2, axis=1)
     count = len(np.unique(groups))
-    return Prior(
-        name, mean + reference, components, remainder, new_remainder + floor, count, **details
-    )
+    return Prior(name, mean, components, remainder, new_remainder, count, **details)
