@@ -178,8 +178,9 @@ def plan(
     }
     if already is not None:
         info["measured"] = f"{len(already[0]):,} directions were measured before"
-    arrays: Any = wi[rows], wo[rows], candidates[rows], errors
-    return Plan(*arrays, info)
+    angles = np.asarray(candidates[rows], np.float64)
+    wi, wo = (np.asarray(w, np.float64) for w in to_directions(angles))
+    return Plan(wi, wo, angles, np.asarray(errors, np.float64), info)
 
 
 def list_measured_pairs(measured: MaterialLike) -> tuple[AnyArray, AnyArray]:
