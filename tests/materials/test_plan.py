@@ -1,5 +1,6 @@
 """`plan` and `complete`, and what a completed material keeps: files, channels, the command line."""
 
+import io
 import json
 import pickle
 from dataclasses import replace
@@ -10,12 +11,15 @@ import pytest
 from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from PIL import Image
 
 import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.core.geometry.directions import from_angles, to_angles
+from brdfkit.images.hatching import hatch
 from brdfkit.materials.completion.reach import Arms
 from brdfkit.materials.measured import evidence
+from brdfkit.viewing.materials.unmeasured import MeasuredAngles
 
 angles = st.floats(10, 85)
 
@@ -279,3 +283,60 @@ def test_bad_input(cli, words, said):
     assert result.stderr.count("\n") == 1
     assert said in result.stderr
     assert sorted(Path().iterdir()) == before
+
+
+# Pictures
+
+
+def test_lobes_have_a_band_and_three_lines(completed):
+    figure = bk.plot([completed, "ggx"], theta_i=75)
+    (legend,) = figure.legends
+    labels = [text.get_text() for text in legend.get_texts()]
+    assert labels[:2] == ["twenty", "ggx"]
+    assert {"measured", "inferred", "guessed", "95 % interval"} < set(labels)
+    styles = {str(line.get_linestyle()) for line in figure.axes[0].lines}
+    assert len(styles) >= 2
+    assert figure.axes[0].patches
+
+
+def test_the_ball_of_a_completed_material_is_hatched(completed):
+    hatched, plain = (
+        Image.open(io.BytesIO(data.document().parts[0].draw()))
+        for data in (completed, replace(completed, evidence=None))
+    )
+    differing = (np.asarray(hatched) != np.asarray(plain)).any(axis=-1)
+    assert 0.05 < differing.mean() < 0.5
+
+
+def test_sparse_and_dense_stripes_differ():
+    levels = np.repeat([[0, 1, 2]], 60, axis=0).repeat(60, axis=1).astype(np.uint8)
+    picture = np.full((60, 180, 3), 128, np.uint8)
+    changed = (hatch(picture, levels) != 128).any(axis=-1)
+    shares = [changed[:, 60 * k : 60 * k + 60].mean() for k in range(3)]
+    assert shares[0] == 0
+    assert 0 < shares[1] < shares[2] / 2
+
+
+def test_an_audit_tells_the_evidence(completed):
+    rows = bk.audit(completed).rows()
+    assert "inferred" in rows["evidence"]
+    assert "outside" in rows["95 % intervals"]
+    assert "directions measured" in rows["coverage"]
+
+
+def test_a_completed_material_is_not_completed_again(completed):
+    with pytest.raises(bk.BrdfkitError, match="twenty is completed already, from 20 measured"):
+        bk.complete(completed)
+    with pytest.raises(bk.BrdfkitError, match="twenty is completed already"):
+        bk.plan(3, measured=completed)
+
+
+def test_a_view_hatches_by_evidence(completed):
+    angles = MeasuredAngles(completed)
+    theta = np.radians(np.arange(2.0, 89, 4))
+    view = from_angles(theta, 0.0)
+    kinds = angles.find_view_kinds(view)
+    assert (kinds[np.degrees(theta) < 60] == evidence.INFERRED).all()
+    wi, wo = from_angles(0.5, 0.0), from_angles(0.6, 2.0)
+    near = evidence.find_evidence(completed, wi[None], wo[None])
+    assert angles.find_kinds(wi, wo) == near[0]

@@ -5,7 +5,7 @@ import pytest
 
 import brdfkit as bk
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.viewing.hatching import hatch
+from brdfkit.images.hatching import hatch
 from brdfkit.viewing.materials.application import MaterialApplication
 from brdfkit.viewing.materials.live_light import LAMP
 from brdfkit.viewing.materials.unmeasured import MeasuredAngles

@@ -2,9 +2,10 @@
 
 import io
 import math
+from collections.abc import Callable
 from functools import partial
 from html import escape
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from brdfkit.core.documents import Picture
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.images.ball.ball import draw_ball
 from brdfkit.images.ball.half_vectors import Brdf
+from brdfkit.images.hatching import hatch
 
 BALL_SIZE = 92  # pixels
 LARGEST_RANGE = 5  # largest ratio [decades] of the value at the rim to that at the centre
@@ -22,32 +24,61 @@ LARGEST_RANGE = 5  # largest ratio [decades] of the value at the rim to that at 
 MARGIN = 0.2
 
 
-def make_thumbnails(name: str, brdf: Brdf) -> tuple[Picture, Picture]:
+# Tells of direction pairs (n, 3) whether their values were measured, 0, inferred, 1, or guessed, 2
+Evidence: TypeAlias = Callable[[Any, Any], Any]
+
+
+def make_thumbnails(
+    name: str, brdf: Brdf, evidence: Evidence | None = None
+) -> tuple[Picture, Picture]:
     """Return two pictures of a BRDF, a ball and a polar plot of its lobes.
 
     `brdf` takes direction pairs (n, 3) and returns values (n, 1 or 3) in sr⁻¹; `name` is the
-    material's name in the descriptions of the pictures.
+    material's name in the descriptions of the pictures. With `evidence`, the ball is hatched where
+    its light was inferred or guessed, and the lines of the lobes are broken.
     """
-    return make_ball_picture(name, brdf), make_lobe_picture(name, brdf)
+    return make_ball_picture(name, brdf, evidence), make_lobe_picture(name, brdf, evidence)
 
 
-def make_ball_picture(name: str, brdf: Brdf) -> Picture:
+def make_ball_picture(name: str, brdf: Brdf, evidence: Evidence | None = None) -> Picture:
     """Return a picture of a ball made of the material `name` with this BRDF, on no background."""
-    return Picture(
-        partial(_draw_ball_png, brdf), f"a ball of {name} under two softboxes", BALL_SIZE
-    )
+    says = f"a ball of {name} under two softboxes"
+    if evidence:
+        says += "; sparse stripes: inferred from measurements, dense stripes: guessed"
+    return Picture(partial(_draw_ball_png, brdf, evidence), says, BALL_SIZE)
 
 
-def _draw_ball_png(brdf: Brdf) -> bytes:
+def _draw_ball_png(brdf: Brdf, evidence: Evidence | None) -> bytes:
     """Draw a ball with this BRDF, and return the picture as the bytes of a PNG."""
     from PIL import Image
 
     linear, cover = draw_ball(brdf, BALL_SIZE)
-    rgb = np.broadcast_to(to_srgb(linear), (BALL_SIZE, BALL_SIZE, 3))
-    pixels = np.dstack([rgb, cover]) * 255 + 0.5
+    rgb = np.broadcast_to(to_srgb(linear), (BALL_SIZE, BALL_SIZE, 3)) * 255 + 0.5
+    colours = rgb.astype(np.uint8)
+    if evidence:
+        levels = find_levels(brdf, evidence, BALL_SIZE // 2)
+        colours = hatch(colours, levels.repeat(2, axis=0).repeat(2, axis=1))
+    alpha = (cover * 255 + 0.5).astype(np.uint8)
     stream = io.BytesIO()
-    Image.fromarray(pixels.astype(np.uint8)).save(stream, "PNG")
+    Image.fromarray(np.dstack([colours, alpha])).save(stream, "PNG")
     return stream.getvalue()
+
+
+def find_levels(brdf: Brdf, evidence: Evidence, side: int) -> AnyArray:
+    """Return for each pixel (side, side) of a ball what most of its light is.
+
+    It is 2 if at least half of the light was guessed, 1 if at least half was guessed or inferred.
+    """
+
+    def divide(wi: Any, wo: Any) -> AnyArray:
+        values = luminance(np.maximum(brdf(wi, wo), 0))
+        kinds = evidence(wi, wo)
+        return np.stack([values, values * (kinds >= 1), values * (kinds >= 2)], axis=1)
+
+    parts, _ = draw_ball(divide, side)
+    whole, others = parts[..., :1], parts[..., 1:]
+    levels: AnyArray = np.sum((others >= 0.5 * whole) & (whole > 0), axis=-1)
+    return levels
 
 
 class Radius:
@@ -85,25 +116,34 @@ class Radius:
 THETA_I = (30, 60)  # angles of incidence [degrees] of the plotted lobes
 # Two of Okabe and Ito's colours, which are visible on white and on black
 COLOURS = ("#d55e00", "#3d94d1")
+DASHES = "", ' stroke-dasharray="5 2"', ' stroke-dasharray="1 2"'  # measured, inferred, guessed
 RADIUS, BORDER = 100, 14  # radius of the half disc, and width of the border around it [pixels]
 STEP = 1.5  # angle between neighbouring points of a line [degrees]
 
 
-def make_lobe_picture(name: str, brdf: Brdf) -> Picture:
+def make_lobe_picture(name: str, brdf: Brdf, evidence: Evidence | None = None) -> Picture:
     """Return a polar plot of a BRDF's lobes in the plane of incidence, on a logarithmic scale."""
     angles = " and ".join(f"{theta}°" for theta in THETA_I)
     description = f"lobes of {name}, lit at {angles} from the left"
-    return Picture(partial(_draw_lobes_svg, brdf, description), description, 2 * (RADIUS + BORDER))
+    if evidence:
+        description += "; dashed: inferred from measurements, dotted: guessed"
+    draw = partial(_draw_lobes_svg, brdf, evidence, description)
+    return Picture(draw, description, 2 * (RADIUS + BORDER))
 
 
-def _draw_lobes_svg(brdf: Brdf, description: str) -> str:
+def _draw_lobes_svg(brdf: Brdf, evidence: Evidence | None, description: str) -> str:
     """Draw the lobes of a BRDF, and return them as the text of an SVG with this `description`."""
     theta_o = np.arange(-90 + STEP / 2, 90, STEP)
     curves = [_compute_lobe(brdf, theta_i, theta_o) for theta_i in THETA_I]
     radius = Radius(curves)
     parts = [_draw_half_disc(radius)]
     for theta_i, values, colour in zip(THETA_I, curves, COLOURS, strict=True):
-        parts += [_draw_arrow(theta_i, colour), _draw_curve(theta_o, radius(values), colour)]
+        parts.append(_draw_arrow(theta_i, colour))
+        kinds = np.zeros(len(theta_o), int)
+        if evidence:
+            kinds = evidence(*_make_views(theta_i, theta_o))
+        for kind, run in split_runs(kinds):
+            parts.append(_draw_curve(theta_o[run], radius(values[run]), colour, DASHES[kind]))
     width, height = 2 * (RADIUS + BORDER), RADIUS + 2 * BORDER
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
@@ -118,9 +158,27 @@ def _compute_lobe(brdf: Brdf, theta_i: float, theta_o: AnyArray) -> AnyArray:
 
     The angles are in degrees. The luminance is 0 where the BRDF is unknown.
     """
-    wi = np.broadcast_to(from_angles(np.radians(theta_i), np.pi), (len(theta_o), 3))
-    values = luminance(np.asarray(brdf(wi, from_angles(np.radians(theta_o), 0.0))))
+    values = luminance(np.asarray(brdf(*_make_views(theta_i, theta_o))))
     return np.where(np.isfinite(values), np.maximum(values, 0), 0.0)
+
+
+def _make_views(theta_i: float, theta_o: AnyArray) -> tuple[AnyArray, AnyArray]:
+    """Return the directions wi, wo (n, 3) of views at `theta_o` (n,), for light from the left."""
+    wi = np.broadcast_to(from_angles(np.radians(theta_i), np.pi), (len(theta_o), 3))
+    return wi, from_angles(np.radians(theta_o), 0.0)
+
+
+def split_runs(kinds: AnyArray) -> list[tuple[int, slice]]:
+    """Return the runs of equal numbers in `kinds` (n,), each with the first point of the next one.
+
+    >>> split_runs(np.array([0, 0, 2]))
+    [(0, slice(0, 3, None)), (2, slice(2, 3, None))]
+    """
+    ends = [*(np.flatnonzero(np.diff(kinds)) + 1).tolist(), len(kinds)]
+    starts = [0, *ends[:-1]]
+    return [
+        (int(kinds[a]), slice(a, min(b + 1, len(kinds)))) for a, b in zip(starts, ends, strict=True)
+    ]
 
 
 def _draw_half_disc(radius: Radius) -> str:
@@ -136,12 +194,12 @@ def _draw_half_disc(radius: Radius) -> str:
     return "".join(parts)
 
 
-def _draw_curve(theta_o: AnyArray, radii: AnyArray, colour: str) -> str:
+def _draw_curve(theta_o: AnyArray, radii: AnyArray, colour: str, dashes: str) -> str:
     """Draw a line through points with the `radii` (n,), relative to the rim, at `theta_o` (n,)."""
     points = " ".join(
         f"{x:.1f},{y:.1f}" for x, y in zip(*_polar_to_pixels(theta_o, radii), strict=True)
     )
-    return f'<polyline points="{points}" stroke="{colour}" stroke-width="1.6"/>'
+    return f'<polyline points="{points}" stroke="{colour}" stroke-width="1.6"{dashes}/>'
 
 
 def _draw_arrow(theta_i: float, colour: str) -> str:

@@ -133,6 +133,7 @@ def collect_contents(
         "ranking": ranking and _describe_ranking(ranking),
         "lobes": lobes,
         "noise_shown": noise_shown,
+        "completed": material.evidence is not None,
         "slices": draw_slices(material, fits),
         "albedo": draw_albedo(audited.albedo, fits, material.anisotropic),
         "albedo_extrapolated": bool(is_extrapolated(audited.albedo).any()),

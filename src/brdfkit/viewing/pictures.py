@@ -8,11 +8,11 @@ from typing import Any
 from brdfkit.core.array_types import AnyArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.images.errors.noise import Accumulated
+from brdfkit.images.hatching import hatch
 from brdfkit.viewing.application import Application, Message
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.difference_map import draw_differences, shows_differences
 from brdfkit.viewing.encoding import encode_jpeg, encode_png
-from brdfkit.viewing.hatching import hatch
 
 
 def make_pictures(

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from brdfkit.core.array_types import BoolArray, FloatArray
@@ -13,6 +14,7 @@ from brdfkit.materials.auditing.albedos import Albedo
 from brdfkit.materials.auditing.report import to_percent
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import is_near_sample
+from brdfkit.materials.measured.evidence import GUESSED, INFERRED
 from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean
 from brdfkit.materials.plotting.lobe_plots import draw_lobe_panels
 from brdfkit.materials.plotting.plane_of_incidence import choose_angles
@@ -48,7 +50,7 @@ def draw_audit(audit: Any) -> Figure:
 
 def _draw_title(figure: Figure, audit: Any) -> None:
     """Write the material's name, kind of data and coverage above the picture."""
-    how = "in valid cells" if audit.data.is_table else "measured"
+    how = "in valid cells" if audit.data.is_table and audit.data.evidence is None else "measured"
     covered = f"{to_percent(audit.coverage.measured)} of the direction pairs {how}"
     text = f"{audit.name}: {audit.kind}, {audit.valid:,} valid, {covered}"
     # Escape the dollar sign, which begins a formula in matplotlib's texts
@@ -76,6 +78,9 @@ def _draw_slice(figure: Any, axes: Any, data: Measured) -> None:
         aspect="auto",
         interpolation="nearest",
     )
+    completed = data.evidence is not None
+    if completed:
+        _hatch_evidence(axes, data, cells)
     axes.set_xticks(np.sqrt(TICKS / 90), [f"{t}°" for t in TICKS])
     axes.set_yticks(range(0, 91, 30), [f"{t}°" for t in range(0, 91, 30)])
     axes.set_xlabel(r"$\theta_h$")
@@ -84,6 +89,8 @@ def _draw_slice(figure: Any, axes: Any, data: Measured) -> None:
     # Add the title and the colour bar
     phi_d = np.degrees(table.centres[-1][across])
     hatched = "" if known.all() else "; hatched: not measured"
+    if completed:
+        hatched = "\nthin stripes: inferred; faint, dense stripes: guessed"
     what = "luminance" if data.channels in (RGB, ("Y",)) else "mean"
     axes.set_title(rf"{what} of the BRDF [sr⁻¹] at $\phi_d$ = {phi_d:.0f}°{hatched}", fontsize=10)
     bar = figure.colorbar(image, ax=axes, pad=0.02, extend="both")
@@ -92,11 +99,32 @@ def _draw_slice(figure: Any, axes: Any, data: Measured) -> None:
         bar.ax.yaxis.set_minor_formatter("{x:.2g}")
 
 
+def _hatch_evidence(axes: Any, data: Measured, cells: Any) -> None:
+    """Hatch the inferred and the guessed cells of a slice of a completed table."""
+    assert data.evidence is not None
+    kinds = data.evidence.reshape(data.table.shape)[cells].astype(float)
+    kinds[~np.isfinite(data.table.values[cells]).all(axis=-1)] = np.nan
+    n_h, n_d = kinds.shape
+    h, d = (np.arange(n_h) + 0.5) / n_h, (np.arange(n_d) + 0.5) / n_d * 90
+    with rc_context({"hatch.linewidth": 0.5}):
+        for kind, pattern in ((INFERRED, "/"), (GUESSED, "\\\\\\\\")):
+            mask = np.where(kinds == kind, 1.0, 0.0).T
+            if mask.any():
+                filled = axes.contourf(
+                    h, d, mask, levels=[0.5, 1.5], colors="none", hatches=[pattern]
+                )
+                filled.set(edgecolor="0.35", linewidth=0)
+
+
 def find_measured_cells(data: Measured, table: Table, cells: Any) -> BoolArray:
     """Return a mask of the cells of a table that were measured, or are near a measured sample.
 
-    `cells` is an index of the table, which selects a slice.
+    Of a completed table, inferred cells count, too. `cells` is an index of the table, which selects
+    a slice.
     """
+    if data.evidence is not None:
+        above = np.isfinite(table.values[cells]).all(axis=-1)
+        return above & (data.evidence.reshape(table.shape)[cells] != GUESSED)
     if data.is_table:
         return np.isfinite(table.values[cells]).all(axis=-1)
     wi, wo = (w[cells].reshape(-1, 3) for w in table.directions())

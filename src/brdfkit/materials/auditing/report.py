@@ -9,11 +9,14 @@ from brdfkit.materials.auditing.finding import Finding
 from brdfkit.materials.auditing.noise import Noise
 from brdfkit.materials.auditing.spikes import Spike
 from brdfkit.materials.auditing.symmetries import Difference
+from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import Coverage
+from brdfkit.materials.measured.evidence import describe_evidence
 from brdfkit.materials.measured.spectrum_to_rgb import format_channels
 
 MOST_SPIKES = 3  # largest number of spikes that are described one by one; the others are counted
 NEGATIVE_SHARE = 0.01  # a larger share of negative values is reported as a finding
+BEYOND = " beyond them: there values are extrapolated"
 LARGEST_ALBEDO = 1.001  # a larger albedo is reported; the quadrature has an error of up to 10⁻³
 
 
@@ -33,7 +36,8 @@ def describe_audit(audit: Any) -> dict[str, str]:
         "negative": f"{_describe_negative_values(audit)}; exactly 0: {audit.zero:,}",
         "BRDF": _describe_value_range(audit),
         "angles": f"θi {_format_angles(audit.theta_i)}; θo {_format_angles(audit.theta_o)}",
-        "coverage": _describe_coverage(audit.coverage, audit.data.is_table),
+        "coverage": _describe_coverage(audit.coverage, audit.data),
+        **describe_evidence(audit.data),
         "reciprocity": _describe_reciprocity(audit),
         "mirror symmetry": _describe_difference(audit.mirror, "no mirrored pairs"),
         "noise": _describe_noise(audit.noise),
@@ -85,16 +89,17 @@ def _describe_value_range(audit: Any) -> str:
     return f"{audit.smallest:.4g} to {audit.largest:.4g} sr⁻¹, median {audit.median:.4g}"
 
 
-def _describe_coverage(coverage: Coverage, is_table: bool) -> str:
+def _describe_coverage(coverage: Coverage, data: Measured) -> str:
     """Describe which shares of all pairs of directions were measured and are extrapolated."""
     shares = (coverage.measured, coverage.between, coverage.beyond)
     measured, between, beyond = map(to_percent, shares)
-    if is_table and measured == "100 %":
+    if data.is_table and measured == "100 %":
         return "values in all cells; a table does not tell which of them were measured"
-    how = "in valid cells" if is_table else "within 5° of a sample"
+    how = "in valid cells" if data.is_table else "within 5° of a sample"
+    how = "measured" if data.evidence is not None else how
+    beyond += " beyond them" if data.evidence is not None else BEYOND
     return (
-        f"{measured} of the pairs of directions {how}, {between} between measured angles, "
-        f"{beyond} beyond them: there values are extrapolated"
+        f"{measured} of the pairs of directions {how}, {between} between measured angles, {beyond}"
     )
 
 

@@ -106,6 +106,11 @@ def list_values(data: Measured) -> tuple[AnyArray, AnyArray, AnyArray, AnyArray 
     Of many samples, `MOST_SAMPLES` are drawn. Raises `BrdfkitError` for a material that cannot be
     completed.
     """
+    if data.evidence is not None:
+        raise BrdfkitError(
+            f"{data.name} is completed already, {data.info.get('completed', 'from few values')}; "
+            "complete what was measured."
+        )
     if data.anisotropic:
         raise BrdfkitError(
             f"{data.name} is anisotropic, and the prior knows only isotropic materials; measure it "

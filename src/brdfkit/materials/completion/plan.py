@@ -186,9 +186,13 @@ def plan(
 def list_measured_pairs(measured: MaterialLike) -> tuple[AnyArray, AnyArray]:
     """Return the directions (n, 3) each that are measured; of many, those that a completion counts.
 
-    Raises `BrdfkitError` for an anisotropic material.
+    Raises `BrdfkitError` for an anisotropic or a completed material.
     """
     data = to_measured(measured)
+    if data.evidence is not None:
+        raise BrdfkitError(
+            f"{data.name} is completed already; give what was measured, from which it was made."
+        )
     if data.anisotropic:
         raise BrdfkitError(
             f"{data.name} is anisotropic, and a plan is for isotropic materials; leave measured "

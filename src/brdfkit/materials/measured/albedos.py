@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.measured.evidence import GUESSED, find_evidence
 from brdfkit.materials.measured.measured_data import MeasuredData
 from brdfkit.model.samples.coordinates import compute_coordinates, compute_sample_coordinates
 from brdfkit.model.samples.measures import REACH
@@ -123,10 +124,12 @@ def _compute_known_share(
 def make_measured_test(data: MeasuredData) -> Callable[[FloatArray, FloatArray], BoolArray]:
     """Return a function of wi and wo (n, 3) that tells which pairs lie near a valid sample.
 
-    For a table it tells which pairs lie in a valid cell.
+    For a table it tells which pairs lie in a valid cell, in a completed one which are no guesses.
     """
     from scipy.spatial import cKDTree
 
+    if data.evidence is not None and data._table is not None:
+        return lambda wi, wo: find_evidence(data, wi, wo) != GUESSED
     if data._table is not None:
         table = data._table
         known = np.asarray(np.isfinite(table.values).all(axis=-1))

@@ -6,6 +6,7 @@ import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.geometry.directions import from_angles
+from brdfkit.materials.measured.evidence import find_measured_rows
 from brdfkit.materials.measured.measured import Measured
 from brdfkit.model.samples import Samples, Table
 
@@ -17,10 +18,10 @@ PAIRS = 20_000  # number of random pairs of directions; it makes shares accurate
 class Coverage:
     """Three shares of all pairs of directions above the surface, by solid angle; their sum is 1.
 
-    `measured`: share in valid cells of a table, or within 5° of a sample, where reciprocity and the
-    symmetries of an isotropic material count; `between`: share that was not measured, at angles to
-    the normal up to the largest measured ones; `beyond`: share at larger angles, where values are
-    extrapolated.
+    `measured`: share in valid cells of a table, in measured ones of a completed table, or within 5°
+    of a sample, where reciprocity and the symmetries of an isotropic material count; `between`:
+    share that was not measured, at angles to the normal up to the largest measured ones; `beyond`:
+    share at larger angles, where values are extrapolated.
     """
 
     measured: float
@@ -40,7 +41,7 @@ def compute_coverage(data: Measured, max_angle: float = 90.0) -> Coverage:
         return compute_coverage_at(data, wi, wo)
     low, high = _sort_cosines(data.samples.wi, data.samples.wo)
     weight = _compute_solid_angles(data.table) * (low > max(least, 0))
-    return _compute_coverage_shares(data, low, high, weight, data.samples.valid)
+    return _compute_coverage_shares(data, low, high, weight, find_measured_rows(data))
 
 
 def compute_coverage_at(data: Measured, wi: FloatArray, wo: FloatArray) -> Coverage:
@@ -55,7 +56,7 @@ def find_largest_angles(data: Measured) -> tuple[float, float]:
     A pair has a smaller and a larger angle to the normal. The results are the maximum over all
     pairs of the smaller angle, and the maximum of the larger angle.
     """
-    valid = data.samples.valid
+    valid = find_measured_rows(data)
     low, high = _sort_cosines(data.samples.wi[valid], data.samples.wo[valid])
     smaller, larger = np.degrees(np.arccos(np.minimum([high.min(), low.min()], 1)))
     return float(smaller), float(larger)
@@ -126,7 +127,8 @@ def _compute_coverage_shares(
     `low` and `high` (n,) are the pairs' cosines to the normal, the smaller and the larger one,
     `weight` (n,) are their solid angles, and the mask `reached` (n,) tells which were measured.
     """
-    measured = _sort_cosines(*(w[data.samples.valid] for w in (data.samples.wi, data.samples.wo)))
+    rows = find_measured_rows(data)
+    measured = _sort_cosines(*(w[rows] for w in (data.samples.wi, data.samples.wo)))
     # A pair lies within the measured angles if its larger angle to the normal is at most the
     # maximum of the samples' larger angles, and likewise its smaller angle
     within = (low >= measured[0].min()) & (high >= measured[1].min())

@@ -37,9 +37,15 @@ def find_evidence(data: MeasuredData, wi: AnyArray, wo: AnyArray) -> IntArray:
 
 
 def find_measured_rows(data: MeasuredData) -> BoolArray:
-    """Return a mask (n,) of the samples that are valid and, in a completed table, measured."""
+    """Return a mask (n,) of the valid samples; in a completed table, of those that were measured.
+
+    If the table has none that was measured, all valid ones count.
+    """
     valid: BoolArray = data.samples.valid
-    return valid if data.evidence is None else valid & (data.evidence == MEASURED)
+    if data.evidence is None:
+        return valid
+    measured = valid & (data.evidence == MEASURED)
+    return measured if measured.any() else valid
 
 
 def compute_shares(data: MeasuredData) -> tuple[float, float, float]:
@@ -85,7 +91,7 @@ def compute_half_widths(data: MeasuredData) -> dict[str, float]:
     assert errors is not None
     low, high = _sort_cosines(data)
     known = find_measured_rows(data)
-    within = (low >= low[known].min()) & (high >= high[known].min()) if known.any() else known
+    within = (low >= low[known].min()) & (high >= high[known].min())
     grazing = low < GRAZING
     cosine = (low * high)[:, None]
     widths = NORMAL_95 * compute_deviation(samples.values, errors, cosine).mean(axis=1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from brdfkit.images.thumbnails import make_thumbnails
 from brdfkit.materials.measured.albedos import MeasuredAlbedo, compute_measured_albedo
 from brdfkit.materials.measured.arithmetic import mix_channels, subtract
 from brdfkit.materials.measured.conventions import mend
+from brdfkit.materials.measured.evidence import describe_evidence, find_evidence
 from brdfkit.materials.measured.from_angles import FromAngles
 from brdfkit.materials.measured.interpolation import Interpolant
 from brdfkit.materials.measured.measured_data import Lookup
@@ -215,11 +216,14 @@ class Measured(Shown, FromAngles):
 
     def document(self) -> Document:
         """Return a document that describes the material: a summary, pictures, and its notes."""
-        notes = tuple((key.replace("_", " "), str(value)) for key, value in self.info.items())
+        notes = {**describe_evidence(self), **self.info}
+        rows = tuple((key.replace("_", " "), str(value)) for key, value in notes.items())
         pictures = make_thumbnails(
-            self.name, lambda wi, wo: to_rgb_or_mean(self).rendered.eval(wi, wo)
+            self.name,
+            lambda wi, wo: to_rgb_or_mean(self).rendered.eval(wi, wo),
+            None if self.evidence is None else partial(find_evidence, self),
         )
-        return Document(self.summary, (*pictures, documents.Table(notes)))
+        return Document(self.summary, (*pictures, documents.Table(rows)))
 
     @cached_in_turn
     def tabulated(self) -> Measured:

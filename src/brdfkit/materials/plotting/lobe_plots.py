@@ -19,7 +19,19 @@ from brdfkit.core.figures import Plot
 from brdfkit.core.names import make_unique
 from brdfkit.images.thumbnails import Radius
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.plotting.plane_of_incidence import choose_angles, compute_lobe, is_scattered
+from brdfkit.materials.plotting.certain_lobes import (
+    EVIDENCE_LABELS,
+    draw_certain_lobe,
+    make_evidence_handles,
+    polar_to_xy,
+)
+from brdfkit.materials.plotting.plane_of_incidence import (
+    choose_angles,
+    compute_certainty,
+    compute_lobe,
+    is_completed,
+    is_scattered,
+)
 from brdfkit.materials.resolve import MaterialLike, to_materials
 
 SMALL_TEXT = {"size": 8, "color": "0.35"}
@@ -37,8 +49,10 @@ def plot(
 
     The radius is logarithmic in the luminance of the BRDF [sr⁻¹]; values too dark for the scale lie
     in the centre. Light comes from the left, along the arrow. The first measured material is black.
-    Tables are drawn as lines where they were measured. Scattered samples are drawn as dots if they
-    lie within 3° of theta_i and 5° of the plane.
+    Tables are drawn as lines where they were measured. Lines of `complete` are solid where values
+    were measured, dashed where they were inferred and dotted where they were guessed, with a band
+    of the 95 % intervals, hatched for guesses. Scattered samples are drawn as dots if they lie
+    within 3° of theta_i and 5° of the plane.
 
     Parameters
     ----------
@@ -93,6 +107,8 @@ def draw_lobe_panels(figure: Any, things: list[Any], angles: FloatArray) -> None
     for place, theta_i in enumerate(angles, 1):
         _draw_panel(figure.add_subplot(rows, columns, place), theta_i, things, styles)
     handles, labels = figure.axes[0].get_legend_handles_labels()
+    if any(map(is_completed, things)):
+        handles, labels = [*handles, *make_evidence_handles()], [*labels, *EVIDENCE_LABELS]
     ncols = min(len(labels), columns + 2)
     figure.legend(handles, labels, loc="outside lower center", ncols=ncols, frameon=False)
 
@@ -124,9 +140,13 @@ def _draw_panel(axes: Any, theta_i: float, things: list[Any], styles: list[dict[
     _draw_half_disc(axes, radius)
     axes.set_title(rf"$\theta_i$ = {theta_i:g}°", size=11)
     arrow = {"arrowstyle": "-|>", "color": GREY, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (0, 0), _polar_to_xy(-theta_i, 1), arrowprops=arrow, zorder=1.5)
-    for (theta_o, values), style in zip(lobes, styles, strict=True):
-        axes.plot(*_polar_to_xy(theta_o, radius(values)), **style)
+    axes.annotate("", (0, 0), polar_to_xy(-theta_i, 1), arrowprops=arrow, zorder=1.5)
+    for thing, (theta_o, values), style in zip(things, lobes, styles, strict=True):
+        if is_completed(thing):
+            certainty = compute_certainty(thing, theta_i, theta_o)
+            draw_certain_lobe(axes, radius, theta_o, values, certainty, style)
+        else:
+            axes.plot(*polar_to_xy(theta_o, radius(values)), **style)
 
 
 def _draw_half_disc(axes: Any, radius: Radius) -> None:
@@ -140,25 +160,17 @@ def _draw_half_disc(axes: Any, radius: Radius) -> None:
     half = np.arange(-90, 91)
     rim = {"color": "0.3", "linewidth": 0.8, "zorder": 1.2}
     grid = {"color": "0.87", "linewidth": 0.7, "zorder": 1}
-    axes.plot(*_polar_to_xy(half, 1), **rim)
+    axes.plot(*polar_to_xy(half, 1), **rim)
     axes.plot([-1, 1], [0, 0], **rim)
     for theta in range(-90, 91, 30):
-        axes.plot(*_polar_to_xy(theta, np.array([0, 1])), **grid)
+        axes.plot(*polar_to_xy(theta, np.array([0, 1])), **grid)
         text = f"{theta}°".replace("-", "−")
         # Raise the labels of ±90°, because those of the radius are just below them
         va = "bottom" if abs(theta) == 90 else "center"
-        axes.text(*_polar_to_xy(theta, 1.1), text, ha="center", va=va, **SMALL_TEXT)
+        axes.text(*polar_to_xy(theta, 1.1), text, ha="center", va=va, **SMALL_TEXT)
     for tick in radius.ticks():
-        axes.plot(*_polar_to_xy(half, radius(tick)), **grid)
+        axes.plot(*polar_to_xy(half, radius(tick)), **grid)
         axes.text(radius(tick), -0.03, f"{tick:g}", ha="center", va="top", **SMALL_TEXT)
     axes.text(
         0, -0.17, "luminance of the BRDF [sr⁻¹], logarithmic", ha="center", va="top", **SMALL_TEXT
     )
-
-
-def _polar_to_xy(theta: Any, radius: Any) -> tuple[Any, Any]:
-    """Convert polar coordinates of a plot to x and y.
-
-    `theta` is the angle to the normal [degrees], which points up; positive angles are on the right.
-    """
-    return radius * np.sin(np.radians(theta)), radius * np.cos(np.radians(theta))

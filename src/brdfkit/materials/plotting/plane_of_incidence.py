@@ -1,14 +1,15 @@
 """Finds the angles and luminances that `plot` draws: a BRDF in the plane of incidence."""
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
-from brdfkit.core.array_types import BoolArray, FloatArray
+from brdfkit.core.array_types import BoolArray, FloatArray, IntArray
 from brdfkit.core.colours import luminance
 from brdfkit.core.geometry.directions import from_angles, to_angles
 from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.evidence import compute_interval, evaluate_errors, find_evidence
 from brdfkit.model.samples import Samples, Table
 
 ANGLE_STEP = 0.1  # step of the angle of view along a drawn line [degrees]
@@ -34,6 +35,27 @@ def compute_lobe(thing: Any, theta_i: float) -> tuple[FloatArray, FloatArray]:
     if isinstance(thing, Measured):
         known &= _is_measured_at(thing.table, wi, wo)
     return theta_o, np.where(known, values, np.nan)
+
+
+def compute_certainty(
+    data: Measured, theta_i: float, theta_o: FloatArray
+) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Return what a completed material knows at angles of view `theta_o` (n,) [degrees].
+
+    The results are the evidence, and the ends of the 95 % intervals of the luminance, all (n,). The
+    errors of channels go together, because all come from the same directions.
+    """
+    wi = np.broadcast_to(from_angles(np.radians(theta_i), np.pi), (len(theta_o), 3))
+    wo = from_angles(np.radians(theta_o), 0.0)
+    values, errors = luminance(data.eval(wi, wo)), luminance(evaluate_errors(data, wi, wo))
+    low, high = compute_interval(values, errors, wi[:, 2] * wo[:, 2])
+    return find_evidence(data, wi, wo), low, high
+
+
+def is_completed(thing: object) -> TypeGuard[Measured]:
+    """Return whether `thing` is a completed material with standard errors."""
+    completed = isinstance(thing, Measured) and thing.is_table and thing.evidence is not None
+    return completed and getattr(thing, "standard_error", None) is not None
 
 
 def choose_angles(things: Iterable[Any]) -> FloatArray:

@@ -1,6 +1,7 @@
 """Draws the charts of a BRDF's lobes for a report, over the outgoing angle θo.
 
-The measurement is drawn as dots, with bars for its noise, and each fit as a line.
+The measurement is drawn as dots, with bars for its noise, and each fit as a line. The dots of a
+completed material are fainter where they were inferred or guessed; its bars are 95 % intervals.
 """
 
 from collections.abc import Sequence
@@ -10,7 +11,15 @@ import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.images.thumbnails import Radius
-from brdfkit.materials.plotting.plane_of_incidence import choose_angles, compute_lobe, is_scattered
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.evidence import NAMES
+from brdfkit.materials.plotting.plane_of_incidence import (
+    choose_angles,
+    compute_certainty,
+    compute_lobe,
+    is_completed,
+    is_scattered,
+)
 from brdfkit.reporting.charts.svg import BOTTOM, HEIGHT, TOP, Axis, Chart, make_linear_axis
 
 # Degrees between the points of a line, and between the dots of a measured table
@@ -58,11 +67,25 @@ def _draw_lobe(
     if not is_scattered(material):
         shown = _choose_points(theta_o, values, DOT_STEP)
         theta_o, values = theta_o[shown], values[shown]
+    if is_completed(material):
+        add_certain_dots(chart, material, theta_i, theta_o, values)
+        return chart.svg, False
     has_bars = bool(np.log10(1 + noise) / radius.decades * (HEIGHT - TOP - BOTTOM) > DOT_RADIUS)
     if has_bars:
         chart.add_bars(theta_o, values * max(1 - noise, 0), values * (1 + noise), "measured")
     chart.add_dots(theta_o, values, "measured")
     return chart.svg, has_bars
+
+
+def add_certain_dots(
+    chart: Chart, material: Measured, theta_i: float, theta_o: FloatArray, values: FloatArray
+) -> None:
+    """Add dots of a completed material, by evidence, with bars for their 95 % intervals."""
+    kinds, low, high = compute_certainty(material, theta_i, theta_o)
+    chart.add_bars(theta_o, low, high, "measured")
+    for kind, name in enumerate(NAMES):
+        rows = kinds == kind
+        chart.add_dots(theta_o[rows], values[rows], f"measured by-{name}")
 
 
 def _choose_points(theta_o: FloatArray, values: FloatArray, step: float) -> BoolArray:

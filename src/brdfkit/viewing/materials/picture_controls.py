@@ -71,7 +71,8 @@ def make_unmeasured_control() -> Control:
     """Return the control that hatches what was not measured."""
     meaning = (
         "Stripes where the lamp and the view, or most of an environment's light for the view, are "
-        "beyond what was measured."
+        "beyond what was measured. Of a completed material, stripes are sparse where they were "
+        "inferred, and dense where they are guesses."
     )
     label = "hatch what was not measured"
     return Control("show.unmeasured", label, "picture", False, kind="flag", help=meaning)

@@ -32,10 +32,11 @@ class PictureMasks:
         return np.isfinite(self.find_directions(state, size)[0][..., 2])
 
     def find_unmeasured(self, state: State, size: tuple[int, int]) -> AnyArray | None:
-        """Return where a picture shows what was not measured (height, width).
+        """Return where a picture shows what was not measured (height, width), for `hatch`.
 
-        That is a view, and with the lamp a pair of directions, without samples near it. None where
-        the material was not measured at all.
+        That is a view, and with the lamp a pair of directions, without samples near it. A completed
+        material has 1 where they were inferred, and 2 where they are guesses. None where the
+        material was not measured at all.
         """
         measured = self.states.measured
         if not isinstance(measured, Measured):
@@ -44,12 +45,13 @@ class PictureMasks:
             self.angles = measured, MeasuredAngles(measured)
         view, light = self.find_directions(state, size)
         mask, angles = view[..., 2] > 0, self.angles[1]
+        kinds = np.zeros(mask.shape, np.uint8)
         if state["light.environment"] == LAMP:
             mask &= light[..., 2] > 0
-            mask[mask] = ~angles.knows(light[mask], view[mask])
+            kinds[mask] = angles.find_kinds(light[mask], view[mask])
         else:
-            mask[mask] = ~angles.knows_views(view[mask])
-        return mask
+            kinds[mask] = angles.find_view_kinds(view[mask])
+        return kinds if angles.is_completed else kinds > 0
 
     def find_directions(self, state: State, size: tuple[int, int]) -> tuple[AnyArray, AnyArray]:
         """Return the directions to the camera and to the lamp in each pixel."""

@@ -8,6 +8,7 @@ from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import is_near_sample
+from brdfkit.materials.measured.evidence import GUESSED, INFERRED, MEASURED, find_evidence
 
 ANGLES, TURNS = 30, 60  # cells of the polar angles up to 90°, and of the azimuths between
 LEAST_SHARE = 0.5  # of the light of a view that should be measured
@@ -16,33 +17,51 @@ LEAST_SHARE = 0.5  # of the light of a view that should be measured
 class MeasuredAngles:
     """Which polar angles of light and view, and azimuths between, a measurement holds.
 
-    Of an anisotropic material, the azimuth of the view itself does not count: one is enough.
+    `kinds` (light, view, between) are 0 where it was measured, 2 where not; a completed material
+    has 1 where its value was inferred, and 2 where it is a guess. Of an anisotropic material, the
+    azimuth of the view itself does not count: one is enough.
     """
 
     def __init__(self, data: Measured) -> None:
+        self.is_completed = data.evidence is not None
         theta = (np.arange(ANGLES) + 0.5) * np.pi / 2 / ANGLES
         turn = (np.arange(TURNS) + 0.5) * 2 * np.pi / TURNS
         grid = np.meshgrid(theta, theta, turn, indexing="ij")
         light, view, between = (angles.ravel() for angles in grid)
-        known = np.zeros(len(light), bool)
+        kinds = np.full(len(light), GUESSED, np.uint8)
         for first in np.arange(0, 360, 30) if data.anisotropic else (0.0,):
             azimuth = np.radians(first) + 0 * between
             wi, wo = from_angles(light, azimuth + between), from_angles(view, azimuth)
-            known |= is_near_sample(data, wi, wo)
-        self.known = known.reshape(grid[0].shape)
+            if self.is_completed:
+                kinds = find_evidence(data, wi, wo).astype(np.uint8)
+            else:
+                kinds[is_near_sample(data, wi, wo)] = MEASURED
+        self.kinds = kinds.reshape(grid[0].shape)
         weight = np.sin(theta) * np.cos(theta)
-        shares = np.einsum("i,ijk->j", weight, self.known) / weight.sum() / TURNS
-        self.views = shares >= LEAST_SHARE
+        self.view_kinds = np.zeros(ANGLES, np.uint8)
+        for kind in (MEASURED, INFERRED):
+            shares = np.einsum("i,ijk->j", weight, self.kinds <= kind) / weight.sum() / TURNS
+            self.view_kinds += shares < LEAST_SHARE
+
+    def find_view_kinds(self, view: FloatArray) -> AnyArray:
+        """Return what most light for the directions (..., 3) of views is, as `kinds` says it."""
+        return self.view_kinds[_find_angle(view)]
+
+    def find_kinds(self, light: FloatArray, view: FloatArray) -> AnyArray:
+        """Return what pairs of directions (..., 3) about the normal z are, as `kinds` says it."""
+        azimuth = np.arctan2(light[..., 1], light[..., 0]) - np.arctan2(view[..., 1], view[..., 0])
+        between = (azimuth / (2 * np.pi) * TURNS).astype(int) % TURNS
+        return self.kinds[_find_angle(light), _find_angle(view), between]
 
     def knows_views(self, view: FloatArray) -> BoolArray:
         """Return whether most light for the directions (..., 3) of views was measured."""
-        return self.views[_find_angle(view)]
+        known: BoolArray = self.find_view_kinds(view) == MEASURED
+        return known
 
     def knows(self, light: FloatArray, view: FloatArray) -> BoolArray:
         """Return whether pairs of directions (..., 3) about the normal z were measured."""
-        azimuth = np.arctan2(light[..., 1], light[..., 0]) - np.arctan2(view[..., 1], view[..., 0])
-        between = (azimuth / (2 * np.pi) * TURNS).astype(int) % TURNS
-        return self.known[_find_angle(light), _find_angle(view), between]
+        known: BoolArray = self.find_kinds(light, view) == MEASURED
+        return known
 
 
 def _find_angle(direction: FloatArray) -> AnyArray:
