@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     "README in FOLDER.",
 )
 @click.option(
-    "--with-models",
-    is_flag=True,
-    help="Count random materials of models as well, as many as those of FOLDER, for materials that "
-    "are unlike them.",
+    "--with-models/--without-models",
+    default=True,
+    show_default=True,
+    help="Count random materials of models as well, by 30 %.",
 )
 @output_option("File to write, .npz. Default: FOLDER.npz, in the current folder.")
 @writing_options

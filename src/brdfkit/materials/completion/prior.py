@@ -24,6 +24,9 @@ VISIBLE = 450.0, 650.0  # wavelengths of linear sRGB [nm]
 MARGIN = 100.0  # so far beyond a prior's wavelengths materials are still alike [nm]
 RANK = 40  # number of principal components
 FOLDS = 5
+# The share of a base in a mixture with other materials. With 0.3, priors of 60 reconstructions left
+# less error of 20 others than alone (0.106 for 0.112 at 20 directions), and of other databases
+BASE_SHARE = 0.3
 SEED = 0
 
 
@@ -82,8 +85,8 @@ def learn(
     """Return mean, components, remainder and new remainder of rows of `logarithms` (m, CELLS).
 
     `groups` (m,) are the rows' materials: channels of one material are in one fold. The components
-    are each multiplied by their standard deviation. The materials of a `base` count as many as all
-    rows together.
+    are each multiplied by their standard deviation. The materials of a `base` count as well, by
+    `BASE_SHARE`.
     """
     mean, components = find_components(logarithms, rank, base)
     names = np.unique(groups)
@@ -96,12 +99,12 @@ def learn(
     remainder = np.mean(leave(logarithms, mean, components) ** 2, axis=0)
     new_remainder = squares / len(logarithms)
     if base is not None:
-        # What the new components leave of the base's materials, beside what they left of them
-        # before
+        # What the new components leave of the base's materials, beside what its own left of them
         left = leave(base.mean[None], mean, components)[0] ** 2
         left = left + np.sum(leave(base.components.T, np.zeros_like(mean), components) ** 2, axis=0)
-        remainder = (remainder + base.remainder + left) / 2
-        new_remainder = (new_remainder + base.new_remainder + left) / 2
+        share = BASE_SHARE
+        remainder = (1 - share) * remainder + share * (base.remainder + left)
+        new_remainder = (1 - share) * new_remainder + share * (base.new_remainder + left)
     return mean, components, remainder, new_remainder
 
 
@@ -112,9 +115,11 @@ def find_components(
     mean = logarithms.mean(axis=0)
     rows = (logarithms - mean) / np.sqrt(max(len(logarithms) - 1, 1))
     if base is not None:
-        # The covariance of a mixture of two distributions, half of each
-        rows = np.concatenate([rows, base.components.T, [(base.mean - mean) / sqrt(2)]]) / sqrt(2)
-        mean = (mean + base.mean) / 2
+        # The covariance of a mixture of two distributions
+        own, other = sqrt(1 - BASE_SHARE), sqrt(BASE_SHARE)
+        between = own * other * (base.mean - mean)
+        rows = np.concatenate([own * rows, other * base.components.T, between[None]])
+        mean = (1 - BASE_SHARE) * mean + BASE_SHARE * base.mean
     # The Gram matrix of the rows is far smaller than the covariance of the cells
     _, vectors = np.linalg.eigh(rows @ rows.T)
     return mean, rows.T @ vectors[:, ::-1][:, : min(rank, len(rows) - 1)]

@@ -60,7 +60,7 @@ def make_folder_prior(
     folder: str | Path,
     *,
     terms: str | None = None,
-    with_models: bool = False,
+    with_models: bool = True,
     progress: Progress | None = None,
 ) -> FolderPrior:
     """Make a prior of all materials in a folder that `brdfkit.load` reads.
@@ -75,9 +75,9 @@ def make_folder_prior(
     terms : str, optional
         Terms of use of the files. By default those of the collection that the folder belongs to, or
         of a file such as LICENSE or README in the folder.
-    with_models : bool, default False
-        Whether the random materials of the prior that comes with brdfkit count as well, as many as
-        those of the folder. This helps with materials unlike those in the folder.
+    with_models : bool, default True
+        Whether the random materials of the prior that comes with brdfkit count as well, by 30 %.
+        This helps with materials unlike those in the folder, and even with others like them.
     progress : callable, optional
         A function (done, total) that is called after each file.
 

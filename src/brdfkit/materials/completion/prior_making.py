@@ -50,8 +50,8 @@ def make_prior(
     """Make a prior of rows of logarithms (m, CELLS), which belong to the materials `groups` (m,).
 
     `floor` is a variance that is added to the remainders of other materials, and `share` that
-    part of the variance among materials. The materials of a `base` count as many as all rows.
-    `details` are attributes of the `Prior`.
+    part of the variance among materials. The materials of a `base` count as well, by
+    `BASE_SHARE`. `details` are attributes of the `Prior`.
     """
     arrays = [array.astype(float) for array in learn(logarithms, groups, base)]
     mean, components, remainder, new_remainder = arrays
