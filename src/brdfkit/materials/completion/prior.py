@@ -12,6 +12,7 @@ its intervals with the second.
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, field
 from math import sqrt
 
@@ -52,14 +53,27 @@ class Prior:
     terms: tuple[str, ...] = field(default=(), repr=False)
     wavelengths: tuple[float, float] = (0.0, 0.0)
 
+    def __post_init__(self) -> None:
+        if self.materials < 2 or self.rank < 1:
+            raise BrdfkitError(
+                f"the prior {self.name} was made of one material, which tells nothing of others; "
+                "make it again of 30 or more, with brdfkit prior."
+            )
+
     @property
     def rank(self) -> int:
         """The number of components."""
         return self.components.shape[1]
 
     def notes(self) -> dict[str, str]:
-        """Return notes for `Measured.info`: what the prior was made from, and its terms of use."""
+        """Return notes for `Measured.info`: what the prior was made from, and its terms of use.
+
+        The checksum is that of the list of `sources`, by which the files can be recognised.
+        """
         notes = {"prior": f"{self.name} ({self.materials} materials)"}
+        if self.sources:
+            digest = hashlib.sha256("\n".join(self.sources).encode()).hexdigest()
+            notes["prior sources"] = f"{len(self.sources)} files, sha256 of their list {digest}"
         if self.terms:
             notes["prior terms"] = "; ".join(self.terms)
         return notes

@@ -10,7 +10,7 @@ MOST_CHANNELS = 3  # albedos of more channels are told in linear sRGB
 def describe_completion(completed: Measured) -> dict[str, str]:
     """Return what to tell about a material from `complete`, as texts by their headings."""
     info = completed.info
-    prior = [key for key in ("prior", "prior terms") if key in info]
+    prior = [key for key in ("prior", "prior sources", "prior terms") if key in info]
     return {
         "completed": info["completed"],
         **describe_evidence(completed),
