@@ -210,7 +210,8 @@ def test_chosen_directions_are_better_than_random_ones(prior, reached, twenty):
 
 def test_the_shipped_prior_is_that_of_its_recipe(prior):
     rows = np.array([draw_row(number) for number in range(0, 2400, 30)])
-    assert prior.materials == 2400 and prior.rank == 40
+    assert prior.materials == 2400
+    assert prior.rank == 40
     left = leave(rows, prior.mean, prior.components)
     np.testing.assert_allclose(np.sqrt(np.mean(left**2)), 0.022, atol=0.006)
     squares = np.sum(prior.components**2, axis=0)
