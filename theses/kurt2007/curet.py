@@ -58,7 +58,14 @@ class Sample:
         """Return the `Fit` of a model, made once; `how` holds the loss and the robust weight."""
         if (label, how) not in self.fits:
             loss, robust = how
-            found = fit(self.data, label, loss=loss, robust=robust, bounds=BOUNDS.get(label))
+            found = fit(
+                self.data,
+                label,
+                loss=loss,
+                robust=robust,
+                bounds=BOUNDS.get(label),
+                extrapolate="free",
+            )
             self.fits[label, how] = found
         return self.fits[label, how]
 

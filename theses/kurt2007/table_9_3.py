@@ -60,7 +60,8 @@ def check_claims(sources, report):
 def _fit_with_error(label, how, data):
     """Return a model's fit to measured data, and its error E of eq. 5.13."""
     loss, robust = how
-    found = fit(data, label, loss=loss, robust=robust, bounds=BOUNDS.get(label))
+    how = {"loss": loss, "robust": robust, "bounds": BOUNDS.get(label)}
+    found = fit(data, label, extrapolate="free", **how)
     return found, compute_error(found.model, select_samples(data, 80))
 
 

@@ -45,6 +45,13 @@ FIT_OPTIONS: dict[str, dict[str, Any]] = {  # options of a fit, except -m: name 
         "metavar": "DEGREES",
         "help": "Use only samples with theta_i and theta_o below this angle [degrees].",
     },
+    "--extrapolate": {
+        "type": click.Choice(["guarded", "free"]),
+        "default": "guarded",
+        "show_default": True,
+        "help": "Beyond the measured angles: guarded by a completed table of the material, or "
+        "free, by the samples alone.",
+    },
     "--fixed": {
         "multiple": True,
         "metavar": "NAME=VALUE",
@@ -132,7 +139,10 @@ def fit_options(
             _refuse_joined_models(names)
             how = {
                 name: kwargs.pop(name)
-                for name in ("loss", "robust", "solver", "max_angle", "anisotropic")
+                for name in (
+                    *("loss", "robust", "solver"),
+                    *("max_angle", "extrapolate", "anisotropic"),
+                )
             }
             how["fixed"] = parse_settings(fixed, "--fixed")
             how["bounds"] = parse_settings(bound, "--bound", "LOW,HIGH")

@@ -7,14 +7,18 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from brdfkit.core.array_types import ArrayLike
 from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress
 from brdfkit.core.version import find_versions
-from brdfkit.fitting.notes import list_fit_notes
+from brdfkit.fitting.guard import Guard
+from brdfkit.fitting.guarded_search import (
+    GuardedSearch,
+    explain_unguarded_fit,
+    note_beyond,
+)
+from brdfkit.fitting.notes import list_fit_notes, measure_sample_coverage
 from brdfkit.fitting.settings import (
     Bounds,
     Constraints,
@@ -26,15 +30,12 @@ from brdfkit.fitting.settings import (
 )
 from brdfkit.fitting.target_albedo import find_target_albedo
 from brdfkit.images.ball import draw_pixels
-from brdfkit.materials.extrapolation import note_fit_extrapolation
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.materials.measured.spectrum_to_rgb import wavelengths
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model import labels
 from brdfkit.model.evaluation import make_model
-from brdfkit.model.samples.measures import compute_measure, integrate_measure
-from brdfkit.model.samples.samples import Samples
-from brdfkit.regression import Fit, Loss, Picture, regress, to_loss
+from brdfkit.regression import Fit, Picture, regress, to_loss
 from brdfkit.regression.measurement_noise import regress_with_noise
 from brdfkit.regression.solvers import Solver
 
@@ -56,6 +57,7 @@ def fit(
     anisotropic: bool | None = None,
     max_angle: float = 80.0,
     spectral: bool = False,
+    extrapolate: str = "guarded",
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Fit:
@@ -112,6 +114,13 @@ def fit(
     spectral : bool, default False
         Whether to fit at the measured wavelengths, with a weight for each, instead of in linear
         sRGB. All wavelengths count alike.
+    extrapolate : {"guarded", "free"}, default "guarded"
+        What a fit does where much lies beyond the measured angles. The albedo of a guarded one is
+        compared with that of `complete`'s table; if it is much larger, or above 1, the model is
+        fitted to the table instead, and has no standard errors.
+        ``Fit.loss`` is that of the measured samples in any case, and a note says what was done. A
+        free one follows the samples alone. Only isotropic fits in linear sRGB, without `robust` and
+        `weights`, are guarded.
     seed : int, default 0
         Seed of the starts, and of the part of a large table on which they are compared; equal
         seeds give equal fits.
@@ -153,12 +162,17 @@ def fit(
         anisotropic=data.anisotropic if anisotropic is None else anisotropic,
         max_angle=max_angle,
         spectral=spectral,
+        extrapolate=extrapolate,
         seed=seed,
     ).check_and_convert(f"{model_class.type_name()}: ")
     error = to_loss(loss)
     samples = select_samples(data, max_angle, weights, use_standard_error, spectral)
 
     target = find_target_albedo(data if spectral else data.rgb, weights, max_angle)
+    unguarded = explain_unguarded_fit(settings, weights)
+    guard = None
+    if settings.extrapolate == "guarded" and not unguarded:
+        guard = Guard.for_fit(data, float(max_angle))
 
     def make_fit(solution: Any) -> Fit:
         """Return the `Fit` of a `Solution`, with its albedo, notes and warnings."""
@@ -181,7 +195,7 @@ def fit(
                 *solution.notes,
                 *warnings,
                 *list_fit_notes(data, samples, error, solution, fitted, weights is not None),
-                *note_fit_extrapolation(data, float(max_angle)),
+                *note_beyond(data, float(max_angle), guard, solution, fitted.eval, unguarded),
             ),
             albedo=albedo,
             **measure_sample_coverage(error, samples, max_angle),
@@ -201,8 +215,13 @@ def fit(
     search: dict[str, Any] = settings.to_search_arguments() | {
         "target_albedo": None if without_albedo else target
     }
+
+    guarded = GuardedSearch(
+        model_class, samples, error, guard, target.find_largest_albedo, settings, search
+    )
     try:
-        return make_fit(solve(model_class, samples, error, **search, report=progress))
+        free = solve(model_class, samples, error, **search, report=progress)
+        return make_fit(guarded.guard_solution(free, progress))
     except Interrupted as stop:
         best = make_fit(stop.best)
         raise Interrupted(
@@ -215,24 +234,3 @@ def _add_albedo_warning(message: str) -> str:
     end, semicolon, details = message.partition(";")
     converged = end.startswith(("converged", "settled"))
     return f"{end}, but its light is wrong{semicolon}{details}" if converged else message
-
-
-def measure_sample_coverage(
-    loss: Loss | Picture, samples: Samples, max_angle: float
-) -> dict[str, float]:
-    """Return the values of `Fit.effective_samples` and `Fit.unrepresented`, by these names.
-
-    The first is the number of samples with equal weights that would be as informative; the second
-    is the share of directions up to `max_angle` [degrees] without samples. A fit to a `Picture` has
-    neither.
-    """
-    if isinstance(loss, Picture):
-        return {}
-    weights = loss.importance(samples)
-    shares, covered = compute_measure(samples.extents, loss.measure), 1.0
-    if isinstance(shares, np.ndarray):
-        covered = float(shares.sum()) / integrate_measure(float(max_angle), loss.measure)
-    return {
-        "effective_samples": float(weights.sum() ** 2 / (weights @ weights)),
-        "unrepresented": max(1 - covered, 0.0),
-    }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from brdfkit.core.names import format_percent
 from brdfkit.fitting.lobe_notes import list_lobe_notes
 from brdfkit.fitting.uncertainty.isotropic_limit import note_on_isotropic_model
@@ -10,6 +12,7 @@ from brdfkit.materials.measured import Measured
 from brdfkit.model import Model
 from brdfkit.model.evaluation import compute_clamped_share
 from brdfkit.model.samples import Samples
+from brdfkit.model.samples.measures import compute_measure, integrate_measure
 from brdfkit.regression import Loss, Picture
 from brdfkit.regression.regression import Solution
 
@@ -62,3 +65,24 @@ def _explain_negative_values(data: Measured) -> str:
             "colours are more saturated than sRGB holds, and the fit shows them less so"
         )
     return "measured values are negative and count as 0"
+
+
+def measure_sample_coverage(
+    loss: Loss | Picture, samples: Samples, max_angle: float
+) -> dict[str, float]:
+    """Return the values of `Fit.effective_samples` and `Fit.unrepresented`, by these names.
+
+    The first is the number of samples with equal weights that would be as informative; the second
+    is the share of directions up to `max_angle` [degrees] without samples. A fit to a `Picture` has
+    neither.
+    """
+    if isinstance(loss, Picture):
+        return {}
+    weights = loss.importance(samples)
+    shares, covered = compute_measure(samples.extents, loss.measure), 1.0
+    if isinstance(shares, np.ndarray):
+        covered = float(shares.sum()) / integrate_measure(float(max_angle), loss.measure)
+    return {
+        "effective_samples": float(weights.sum() ** 2 / (weights @ weights)),
+        "unrepresented": max(1 - covered, 0.0),
+    }

@@ -32,6 +32,7 @@ LossLike: TypeAlias = str | Loss | Picture | Callable[..., Any]
 Constraint: TypeAlias = AlbedoAtMost | WeightsAtMost | Callable[[Model], ArrayLike]
 Constraints: TypeAlias = Constraint | Iterable[Constraint]
 Bounds: TypeAlias = Mapping[str, tuple[float, float]]
+EXTRAPOLATIONS = "guarded", "free"  # what a fit does beyond the measured angles
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,7 @@ class FitSettings:
     anisotropic: bool | None = None
     max_angle: float = 80.0
     spectral: bool = False
+    extrapolate: str = "guarded"
     seed: int = 0
 
     @classmethod
@@ -86,6 +88,8 @@ class FitSettings:
         """
         if self.robust not in (None, *WEIGHTS):
             raise no_such_error("robust weight", self.robust, WEIGHTS)
+        if self.extrapolate not in EXTRAPOLATIONS:
+            raise no_such_error("extrapolation", self.extrapolate, EXTRAPOLATIONS)
         solver, constraints = to_solver(self.solver), to_constraints(self.constraints)
         require_supported_constraints(solver, constraints, self.robust)
         starts = self.starts
@@ -123,6 +127,7 @@ class FitSettings:
             "constraints": list(map(to_plain_data, self.constraints)),
             "anisotropic": self.anisotropic,
             "spectral": bool(self.spectral),
+            "extrapolate": self.extrapolate,
         }
 
 

@@ -25,23 +25,35 @@ def note_fit_extrapolation(data: Measured, max_angle: float) -> list[str]:
     A fit extrapolates where both angles to the normal are below its `max_angle` [degrees], but
     beyond the angles at which `data` was measured.
     """
-    if data.is_table:
-        return []  # a table does not say which of its cells were measured
-    smaller, larger = find_largest_angles(data)
-    inside = [1 - np.cos(np.radians(min(a, max_angle))) for a in (smaller, larger, max_angle)]
-    # Return early for most measurements, by a cheap upper bound on the share beyond the measured
-    # angles. Pairs of directions are within them if one is within the `smaller` angle, and the
-    # other within the `larger` one
-    if 1 - (inside[1] ** 2 - (inside[1] - inside[0]) ** 2) / inside[2] ** 2 <= LARGEST_FIT_SHARE:
-        return []
-    beyond = compute_coverage(data, max_angle).beyond
+    beyond = compute_share_beyond(data, max_angle)
     if beyond <= LARGEST_FIT_SHARE:
         return []
-    reach = " and ".join(dict.fromkeys(f"{angle:.0f}°" for angle in (smaller, larger)))
     return [
         f"{beyond:.0%} of the direction pairs below {max_angle:g}° lie beyond the measured angles, "
-        f"which reach {reach}: there the fit extrapolates, and nothing tests it"
+        f"which reach {describe_reach(data)}: there the fit extrapolates, and nothing tests it"
     ]
+
+
+def compute_share_beyond(data: Measured, max_angle: float) -> float:
+    """Return the share of direction pairs below `max_angle` [degrees] beyond the measured angles.
+
+    It is 0 for a table, which does not say which of its cells were measured, and where a cheap
+    bound shows that it is at most `LARGEST_FIT_SHARE`.
+    """
+    if data.is_table:
+        return 0.0
+    smaller, larger = find_largest_angles(data)
+    inside = [1 - np.cos(np.radians(min(a, max_angle))) for a in (smaller, larger, max_angle)]
+    # Pairs of directions are within the measured angles if one is within the `smaller` angle, and
+    # the other within the `larger` one
+    if 1 - (inside[1] ** 2 - (inside[1] - inside[0]) ** 2) / inside[2] ** 2 <= LARGEST_FIT_SHARE:
+        return 0.0
+    return compute_coverage(data, max_angle).beyond
+
+
+def describe_reach(data: Measured) -> str:
+    """Return the largest measured angles to the normal in words, as "60° and 75°"."""
+    return " and ".join(dict.fromkeys(f"{angle:.0f}°" for angle in find_largest_angles(data)))
 
 
 def describe_file_extrapolation(before: Measured, after: Measured) -> list[str]:

@@ -118,10 +118,21 @@ class TargetAlbedo:
             tuple(row.tolist()) if known else None
             for row, known in zip(self.values, self.known, strict=True)
         ]
-        peak = self._find_largest_albedo(brdf, angles, np.max(every, axis=2))
+        peak = self._refine_largest_albedo(brdf, angles, np.max(every, axis=2))
         return Albedo(self.theta_i, tuple(map(tuple, fit.tolist())), tuple(measured), peak)
 
-    def _find_largest_albedo(
+    def find_largest_albedo(
+        self, brdf: Callable[[FloatArray, FloatArray], FloatArray]
+    ) -> tuple[float, float]:
+        """Return the largest albedo of a BRDF up to 89°, behind its angle of incidence [degrees].
+
+        `brdf`: a function of directions wi and wo (n, 3) to values (n, channels).
+        """
+        angles = (*self.theta_i, *OTHER_ANGLES)
+        every = [make_albedo_pixels(angles, (azimuth,)).evaluate(brdf) for azimuth in self.azimuths]
+        return self._refine_largest_albedo(brdf, angles, np.max(every, axis=2))
+
+    def _refine_largest_albedo(
         self,
         brdf: Callable[[FloatArray, FloatArray], FloatArray],
         angles: tuple[float, ...],

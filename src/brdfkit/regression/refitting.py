@@ -23,6 +23,9 @@ from brdfkit.regression.search.albedo_search import NOTE, correct_albedo
 from brdfkit.regression.search.levenberg_marquardt import levenberg_marquardt
 from brdfkit.regression.search.multistart import EXACT, LARGEST_STEPS
 
+# Start of the note on a fit to a completed table in place of the samples
+BEYOND = "beyond the measured angles,"
+
 
 @dataclass(frozen=True, eq=False)
 class Refit:
@@ -61,6 +64,11 @@ class Refit:
             raise BrdfkitError(
                 f"{self.fit.name} was fitted with constraints, which are not repeated; fit without "
                 "them first."
+            )
+        if any(note.startswith(BEYOND) for note in self.fit.notes):
+            raise BrdfkitError(
+                f"{self.fit.name} was fitted to a completed table, of which no cell was measured "
+                'alone; fit with extrapolate="free" first.'
             )
         problem = self.make_problem()
         u = problem.space.to_coordinates(self.fit.values)[None]

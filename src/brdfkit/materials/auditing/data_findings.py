@@ -12,6 +12,7 @@ from brdfkit.core.names import format_percent
 from brdfkit.materials.auditing.azimuth import compute_turned_error_ratio
 from brdfkit.materials.auditing.cosine import explain_suspected_cosine
 from brdfkit.materials.auditing.finding import Finding
+from brdfkit.materials.auditing.highlight_sampling import warn_of_narrow_highlight
 from brdfkit.materials.auditing.noise import estimate_noise
 from brdfkit.materials.auditing.ratios import (
     GRAZING,
@@ -97,6 +98,7 @@ def _test(data: Measured) -> dict[str, str | Finding]:
         "horizon": "" if cosine else _warn_of_dark_horizon(samples),
         "plane": _warn_of_single_plane(samples),
         "incidence": _warn_of_single_incidence(samples),
+        "highlight": warn_of_narrow_highlight(data),
         "zero": _warn_of_zeros(samples),
         "sentinel": _warn_of_missing_value_mark(samples),
         "unit": _warn_of_wrong_unit(data),

@@ -26,7 +26,10 @@ USUAL = FitSettings()
 ASYMMETRY = (("", "as measured"), ("no", "always isotropic"), ("yes", "always anisotropic"))
 LONGEST = 200  # characters of the bounds
 # Of a fit that a script can repeat: what the page sets, besides the loss
-REPEATED = "robust", "max_angle", "use_standard_error", "seed", "starts", "bounds", "fixed"
+REPEATED = (
+    *("robust", "max_angle", "extrapolate", "use_standard_error"),
+    *("seed", "starts", "bounds", "fixed"),
+)
 
 
 def make_fit_controls() -> list[Control]:

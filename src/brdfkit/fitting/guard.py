@@ -1,0 +1,166 @@
+"""Guards a fit beyond the measured angles, by a completed table of the material.
+
+A fit to a part of the hemisphere may run away where nothing was measured. So its albedo is compared
+with that of the table that `complete` makes. If the fit reflects much more light than the table, or
+more than arrives, the model is fitted to the table's cells instead, each weighted by how certain it
+is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, TypeAlias
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from brdfkit.core.array_types import FloatArray
+from brdfkit.core.colours import to_srgb
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import to_half_difference
+from brdfkit.images.ball import LIGHTS, Pixels, draw_pixels
+from brdfkit.materials.completion import complete
+from brdfkit.materials.extrapolation import (
+    LARGEST_FIT_SHARE,
+    compute_share_beyond,
+    describe_reach,
+)
+from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.selection import select_samples
+from brdfkit.model.samples import Samples
+from brdfkit.regression.albedo import make_albedo_pixels
+
+# Angles of incidence [degrees] at which the albedos of a fit and of the table are compared
+ANGLES = tuple(float(angle) for angle in range(0, 86, 5))
+# A fit leaves the table if one of its albedos is larger by more than this factor
+LARGEST_FACTOR = 1.9
+# A fit to the table is taken only if its pictures are nearer to the table's by so much [dB]
+LEAST_GAIN = 1.0
+# Largest angle [degrees] of the directions in these pictures, their number per pixel, and the seed
+PICTURE_ANGLE, DIRECTIONS, SEED = 85.0, 16, 1
+# Values have another unit than 1/sr if the median of so many of them is larger than the table's,
+# whose albedo is limited to 1, by this factor
+COMPARED, DIMMED = 2_000, 1.5
+LEAST_ALBEDO = 1e-3  # smaller albedos count as equal
+# Variance of a logarithm at which a cell counts half
+TRUSTED_VARIANCE = 0.2**2
+# Standard errors are those of ln(f c + e), as in the completion: c = max(cosθi cosθo, 0.05)
+OFFSET, LEAST_COSINE = 1e-3, 0.05
+
+Brdf: TypeAlias = Callable[[Any, Any], Any]
+
+_completed: WeakKeyDictionary[Measured, Measured | None] = WeakKeyDictionary()
+
+
+@dataclass(frozen=True, eq=False)
+class Guard:
+    """The completed table of a material, by which fits to it are guarded.
+
+    `completed`: the table. `max_angle`: the largest angle of the fit [degrees]. `reach`: the
+    measured angles in words.
+    """
+
+    completed: Measured
+    max_angle: float
+    reach: str
+
+    @classmethod
+    def for_fit(cls, data: Measured, max_angle: float) -> Guard | None:
+        """Return the guard of fits to `data` below `max_angle` [degrees], or None for none.
+
+        There is none if the measurement covers the hemisphere, cannot be completed, or has another
+        unit than 1/sr.
+        """
+        if compute_share_beyond(data, max_angle) <= LARGEST_FIT_SHARE:
+            return None
+        completed = _complete_once(data)
+        if completed is None or _is_dimmed(completed, data.rgb):
+            return None
+        return cls(completed, max_angle, describe_reach(data))
+
+    @cached_property
+    def samples(self) -> Samples:
+        """A quarter of the cells below `max_angle`, weighted by how certain they are."""
+        cells = select_samples(self.completed, self.max_angle, errors=True)
+        # Half of the table mirrors the other half, and every second cell of a half suffices
+        _, _, phi_d = to_half_difference(cells.wi, cells.wo)
+        cells = cells.at(np.flatnonzero(np.mod(phi_d, np.pi) < np.pi / 2)[::2])
+        weight = TRUSTED_VARIANCE / (TRUSTED_VARIANCE + compute_variance(cells))
+        return replace(cells, weight=cells.weight * weight, errors=None)
+
+    def find_excess(self, brdf: Brdf) -> tuple[float, float, float] | None:
+        """Return where a BRDF reflects much more light than the table, or None if nowhere.
+
+        The result is an angle of incidence [degrees], and the albedos of the BRDF and of the table
+        at that angle, as means over the channels.
+        """
+        pixels = make_albedo_pixels(ANGLES)
+        own, known = (
+            np.maximum(pixels.evaluate(f).mean(axis=1), LEAST_ALBEDO)
+            for f in (brdf, self.completed.eval)
+        )
+        row = int(np.argmax(own / known))
+        if own[row] <= LARGEST_FACTOR * known[row]:
+            return None
+        return ANGLES[row], float(own[row]), float(known[row])
+
+    def is_nearer(self, brdf: Brdf, other: Brdf) -> bool:
+        """Return whether pictures of a BRDF are clearly nearer to the table's than another's."""
+        errors = [self._compute_picture_error(f) for f in (brdf, other)]
+        return errors[0] < errors[1] * 10 ** (-LEAST_GAIN / 20)
+
+    def _compute_picture_error(self, brdf: Brdf) -> float:
+        """Return the RMS difference of a BRDF's pictures from the table's, in sRGB values."""
+        apart = to_srgb(np.nan_to_num(self._pixels.evaluate(brdf))) - to_srgb(self._pixels.values)
+        return float(np.sqrt(np.average((apart**2).mean(axis=1), weights=self._pixels.weights)))
+
+    @cached_property
+    def _pixels(self) -> Pixels:
+        """Pixels of a ball with the table, under all lights."""
+        brdf = self.completed.eval
+        return draw_pixels(tuple(LIGHTS), brdf, PICTURE_ANGLE, SEED, directions=DIRECTIONS)
+
+    def describe_table(self) -> str:
+        """Return what the table was completed by, in words."""
+        return f"a table completed by the prior of {self.completed.info['prior'].split(' (')[0]}"
+
+
+def compute_log_difference(values: FloatArray, samples: Samples) -> FloatArray:
+    """Return how far ln(f c + e) of BRDF `values` is from that of samples, (n, channels)."""
+    cosine = compute_cosine(samples)
+    own, measured = (np.maximum(f, 0) * cosine + OFFSET for f in (values, samples.values))
+    return np.log(own / measured)
+
+
+def compute_cosine(samples: Samples) -> FloatArray:
+    """Return c = max(cosθi cosθo, 0.05) of samples, (n, 1)."""
+    return np.maximum(samples.wi[:, 2] * samples.wo[:, 2], LEAST_COSINE)[:, None]
+
+
+def compute_variance(cells: Samples) -> FloatArray:
+    """Return the variances (n,) of ln(f c + e) of cells with standard errors, channels averaged."""
+    cosine, errors = compute_cosine(cells), cells.errors
+    assert errors is not None
+    deviation = errors * cosine / (np.maximum(cells.values, 0) * cosine + OFFSET)
+    return np.asarray(np.mean(deviation**2, axis=1))
+
+
+def _complete_once(data: Measured) -> Measured | None:
+    """Return the completed table of a material in linear sRGB, or None if it has none."""
+    if data not in _completed:
+        try:
+            _completed[data] = complete(data.rgb)
+        except BrdfkitError:  # it is anisotropic, or has too few values
+            _completed[data] = None
+    return _completed[data]
+
+
+def _is_dimmed(completed: Measured, data: Measured) -> bool:
+    """Return whether a table is darker than its samples, because their albedo is above 1."""
+    (rows,) = np.nonzero(data.samples.valid)
+    rows = rows[np.linspace(0, len(rows) - 1, min(len(rows), COMPARED)).astype(int)]
+    part = data.samples.at(rows)
+    own, known = part.values.mean(axis=1), completed.eval(part.wi, part.wo).mean(axis=1)
+    return bool(np.median((own + OFFSET) / (known + OFFSET)) > DIMMED)

@@ -1,0 +1,147 @@
+"""Fits beyond the measured angles are guarded by a completed table of the material."""
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import brdfkit as bk
+from brdfkit.cli import main
+from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import from_angles
+from brdfkit.fitting.guard import Guard
+from brdfkit.images.ball import draw_pixels
+from brdfkit.materials.auditing.highlight_sampling import (
+    find_largest_ratio,
+    warn_of_narrow_highlight,
+)
+
+MODELS = bk.models()
+DULL = MODELS["ggx"](diffuse_reflectance=(0.3, 0.2, 0.1), alpha_u=0.3, f0=0.05)
+STEEL = MODELS["student_t"](
+    diffuse_reflectance=0.001, specular_reflectance=0.5, alpha_u=0.01, gamma=2.0, f0=0.5
+)
+
+
+def measure(truth, step=5, noise=0.0):
+    """Measure a material as a goniometer with short arms does: to 60° and 75°."""
+    axes = [0, 20, 40, 60], np.arange(0, 76, step), np.arange(0, 181, 20)
+    theta_i, theta_o, phi = (np.radians(a).ravel() for a in np.meshgrid(*axes, indexing="ij"))
+    wi, wo = from_angles(theta_i, 0 * theta_i), from_angles(theta_o, phi)
+    factor = 1 + noise * np.random.default_rng(0).normal(size=(len(wi), 1))
+    return bk.Measured.from_samples(wi, wo, truth.eval(wi, wo) * factor, name="partial")
+
+
+def measure_psnr(truth, brdf):
+    """Return the PSNR of a ball in a studio, up to 85°."""
+    pixels = draw_pixels(("studio",), truth.eval, 85.0, 0, pixels=400, directions=32)
+    apart = (pixels.evaluate(brdf.eval) - pixels.values) ** 2
+    return -10 * np.log10(np.average(apart.mean(axis=1), weights=pixels.weights))
+
+
+@pytest.fixture(scope="module")
+def steel():
+    return measure(STEEL)
+
+
+@pytest.mark.parametrize("truth", [DULL, STEEL])
+def test_a_fit_that_meets_the_samples_is_kept(truth):
+    data = measure(truth)
+    free, guarded = (bk.fit(data, type(truth), extrapolate=e) for e in ("free", "guarded"))
+    assert free.values == guarded.values
+    assert free.loss == guarded.loss
+    assert free.certainty == guarded.certainty
+    assert "nothing tests it" in free.notes[-1]
+
+
+def test_a_fit_that_runs_away_follows_the_table(steel, tmp_path):
+    free, guarded = (bk.fit(steel, "torrance_sparrow", extrapolate=e) for e in ("free", "guarded"))
+    assert free.albedo.peak[1] > 1.2
+    assert guarded.albedo.peak[1] <= 1
+    assert measure_psnr(STEEL, guarded) > measure_psnr(STEEL, free) + 10
+    (note,) = [n for n in guarded.notes if n.startswith("beyond the measured angles")]
+    assert "60° and 75°" in note
+    assert "completed by the prior of brdfkit's models" in note
+    assert 'extrapolate="free") it would reflect 1.4 of the light at 89°' in note.replace(
+        "1.38", "1.4"
+    )
+    # The loss is that of the measured samples
+    loss = bk.compare(steel, guarded).errors[guarded.name]["cbrt"]
+    assert guarded.loss == pytest.approx(loss, rel=1e-9)
+    assert np.isnan(guarded.standard_errors["alpha"])
+    with pytest.raises(BrdfkitError, match='fit with extrapolate="free" first'):
+        bk.uncertainty.bootstrap(guarded, steel, draws=2)
+    bk.save(guarded, tmp_path / "fit.json")
+    again = bk.load(tmp_path / "fit.json")
+    assert again == guarded
+    assert again.settings["extrapolate"] == "guarded"
+
+
+def test_full_tables_and_whole_hemispheres_are_not_guarded(steel):
+    table = bk.Measured.from_table(
+        DULL.eval(*(w.reshape(-1, 3) for w in directions())).reshape(SHAPE)
+    )
+    assert Guard.for_fit(table, 80.0) is None
+    assert Guard.for_fit(steel, 60.0) is None
+    fits = [bk.fit(table, "ggx", extrapolate=e) for e in ("free", "guarded")]
+    assert fits[0].values == fits[1].values
+    assert fits[0].notes == fits[1].notes
+
+
+SHAPE = (30, 10, 12, 3)
+
+
+def directions():
+    """Return the directions of the cells of a small table."""
+    from brdfkit.model.samples import Table
+
+    wi, wo = Table(np.zeros(SHAPE)).directions()
+    return np.where(wi[..., 2:] > 0, wi, (0, 0, 1)), np.where(wo[..., 2:] > 0, wo, (0, 0, 1))
+
+
+@pytest.mark.parametrize(
+    ("how", "why"),
+    [
+        ({"robust": "bisquare"}, "robust weights tell outliers from the samples alone"),
+        ({"weights": 1.0}, "weights of samples do not apply to a table"),
+        ({"anisotropic": True}, "the table is isotropic"),
+    ],
+)
+def test_fits_that_are_not_guarded_say_why(how, why):
+    data = measure(DULL)
+    if "weights" in how:
+        how = {"weights": np.ones(len(data.values))}
+    assert bk.fit(data, "ward", **how).notes[-1].endswith(f"it is not guarded, because {why}")
+
+
+def test_values_in_another_unit_are_not_guarded():
+    data = measure(DULL)
+    samples = data.samples
+    large = bk.Measured.from_samples(samples.wi, samples.wo, 100 * samples.values)
+    assert Guard.for_fit(data, 80.0) is not None
+    assert Guard.for_fit(large, 80.0) is None
+
+
+def test_an_unknown_extrapolation_is_refused():
+    with pytest.raises(BrdfkitError, match="no extrapolation 'fre'"):
+        bk.fit(measure(DULL), "lambert", extrapolate="fre")
+
+
+def test_the_command_takes_the_option(tmp_path):
+    bk.save(measure(DULL), tmp_path / "dull.csv")
+    file = str(tmp_path / "dull.csv")
+    words = ["fit", file, "-m", "lambert", "--extrapolate", "free", "-o", str(tmp_path)]
+    assert CliRunner().invoke(main, words).exit_code == 0
+    assert bk.load(tmp_path / "lambert.json").settings["extrapolate"] == "free"
+
+
+@pytest.mark.parametrize("step", [1, 3, 5, 10])
+def test_a_highlight_narrower_than_the_sampling_is_reported(step):
+    """A highlight is narrow where half its width is less than half a step."""
+    for alpha, is_narrow in ((0.004, True), (0.5, False)):
+        truth = MODELS["ggx"](diffuse_reflectance=0.1, alpha_u=alpha, f0=0.05)
+        data = measure(truth, step, noise=0.05)
+        assert bool(warn_of_narrow_highlight(data)) == is_narrow
+    found, ratio = find_largest_ratio(measure(STEEL, step).samples)
+    assert found == pytest.approx(step)
+    assert ratio > 3
+    assert f"neighbours {step}° apart differ" in warn_of_narrow_highlight(measure(STEEL, step))
