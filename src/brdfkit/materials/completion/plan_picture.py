@@ -10,6 +10,7 @@ from brdfkit.core.array_types import AnyArray
 from brdfkit.core.figures import Plot
 
 LIGHT, DETECTOR = "#d55e00", "#0072b2"
+NUMBER = "#fff8dd"  # no grey: those of notebooks are replaced
 SIZE = 9.6, 4.4  # inches
 MOST_NUMBERS = 99  # larger numbers do not fit into a mark
 APART = 5.6  # least distance of two marks in a row of lights [degrees]
@@ -55,7 +56,7 @@ def draw_marks(axes: Any, x: AnyArray, y: AnyArray, colour: str) -> None:
         height = 3 + (len(x) - k) / len(x)
         axes.plot(x[k], y[k], "o", color=colour, ms=10, mec="white", mew=0.6, zorder=height)
         if k < MOST_NUMBERS:
-            style = {"ha": "center", "va": "center_baseline", "color": "white", "size": 6.5}
+            style = {"ha": "center", "va": "center_baseline", "color": NUMBER, "size": 6.5}
             axes.text(x[k], y[k], str(k + 1), zorder=height, **style)
 
 
@@ -80,8 +81,9 @@ def draw_errors(axes: Any, plan: Any) -> None:
     ticks = [t for t in (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5) if 0.8 * min(plan.errors) < t]
     axes.set_yticks(ticks, [f"{t:g}" for t in ticks])
     axes.minorticks_off()
+    for tick in ticks:
+        axes.axhline(tick, color="0.87", linewidth=0.7, zorder=0)
     axes.set_ylim(0.85 * min(plan.errors), 1.2 * max(plan.errors))
     axes.set_xlabel("measured directions")
     axes.set_title("expected error of ln f", fontsize=10)
-    axes.grid(color="0.9", linewidth=0.7)
     axes.spines[["top", "right"]].set_visible(False)
