@@ -566,7 +566,7 @@ TRAPS = [
         [*WARD, "--spx", "3"],
         ["no option '--spx'; did you mean --spp? There are --output", "--seed"],
     ),
-    (["nope"], ["no command 'nope'; there are check, convert", "see brdfkit --help."]),
+    (["nope"], ["no command 'nope'; there are check, complete, convert", "see brdfkit --help."]),
     (["rendr"], ["no command 'rendr'; did you mean render? There are check", "brdfkit --help."]),
     (["data", "gte"], ["no command 'gte'; did you mean get? There are", "brdfkit data --help."]),
     (["--nope"], ["no option '--nope'; there are --version, --help; see brdfkit --help."]),
