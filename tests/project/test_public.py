@@ -19,7 +19,8 @@ SUBNAMESPACES = {
     "rendering": "Film SamplerComparison compare_samplers render_orbit",
     "solvers": "AlbedoAtMost DifferentialEvolution End LevenbergMarquardt Objective SLSQP Solver "
     "TrustRegion WeightsAtMost",
-    "uncertainty": "Bootstrap PredictionError Profile bootstrap prediction_error profile",
+    "uncertainty": "Bootstrap Prediction PredictionError Profile bootstrap predict "
+    "prediction_error profile",
     "volumes": "TransferFunction Volume load",
 }
 TOP = {name: getattr(bk, name) for name in bk.__all__ if not name.startswith("_")}

@@ -12,6 +12,7 @@ from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.progress_bar import Progress
 from brdfkit.core.version import find_versions
+from brdfkit.fitting.growth import note_growth
 from brdfkit.fitting.guard import Guard
 from brdfkit.fitting.guarded_search import (
     GuardedSearch,
@@ -196,6 +197,7 @@ def fit(
                 *warnings,
                 *list_fit_notes(data, samples, error, solution, fitted, weights is not None),
                 *note_beyond(data, float(max_angle), guard, solution, fitted.eval, unguarded),
+                *note_growth(data, samples, fitted.eval, float(max_angle)),
             ),
             albedo=albedo,
             **measure_sample_coverage(error, samples, max_angle),

@@ -22,6 +22,7 @@ from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.geometry.directions import to_half_difference
 from brdfkit.images.ball import LIGHTS, Pixels, draw_pixels
 from brdfkit.materials.completion import complete
+from brdfkit.materials.completion.prior_cells import compute_cosine, to_logarithm
 from brdfkit.materials.extrapolation import (
     LARGEST_FIT_SHARE,
     compute_share_beyond,
@@ -43,11 +44,10 @@ PICTURE_ANGLE, DIRECTIONS, SEED = 85.0, 16, 1
 # Values have another unit than 1/sr if the median of so many of them is larger than the table's,
 # whose albedo is limited to 1, by this factor
 COMPARED, DIMMED = 2_000, 1.5
+OFFSET = 1e-3  # e [sr⁻¹] of the logarithms ln(f c + e) in `prior_cells.py`
 LEAST_ALBEDO = 1e-3  # smaller albedos count as equal
 # Variance of a logarithm at which a cell counts half
 TRUSTED_VARIANCE = 0.2**2
-# Standard errors are those of ln(f c + e), as in the completion: c = max(cosθi cosθo, 0.05)
-OFFSET, LEAST_COSINE = 1e-3, 0.05
 
 Brdf: TypeAlias = Callable[[Any, Any], Any]
 
@@ -75,7 +75,7 @@ class Guard:
         """
         if compute_share_beyond(data, max_angle) <= LARGEST_FIT_SHARE:
             return None
-        completed = _complete_once(data)
+        completed = complete_once(data)
         if completed is None or _is_dimmed(completed, data.rgb):
             return None
         return cls(completed, max_angle, describe_reach(data))
@@ -87,7 +87,9 @@ class Guard:
         # Half of the table mirrors the other half, and every second cell of a half suffices
         _, _, phi_d = to_half_difference(cells.wi, cells.wo)
         cells = cells.at(np.flatnonzero(np.mod(phi_d, np.pi) < np.pi / 2)[::2])
-        weight = TRUSTED_VARIANCE / (TRUSTED_VARIANCE + compute_variance(cells))
+        assert cells.errors is not None
+        deviation = compute_deviation(cells.values, cells.errors, cells.wi, cells.wo)
+        weight = TRUSTED_VARIANCE / (TRUSTED_VARIANCE + np.mean(deviation**2, axis=1))
         return replace(cells, weight=cells.weight * weight, errors=None)
 
     def find_excess(self, brdf: Brdf) -> tuple[float, float, float] | None:
@@ -127,27 +129,20 @@ class Guard:
         return f"a table completed by the prior of {self.completed.info['prior'].split(' (')[0]}"
 
 
-def compute_log_difference(values: FloatArray, samples: Samples) -> FloatArray:
-    """Return how far ln(f c + e) of BRDF `values` is from that of samples, (n, channels)."""
-    cosine = compute_cosine(samples)
-    own, measured = (np.maximum(f, 0) * cosine + OFFSET for f in (values, samples.values))
-    return np.log(own / measured)
+def compute_logarithm(values: FloatArray, wi: FloatArray, wo: FloatArray) -> FloatArray:
+    """Return ln(f c + e) of BRDF `values` (n, channels) at pairs of directions (n, 3)."""
+    return to_logarithm(values.T, compute_cosine(wi, wo)).T
 
 
-def compute_cosine(samples: Samples) -> FloatArray:
-    """Return c = max(cosθi cosθo, 0.05) of samples, (n, 1)."""
-    return np.maximum(samples.wi[:, 2] * samples.wo[:, 2], LEAST_COSINE)[:, None]
+def compute_deviation(
+    values: FloatArray, errors: FloatArray, wi: FloatArray, wo: FloatArray
+) -> FloatArray:
+    """Return the standard deviations of ln(f c + e) of `values` with standard errors."""
+    cosine = compute_cosine(wi, wo)[:, None]
+    return errors * cosine / (np.maximum(values, 0) * cosine + OFFSET)
 
 
-def compute_variance(cells: Samples) -> FloatArray:
-    """Return the variances (n,) of ln(f c + e) of cells with standard errors, channels averaged."""
-    cosine, errors = compute_cosine(cells), cells.errors
-    assert errors is not None
-    deviation = errors * cosine / (np.maximum(cells.values, 0) * cosine + OFFSET)
-    return np.asarray(np.mean(deviation**2, axis=1))
-
-
-def _complete_once(data: Measured) -> Measured | None:
+def complete_once(data: Measured) -> Measured | None:
     """Return the completed table of a material in linear sRGB, or None if it has none."""
     if data not in _completed:
         try:

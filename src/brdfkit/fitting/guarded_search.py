@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from brdfkit.core.progress_bar import Progress
-from brdfkit.fitting.guard import Brdf, Guard, compute_log_difference
+from brdfkit.fitting.guard import Brdf, Guard, compute_logarithm
 from brdfkit.fitting.settings import FitSettings
 from brdfkit.fitting.target_albedo import find_target_albedo
 from brdfkit.images.ball import draw_pixels
@@ -108,8 +108,10 @@ class GuardedSearch:
 
     def _meets_samples(self, solution: Solution) -> bool:
         """Return whether a solution meets the samples to within the noise of an instrument."""
-        values = solution.eval(self.model, self.samples)
-        squares = compute_log_difference(values, self.samples) ** 2
+        pairs = self.samples.wi, self.samples.wo
+        values = solution.eval(self.model, self.samples), self.samples.values
+        own, measured = (compute_logarithm(f, *pairs) for f in values)
+        squares = (own - measured) ** 2
         return bool(np.sqrt(squares.mean()) < DEFAULT_NOISE)
 
     def _compute_loss(self, solution: Solution) -> float:

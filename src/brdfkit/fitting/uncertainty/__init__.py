@@ -1,6 +1,6 @@
-"""The uncertainty of a fit: the bootstrap, loss profiles and prediction errors.
+"""The uncertainty of a fit: the bootstrap, loss profiles, predictions and their errors.
 
-Users reach the three functions as `brdfkit.uncertainty`. `isotropic_limit.py` estimates, for the
+Users reach the four functions as `brdfkit.uncertainty`. `isotropic_limit.py` estimates, for the
 notes of a fit, the least error that an isotropic model can have on an anisotropic material.
 """
 

@@ -98,7 +98,7 @@ def _test(data: Measured) -> dict[str, str | Finding]:
         "horizon": "" if cosine else _warn_of_dark_horizon(samples),
         "plane": _warn_of_single_plane(samples),
         "incidence": _warn_of_single_incidence(samples),
-        "highlight": warn_of_narrow_highlight(data),
+        "highlight": "" if cosine else warn_of_narrow_highlight(data),
         "zero": _warn_of_zeros(samples),
         "sentinel": _warn_of_missing_value_mark(samples),
         "unit": _warn_of_wrong_unit(data),
