@@ -26,9 +26,6 @@ from brdfkit.model.samples.coordinates import compute_coordinates, compute_sampl
 from brdfkit.regression import Fit
 
 QUANTILE = 1.96  # half a 95 % interval over its standard deviation
-# Intervals of a table are wider by this factor, because its deviations are too small at grazing
-# angles: of RGL's materials, 95 % intervals beyond the measured angles held 88 % of the values
-TABLE_FACTOR = 1.25
 NEIGHBOURS = 30  # number of samples near a direction, of which the error of a fit is taken
 STEP = 1e-3  # of finite differences, as a share of a parameter's standard error
 
@@ -143,12 +140,10 @@ def _compute_parameter_variance(
 def _evaluate_table(
     table: Measured, wi: FloatArray, wo: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return ln(f c + e) of a completed table, and half of its intervals, (n, channels)."""
+    """Return ln(f c + e) of a completed table, and half of its 95 % intervals, (n, channels)."""
     cells, errors = Samples.from_table(table.table), table.standard_error
     assert errors is not None
     errors = errors.reshape(cells.values.shape)
     deviation = compute_deviation(cells.values, errors, cells.wi, cells.wo)
     deviations = Table(deviation.reshape(table.table.values.shape), table.table.phi_d_period)
-    return compute_logarithm(table.eval(wi, wo), wi, wo), TABLE_FACTOR * QUANTILE * deviations.eval(
-        wi, wo
-    )
+    return compute_logarithm(table.eval(wi, wo), wi, wo), QUANTILE * deviations.eval(wi, wo)
