@@ -2,8 +2,9 @@
 PYTHON ?= python3
 VENV := .venv
 RUN := $(VENV)/bin
-# NumPy's threads beside Dr.Jit's, times two workers, would wait for each other
-PYTEST := OPENBLAS_NUM_THREADS=1 $(RUN)/python -m pytest -n 2
+# NumPy's threads beside Dr.Jit's, times two workers, would wait for each other; and what Python
+# compiles is kept, because tests start processes that load the whole library
+PYTEST := OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(RUN)/python -m pytest -n 2
 
 .PHONY: demo notebook ipynb test quick lint bench docs site wheel clean
 

@@ -30,6 +30,9 @@ SMALLER = {  # smaller pictures and shorter searches, of which the notebooks' as
     r"spp=(256|128), starts": "spp=64, starts",
     r"spp=256,\n": "spp=64,\n",
     r"spp=1024": "spp=512",
+    r"size=\(64, 64\)": "size=(32, 32)",
+    r"size=\(48, 48\)": "size=(24, 24)",
+    r'"width": 32, "height": 32': '"width": 20, "height": 20',
 }
 WITH_A_WIDGET = "look_into_a_volume"
 # Only these, because a kernel takes as long to start as a notebook to run

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from brdfkit.core.jit import llvm
 
-LANES = 4  # numbers in a packet: the narrowest of Embree's, and half or a quarter of a CPU's
+LANES = 8  # numbers in a packet: kernels compile longer with 16, and run longer with 4
 # LLVM makes no improvement that it can do without, allocates registers block by block, and does not
 # try the selection of instructions that knows no vectors; values stay the same
 OPTIONS = (
