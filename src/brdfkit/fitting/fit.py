@@ -86,8 +86,9 @@ def fit(
         multiplied by the share of directions that the loss assigns to the sample. By default all
         are 1.
     use_standard_error : bool, default True
-        Whether samples whose stated standard error exceeds the model's own error count less. It
-        has no effect on measurements without standard errors.
+        Whether samples whose stated standard error exceeds the model's own error count less, and
+        cells of a completed table the less, the less certain they are. It has no effect on
+        measurements without standard errors.
     robust : str, optional
         Weight function that reduces the influence of outliers, such as ``"bisquare"`` [Kurt 2007,
         eq. 5.14]; `brdfkit.regression.robust.reweighting.WEIGHTS` lists them. By default all

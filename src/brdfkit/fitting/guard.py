@@ -9,7 +9,7 @@ is.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
@@ -46,8 +46,6 @@ PICTURE_ANGLE, DIRECTIONS, SEED = 85.0, 16, 1
 COMPARED, DIMMED = 2_000, 1.5
 OFFSET = 1e-3  # e [sr⁻¹] of the logarithms ln(f c + e) in `prior_cells.py`
 LEAST_ALBEDO = 1e-3  # smaller albedos count as equal
-# Variance of a logarithm at which a cell counts half
-TRUSTED_VARIANCE = 0.2**2
 
 Brdf: TypeAlias = Callable[[Any, Any], Any]
 
@@ -86,11 +84,7 @@ class Guard:
         cells = select_samples(self.completed, self.max_angle, errors=True)
         # Half of the table mirrors the other half, and every second cell of a half suffices
         _, _, phi_d = to_half_difference(cells.wi, cells.wo)
-        cells = cells.at(np.flatnonzero(np.mod(phi_d, np.pi) < np.pi / 2)[::2])
-        assert cells.errors is not None
-        deviation = compute_deviation(cells.values, cells.errors, cells.wi, cells.wo)
-        weight = TRUSTED_VARIANCE / (TRUSTED_VARIANCE + np.mean(deviation**2, axis=1))
-        return replace(cells, weight=cells.weight * weight, errors=None)
+        return cells.at(np.flatnonzero(np.mod(phi_d, np.pi) < np.pi / 2)[::2])
 
     def find_excess(self, brdf: Brdf) -> tuple[float, float, float] | None:
         """Return where a BRDF reflects much more light than the table, or None if nowhere.
@@ -132,14 +126,6 @@ class Guard:
 def compute_logarithm(values: FloatArray, wi: FloatArray, wo: FloatArray) -> FloatArray:
     """Return ln(f c + e) of BRDF `values` (n, channels) at pairs of directions (n, 3)."""
     return to_logarithm(values.T, compute_cosine(wi, wo)).T
-
-
-def compute_deviation(
-    values: FloatArray, errors: FloatArray, wi: FloatArray, wo: FloatArray
-) -> FloatArray:
-    """Return the standard deviations of ln(f c + e) of `values` with standard errors."""
-    cosine = compute_cosine(wi, wo)[:, None]
-    return errors * cosine / (np.maximum(values, 0) * cosine + OFFSET)
 
 
 def complete_once(data: Measured) -> Measured | None:

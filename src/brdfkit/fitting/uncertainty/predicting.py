@@ -15,11 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
-from brdfkit.fitting.guard import complete_once, compute_deviation, compute_logarithm
+from brdfkit.fitting.guard import complete_once, compute_logarithm
 from brdfkit.fitting.settings import select_fitted_samples
 from brdfkit.materials.completion.prior_cells import compute_cosine, from_logarithm
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import is_near_sample
+from brdfkit.materials.measured.evidence import compute_deviation
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model.samples import Samples, Table
 from brdfkit.model.samples.coordinates import compute_coordinates, compute_sample_coordinates
@@ -144,6 +145,7 @@ def _evaluate_table(
     cells, errors = Samples.from_table(table.table), table.standard_error
     assert errors is not None
     errors = errors.reshape(cells.values.shape)
-    deviation = compute_deviation(cells.values, errors, cells.wi, cells.wo)
+    cosine = (cells.wi[:, 2] * cells.wo[:, 2])[:, None]
+    deviation = compute_deviation(cells.values, errors, cosine)
     deviations = Table(deviation.reshape(table.table.values.shape), table.table.phi_d_period)
     return compute_logarithm(table.eval(wi, wo), wi, wo), QUANTILE * deviations.eval(wi, wo)

@@ -8,10 +8,13 @@ import numpy as np
 from brdfkit.core.arguments import to_number
 from brdfkit.core.array_types import ArrayLike, BoolArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.materials.measured.evidence import compute_deviation
 from brdfkit.materials.measured.measured import Measured
 from brdfkit.materials.measured.spectrum_to_rgb import has_wavelengths
 from brdfkit.model.samples import Samples
 from brdfkit.model.samples.measures import estimate_extents
+
+TRUSTED_VARIANCE = 0.2**2  # of a logarithm; a cell of a completed table then counts half
 
 
 def select_samples(
@@ -25,9 +28,10 @@ def select_samples(
 
     The samples are in linear sRGB, or at the measured wavelengths if `spectral` is True. `weights`
     are a user's weights, (n,) for all samples of `data` or in the shape of its table; samples of
-    weight 0 are left out. With `errors` the samples keep their standard errors. Raises
-    `BrdfkitError` for an angle that is not above 0° and at most 90°, for impossible weights, for
-    `spectral` without wavelengths, and where no sample is left.
+    weight 0 are left out. With `errors` the samples keep their standard errors; those of a
+    completed table become weights. Raises `BrdfkitError` for an angle that is not above 0° and at
+    most 90°, for impossible weights, for `spectral` without wavelengths, and where no sample is
+    left.
     """
     to_number("max_angle", max_angle, above=0, most=90)
     if not spectral:
@@ -61,7 +65,20 @@ def select_samples(
         raise BrdfkitError(
             f"{data.name}: no valid sample has both angles below {max_angle:g}°{more}; give {what}."
         )
-    return samples
+    return samples if data.evidence is None else _weigh_by_certainty(samples)
+
+
+def _weigh_by_certainty(cells: Samples) -> Samples:
+    """Return the cells of a completed table, weighted by their standard errors, if they have any.
+
+    The errors of neighbouring cells go together, so they are no noise of independent samples.
+    """
+    if cells.errors is None:
+        return cells
+    cosine = (cells.wi[:, 2] * cells.wo[:, 2])[:, None]
+    variance = np.mean(compute_deviation(cells.values, cells.errors, cosine) ** 2, axis=1)
+    weight = cells.weight * TRUSTED_VARIANCE / (TRUSTED_VARIANCE + variance)
+    return replace(cells, weight=weight, errors=None)
 
 
 def _find_sample_extents(
