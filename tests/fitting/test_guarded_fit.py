@@ -16,6 +16,7 @@ from brdfkit.materials.auditing.highlight_sampling import (
     find_largest_ratio,
     warn_of_narrow_highlight,
 )
+from brdfkit.materials.measured.selection import select_samples
 
 MODELS = bk.models()
 DULL = MODELS["ggx"](diffuse_reflectance=(0.3, 0.2, 0.1), alpha_u=0.3, f0=0.05)
@@ -173,3 +174,16 @@ def test_intervals_of_predictions_hold_the_truth():
         bk.uncertainty.predict(fit, data, wi=wi, wo=wo[:5])
     with pytest.raises(BrdfkitError, match="below the surface"):
         bk.uncertainty.predict(fit, data, wi=wi, wo=-wo)
+
+
+def test_cells_of_a_completed_table_count_by_their_certainty(steel):
+    completed = bk.complete(steel)
+    cells, plain = (select_samples(completed, 80.0, errors=errors) for errors in (True, False))
+    assert cells.errors is None
+    assert (plain.weight == 1).all()
+    places = completed.table.find_cells(cells.wi, cells.wo)
+    evidence = completed.evidence.reshape(completed.table.shape)[places]
+    measured, inferred, guessed = (cells.weight[evidence == kind].mean() for kind in range(3))
+    assert 1 > measured > inferred > guessed > 0
+    # Guesses have intervals of more than a factor of 2: deviations above ln 2 / 1.96
+    assert guessed < 1 / (1 + (np.log(2) / 1.96 / 0.2) ** 2)
