@@ -92,7 +92,7 @@ class LiveVolume:
                 voxels[..., 1] = self.volume.gradient_magnitude
             described = {
                 "type": "gridvolume",
-                "data": mi.TensorXf(voxels),
+                "grid": mi.VolumeGrid(voxels),  # "data" takes no two channels
                 "raw": True,
                 "filter_type": "nearest" if self.volume.labels else "trilinear",
                 "to_world": mi.ScalarTransform4f(self.volume.cube_to_world.tolist()),
