@@ -122,6 +122,7 @@ def shown():
         bk.check("lambert", only=["energy"]),
         bk.rank(plaster, ["lambert", "ward"]),
         bk.sweep("plaster", "lambert", workers=1),
+        bk.plan(2),
         bk.uncertainty.bootstrap(fit, plaster, draws=2),
         bk.uncertainty.profile(fit, plaster, parameter="alpha_u", points=5),
         bk.Reproduction(NASTY, ()),

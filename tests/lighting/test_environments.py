@@ -384,7 +384,7 @@ def test_bad_files(bad, module_in_llvm):
         **dict.fromkeys(SIZES, "states a size for which there is no memory"),
         "half_packed.hdr": "its row 2 is damaged",
         "wide_run.hdr": "its row 1 is damaged",
-        "words.hdr": "Mitsuba cannot load it",
+        "words.hdr": "it is damaged: save or fetch it again",
         "text.exr": "fetch it again",
         "empty.exr": "fetch it again",
         "one.exr": "1×1 pixels; it needs 2×2",

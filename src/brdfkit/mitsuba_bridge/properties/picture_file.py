@@ -57,7 +57,7 @@ def load_by_mitsuba(function: Callable[..., Any], source: Any, name: object) -> 
             reason = reason.partition(OWN_ERROR)[2]
             raise BrdfkitError(f"{name}: {reason.removeprefix(f'{name}: ')}") from error
         if CUT_SHORT.search(reason):
-            raise BrdfkitError(f"{name}: it is cut short.") from error
+            raise BrdfkitError(f"{name}: it is damaged.") from error
         reason = PLACE.sub("", reason).rstrip(".!")
         raise BrdfkitError(f"{name}: Mitsuba cannot load it ({reason}).") from error
 
