@@ -29,6 +29,7 @@ from brdfkit.materials.extrapolation import (
     describe_reach,
 )
 from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.evidence import OFFSET
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.samples import Samples
 from brdfkit.regression.albedo import make_albedo_pixels
@@ -44,7 +45,6 @@ PICTURE_ANGLE, DIRECTIONS, SEED = 85.0, 16, 1
 # Values have another unit than 1/sr if the median of so many of them is larger than the table's,
 # whose albedo is limited to 1, by this factor
 COMPARED, DIMMED = 2_000, 1.5
-OFFSET = 1e-3  # e [sr⁻¹] of the logarithms ln(f c + e) in `prior_cells.py`
 LEAST_ALBEDO = 1e-3  # smaller albedos count as equal
 
 Brdf: TypeAlias = Callable[[Any, Any], Any]
@@ -92,15 +92,16 @@ class Guard:
         The result is an angle of incidence [degrees], and the albedos of the BRDF and of the table
         at that angle, as means over the channels.
         """
-        pixels = make_albedo_pixels(ANGLES)
-        own, known = (
-            np.maximum(pixels.evaluate(f).mean(axis=1), LEAST_ALBEDO)
-            for f in (brdf, self.completed.eval)
-        )
+        own, known = _compute_albedos(brdf), self._albedos
         row = int(np.argmax(own / known))
         if own[row] <= LARGEST_FACTOR * known[row]:
             return None
         return ANGLES[row], float(own[row]), float(known[row])
+
+    @cached_property
+    def _albedos(self) -> FloatArray:
+        """The albedos of the table at `ANGLES`."""
+        return _compute_albedos(self.completed.eval)
 
     def is_nearer(self, brdf: Brdf, other: Brdf) -> bool:
         """Return whether pictures of a BRDF are clearly nearer to the table's than another's."""
@@ -121,6 +122,11 @@ class Guard:
     def describe_table(self) -> str:
         """Return what the table was completed by, in words."""
         return f"a table completed by the prior of {self.completed.info['prior'].split(' (')[0]}"
+
+
+def _compute_albedos(brdf: Brdf) -> FloatArray:
+    """Return the albedos of a BRDF at `ANGLES`, as means over the channels."""
+    return np.maximum(make_albedo_pixels(ANGLES).evaluate(brdf).mean(axis=1), LEAST_ALBEDO)
 
 
 def compute_logarithm(values: FloatArray, wi: FloatArray, wo: FloatArray) -> FloatArray:

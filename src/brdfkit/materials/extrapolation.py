@@ -42,6 +42,14 @@ def compute_share_beyond(data: Measured, max_angle: float) -> float:
     """
     if data.is_table:
         return 0.0
+    known = data.share_beyond_by_angle
+    if max_angle not in known:
+        known[max_angle] = _integrate_share_beyond(data, max_angle)
+    return known[max_angle]
+
+
+def _integrate_share_beyond(data: Measured, max_angle: float) -> float:
+    """Return the share of `compute_share_beyond` for scattered samples."""
     smaller, larger = find_largest_angles(data)
     inside = [1 - np.cos(np.radians(min(a, max_angle))) for a in (smaller, larger, max_angle)]
     # Pairs of directions are within the measured angles if one is within the `smaller` angle, and

@@ -204,6 +204,11 @@ class MeasuredData:
         return {}
 
     @cached_property
+    def share_beyond_by_angle(self) -> dict[float, float]:
+        """Cache in which `extrapolation.py` keeps shares by `max_angle` [degrees]."""
+        return {}
+
+    @cached_property
     def checksum(self) -> str:
         """The SHA-256 of the channels' names, the directions and the values, in hexadecimal.
 
