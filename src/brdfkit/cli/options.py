@@ -45,6 +45,16 @@ def output_option(help: str, **attributes: Any) -> Any:
     return click.option("-o", "--output", type=kind, help=help, **attributes)
 
 
+def prior_option(command: Command) -> Command:
+    """Add the option --prior, which gives the argument `prior`, to a command that completes."""
+    return click.option(
+        "--prior",
+        type=click.Path(path_type=Path),
+        metavar="FILE",
+        help="What is known of other materials, a file of brdfkit prior. Default: brdfkit's own.",
+    )(command)
+
+
 def mend_options(command: Command) -> Command:
     """Add --mirror-azimuth and --divide-by-cos to a command that reads a measured material.
 

@@ -8,17 +8,12 @@ from typing import Any
 import click
 
 from brdfkit.cli.console import Console
-from brdfkit.cli.options import mend_options, output_option, writing_options
+from brdfkit.cli.options import mend_options, output_option, prior_option, writing_options
 
 
 @click.command()
 @click.argument("file", metavar="FILE|NAME")
-@click.option(
-    "--prior",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="What is known of other materials, a file of brdfkit prior. Default: brdfkit's own.",
-)
+@prior_option
 @click.option(
     "--noise",
     type=float,

@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from brdfkit.cli.console import Console
-from brdfkit.cli.options import output_option, writing_options
+from brdfkit.cli.options import output_option, prior_option, writing_options
 from brdfkit.core.errors import BrdfkitError
 
 ANGLE: dict[str, Any] = {"type": float, "metavar": "DEGREES"}
@@ -36,12 +36,7 @@ ANGLE: dict[str, Any] = {"type": float, "metavar": "DEGREES"}
 @click.option(
     "--measured", metavar="FILE", help="Values that are measured already: plan further ones."
 )
-@click.option(
-    "--prior",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="What is known of other materials, a file of brdfkit prior. Default: brdfkit's own.",
-)
+@prior_option
 @click.option(
     "--noise",
     type=float,

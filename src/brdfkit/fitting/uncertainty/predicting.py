@@ -20,13 +20,12 @@ from brdfkit.fitting.settings import select_fitted_samples
 from brdfkit.materials.completion.prior_cells import compute_cosine, from_logarithm
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import is_near_sample
-from brdfkit.materials.measured.evidence import compute_deviation
+from brdfkit.materials.measured.evidence import NORMAL_95, compute_deviation
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model.samples import Samples, Table
 from brdfkit.model.samples.coordinates import compute_coordinates, compute_sample_coordinates
 from brdfkit.regression import Fit
 
-QUANTILE = 1.96  # half a 95 % interval over its standard deviation
 NEIGHBOURS = 30  # number of samples near a direction, of which the error of a fit is taken
 STEP = 1e-3  # of finite differences, as a share of a parameter's standard error
 
@@ -90,7 +89,7 @@ def predict(fit: Fit, material: MaterialLike, *, wi: ArrayLike, wo: ArrayLike) -
     middle = compute_logarithm(fit.eval(w_i, w_o), w_i, w_o)
     variance = _compute_residual_variance(fit, samples, w_i, w_o, data.anisotropic)
     variance = variance + _compute_parameter_variance(fit, w_i, w_o, middle)
-    half = QUANTILE * np.sqrt(variance)
+    half = NORMAL_95 * np.sqrt(variance)
     low: Any = middle - half
     high: Any = middle + half
     near = np.ones(len(w_i), bool) if data.is_table else is_near_sample(data, w_i, w_o)
@@ -148,4 +147,4 @@ def _evaluate_table(
     cosine = (cells.wi[:, 2] * cells.wo[:, 2])[:, None]
     deviation = compute_deviation(cells.values, errors, cosine)
     deviations = Table(deviation.reshape(table.table.values.shape), table.table.phi_d_period)
-    return compute_logarithm(table.eval(wi, wo), wi, wo), QUANTILE * deviations.eval(wi, wo)
+    return compute_logarithm(table.eval(wi, wo), wi, wo), NORMAL_95 * deviations.eval(wi, wo)

@@ -20,7 +20,7 @@ from brdfkit.materials.completion.prior_choice import PriorLike, to_prior
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import make_measured_test
 from brdfkit.materials.measured.coverage import is_near_sample
-from brdfkit.materials.measured.evidence import GUESSED, INFERRED, MEASURED
+from brdfkit.materials.measured.evidence import GUESSED, INFERRED, MEASURED, NORMAL_95
 from brdfkit.materials.measured.spectrum_to_rgb import has_wavelengths, wavelengths
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model.samples import Table
@@ -28,7 +28,7 @@ from brdfkit.model.samples import Table
 FEWEST_VALUES = 4
 MOST_SAMPLES = 6_000  # of more samples, so many are drawn; they count as few anyway
 # A value that was not measured is a guess if its 95 % interval is wider than a factor of 2 each way
-GUESS_DEVIATION = log(2) / 1.96
+GUESS_DEVIATION = log(2) / NORMAL_95
 UNLIKE_SCALE = 2.0  # from this scale s on, a material is unlike those of the prior
 SEED = 0
 

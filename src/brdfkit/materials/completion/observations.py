@@ -5,6 +5,7 @@ by directions that are off by an angle δ, and because its apertures average ove
 wrong directions are variances of the logarithm; the cone is part of the model of the measurement.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi
 
@@ -18,6 +19,7 @@ from brdfkit.materials.completion.prior_cells import (
     from_logarithm,
     to_logarithm,
 )
+from brdfkit.materials.measured.evidence import OFFSET
 
 TURNS = 8  # random turns of both directions, of which the variance is taken
 CONE_POINTS = 6  # points of a cone, beside its axis
@@ -117,20 +119,26 @@ def observe(
     lookup = Lookup.at(wi, wo)
     logarithm = to_logarithm(values.T, lookup.cosine).T
     # A relative error of f is a smaller one of f c + e where f c is not much larger than e
-    share = 1 - 1e-3 / np.exp(logarithm)
+    share = 1 - OFFSET / np.exp(logarithm)
     variance = (np.asarray(noise) * np.maximum(share, 0.1)) ** 2
     variance = np.broadcast_to(np.maximum(variance, 1e-6), logarithm.shape)
-    rng = np.random.default_rng(SEED)
-    turned = [
-        Lookup.at(*(turn(w, alignment, rng.uniform(0, 2 * pi, len(w))) for w in (wi, wo)))
-        for _ in range(TURNS * (alignment > 0))
-    ]
+    turned = tuple(turn_pairs(wi, wo, alignment))
     cone = [lookup]
     for k in range(CONE_POINTS * (aperture > 0)):
         azimuth = np.full(len(wo), 2 * pi * k / CONE_POINTS)
         # A disc of radius a has the variance of its centre and six points at 0.764 a
         cone.append(Lookup.at(wi, turn(wo, 0.764 * aperture, azimuth)))
-    return Observations(logarithm, variance, lookup, tuple(turned), tuple(cone))
+    return Observations(logarithm, variance, lookup, turned, tuple(cone))
+
+
+def turn_pairs(wi: AnyArray, wo: AnyArray, angle: float) -> Iterator[Lookup]:
+    """Yield `TURNS` lookups of pairs (n, 3) that are off by an `angle` [rad], none if it is 0.
+
+    Each direction is turned towards a random azimuth of its own.
+    """
+    rng = np.random.default_rng(SEED)
+    for _ in range(TURNS * (angle > 0)):
+        yield Lookup.at(*(turn(w, angle, rng.uniform(0, 2 * pi, len(w))) for w in (wi, wo)))
 
 
 def turn(w: AnyArray, angle: float, azimuth: AnyArray) -> FloatArray:

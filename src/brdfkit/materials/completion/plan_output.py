@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import exp
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +11,7 @@ from brdfkit.core.figures import to_png
 from brdfkit.core.files import write_safely
 from brdfkit.materials.measured.column_names import parse_layout
 from brdfkit.materials.measured.coordinates import ANGLES
+from brdfkit.materials.measured.evidence import format_logarithm
 from brdfkit.materials.measured.validation import Origin
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 PICTURES = ".png", ".pdf", ".svg"
 DPI, WIDTH = 100, 760  # resolution [pixels per inch] and width [pixels] of a notebook's picture
-LARGEST_SHARE = 0.5  # larger errors of a logarithm are told as factors
 CONVENTION = (
     "BRDF in 1/sr, without a cosine; theta from the normal; i to the light, o to the detector; the "
     "mirror direction is at phi_o = phi_i + 180 deg"
@@ -30,12 +29,12 @@ TASK = "fill in the empty fields, from the first row on; rows without values are
 def make_document(plan: Any) -> Document:
     """Return the document of a `Plan`."""
     rows = tuple(
-        (str(k), *(f"{angle:g}°" for angle in angles), format_error(error))
+        (str(k), *(f"{angle:g}°" for angle in angles), format_logarithm(error))
         for k, (angles, error) in enumerate(zip(plan.angles, plan.errors[1:], strict=True), 1)
     )
     columns = (">", ">theta_i", ">theta_o", ">phi", "expected error after it")
     notes = {"halves": describe_halves(plan), **plan.info}
-    before = f"Before the first, the expected error is {format_error(plan.errors[0])}."
+    before = f"Before the first, the expected error is {format_logarithm(plan.errors[0])}."
     says = "places of light and detector, numbered, and the expected error after each"
     return Document(
         f"{len(plan)} directions worth measuring, in the order of their gain",
@@ -59,15 +58,6 @@ def describe_halves(plan: Any) -> str:
         if more is None:
             break
     return f"directions that have half the error {', '.join(texts)}"
-
-
-def format_error(error: float) -> str:
-    """Return an error of a natural logarithm as a share, or as a factor if it is large.
-
-    >>> format_error(0.121), format_error(1.76)
-    ('12 %', 'a factor of 5.8')
-    """
-    return f"{100 * error:.2g} %" if error < LARGEST_SHARE else f"a factor of {exp(error):.1f}"
 
 
 def write_plan(plan: Any, path: Path, channels: Sequence[str]) -> None:

@@ -11,7 +11,7 @@ from math import radians
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, FloatArray, IntArray
-from brdfkit.materials.completion.observations import TURNS, Lookup, turn
+from brdfkit.materials.completion.observations import TURNS, Lookup, turn_pairs
 from brdfkit.materials.completion.prior import Prior
 from brdfkit.materials.completion.prior_cells import get_cells
 
@@ -19,7 +19,6 @@ TARGET_ANGLE = radians(80)  # cells with both angles to the normal below it coun
 # Directions are chosen for a larger noise than that of the measurement, because no material is
 # exactly what a prior says: with 0.1 in place of 0.05, the error of 80 materials was 4 % less
 LEAST_NOISE = 0.1
-SEED = 0
 
 
 def choose_directions(
@@ -75,11 +74,7 @@ def describe_pairs(
     lookup = Lookup.at(wi, wo)
     q, mean = lookup.interpolate(prior.components), lookup.interpolate(prior.mean)
     variance = lookup.interpolate(prior.new_remainder) + max(noise, LEAST_NOISE) ** 2
-    rng = np.random.default_rng(SEED)
-    for _ in range(TURNS * (alignment > 0)):
-        turned = Lookup.at(
-            *(turn(w, alignment, rng.uniform(0, 2 * np.pi, len(w))) for w in (wi, wo))
-        )
+    for turned in turn_pairs(wi, wo, alignment):
         shift = turned.interpolate(prior.components) - q
         variance = variance + np.sum(shift**2, axis=1) / TURNS
         variance = variance + (turned.interpolate(prior.mean) - mean) ** 2 / TURNS

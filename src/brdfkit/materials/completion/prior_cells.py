@@ -97,9 +97,3 @@ def to_logarithm(values: AnyArray, cosine: AnyArray) -> FloatArray:
 def from_logarithm(logarithm: AnyArray, cosine: AnyArray) -> FloatArray:
     """Return the BRDF [sr⁻¹], at least 0, of which `to_logarithm` made these logarithms."""
     return np.maximum(np.exp(logarithm) - OFFSET, 0) / cosine
-
-
-def unfold(values: AnyArray) -> AnyArray:
-    """Return values (..., CELLS) of the kept cells in all cells (*SHAPE, ...) of a table."""
-    kept = np.moveaxis(values.reshape(*values.shape[:-1], *KEPT_SHAPE), (-3, -2, -1), (0, 1, 2))
-    return np.concatenate([kept, kept[:, :, ::-1]], axis=2)

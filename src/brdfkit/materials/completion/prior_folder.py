@@ -101,10 +101,11 @@ def make_folder_prior(
         raise BrdfkitError(f"{folder}: there is no such folder; name one with measured materials.")
     files, skipped = list(list_files(place)), {}
     rows: list[FileRows] = []
+    known: dict[str, str] = {}  # names of the files by their checksums
     for k, file in enumerate(files):
         try:
-            known = {row.source.rpartition(" ")[2]: row.source for row in rows}
             rows.append(read_rows(file, known))
+            known[rows[-1].source.rpartition(" ")[2]] = file.name
         except BrdfkitError as error:
             # What follows in the error is advice that does not matter here
             skipped[file.name] = str(error).removeprefix(f"{file}: ").partition(";")[0].rstrip(".")
@@ -137,11 +138,11 @@ def list_files(folder: Path) -> Iterator[Path]:
 def read_rows(file: Path, known: dict[str, str]) -> FileRows:
     """Read a material; raise `BrdfkitError`, with the reason, if it does not suit a prior.
 
-    `known` are the sources by their checksums.
+    `known` are the names of files that were read, by their checksums.
     """
     checksum = compute_sha256(file)
     if checksum in known:
-        raise BrdfkitError(f"it is a copy of {known[checksum].partition(' ')[0]}")
+        raise BrdfkitError(f"it is a copy of {known[checksum]}")
     data = load(file)
     if not isinstance(data, Measured):
         raise BrdfkitError("it is a fit, not a measurement")

@@ -6,9 +6,13 @@ import numpy as np
 
 from brdfkit.core.array_types import BoolArray, FloatArray
 from brdfkit.core.geometry.directions import from_angles
-from brdfkit.materials.measured.evidence import find_measured_rows
+from brdfkit.materials.measured.evidence import (
+    compute_solid_angles,
+    find_measured_rows,
+    sort_cosines,
+)
 from brdfkit.materials.measured.measured import Measured
-from brdfkit.model.samples import Samples, Table
+from brdfkit.model.samples import Samples
 
 NEAR_ANGLE = np.radians(5)  # a pair of directions this near to a sample counts as measured
 PAIRS = 20_000  # number of random pairs of directions; it makes shares accurate to 0.4 %
@@ -39,14 +43,14 @@ def compute_coverage(data: Measured, max_angle: float = 90.0) -> Coverage:
         z, phi = np.random.default_rng(0).random((2, 2, PAIRS))
         wi, wo = from_angles(np.arccos(least + (1 - least) * z), 2 * np.pi * phi)
         return compute_coverage_at(data, wi, wo)
-    low, high = _sort_cosines(data.samples.wi, data.samples.wo)
-    weight = _compute_solid_angles(data.table) * (low > max(least, 0))
+    low, high = sort_cosines(data.samples.wi, data.samples.wo)
+    weight = compute_solid_angles(data.table) * (low > max(least, 0))
     return _compute_coverage_shares(data, low, high, weight, find_measured_rows(data))
 
 
 def compute_coverage_at(data: Measured, wi: FloatArray, wo: FloatArray) -> Coverage:
     """Return how well scattered samples cover given pairs of directions `wi`, `wo` (n, 3)."""
-    low, high = _sort_cosines(wi, wo)
+    low, high = sort_cosines(wi, wo)
     return _compute_coverage_shares(data, low, high, np.ones(len(wi)), is_near_sample(data, wi, wo))
 
 
@@ -57,7 +61,7 @@ def find_largest_angles(data: Measured) -> tuple[float, float]:
     pairs of the smaller angle, and the maximum of the larger angle.
     """
     valid = find_measured_rows(data)
-    low, high = _sort_cosines(data.samples.wi[valid], data.samples.wo[valid])
+    low, high = sort_cosines(data.samples.wi[valid], data.samples.wo[valid])
     smaller, larger = np.degrees(np.arccos(np.minimum([high.min(), low.min()], 1)))
     return float(smaller), float(larger)
 
@@ -114,11 +118,6 @@ def _map_to_symmetric_points(data: Measured, wi: FloatArray, wo: FloatArray) -> 
     return points
 
 
-def _sort_cosines(wi: FloatArray, wo: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the smaller and the larger cosine to the normal of each pair, both (n,)."""
-    return np.minimum(wi[:, 2], wo[:, 2]), np.maximum(wi[:, 2], wo[:, 2])
-
-
 def _compute_coverage_shares(
     data: Measured, low: FloatArray, high: FloatArray, weight: FloatArray, reached: BoolArray
 ) -> Coverage:
@@ -128,18 +127,9 @@ def _compute_coverage_shares(
     `weight` (n,) are their solid angles, and the mask `reached` (n,) tells which were measured.
     """
     rows = find_measured_rows(data)
-    measured = _sort_cosines(*(w[rows] for w in (data.samples.wi, data.samples.wo)))
+    measured = sort_cosines(*(w[rows] for w in (data.samples.wi, data.samples.wo)))
     # A pair lies within the measured angles if its larger angle to the normal is at most the
     # maximum of the samples' larger angles, and likewise its smaller angle
     within = (low >= measured[0].min()) & (high >= measured[1].min())
     shares = (reached, ~reached & within, ~reached & ~within)
     return Coverage(*(float(weight @ share / weight.sum()) for share in shares))
-
-
-def _compute_solid_angles(table: Table) -> FloatArray:
-    """Return the products of solid angles dωi dωo (cells,) of a table's cells, up to a factor.
-
-    dωi dωo = 4 cos θd dωh dωd [Rusinkiewicz 1998].
-    """
-    size = table.extents[..., 1:]
-    return np.broadcast_to(size, table.shape).reshape(-1)

@@ -20,7 +20,7 @@ LEAST_COSINE = 0.05  # the least c: towards the horizon, values grow but their l
 OFFSET = 1e-3  # e [sr⁻¹]
 NORMAL_95 = 1.96  # half-width of a 95 % interval [standard errors]
 GRAZING = np.cos(np.radians(80.0))  # a direction with a smaller cosine is grazing
-LARGEST_SHARE = 0.5  # wider intervals are told as factors
+LARGEST_SHARE = 0.5  # larger errors of a logarithm are told as factors
 
 
 def find_evidence(data: MeasuredData, wi: AnyArray, wo: AnyArray) -> IntArray:
@@ -51,7 +51,9 @@ def find_measured_rows(data: MeasuredData) -> BoolArray:
 def compute_shares(data: MeasuredData) -> tuple[float, float, float]:
     """Return the shares of all pairs of directions that were measured, inferred and guessed."""
     assert data.evidence is not None
-    weight = _compute_weights(data)
+    assert data._table is not None
+    low, _ = sort_cosines(data.samples.wi, data.samples.wo)
+    weight = compute_solid_angles(data._table) * (low > 0)
     shares = [float(weight[data.evidence == kind].sum() / weight.sum()) for kind in range(3)]
     return shares[0], shares[1], shares[2]
 
@@ -89,7 +91,7 @@ def compute_half_widths(data: MeasuredData) -> dict[str, float]:
     """
     samples, errors = data.samples, data.standard_error
     assert errors is not None
-    low, high = _sort_cosines(data)
+    low, high = sort_cosines(samples.wi, samples.wo)
     known = find_measured_rows(data)
     within = (low >= low[known].min()) & (high >= high[known].min())
     grazing = low < GRAZING
@@ -128,22 +130,28 @@ def format_half_width(width: float) -> str:
     >>> format_half_width(0.12), format_half_width(1.1)
     ('±12 %', 'a factor of 3.0 each way')
     """
-    return (
-        f"±{100 * width:.2g} %"
-        if width < LARGEST_SHARE
-        else f"a factor of {exp(width):.1f} each way"
-    )
+    text = format_logarithm(width)
+    return f"±{text}" if width < LARGEST_SHARE else f"{text} each way"
 
 
-def _sort_cosines(data: MeasuredData) -> tuple[FloatArray, FloatArray]:
-    """Return the smaller and the larger cosine to the normal of all pairs, both (n,)."""
-    wi, wo = data.samples.wi[:, 2], data.samples.wo[:, 2]
-    return np.minimum(wi, wo), np.maximum(wi, wo)
+def format_logarithm(error: float) -> str:
+    """Return an error of a natural logarithm as a share, or as a factor if it is large.
+
+    >>> format_logarithm(0.121), format_logarithm(1.76)
+    ('12 %', 'a factor of 5.8')
+    """
+    return f"{100 * error:.2g} %" if error < LARGEST_SHARE else f"a factor of {exp(error):.1f}"
 
 
-def _compute_weights(data: MeasuredData) -> FloatArray:
-    """Return the products of solid angles (n,) of the cells of a table, 0 below the surface."""
-    assert data._table is not None
-    size = data._table.extents[..., 1:]
-    weight = np.broadcast_to(size, data._table.shape).reshape(-1)
-    return np.where(_sort_cosines(data)[0] > 0, weight, 0.0)
+def sort_cosines(wi: AnyArray, wo: AnyArray) -> tuple[FloatArray, FloatArray]:
+    """Return the smaller and the larger cosine to the normal of each pair (n, 3), both (n,)."""
+    return np.minimum(wi[:, 2], wo[:, 2]), np.maximum(wi[:, 2], wo[:, 2])
+
+
+def compute_solid_angles(table: Table) -> FloatArray:
+    """Return the products of solid angles dωi dωo (cells,) of a table's cells, up to a factor.
+
+    dωi dωo = 4 cos θd dωh dωd [Rusinkiewicz 1998].
+    """
+    size = table.extents[..., 1:]
+    return np.broadcast_to(size, table.shape).reshape(-1)
