@@ -39,14 +39,25 @@ def pixels(page):
     return np.asarray(Image.open(io.BytesIO(shot)).convert("RGB"), float)
 
 
+def wait_until(page, is_met, say="the page does not change"):
+    """Wait until a function of no arguments returns something true, and return that."""
+    for _ in range(200):
+        if result := is_met():
+            return result
+        page.wait_for_timeout(100)
+    raise AssertionError(say)
+
+
 def wait_for_change(page, before, least=1.0):
     """Wait until the picture differs from another one by a mean of `least`."""
-    for _ in range(200):
-        now = pixels(page)
-        if np.abs(now - before).mean() > least:
-            return now
-        page.wait_for_timeout(100)
-    raise AssertionError("the picture does not change")
+    pictures = []
+
+    def differs():
+        pictures.append(pixels(page))
+        return np.abs(pictures[-1] - before).mean() > least
+
+    wait_until(page, differs, "the picture does not change")
+    return pictures[-1]
 
 
 def drag(page, start, end, **options):
