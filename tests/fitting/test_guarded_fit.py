@@ -16,6 +16,12 @@ from brdfkit.materials.auditing.highlight_sampling import (
     find_largest_ratio,
     warn_of_narrow_highlight,
 )
+from brdfkit.materials.measured.evidence import (
+    MEASURED,
+    compute_interval,
+    evaluate_errors,
+    find_evidence,
+)
 from brdfkit.materials.measured.selection import select_samples
 
 MODELS = bk.models()
@@ -176,8 +182,33 @@ def test_intervals_of_predictions_hold_the_truth():
         bk.uncertainty.predict(fit, data, wi=wi, wo=-wo)
 
 
-def test_cells_of_a_completed_table_count_by_their_certainty(steel):
-    completed = bk.complete(steel)
+@pytest.fixture(scope="module")
+def completed(steel):
+    return bk.complete(steel)
+
+
+def test_a_fit_to_a_completed_table_claims_no_more_than_the_table(completed):
+    """Its cells are no measurements: no standard errors, and intervals as wide as the table's."""
+    fit = bk.fit(completed, "ward")
+    assert not fit.certainty.names
+    made = "fitted to a completed table, from 640 measured values"
+    assert any(note.startswith(made) for note in fit.notes)
+    with pytest.raises(BrdfkitError, match="no cell was measured alone; fit the measured values"):
+        bk.uncertainty.bootstrap(fit, completed)
+    theta = np.radians([30.0, 70.0])
+    wi, wo = from_angles(theta, 0 * theta), from_angles(theta * 0.9, [np.pi, 1.0])
+    found = bk.uncertainty.predict(fit, completed, wi=wi, wo=wo)
+    assert found.near.tolist() == (find_evidence(completed, wi, wo) == MEASURED).tolist()
+    assert not found.near.all()
+    light = (wi[:, 2] * wo[:, 2])[:, None]
+    low, high = compute_interval(
+        completed.eval(wi, wo), evaluate_errors(completed, wi, wo), light
+    )
+    assert (found.low <= 1.01 * low).all()
+    assert (found.high >= 0.99 * high).all()
+
+
+def test_cells_of_a_completed_table_count_by_their_certainty(completed):
     cells, plain = (select_samples(completed, 80.0, errors=errors) for errors in (True, False))
     assert cells.errors is None
     assert (plain.weight == 1).all()

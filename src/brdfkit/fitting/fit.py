@@ -19,7 +19,7 @@ from brdfkit.fitting.guarded_search import (
     explain_unguarded_fit,
     note_beyond,
 )
-from brdfkit.fitting.notes import list_fit_notes, measure_sample_coverage
+from brdfkit.fitting.notes import find_certainty, list_fit_notes, measure_sample_coverage
 from brdfkit.fitting.settings import (
     Bounds,
     Constraints,
@@ -192,7 +192,7 @@ def fit(
             seconds=time.perf_counter() - began,
             message=_add_albedo_warning(solution.message) if warnings else solution.message,
             at_bounds=solution.at_bounds,
-            certainty=solution.certainty,
+            certainty=find_certainty(data, samples, solution),
             notes=(
                 *solution.notes,
                 *warnings,

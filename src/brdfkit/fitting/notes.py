@@ -14,6 +14,8 @@ from brdfkit.model.evaluation import compute_clamped_share
 from brdfkit.model.samples import Samples
 from brdfkit.model.samples.measures import compute_measure, integrate_measure
 from brdfkit.regression import Loss, Picture
+from brdfkit.regression.certainty import Certainty
+from brdfkit.regression.refitting import COMPLETED
 from brdfkit.regression.regression import Solution
 
 
@@ -33,6 +35,9 @@ def list_fit_notes(
     weights.
     """
     notes = [*list_data_findings(data, samples.largest_angle)]
+    if data.evidence is not None:
+        made = data.info.get("completed", "from few values").split(" with ")[0]
+        notes.append(f"{COMPLETED} {made}: its cells tell no standard errors of the parameters")
     if weighted:
         notes.append("samples count by the weights that were given; so in the loss")
     if isinstance(loss, Picture):
@@ -55,6 +60,14 @@ def list_fit_notes(
         notes.append(note)
     notes += list_lobe_notes(data, samples, fitted, solution.at_bounds)
     return (*notes, *solution.certainty.undetermined, *solution.certainty.trades)
+
+
+def find_certainty(data: Measured, samples: Samples, solution: Solution) -> Certainty:
+    """Return how certain the parameters of a fit are; of a completed table, no standard errors."""
+    certainty = solution.certainty
+    if data.evidence is None:
+        return certainty
+    return certainty.without_standard_errors(samples.values.size)
 
 
 def _explain_negative_values(data: Measured) -> str:

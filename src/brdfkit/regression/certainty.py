@@ -93,10 +93,11 @@ class Certainty:
         return np.array(self.covariance).reshape(len(self.names), len(self.names))
 
     def without_standard_errors(self, numbers: int) -> Certainty:
-        """Return the `Certainty` of a fit to pictures, without covariance but with all its notes.
+        """Return the `Certainty` without covariance but with all its notes.
 
-        Standard errors would mean nothing, because pixels that show the same samples do not have
-        independent noise. `numbers`: the number of measured values that the pictures show.
+        It is that of a fit to pictures or to a completed table, where standard errors would mean
+        nothing: pixels that show the same samples, and cells that follow from the same values, do
+        not have independent errors. `numbers`: the number of values that were fitted.
         """
         return replace(self, names=(), covariance=(), freedom=(), numbers=numbers)
 

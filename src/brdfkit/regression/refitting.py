@@ -25,6 +25,8 @@ from brdfkit.regression.search.multistart import EXACT, LARGEST_STEPS
 
 # Start of the note on a fit to a completed table in place of the samples
 BEYOND = "beyond the measured angles,"
+# Start of the note on a fit to a table that `complete` made
+COMPLETED = "fitted to a completed table,"
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,11 +67,12 @@ class Refit:
                 f"{self.fit.name} was fitted with constraints, which are not repeated; fit without "
                 "them first."
             )
-        if any(note.startswith(BEYOND) for note in self.fit.notes):
-            raise BrdfkitError(
-                f"{self.fit.name} was fitted to a completed table, of which no cell was measured "
-                'alone; fit with extrapolate="free" first.'
-            )
+        for start, remedy in ((BEYOND, ""), (COMPLETED, "the measured values ")):
+            if any(note.startswith(start) for note in self.fit.notes):
+                raise BrdfkitError(
+                    f"{self.fit.name} was fitted to a completed table, of which no cell was "
+                    f'measured alone; fit {remedy}with extrapolate="free" first.'
+                )
         problem = self.make_problem()
         u = problem.space.to_coordinates(self.fit.values)[None]
         loss = math.sqrt(problem.compute_sums(u, self.weights, curvature=False).error[0])

@@ -85,7 +85,7 @@ class Fit(Shown):
     the loss determines the parameters, not how close they are to true values. Intervals are linear:
     of parameters that trade off, or with a highlight of a dozen noisy samples, 85 to 90 % contain
     the true value. Fits by the loss "picture" have no standard errors, because their pixels show
-    the same samples.
+    the same samples, nor have fits to completed tables, whose cells follow from the same values.
     """
 
     model: Model

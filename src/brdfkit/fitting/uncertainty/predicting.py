@@ -1,7 +1,8 @@
 """`predict`: the values of a fit at any directions, with 95 % intervals.
 
 Near measured directions, an interval has the error of the fit at the nearest samples, and the
-uncertainty of its parameters. Elsewhere it also encloses the interval of a completed table.
+uncertainty of its parameters. Elsewhere, and everywhere for a fit to a completed table, it also
+encloses the interval of this table.
 """
 
 from __future__ import annotations
@@ -20,7 +21,12 @@ from brdfkit.fitting.settings import select_fitted_samples
 from brdfkit.materials.completion.prior_cells import compute_cosine, from_logarithm
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import is_near_sample
-from brdfkit.materials.measured.evidence import NORMAL_95, compute_deviation
+from brdfkit.materials.measured.evidence import (
+    MEASURED,
+    NORMAL_95,
+    compute_deviation,
+    find_evidence,
+)
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model.samples import Samples, Table
 from brdfkit.model.samples.coordinates import compute_coordinates, compute_sample_coordinates
@@ -92,15 +98,25 @@ def predict(fit: Fit, material: MaterialLike, *, wi: ArrayLike, wo: ArrayLike) -
     half = NORMAL_95 * np.sqrt(variance)
     low: Any = middle - half
     high: Any = middle + half
-    near = np.ones(len(w_i), bool) if data.is_table else is_near_sample(data, w_i, w_o)
+    near = _is_near(data, w_i, w_o)
+    rows = ~near  # where the interval also encloses that of a table
     table = None if data.is_table or near.all() else complete_once(data)
+    if data.evidence is not None:
+        rows, table = np.ones_like(near), data
     if table is not None:
-        known, margin = _evaluate_table(table, w_i[~near], w_o[~near])
-        low[~near] = np.minimum(low[~near], known - margin)
-        high[~near] = np.maximum(high[~near], known + margin)
+        known, margin = _evaluate_table(table, w_i[rows], w_o[rows])
+        low[rows] = np.minimum(low[rows], known - margin)
+        high[rows] = np.maximum(high[rows], known + margin)
     cosine = compute_cosine(w_i, w_o)[:, None]
     ends: list[Any] = [from_logarithm(end, cosine) for end in (low, high)]
     return Prediction(fit.eval(w_i, w_o), ends[0], ends[1], near)
+
+
+def _is_near(data: Measured, wi: FloatArray, wo: FloatArray) -> NDArray[np.bool_]:
+    """Return which pairs of directions (n, 3) are measured, or within 5° of a measured one."""
+    if data.evidence is not None:
+        return find_evidence(data, wi, wo) == MEASURED
+    return np.ones(len(wi), bool) if data.is_table else is_near_sample(data, wi, wo)
 
 
 def _compute_residual_variance(
