@@ -17,6 +17,7 @@ import brdfkit as bk
 from brdfkit.cli import main
 from brdfkit.core.geometry.directions import from_angles, to_angles
 from brdfkit.images.hatching import hatch
+from brdfkit.materials.auditing.noise import estimate_noise
 from brdfkit.materials.completion.reach import Arms
 from brdfkit.materials.measured import evidence
 from brdfkit.viewing.materials.unmeasured import MeasuredAngles
@@ -143,6 +144,7 @@ def test_a_plan_is_filled_in_and_read(chosen, truth, tmp_path):
     assert np.array_equal(loaded.values[:19], values[:19])
     assert loaded.samples.valid.sum() == 19
     assert not loaded.anisotropic
+    assert "comment" not in loaded.info  # the task is done
     assert bk.complete(loaded).evidence is not None
 
 
@@ -213,10 +215,12 @@ def test_shares_and_intervals_are_told(completed):
     assert shares[1] > shares[2]
     widths = evidence.compute_half_widths(completed)
     assert widths["inside"] < widths["at grazing angles"]
+    assert "outside" not in widths  # from 80° on it is grazing, and between them is hardly anything
 
 
-def test_formats_without_evidence_hold_the_values(completed, tmp_path):
-    bk.save(completed, tmp_path / "a.binary")
+def test_formats_without_evidence_hold_the_values_and_say_so(completed, tmp_path):
+    lost = bk.convert(completed, tmp_path / "a.binary").changes
+    assert any(change.startswith("evidence measured") for change in lost)
     merl = bk.load(tmp_path / "a.binary")
     assert merl.evidence is None
     assert np.allclose(merl.values, completed.values, atol=1e-6, equal_nan=True)
@@ -317,10 +321,23 @@ def test_sparse_and_dense_stripes_differ():
     assert 0 < shares[1] < shares[2] / 2
 
 
+def test_repeated_directions_tell_noise_and_count_once(chosen, truth):
+    """Three readings of each of 20 directions, with 10 % noise."""
+    wi, wo = (np.repeat(w, 3, axis=0) for w in (chosen.wi, chosen.wo))
+    values = truth.eval(wi, wo) * (1 + 0.1 * np.random.default_rng(0).normal(size=(60, 3)))
+    thrice = bk.Measured.from_samples(wi, wo, values)
+    noise = estimate_noise(thrice)
+    assert noise.relative == pytest.approx((0.1,) * 3, rel=0.4)
+    assert "measured twice" in noise.method
+    few = bk.Measured.from_samples(wi[:9], wo[:9], values[:9])
+    assert "fewer than 20 direction pairs were" in estimate_noise(few).method
+    assert bk.plan(1, measured=thrice).info["measured"].startswith("20 directions")
+
+
 def test_an_audit_tells_the_evidence(completed):
     rows = bk.audit(completed).rows()
     assert "inferred" in rows["evidence"]
-    assert "outside" in rows["95 % intervals"]
+    assert "grazing" in rows["95 % intervals"]
     assert "directions measured" in rows["coverage"]
 
 

@@ -12,6 +12,7 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.extrapolation import describe_file_extrapolation
 from brdfkit.materials.loading import save_and_read
 from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.evidence import describe_evidence
 from brdfkit.materials.measured.spectrum_to_rgb import format_channels
 from brdfkit.materials.measured.tabulation import choose_table_shape, tabulate
 from brdfkit.materials.resolve import Material, MaterialLike, to_material
@@ -157,6 +158,7 @@ def describe_contents(data: Measured) -> dict[str, str]:
         "angles": f"to {np.degrees(np.arccos(cosine)):.1f}°",
         "negative": f"{(values < 0).mean():.2%} of the values",
         "BRDF": f"{values.min():.4g} to {values.max():.4g}, median {np.median(values):.4g} sr⁻¹",
+        "evidence": describe_evidence(data).get("evidence", "none"),
         "standard error": "none"
         if errors is None
         else f"{np.median(errors[valid]):.3g} sr⁻¹ in the median",

@@ -12,6 +12,7 @@ from brdfkit.materials.auditing.ratios import compute_light_and_mirror_cosines, 
 from brdfkit.materials.auditing.subsets import draw_valid_samples
 from brdfkit.materials.auditing.symmetries import find_swapped_pairs
 from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.evidence import compute_weighted_median
 from brdfkit.model.samples import Samples
 
 # The test by reciprocity needs this number of sample pairs with exchanged directions. In each pair
@@ -76,7 +77,7 @@ def compute_cosine_power_by_reciprocity(
         return np.nan, np.nan, 0
     cosines = cosines[rows]
     ratios = np.log(values[first[rows]]) - np.log(values[second[rows]])
-    power = _compute_weighted_median(ratios / cosines, np.abs(cosines))
+    power = compute_weighted_median(ratios / cosines, np.abs(cosines))
     unexplained = np.median(np.abs(ratios - cosines)) / np.median(np.abs(cosines))
     return power, float(unexplained), len(cosines)
 
@@ -110,9 +111,3 @@ def compute_cosine_power_at_horizon(samples: Samples) -> float:
 def _is_within(power: float, ends: tuple[float, float]) -> bool:
     """Return whether `power` lies between the two `ends`; False for NaN."""
     return ends[0] <= power <= ends[1]
-
-
-def _compute_weighted_median(values: FloatArray, weights: FloatArray) -> float:
-    order = np.argsort(values)
-    total = np.cumsum(weights[order])
-    return float(values[order][np.searchsorted(total, total[-1] / 2)])

@@ -7,11 +7,16 @@ import numpy as np
 
 from brdfkit.core.array_types import FloatArray
 from brdfkit.materials.auditing.subsets import draw_valid_samples, thin_out_theta_h
-from brdfkit.materials.auditing.symmetries import compute_relative_differences, find_mirrored_pairs
+from brdfkit.materials.auditing.symmetries import (
+    compute_relative_differences,
+    find_mirrored_pairs,
+    find_repeated_pairs,
+)
 from brdfkit.materials.measured import Measured
 
 TO_SIGMA = 1.4826  # standard deviation over median absolute deviation, for a normal distribution
 FEWEST_DIFFERENCES = 20  # smallest number of differences from which the noise is estimated
+NO_PAIR = "no direction pair was"
 LEAST_NOISE = 1e-6  # smaller relative noise means that mirrored values are copies of each other
 
 
@@ -44,16 +49,18 @@ def estimate_noise(data: Measured) -> Noise:
         return Noise(noise, "fourth differences along phi_d")
     unknown = (np.nan,) * len(data.channels)
 
-    # Compare scattered samples that mirror each other. Both values are noisy, so their difference
-    # has √2 times the noise of one
+    # Compare scattered samples that are repeated or mirror each other. Both values are noisy, so
+    # their difference has √2 times the noise of one
     samples = draw_valid_samples(data)
-    rows, values = find_mirrored_pairs(samples, data.anisotropic), samples.values
+    mirrored, values = find_mirrored_pairs(samples, data.anisotropic), samples.values
+    rows = np.unique(np.concatenate([find_repeated_pairs(samples), mirrored]), axis=0)
     sigmas = tuple(
         _compute_sigma(compute_relative_differences(*channel[rows].T) / np.sqrt(2))
         for channel in values.T
     )
     if np.isnan(sigmas).all():
-        return Noise(unknown, "not testable: no direction pair was measured twice or mirrored")
+        few = f"fewer than {FEWEST_DIFFERENCES} direction pairs were" if len(rows) else NO_PAIR
+        return Noise(unknown, f"not testable: {few} measured twice or mirrored")
     if np.nanmax(sigmas) < LEAST_NOISE:
         return Noise(unknown, "not testable: left and right are equal, probably copies")
     return Noise(sigmas, f"{len(rows):,} pairs of directions, measured twice or left and right")

@@ -107,6 +107,20 @@ def find_mirrored_pairs(samples: Samples, anisotropic: bool) -> IntArray:
     return _pair_points_with_images(points, points * [1, 1, 1, -1])
 
 
+def find_repeated_pairs(samples: Samples) -> IntArray:
+    """Find pairs of samples, as rows (n, 2), with equal directions and values that differ.
+
+    Of three samples, the first and the second are a pair, and the second and the third.
+    """
+    directions = np.concatenate([samples.wi, samples.wo], axis=1).round(6)
+    _, group = np.unique(directions, axis=0, return_inverse=True)
+    order = np.argsort(group.ravel(), kind="stable")
+    pairs = np.stack([order[:-1], order[1:]], axis=1)
+    same = np.diff(group.ravel()[order]) == 0
+    copies = (samples.values[pairs[:, 0]] == samples.values[pairs[:, 1]]).all(axis=1)
+    return pairs[same & ~copies]
+
+
 def _pair_points_with_images(points: FloatArray, images: FloatArray) -> IntArray:
     """Find pairs (n, 2) of different rows of `points` where one is the image of the other.
 

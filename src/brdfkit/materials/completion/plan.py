@@ -177,7 +177,8 @@ def plan(
         **known.notes(),
     }
     if already is not None:
-        info["measured"] = f"{len(already[0]):,} directions were measured before"
+        different = np.unique(np.concatenate(already, axis=1).round(6), axis=0)
+        info["measured"] = f"{len(different):,} directions were measured before"
     angles = np.asarray(candidates[rows], np.float64)
     wi, wo = (np.asarray(w, np.float64) for w in to_directions(angles))
     return Plan(wi, wo, angles, np.asarray(errors, np.float64), info)

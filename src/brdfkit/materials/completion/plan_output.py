@@ -9,7 +9,7 @@ from brdfkit.core.documents import Document, Paragraph, Picture, Table
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.figures import to_png
 from brdfkit.core.files import write_safely
-from brdfkit.materials.measured.column_names import parse_layout
+from brdfkit.materials.measured.column_names import TASK, parse_layout
 from brdfkit.materials.measured.coordinates import ANGLES
 from brdfkit.materials.measured.evidence import format_logarithm
 from brdfkit.materials.measured.validation import Origin
@@ -23,7 +23,6 @@ CONVENTION = (
     "BRDF in 1/sr, without a cosine; theta from the normal; i to the light, o to the detector; the "
     "mirror direction is at phi_o = phi_i + 180 deg"
 )
-TASK = "fill in the empty fields, from the first row on; rows without values are left out"
 
 
 def make_document(plan: Any) -> Document:

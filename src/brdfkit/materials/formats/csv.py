@@ -48,7 +48,7 @@ from brdfkit.materials.formats._delimited import detect_delimiter, read_columns,
 from brdfkit.materials.formats._source import Source
 from brdfkit.materials.formats._writing import compute_angles, make_channel_error, require_measured
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.measured.column_names import are_sample_columns, parse_layout
+from brdfkit.materials.measured.column_names import TASK, are_sample_columns, parse_layout
 from brdfkit.materials.measured.columns import to_sample_arguments
 from brdfkit.materials.measured.coordinates import ANGLES
 from brdfkit.materials.measured.spectrum_to_rgb import has_wavelengths
@@ -124,7 +124,7 @@ def _read_notes(source: Source) -> dict[str, str]:
         note = NOTE.fullmatch(comment)
         if note:
             notes[note[1]] = note[2]
-        elif comment and not are_sample_columns(split_fields(comment)):
+        elif comment and comment != TASK and not are_sample_columns(split_fields(comment)):
             others.append(comment)
     return notes | ({"comment": "; ".join(others)} if others else {})
 

@@ -25,6 +25,8 @@ PER_STERADIAN = ("1/sr", "sr-1", "sr^-1", "sr⁻¹")
 # Names of columns that state the wavelength or the channel of the value in each row, and which of
 # the two they state
 KEYS_OF_ROWS = {"wavelength": "wavelength", "lambda": "wavelength", "channel": "channel"}
+# The comment of a table to fill in, which says nothing of the values that are filled in
+TASK = "fill in the empty fields, from the first row on; rows without values are left out"
 EXAMPLES = ("BRDF", *RGB, "550nm", "BRDF_error", "R_error")  # names that error messages propose
 
 

@@ -6,7 +6,7 @@ cosines c and an offset e below which values count as equal, times f + e/c.
 
 from __future__ import annotations
 
-from math import exp, nan
+from math import exp
 
 import numpy as np
 
@@ -20,6 +20,7 @@ LEAST_COSINE = 0.05  # the least c: towards the horizon, values grow but their l
 OFFSET = 1e-3  # e [sr⁻¹]
 NORMAL_95 = 1.96  # half-width of a 95 % interval [standard errors]
 GRAZING = np.cos(np.radians(80.0))  # a direction with a smaller cosine is grazing
+LEAST_PLACE = 0.01  # of places with a smaller share of all pairs of directions nothing is told
 LARGEST_SHARE = 0.5  # larger errors of a logarithm are told as factors
 
 
@@ -86,8 +87,9 @@ def evaluate_errors(data: MeasuredData, wi: AnyArray, wo: AnyArray) -> FloatArra
 def compute_half_widths(data: MeasuredData) -> dict[str, float]:
     """Return typical half-widths of the 95 % intervals of ln f, by the place of the directions.
 
-    "inside": both angles to the normal are within the measured ones; "outside": they are not, but
-    below 80°; "at grazing angles": the larger one is above 80°. NaN where there is no such cell.
+    "inside": both angles to the normal are within 5° of the measured ones; "outside": they are not,
+    but below 80°; "at grazing angles": the larger one is above 80°. They are medians over pairs of
+    directions, and places with hardly any pairs are left out.
     """
     samples, errors = data.samples, data.standard_error
     assert errors is not None
@@ -102,9 +104,12 @@ def compute_half_widths(data: MeasuredData) -> dict[str, float]:
         "outside": ~within & ~grazing,
         "at grazing angles": grazing,
     }
+    assert data._table is not None
+    pairs = compute_solid_angles(data._table) * (samples.valid & (low > 0))
     return {
-        place: float(np.median(widths[mask & samples.valid])) if mask.any() else nan
+        place: compute_weighted_median(widths[mask], pairs[mask])
         for place, mask in masks.items()
+        if pairs[mask].sum() > LEAST_PLACE * pairs.sum()
     }
 
 
@@ -118,8 +123,8 @@ def describe_evidence(data: MeasuredData) -> dict[str, str]:
     shares = zip(NAMES, compute_shares(data), strict=True)
     rows = {"evidence": ", ".join(f"{name} {100 * share:.3g} %" for name, share in shares)}
     if data.standard_error is not None:
-        widths = {k: w for k, w in compute_half_widths(data).items() if np.isfinite(w)}
-        words = ", ".join(f"{format_half_width(w)} {place}" for place, w in widths.items())
+        widths = compute_half_widths(data).items()
+        words = ", ".join(f"{format_half_width(w)} {place}" for place, w in widths)
         rows["95 % intervals"] = f"{words} (medians)"
     return rows
 
@@ -146,6 +151,13 @@ def format_logarithm(error: float) -> str:
 def sort_cosines(wi: AnyArray, wo: AnyArray) -> tuple[FloatArray, FloatArray]:
     """Return the smaller and the larger cosine to the normal of each pair (n, 3), both (n,)."""
     return np.minimum(wi[:, 2], wo[:, 2]), np.maximum(wi[:, 2], wo[:, 2])
+
+
+def compute_weighted_median(values: FloatArray, weights: FloatArray) -> float:
+    """Return the median of `values` (n,) with `weights` (n,), of which some are above 0."""
+    order = np.argsort(values)
+    total = np.cumsum(weights[order])
+    return float(values[order][np.searchsorted(total, total[-1] / 2)])
 
 
 def compute_solid_angles(table: Table) -> FloatArray:
