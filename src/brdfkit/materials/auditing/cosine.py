@@ -7,7 +7,6 @@ about 0 if not.
 
 import numpy as np
 
-from brdfkit.core.array_types import FloatArray
 from brdfkit.materials.auditing.ratios import compute_light_and_mirror_cosines, cos_degrees
 from brdfkit.materials.auditing.subsets import draw_valid_samples
 from brdfkit.materials.auditing.symmetries import find_swapped_pairs
