@@ -201,9 +201,7 @@ def test_a_fit_to_a_completed_table_claims_no_more_than_the_table(completed):
     assert found.near.tolist() == (find_evidence(completed, wi, wo) == MEASURED).tolist()
     assert not found.near.all()
     light = (wi[:, 2] * wo[:, 2])[:, None]
-    low, high = compute_interval(
-        completed.eval(wi, wo), evaluate_errors(completed, wi, wo), light
-    )
+    low, high = compute_interval(completed.eval(wi, wo), evaluate_errors(completed, wi, wo), light)
     assert (found.low <= 1.01 * low).all()
     assert (found.high >= 0.99 * high).all()
 
