@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from brdfkit.core.arguments import to_array
 from brdfkit.core.array_types import FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
@@ -33,6 +34,7 @@ from brdfkit.model.samples.coordinates import compute_coordinates, compute_sampl
 from brdfkit.regression import Fit
 
 NEIGHBOURS = 30  # number of samples near a direction, of which the error of a fit is taken
+LARGEST_HALF = 100.0  # half width of an interval [natural logarithm] that tells nothing
 STEP = 1e-3  # of finite differences, as a share of a parameter's standard error
 
 
@@ -85,17 +87,19 @@ def predict(fit: Fit, material: MaterialLike, *, wi: ArrayLike, wo: ArrayLike) -
     >>> predict(fit("paint.csv", "ggx"), "paint.csv", wi=wi, wo=wo).high    # doctest: +SKIP
     """
     samples, data = select_fitted_samples(fit, material), to_measured(material).rgb
-    pairs = [np.atleast_2d(np.asarray(w, float)) for w in (wi, wo)]
+    pairs = [np.atleast_2d(to_array(name, w)) for name, w in (("wi", wi), ("wo", wo))]
     shape = pairs[0].shape
-    if fit.wavelengths or pairs[1].shape != shape or shape[1:] != (3,):
+    if fit.wavelengths or pairs[1].shape != shape or shape[1:] != (3,) or not shape[0]:
         raise BrdfkitError("predict takes a fit in linear sRGB, and wi and wo, both (n, 3).")
-    if min(w[:, 2].min() for w in pairs) <= 0:
-        raise BrdfkitError("a direction of wi or wo is below the surface; leave it out.")
+    if not all(np.isfinite(w).all() and (w[:, 2] > 0).all() for w in pairs):
+        raise BrdfkitError(
+            "a direction of wi or wo is not finite, or not above the surface; leave it out."
+        )
     w_i, w_o = (w / np.linalg.norm(w, axis=1, keepdims=True) for w in pairs)
     middle = compute_logarithm(fit.eval(w_i, w_o), w_i, w_o)
     variance = _compute_residual_variance(fit, samples, w_i, w_o, data.anisotropic)
     variance = variance + _compute_parameter_variance(fit, w_i, w_o, middle)
-    half = NORMAL_95 * np.sqrt(variance)
+    half = np.minimum(NORMAL_95 * np.sqrt(variance), LARGEST_HALF)
     low: Any = middle - half
     high: Any = middle + half
     near = _is_near(data, w_i, w_o)
@@ -141,10 +145,12 @@ def _compute_parameter_variance(
     covariance, slopes = fit.covariance, []
     for k, name in enumerate(fit.certainty.names if fit.certainty else ()):
         values: dict[str, Any] = dict(fit.model.free_values)
-        step = STEP * max(float(np.sqrt(covariance[k, k])), 1e-9)
         name, _, channel = name.partition("[")
-        moved = np.array(values[name], float)
-        moved[int(channel[:-1]) if channel else ...] += step
+        low, high = fit.model.parameters[name].bounds
+        step = STEP * min(max(float(np.sqrt(covariance[k, k])), 1e-9), high - low)
+        moved, at = np.array(values[name], float), int(channel[:-1]) if channel else ...
+        step = -step if moved[at] + step > high else step
+        moved[at] += step
         values[name] = tuple(moved) if channel else float(moved)
         brdf = type(fit.model)(**values).eval(wi, wo)
         slopes.append((compute_logarithm(brdf, wi, wo) - middle) / step)
