@@ -3,6 +3,7 @@
 import io
 import json
 import pickle
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -224,6 +225,8 @@ def test_formats_without_evidence_hold_the_values_and_say_so(completed, tmp_path
     merl = bk.load(tmp_path / "a.binary")
     assert merl.evidence is None
     assert np.allclose(merl.values, completed.values, atol=1e-6, equal_nan=True)
+    lost = " ".join(bk.convert(completed, tmp_path / "b.binary").changes)
+    assert re.search(r"evidence measured [\d.]+ %, inferred .+ → none", lost)
 
 
 # Commands
@@ -256,6 +259,7 @@ TRAPS = [
     (["plan", "0"], "n = 0 should be a whole number"),
     (["plan", "x"], "'x' is not a valid integer"),
     (["plan", "9", "--step", "60"], "reach: step = 60.0 should be"),
+    (["plan", "9", "--step", "1e-9"], "reach: step = 1e-09 should be a number between 0.001"),
     (["plan", "9", "--max-theta-i", "-5"], "reach: max_theta_i = -5.0 should be"),
     (["plan", "9", "--separation", "100"], "reach: separation = 100.0 should be"),
     (["plan", "9", "--max-theta-i", "9", "--max-theta-o", "9", "--separation", "30"], "no pair"),
@@ -269,6 +273,7 @@ TRAPS = [
     (["plan", "9", "-o", "a.txt"], "a.txt: a plan is written as .csv"),
     (["complete", "none.csv"], "none.csv"),
     (["complete", "empty.csv"], "empty.csv: all fields of R, G, B are empty"),
+    (["complete", "red.csv"], "red.csv: all fields of G, B are empty; fill"),
     (["complete", "ggx"], "was not measured"),
     (["complete", "car_paint", "--noise", "7"], "noise = 7.0 should be"),
     (["complete", "few.csv"], "few has 3 values; measure at least 4"),
@@ -279,6 +284,8 @@ TRAPS = [
 @pytest.mark.parametrize(("words", "said"), TRAPS, ids=[" ".join(words) for words, _ in TRAPS])
 def test_bad_input(cli, words, said):
     bk.plan(1, reach={"step": 30}).save("empty.csv")
+    rows = Path("empty.csv").read_text(encoding="utf-8").replace(",,,", ",0.1,,")
+    Path("red.csv").write_text(rows, encoding="utf-8")
     bk.save(bk.Measured.from_angles(30, 0, [10, 20, 30], 180, [0.1, 0.2, 0.3]), "few.csv")
     before = sorted(Path().iterdir())
     result = cli(*words)

@@ -24,6 +24,7 @@ from brdfkit.core.geometry.directions import (
 )
 
 LARGEST_ANGLE = 85.0  # nearer to the horizon, a prior knows nothing [degrees]
+LEAST_STEP = 0.001  # [degrees]
 CANDIDATES = 6_000  # of more pairs on the grid of the arms, about so many are drawn
 ROUNDS = 30  # of draws, of `CANDIDATES` pairs each
 
@@ -65,7 +66,8 @@ class Arms:
                 raise no_such_error("entry", name, cls.__annotations__, "reach")
         limits = {"max_theta_i": LARGEST_ANGLE, "max_theta_o": LARGEST_ANGLE, "step": 45.0}
         for name in limits.keys() & given.keys():
-            given[name] = to_number(f"reach: {name}", given[name], above=0, most=limits[name])
+            least: Any = {"least": LEAST_STEP} if name == "step" else {"above": 0}
+            given[name] = to_number(f"reach: {name}", given[name], most=limits[name], **least)
         if "separation" in given:
             given["separation"] = to_number("reach: separation", given["separation"], 0, 90)
         if not isinstance(given.get("in_plane", False), bool):

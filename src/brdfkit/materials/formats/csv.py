@@ -79,10 +79,10 @@ def read(source: Source, name: str = NAME) -> Measured:
     """
     names, lines, columns = read_columns(source)
     details = to_sample_arguments(names, columns, None, Origin(str(source.path), lines))
-    if np.isnan(details["values"]).all():
-        raise source.error(
-            f"all fields of {', '.join(details['channels'])} are empty; fill in what was measured"
-        )
+    empty = np.isnan(details["values"]).all(axis=0)
+    if empty.any():
+        names = ", ".join(np.array(details["channels"])[empty])
+        raise source.error(f"all fields of {names} are empty; fill in what was measured")
     notes = _read_notes(source)
     if "anisotropic" in notes:
         stated = notes.pop("anisotropic").lower()
