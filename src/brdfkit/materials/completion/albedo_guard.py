@@ -11,26 +11,38 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured.albedos import compute_directional_albedo
 from brdfkit.model.samples import Table
 
-ANGLES = np.radians([0, 10, 20, 30, 40, 50, 60, 65, 70, 75, 80, 83, 86, 88, 89.5])
-ROUNDS = 4  # interpolation between cells leaves a little, which the next round takes
+# Angles of incidence: of materials that reflect clearly less than all light, few are tried; of others
+# the centres of the cells, and near the horizon also what is between them
+FEW = np.radians([0, 10, 20, 30, 40, 50, 60, 65, 70, 75, 80, 83, 86, 88, 89.5])
+ANGLES = np.radians([0, *np.arange(1.5, 60, 3), *np.arange(60, 90, 1.5), 89.5])
+CLEARLY_LESS = 0.9
+LARGEST = 0.999  # a little below 1, for the angles that are not tried
+ROUNDS = 3  # interpolation between cells leaves a little, which the next round takes
 
 
 def limit_albedo(table: Table) -> FloatArray:
     """Return the factors (*shape, channels), at most 1, that limit the albedo of a `table` to 1."""
-    wi, wo = table.directions()
-    angles = [np.arccos(np.clip(w[..., 2], 0, 1)) for w in (wi, wo)]
     factors: FloatArray = np.ones(table.values.shape)
+    if compute_albedos(table, FEW).max() < CLEARLY_LESS:
+        return factors
+    theta = [np.arccos(np.clip(w[..., 2], 0, 1)) for w in table.directions()]
     for _ in range(ROUNDS):
-        albedo = compute_albedos(Table(table.values * factors, table.phi_d_period))
-        if albedo.max() <= 1:
-            break
-        excess = np.maximum(albedo, 1)
+        excess = _compute_excess(table, factors)
+        if excess.max() <= 1:
+            return factors
         for channel in range(factors.shape[-1]):
-            at_i, at_o = (np.interp(angle, ANGLES, excess[:, channel]) for angle in angles)
+            at_i, at_o = (np.interp(angle, ANGLES, excess[:, channel]) for angle in theta)
             factors[..., channel] /= np.maximum(at_i, at_o)
-    return factors
+    # What is left, at most a few per cent, is taken from all cells alike
+    return factors / _compute_excess(table, factors).max(axis=0)
 
 
-def compute_albedos(table: Table) -> FloatArray:
-    """Return the directional albedos (angles, channels) of a table at `ANGLES`."""
-    return np.array([compute_directional_albedo(table, from_angles(a, 0.0)) for a in ANGLES])
+def _compute_excess(table: Table, factors: FloatArray) -> FloatArray:
+    """Return by what the albedos of a table times `factors` are too large, at least 1."""
+    limited = Table(table.values * factors, table.phi_d_period)
+    return np.maximum(compute_albedos(limited, ANGLES) / LARGEST, 1)
+
+
+def compute_albedos(table: Table, angles: FloatArray) -> FloatArray:
+    """Return the directional albedos (angles, channels) of a table at angles of incidence [rad]."""
+    return np.array([compute_directional_albedo(table, from_angles(a, 0.0)) for a in angles])
