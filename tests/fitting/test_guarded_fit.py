@@ -1,6 +1,7 @@
 """Fits beyond the measured angles are guarded by a completed table of the material."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -178,8 +179,6 @@ def test_intervals_of_predictions_hold_the_truth():
     assert np.median(widths[~found.near]) > np.median(widths[found.near])
     with pytest.raises(BrdfkitError, match=r"both \(n, 3\)"):
         bk.uncertainty.predict(fit, data, wi=wi, wo=wo[:5])
-    with pytest.raises(BrdfkitError, match="below the surface"):
-        bk.uncertainty.predict(fit, data, wi=wi, wo=-wo)
 
 
 @pytest.fixture(scope="module")
@@ -216,3 +215,30 @@ def test_cells_of_a_completed_table_count_by_their_certainty(completed):
     assert 1 > measured > inferred > guessed > 0
     # Guesses have intervals of more than a factor of 2: deviations above ln 2 / 1.96
     assert guessed < 1 / (1 + (np.log(2) / 1.96 / 0.2) ** 2)
+
+
+def test_a_prediction_stays_within_the_bounds_of_uncertain_parameters():
+    """The standard error of f0, which is on its bound, is far larger than its range."""
+    data = measure(DULL)
+    fit = bk.fit(data, "ggx", extrapolate="free")
+    spread = np.diag(np.where(np.array(fit.certainty.names) == "f0", 1e6, 0.0))
+    model = type(fit.model)(**{**fit.model.free_values, "f0": 1.0})
+    certainty = replace(fit.certainty, covariance=tuple(map(tuple, spread)))
+    fit = replace(fit, model=model, certainty=certainty)
+    wi = wo = from_angles(np.radians([0.0, 30.0]), np.zeros(2))
+    assert np.isfinite(bk.uncertainty.predict(fit, data, wi=wi, wo=wo).low).all()
+
+
+@pytest.mark.parametrize(
+    ("wi", "said"),
+    [
+        (np.full((2, 3), np.nan), "is not finite, or not above"),
+        ([[0, 0, -1], [0, 0, 1]], "is not finite, or not above"),
+        (np.empty((0, 3)), r"both \(n, 3\)"),
+        ("up", "wi: they should be numbers"),
+    ],
+)
+def test_wrong_directions_of_a_prediction_are_a_sentence(wi, said):
+    data = measure(DULL)
+    with pytest.raises(BrdfkitError, match=said):
+        bk.uncertainty.predict(bk.fit(data, "lambert"), data, wi=wi, wo=wi)

@@ -11,6 +11,7 @@ from scipy import stats
 import brdfkit as bk
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.completion.model_materials import draw_material
+from brdfkit.materials.completion.noise import DEFAULT_NOISE, choose_noise
 from brdfkit.materials.completion.observations import Lookup, observe, turn
 from brdfkit.materials.completion.planning import choose_directions
 from brdfkit.materials.completion.posterior import DEGREES_OF_FREEDOM, solve
@@ -122,10 +123,10 @@ def test_completions_are_reciprocal_and_reflect_at_most_all_light(twenty):
     grid = [x.ravel() for x in np.meshgrid(theta, phi, indexing="ij")]
     out = from_angles(*grid)
     weights = 2 * np.cos(grid[0]) * np.sin(grid[0]) * (np.pi / 360) * (np.pi / 180)
-    for angle in (0.0, 27.0, 52.0, 71.0, 81.0, 87.0, 89.0):
+    for angle in (0.0, 27.0, 35.0, 52.0, 55.0, 71.0, 81.0, 87.0, 89.0):
         light = np.broadcast_to(from_angles(np.radians(angle), 0.0), out.shape)
         albedo = weights @ completed.eval(light, out)
-        assert albedo.max() <= 1.002, angle
+        assert albedo.max() <= 1, angle
 
 
 def test_variance_by_wrong_directions_is_that_of_a_simulation(prior):
@@ -261,14 +262,22 @@ def test_bad_input_is_said_in_a_sentence(tmp_path, prior, twenty):
         wi, wo, values, channels=("Y",), name="hair", anisotropic=True
     )
     good = measured_at(wi, wo, values)
+    packed = bytearray(whole.read_bytes())
+    packed[packed.index(b"mean.npy") + 8] = 0xFF  # no block of packed data has this type
+    (tmp_path / "packed.npz").write_bytes(packed)
+    bk.save(bk.complete(good), tmp_path / "text.csv")
     cases = [
         (measured_at(wi[:3], wo[:3], values[:3]), None, "has 3 values"),
         (measured_at(np.tile(wi[:1], (20, 1)), np.tile(wo[:1], (20, 1)), values), None, "same dir"),
         (measured_at(wi, wo, 0 * values), None, "no value of the channel"),
         (measured_at(wi, wo, -values), None, "no value of the channel"),
+        (measured_at(wi, wo, 10 * values), None, "divided by 6.+ in 1/sr, without a cosine"),
+        (measured_at(wi, wo, 1e30 * values), None, "a value is 2e.29, which no BRDF has"),
+        (tmp_path / "text.csv", None, "completed already, from 20 measured values"),
         (anisotropic, None, "is anisotropic"),
         (good, infrared, "900 to 1700 nm"),
         (good, tmp_path / "damaged.npz", "damaged"),
+        (good, tmp_path / "packed.npz", "damaged .*invalid block type"),
         (good, tmp_path / "other.npz", "no prior that brdfkit wrote"),
         (good, tmp_path / "one.npz", "made of one material"),
         (good, tmp_path / "missing.npz", "missing.npz"),
@@ -278,6 +287,18 @@ def test_bad_input_is_said_in_a_sentence(tmp_path, prior, twenty):
         with pytest.raises(bk.BrdfkitError, match=words) as caught:
             bk.complete(material, prior=known)
         assert str(caught.value).count("\n") == 0
+
+
+@pytest.mark.parametrize(("dark", "noise"), [(0, 0.1), (8, 0.1), (0, 0.0)])
+def test_repeated_directions_tell_the_noise(twenty, dark, noise):
+    """Values around 0 tell little of it, and copies nothing."""
+    wi, wo = (np.repeat(w[twenty], 5, axis=0) for w in (get_cells().wi, get_cells().wo))
+    rng = np.random.default_rng(0)
+    values = np.full((100, 1), 0.2) * (1 + noise * rng.normal(size=(100, 1)))
+    values[: 5 * dark] = rng.normal(0, 1e-5, (5 * dark, 1))
+    found, words = choose_noise(wi, wo, values, None, None)
+    assert found == pytest.approx(noise or DEFAULT_NOISE, rel=0.2)
+    assert ("scatter" in words) == (noise > 0)
 
 
 def test_real_paints_and_tensors_are_completed(measured_data):

@@ -18,7 +18,7 @@ COUNT = 31
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """31 random paints as tables, two more files that do not suit, and a README."""
+    """31 random paints as tables, three more files that do not suit, and a README."""
     place = tmp_path_factory.mktemp("paints")
     rng = np.random.default_rng(0)
     wi, wo = Table(np.zeros((20, 8, 8, 1))).directions()
@@ -31,6 +31,9 @@ def folder(tmp_path_factory):
         values[~above] = np.nan
         bk.save(bk.Measured.from_table(values, name=f"p{k:02}"), place / f"p{k:02}.npz")
     shutil.copy(place / "p00.npz", place / "q-copy.npz")
+    plan = bk.plan(8)
+    few = bk.Measured.from_samples(plan.wi, plan.wo, paint.eval(plan.wi, plan.wo))
+    bk.save(bk.complete(few), place / "q-full.npz")
     (place / "q-notes.txt").write_text("not a material")
     (place / "README.md").write_text("# Paints\n\nSome paints.\n\nLicence: for research\nonly.\n")
     return place
@@ -50,6 +53,7 @@ def test_files_are_read_or_named_with_a_reason(made):
     assert all(len(line.split(" sha256 ")[1]) == 64 for line in made.prior.sources)
     assert made.skipped == {
         "q-copy.npz": "it is a copy of p00.npz",
+        "q-full.npz": "it is completed, not measured",
         "q-notes.txt": "is in no known format of materials",
     }
 
@@ -103,6 +107,7 @@ def test_the_command_writes_a_prior_that_complete_takes(folder, tmp_path):
     assert record["materials"] == COUNT
     assert record["skipped"].keys() == {
         "q-copy.npz",
+        "q-full.npz",
         "q-notes.txt",
     }
 

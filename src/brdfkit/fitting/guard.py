@@ -29,7 +29,6 @@ from brdfkit.materials.extrapolation import (
     describe_reach,
 )
 from brdfkit.materials.measured import Measured
-from brdfkit.materials.measured.evidence import OFFSET
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.samples import Samples
 from brdfkit.regression.albedo import make_albedo_pixels
@@ -42,9 +41,6 @@ LARGEST_FACTOR = 1.9
 LEAST_GAIN = 1.0
 # Largest angle [degrees] of the directions in these pictures, their number per pixel, and the seed
 PICTURE_ANGLE, DIRECTIONS, SEED = 85.0, 16, 1
-# Values have another unit than 1/sr if the median of so many of them is larger than the table's,
-# whose albedo is limited to 1, by this factor
-COMPARED, DIMMED = 2_000, 1.5
 LEAST_ALBEDO = 1e-3  # smaller albedos count as equal
 
 Brdf: TypeAlias = Callable[[Any, Any], Any]
@@ -74,7 +70,7 @@ class Guard:
         if compute_share_beyond(data, max_angle) <= LARGEST_FIT_SHARE:
             return None
         completed = complete_once(data)
-        if completed is None or _is_dimmed(completed, data.rgb):
+        if completed is None:
             return None
         return cls(completed, max_angle, describe_reach(data))
 
@@ -139,15 +135,6 @@ def complete_once(data: Measured) -> Measured | None:
     if data not in _completed:
         try:
             _completed[data] = complete(data.rgb)
-        except BrdfkitError:  # it is anisotropic, or has too few values
+        except BrdfkitError:  # it is anisotropic, has too few values, or another unit
             _completed[data] = None
     return _completed[data]
-
-
-def _is_dimmed(completed: Measured, data: Measured) -> bool:
-    """Return whether a table is darker than its samples, because their albedo is above 1."""
-    (rows,) = np.nonzero(data.samples.valid)
-    rows = rows[np.linspace(0, len(rows) - 1, min(len(rows), COMPARED)).astype(int)]
-    part = data.samples.at(rows)
-    own, known = part.values.mean(axis=1), completed.eval(part.wi, part.wo).mean(axis=1)
-    return bool(np.median((own + OFFSET) / (known + OFFSET)) > DIMMED)

@@ -8,7 +8,7 @@ from math import log, radians
 import numpy as np
 
 from brdfkit.core.arguments import to_number
-from brdfkit.core.array_types import AnyArray, BoolArray
+from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.materials.completion.albedo_guard import limit_albedo
@@ -20,7 +20,13 @@ from brdfkit.materials.completion.prior_choice import PriorLike, to_prior
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import make_measured_test
 from brdfkit.materials.measured.coverage import is_near_sample
-from brdfkit.materials.measured.evidence import GUESSED, INFERRED, MEASURED, NORMAL_95
+from brdfkit.materials.measured.evidence import (
+    GUESSED,
+    INFERRED,
+    MEASURED,
+    NORMAL_95,
+    is_completed,
+)
 from brdfkit.materials.measured.spectrum_to_rgb import has_wavelengths, wavelengths
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model.samples import Table
@@ -29,6 +35,10 @@ FEWEST_VALUES = 4
 MOST_SAMPLES = 6_000  # of more samples, so many are drawn; they count as few anyway
 # A value that was not measured is a guess if its 95 % interval is wider than a factor of 2 each way
 GUESS_DEVIATION = log(2) / NORMAL_95
+# Values have another unit than 1/sr if, to limit the albedo to 1, more than half of those that were
+# measured are divided by a larger factor; beyond the largest value, logarithms have no meaning
+LARGEST_DIMMING = 1.5
+LARGEST_VALUE = 1e9  # [sr⁻¹]
 UNLIKE_SCALE = 2.0  # from this scale s on, a material is unlike those of the prior
 SEED = 0
 
@@ -73,7 +83,7 @@ def complete(
     ------
     BrdfkitError
         For an anisotropic material, for fewer than 4 values, for values in one direction alone or
-        none above 0, and for a prior that is damaged.
+        none above 0, for values in another unit than 1/sr, and for a prior that is damaged.
 
     Examples
     --------
@@ -106,7 +116,7 @@ def list_values(data: Measured) -> tuple[AnyArray, AnyArray, AnyArray, AnyArray 
     Of many samples, `MOST_SAMPLES` are drawn. Raises `BrdfkitError` for a material that cannot be
     completed.
     """
-    if data.evidence is not None:
+    if is_completed(data):
         raise BrdfkitError(
             f"{data.name} is completed already, {data.info.get('completed', 'from few values')}; "
             "complete what was measured."
@@ -137,6 +147,11 @@ def list_values(data: Measured) -> tuple[AnyArray, AnyArray, AnyArray, AnyArray 
             raise BrdfkitError(
                 f"{data.name}: no value of the channel {channel} is above 0; give the others alone."
             )
+    if values.max() > LARGEST_VALUE:
+        raise BrdfkitError(
+            f"{data.name}: a value is {values.max():.2g}, which no BRDF has; leave it out, or give "
+            "values in 1/sr."
+        )
     errors = None if data.standard_error is None else data.standard_error[rows]
     return wi, wo, values, errors
 
@@ -165,6 +180,7 @@ def make_table(data: Measured, posterior: Posterior, info: dict[str, str]) -> Me
             errors[measured] = data.standard_error.reshape(table.values.shape)[above][measured]
     table.values[above] = values
     factors = limit_albedo(table)
+    require_unit(data.name, factors[above][measured])
     standard_error = np.full(table.values.shape, np.nan)
     standard_error[above] = errors
     evidence = np.full(table.shape, GUESSED, np.uint8)
@@ -178,6 +194,16 @@ def make_table(data: Measured, posterior: Posterior, info: dict[str, str]) -> Me
         standard_error=standard_error * factors,
     )
     return replace(completed, evidence=evidence.reshape(-1))
+
+
+def require_unit(name: str, factors: FloatArray) -> None:
+    """Raise `BrdfkitError` if the `factors` of measured cells (n, channels) darken most of them."""
+    dimming = 1 / np.median(factors.mean(axis=1)) if len(factors) else 1.0
+    if dimming > LARGEST_DIMMING:
+        raise BrdfkitError(
+            f"{name}: its values reflect more light than arrives, and would have to be divided by "
+            f"{dimming:.2g}; give them in 1/sr, without a cosine."
+        )
 
 
 def is_measured(data: Measured, wi: AnyArray, wo: AnyArray) -> BoolArray:

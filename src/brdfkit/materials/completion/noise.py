@@ -4,6 +4,9 @@ import numpy as np
 
 from brdfkit.core.arguments import to_number
 from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.materials.completion.observations import LEAST_SHARE
+from brdfkit.materials.completion.prior_cells import compute_cosine
+from brdfkit.materials.measured.evidence import OFFSET
 
 DEFAULT_NOISE = 0.05  # relative standard deviation of a value, where nothing is known
 LEAST_NOISE = 0.002  # no instrument is better
@@ -30,14 +33,22 @@ def choose_noise(
 
 
 def estimate_repeatability(wi: AnyArray, wo: AnyArray, values: AnyArray) -> float | None:
-    """Return the relative standard deviation of values at equal directions, or None."""
+    """Return the relative standard deviation of values at equal directions, or None.
+
+    Dark values count little, by the share of f in f + e / c, and negative ones as 0. Where all
+    repeated values are equal, they are copies, and tell nothing.
+    """
     pairs = np.concatenate([wi, wo], axis=1).round(6)
     _, group, counts = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
     group = group.ravel()
     freedom = int((counts - 1).sum())
     if freedom < FEWEST_REPEATS:
         return None
+    values = np.maximum(values, 0)
     sums = np.stack([np.bincount(group, column) for column in values.T], axis=1)
     means = (sums / counts[:, None])[group]
-    relative = (values - means) / np.maximum(means, 1e-9)
-    return float(np.sqrt(np.mean(np.sum(relative**2, axis=0)) / freedom))
+    offset = (OFFSET / compute_cosine(wi, wo))[:, None]
+    scatter = np.sum(((values - means) / (means + offset)) ** 2)
+    share = np.maximum(means / (means + offset), LEAST_SHARE)
+    freedom = np.sum(share**2 * ((counts - 1) / counts)[group][:, None])
+    return float(np.sqrt(scatter / freedom)) if scatter > 1e-12 * freedom else None

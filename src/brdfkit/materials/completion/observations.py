@@ -22,6 +22,7 @@ from brdfkit.materials.completion.prior_cells import (
 from brdfkit.materials.measured.evidence import OFFSET
 
 TURNS = 8  # random turns of both directions, of which the variance is taken
+LEAST_SHARE = 0.1  # of f c in f c + e: noise of dark values is no smaller than this share of it
 CONE_POINTS = 6  # points of a cone, beside its axis
 SEED = 0
 
@@ -120,7 +121,7 @@ def observe(
     logarithm = to_logarithm(values.T, lookup.cosine).T
     # A relative error of f is a smaller one of f c + e where f c is not much larger than e
     share = 1 - OFFSET / np.exp(logarithm)
-    variance = (np.asarray(noise) * np.maximum(share, 0.1)) ** 2
+    variance = (np.asarray(noise) * np.maximum(share, LEAST_SHARE)) ** 2
     variance = np.broadcast_to(np.maximum(variance, 1e-6), logarithm.shape)
     turned = tuple(turn_pairs(wi, wo, alignment))
     cone = [lookup]

@@ -20,6 +20,7 @@ from brdfkit.materials.completion.planning import choose_directions
 from brdfkit.materials.completion.posterior import EFFECTIVE_SAMPLES
 from brdfkit.materials.completion.prior_choice import PriorLike, to_prior
 from brdfkit.materials.completion.reach import Arms, Reach, to_directions
+from brdfkit.materials.measured.evidence import is_completed
 from brdfkit.materials.resolve import MaterialLike, to_measured
 
 MOST_DIRECTIONS = 1_000
@@ -190,7 +191,7 @@ def list_measured_pairs(measured: MaterialLike) -> tuple[AnyArray, AnyArray]:
     Raises `BrdfkitError` for an anisotropic or a completed material.
     """
     data = to_measured(measured)
-    if data.evidence is not None:
+    if is_completed(data):
         raise BrdfkitError(
             f"{data.name} is completed already; give what was measured, from which it was made."
         )

@@ -3,6 +3,7 @@
 import io
 import json
 import zipfile
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,11 @@ VERSION = 1
 ARRAYS = ("mean", "components", "remainder", "new_remainder")
 EPOCH = (1980, 1, 1, 0, 0, 0)  # date of all members: equal priors give equal bytes
 LARGEST_RANK = 200
+# What NumPy, zipfile and JSON raise for files that are damaged, or something else
+DAMAGES = (
+    *(ValueError, KeyError, TypeError, AttributeError, OSError, EOFError, RuntimeError),
+    *(zipfile.BadZipFile, zlib.error),
+)
 
 
 def require_npz(path: Path) -> None:
@@ -61,6 +67,8 @@ def read_prior(path: Path) -> Prior:
         components = np.ascontiguousarray(arrays["components"].T)
         check_arrays(arrays, components)
         low, high = map(float, about["wavelengths"])
+        if not 0 <= low <= high:
+            raise ValueError(f"its wavelengths are {low:g} to {high:g}")
         return Prior(
             str(about["name"]),
             arrays["mean"],
@@ -72,8 +80,7 @@ def read_prior(path: Path) -> Prior:
             tuple(map(str, about["terms"])),
             (low, high),
         )
-    # What NumPy, zipfile and JSON raise for files that are damaged, or something else
-    except (ValueError, KeyError, TypeError, OSError, EOFError, zipfile.BadZipFile) as error:
+    except DAMAGES as error:
         raise BrdfkitError(
             f"{path}: this is no prior that brdfkit wrote, or it is damaged "
             f"({str(error)[:100].strip('.')}); make it again with brdfkit prior."

@@ -21,6 +21,7 @@ from brdfkit.materials.completion.prior_making import make_prior
 from brdfkit.materials.loading import load
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import make_measured_test
+from brdfkit.materials.measured.evidence import is_completed
 from brdfkit.materials.measured.spectrum_to_rgb import has_wavelengths, wavelengths
 
 FEWEST_MATERIALS = 30  # of fewer, a prior tells less than that of models
@@ -146,6 +147,8 @@ def read_rows(file: Path, known: dict[str, str]) -> FileRows:
     data = load(file)
     if not isinstance(data, Measured):
         raise BrdfkitError("it is a fit, not a measurement")
+    if is_completed(data):
+        raise BrdfkitError("it is completed, not measured")
     if data.anisotropic:
         raise BrdfkitError("it is anisotropic")
     cells = get_cells()

@@ -24,6 +24,11 @@ LEAST_PLACE = 0.01  # of places with a smaller share of all pairs of directions 
 LARGEST_SHARE = 0.5  # larger errors of a logarithm are told as factors
 
 
+def is_completed(data: MeasuredData) -> bool:
+    """Return whether a material has evidence, or its file noted that it was completed."""
+    return data.evidence is not None or data.info.get("completed", "").endswith("by a prior")
+
+
 def find_evidence(data: MeasuredData, wi: AnyArray, wo: AnyArray) -> IntArray:
     """Return the evidence (n,) of the cells in which pairs of directions (n, 3) lie.
 
