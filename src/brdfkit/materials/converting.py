@@ -162,5 +162,4 @@ def describe_contents(data: Measured) -> dict[str, str]:
         "standard error": "none"
         if errors is None
         else f"{np.median(errors[valid]):.3g} sr⁻¹ in the median",
-        "evidence": describe_evidence(data).get("evidence", "none"),
     }

@@ -41,8 +41,7 @@ def estimate_repeatability(wi: AnyArray, wo: AnyArray, values: AnyArray) -> floa
     pairs = np.concatenate([wi, wo], axis=1).round(6)
     _, group, counts = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
     group = group.ravel()
-    freedom = int((counts - 1).sum())
-    if freedom < FEWEST_REPEATS:
+    if (counts - 1).sum() < FEWEST_REPEATS:
         return None
     values = np.maximum(values, 0)
     sums = np.stack([np.bincount(group, column) for column in values.T], axis=1)

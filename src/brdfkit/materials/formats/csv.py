@@ -81,8 +81,8 @@ def read(source: Source, name: str = NAME) -> Measured:
     details = to_sample_arguments(names, columns, None, Origin(str(source.path), lines))
     empty = np.isnan(details["values"]).all(axis=0)
     if empty.any():
-        names = ", ".join(np.array(details["channels"])[empty])
-        raise source.error(f"all fields of {names} are empty; fill in what was measured")
+        channels = ", ".join(np.array(details["channels"])[empty])
+        raise source.error(f"all fields of {channels} are empty; fill in what was measured")
     notes = _read_notes(source)
     if "anisotropic" in notes:
         stated = notes.pop("anisotropic").lower()
