@@ -11,8 +11,8 @@ from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured.albedos import compute_directional_albedo
 from brdfkit.model.samples import Table
 
-# Angles of incidence: few are tried of materials that reflect clearly less than all light, of others
-# the centres of the cells and, near the horizon, what is between them
+# Angles of incidence: few are tried of materials that reflect clearly less than all light, of all
+# others the centres of the cells and, near the horizon, what is between them
 FEW = np.radians([0, 10, 20, 30, 40, 50, 60, 65, 70, 75, 80, 83, 86, 88, 89.5])
 ANGLES = np.radians([0, *np.arange(1.5, 60, 3), *np.arange(60, 90, 1.5), 89.5])
 CLEARLY_LESS = 0.9
