@@ -20,6 +20,7 @@ from brdfkit.images.hatching import hatch
 from brdfkit.materials.auditing.noise import estimate_noise
 from brdfkit.materials.completion.reach import Arms
 from brdfkit.materials.measured import evidence
+from brdfkit.reporting.verdict.verdict import describe_completion
 from brdfkit.viewing.materials.unmeasured import MeasuredAngles
 
 angles = st.floats(10, 85)
@@ -335,6 +336,9 @@ def test_repeated_directions_tell_noise_and_count_once(chosen, truth):
     assert "measured twice" in noise.method
     few = bk.Measured.from_samples(wi[:9], wo[:9], values[:9])
     assert "fewer than 20 direction pairs were" in estimate_noise(few).method
+    (said,) = bk.audit(thrice).findings()
+    assert said.startswith("only 1.")
+    assert "brdfkit complete" in said
     assert bk.plan(1, measured=thrice).info["measured"].startswith("20 directions")
 
 
@@ -342,6 +346,9 @@ def test_an_audit_tells_the_evidence(completed):
     rows = bk.audit(completed).rows()
     assert "inferred" in rows["evidence"]
     assert "grazing" in rows["95 % intervals"]
+    assert not any("brdfkit complete" in said for said in bk.audit(completed).findings())
+    (sentence,) = describe_completion(bk.audit(completed))
+    assert rows["evidence"] in sentence
     assert "directions measured" in rows["coverage"]
 
 

@@ -31,7 +31,7 @@ from brdfkit.reporting.verdict.fit_errors import (
     make_errors_table,
     order_fits,
 )
-from brdfkit.reporting.verdict.verdict import write_verdict
+from brdfkit.reporting.verdict.verdict import describe_completion, write_verdict
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,6 +106,7 @@ def collect_contents(
 
     verdict, more = write_verdict(names, errors, picture_errors, loss, ranking)
     audited = audit(material)
+    more += describe_completion(audited)
     known = [sigma for sigma in audited.noise.relative if np.isfinite(sigma)]
     lobes, noise_shown = draw_lobes(material, fits, float(np.median(known)) if known else 0.0)
     size = pictures[0].shape[0]

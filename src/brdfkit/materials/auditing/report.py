@@ -16,6 +16,7 @@ from brdfkit.materials.measured.spectrum_to_rgb import format_channels
 
 MOST_SPIKES = 3  # largest number of spikes that are described one by one; the others are counted
 NEGATIVE_SHARE = 0.01  # a larger share of negative values is reported as a finding
+SPARSE = 0.1  # samples that are near to a smaller share of all pairs of directions are reported
 BEYOND = " beyond them: there values are extrapolated"
 LARGEST_ALBEDO = 1.001  # a larger albedo is reported; the quadrature has an error of up to 10⁻³
 
@@ -60,7 +61,21 @@ def list_findings(audit: Any) -> tuple[Finding, ...]:
             "as 0"
         )
         findings.append(Finding("negative", text, f"most of them at {_format_negative(audit)}"))
+    if text := _warn_of_few_measurements(audit):
+        findings.append(Finding("coverage", text))
     return (*findings, *find_faults(audit.data))
+
+
+def _warn_of_few_measurements(audit: Any) -> str:
+    """Return a warning of samples that cover hardly any pairs of directions, or ""."""
+    data, measured = audit.data, audit.coverage.measured
+    if data.is_table or data.has_lookup or data.anisotropic or measured > SPARSE:
+        return ""
+    return (
+        f"only {to_percent(measured)} of the pairs of directions are within 5° of a sample: albedo "
+        "and pictures show what is interpolated between them, and brdfkit complete makes a better "
+        "table, with intervals"
+    )
 
 
 def _format_negative(audit: Any) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from brdfkit.core.names import join_words
 from brdfkit.fitting.ranking import Ranking
+from brdfkit.materials.auditing import Audit
 from brdfkit.reporting.pictures.picture_errors import PictureError
 from brdfkit.reporting.verdict.fit_errors import FitErrors, format_factor
 from brdfkit.reporting.verdict.picture_verdict import (
@@ -59,6 +60,17 @@ def write_verdict(
             f"met within a factor of {format_factor(taken.worst_factor)}."
         )
     return head, more
+
+
+def describe_completion(audited: Audit) -> list[str]:
+    """Return a sentence if the material is a completed table, otherwise an empty list."""
+    rows = audited.rows()
+    if "evidence" not in rows:
+        return []
+    return [
+        "The material was completed from few values, and its completed table is what is called "
+        f"measured here ({rows['evidence']} of the pairs of directions)."
+    ]
 
 
 def _explain_choice(ranking: Ranking) -> str:
