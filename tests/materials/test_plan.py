@@ -18,6 +18,7 @@ from brdfkit.cli import main
 from brdfkit.core.geometry.directions import from_angles, to_angles
 from brdfkit.images.hatching import hatch
 from brdfkit.materials.auditing.noise import estimate_noise
+from brdfkit.materials.completion import plan_picture
 from brdfkit.materials.completion.reach import Arms
 from brdfkit.materials.measured import evidence
 from brdfkit.reporting.verdict.verdict import describe_completion
@@ -225,6 +226,17 @@ def test_formats_without_evidence_hold_the_values_and_say_so(completed, tmp_path
     merl = bk.load(tmp_path / "a.binary")
     assert merl.evidence is None
     assert np.allclose(merl.values, completed.values, atol=1e-6, equal_nan=True)
+
+
+def test_the_picture_of_a_plan_hides_no_mark_and_has_ticks(chosen):
+    """Also where detectors share a place, and where all errors are nearly equal."""
+    x, y = plan_picture.spread(np.full(4, -75.0), np.zeros(4))
+    gaps = np.hypot(x[:, None] - x, y[:, None] - y) + 99 * np.eye(4)
+    assert gaps.min() > 4
+    assert (x[0], y[0]) == (-75, 0)
+    assert (y >= 0).all()
+    flat = bk.plan(3, measured=bk.Measured.from_samples(chosen.wi, chosen.wo, np.ones((20, 3))))
+    assert len(flat.picture().axes[1].get_yticks()) > 1
 
 
 # Commands

@@ -14,7 +14,10 @@ NUMBER = "#fff8dd"  # no grey: those of notebooks are replaced
 SIZE = 9.6, 4.4  # inches
 MOST_NUMBERS = 99  # larger numbers do not fit into a mark
 APART = 5.6  # least distance of two marks in a row of lights [degrees]
+HIDDEN = 4.5  # a mark that is nearer to another one hides its number [degrees]
+RINGS = np.array([1.0, 1.5])  # radii of the places to which it moves, in multiples of this distance
 ROW, MOST_ROWS = 7.0, 6  # distance of two rows of lights [degrees], and how many there are
+NARROW = 5.0  # errors that differ by a smaller factor have more ticks
 SMALL_TEXT = {"size": 8, "color": "0.35"}
 
 
@@ -43,7 +46,7 @@ def draw_places(axes: Any, angles: AnyArray) -> None:
         at = 97 * np.cos(turn), 97 * np.sin(turn)
         axes.text(*at, f"{phi}°", ha="center", va="center", **SMALL_TEXT)
     x, y = (angles[:, 1] * f(np.radians(angles[:, 2])) for f in (np.cos, np.sin))
-    draw_marks(axes, x, y, DETECTOR)
+    draw_marks(axes, *spread(x, y), DETECTOR)
     draw_marks(axes, angles[:, 0], -ROW * (rows + 1), LIGHT)
     axes.text(-90, -5, "detector, at θo and φ", ha="left", va="top", size=9, color=DETECTOR)
     words = "light, at θi in the plane below 0°"
@@ -58,6 +61,26 @@ def draw_marks(axes: Any, x: AnyArray, y: AnyArray, colour: str) -> None:
         if k < MOST_NUMBERS:
             style = {"ha": "center", "va": "center_baseline", "color": NUMBER, "size": 6.5}
             axes.text(x[k], y[k], str(k + 1), zorder=height, **style)
+
+
+def spread(x: AnyArray, y: AnyArray) -> tuple[AnyArray, AnyArray]:
+    """Return points (n,) near to those given, so that every mark is seen.
+
+    A mark that would hide behind an earlier one moves to the nearest free place of rings around its
+    own, above the line of the light's azimuth.
+    """
+    placed = np.empty((0, 2))
+    turn = np.radians(np.arange(0, 360, 15))
+    rings = [r * np.stack([np.cos(turn), np.sin(turn)], axis=1) for r in HIDDEN * RINGS]
+    steps = np.concatenate([np.zeros((1, 2)), *rings])
+    for point in np.stack([x, y], axis=1)[:MOST_NUMBERS]:
+        places = point + steps
+        gaps = np.linalg.norm(places[:, None] - placed, axis=2).min(axis=1, initial=np.inf)
+        free = np.flatnonzero((gaps > HIDDEN * 0.99) & (places[:, 1] >= min(point[1], 0) - 1e-9))
+        placed = np.vstack([placed, places[free[0] if len(free) else 0]])
+    rest = np.stack([x, y], axis=1)[MOST_NUMBERS:]
+    moved = np.vstack([placed, rest])
+    return moved[:, 0], moved[:, 1]
 
 
 def stack(theta: AnyArray) -> AnyArray:
@@ -78,12 +101,14 @@ def draw_errors(axes: Any, plan: Any) -> None:
     axes.plot(number, plan.errors, color="0.2", linewidth=1.6)
     axes.plot(number[1:], plan.errors[1:], "o", color="0.2", markersize=3)
     axes.set_yscale("log")
-    ticks = [t for t in (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5) if 0.8 * min(plan.errors) < t]
+    low, high = 0.85 * min(plan.errors), 1.2 * max(plan.errors)
+    steps = (1, 2, 5) if high > NARROW * low else (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
+    ticks = [t * p for p in (0.01, 0.1, 1.0) for t in steps if low < t * p < high]
     axes.set_yticks(ticks, [f"{t:g}" for t in ticks])
     axes.minorticks_off()
     for tick in ticks:
         axes.axhline(tick, color="0.87", linewidth=0.7, zorder=0)
-    axes.set_ylim(0.85 * min(plan.errors), 1.2 * max(plan.errors))
+    axes.set_ylim(low, high)
     axes.set_xlabel("measured directions")
     axes.set_title("expected error of ln f", fontsize=10)
     axes.spines[["top", "right"]].set_visible(False)
