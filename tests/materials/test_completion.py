@@ -26,6 +26,7 @@ from brdfkit.materials.completion.prior_cells import (
 from brdfkit.materials.completion.prior_choice import get_default_prior
 from brdfkit.materials.completion.prior_file import read_prior, write_prior
 from brdfkit.materials.completion.prior_making import draw_row
+from brdfkit.model.samples import Table
 
 REACHED = np.radians(75)
 
@@ -326,3 +327,16 @@ def test_real_paints_and_tensors_are_completed(measured_data):
             covered.append(np.mean(np.abs(miss) < half))
         assert np.mean(errors) < bar, (pattern, errors)
         assert np.mean(covered) > 0.92, (pattern, covered)
+
+
+def test_kept_values_are_no_surer_than_their_noise():
+    wi, wo = Table(np.zeros((20, 8, 8, 1))).directions()
+    high = (wi[..., 2] > 0.5) & (wo[..., 2] > 0.5)
+    values = np.where(high[..., None], 0.1, np.nan)
+    for noise in (0.02, 0.5):
+        completed = bk.complete(bk.Measured.from_table(values, channels=("Y",)), noise=noise)
+        kept = completed.evidence == 0
+        np.testing.assert_array_equal(completed.values[kept], 0.1)
+        relative = completed.standard_error[kept] / 0.1
+        assert relative.min() >= noise * (1 - 1e-9)
+        assert np.median(relative) < max(0.2, 1.01 * noise)

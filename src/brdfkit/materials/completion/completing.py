@@ -107,7 +107,7 @@ def complete(
             f"its values are {posterior.scale:.1f} times as far from the prior as those of the "
             "materials that the prior was made from: all intervals are wider by this factor"
         )
-    return make_table(data, posterior, {**data.info, **notes, **known.notes()})
+    return make_table(data, posterior, sigma, {**data.info, **notes, **known.notes()})
 
 
 def list_values(data: Measured) -> tuple[AnyArray, AnyArray, AnyArray, AnyArray | None]:
@@ -156,11 +156,14 @@ def list_values(data: Measured) -> tuple[AnyArray, AnyArray, AnyArray, AnyArray 
     return wi, wo, values, errors
 
 
-def make_table(data: Measured, posterior: Posterior, info: dict[str, str]) -> Measured:
+def make_table(
+    data: Measured, posterior: Posterior, noise: AnyArray | float, info: dict[str, str]
+) -> Measured:
     """Return the `Measured` of a posterior, with its albedo limited to 1.
 
-    Cells of a measured table keep their values. All others have those of the posterior, and so have
-    all cells if the material was measured by scattered samples.
+    Cells of a measured table keep their values, which are no surer than by their relative `noise`.
+    All others have those of the posterior, and so have all cells if the material was measured by
+    scattered samples.
     """
     keeps = data.is_table and data.table.phi_d_period == np.pi
     table = Table(np.full((*(data.table.shape if keeps else SHAPE), len(data.channels)), np.nan))
@@ -178,6 +181,8 @@ def make_table(data: Measured, posterior: Posterior, info: dict[str, str]) -> Me
         values[measured] = data.table.values[above][measured]
         if data.standard_error is not None:
             errors[measured] = data.standard_error.reshape(table.values.shape)[above][measured]
+        elif np.ndim(noise) == 0:
+            errors[measured] = np.maximum(errors[measured], noise * values[measured])
     table.values[above] = values
     factors = limit_albedo(table)
     require_unit(data.name, factors[above][measured])
