@@ -315,6 +315,9 @@ def test_lobes_have_a_band_and_three_lines(completed):
     labels = [text.get_text() for text in legend.get_texts()]
     assert labels[:2] == ["twenty", "ggx"]
     assert {"measured", "inferred", "guessed", "95 % interval"} < set(labels)
+    few = bk.Measured.from_samples([[0, 0, 1.0]], [[0.6, 0, 0.8]], np.ones((1, 3)), name="twenty")
+    (legend,) = bk.plot([few, completed], theta_i=75).legends
+    assert [text.get_text() for text in legend.get_texts()][:2] == ["twenty", "twenty, completed"]
     styles = {str(line.get_linestyle()) for line in figure.axes[0].lines}
     assert len(styles) >= 2
     assert figure.axes[0].patches

@@ -6,11 +6,13 @@ cosines c and an offset e below which values count as equal, times f + e/c.
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from math import exp
 
 import numpy as np
 
 from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, IntArray
+from brdfkit.core.names import make_unique
 from brdfkit.materials.measured.measured_data import MeasuredData
 from brdfkit.model.samples import Table
 
@@ -27,6 +29,15 @@ LARGEST_SHARE = 0.5  # larger errors of a logarithm are told as factors
 def is_completed(data: MeasuredData) -> bool:
     """Return whether a material has evidence, or its file noted that it was completed."""
     return data.evidence is not None or data.info.get("completed", "").endswith("by a prior")
+
+
+def make_name_unique(name: str, material: object, taken: Collection[str]) -> str:
+    """Return the `name` of a material, or a name that is not `taken`.
+
+    A completed material often stands beside that from which it was made, and is then called so.
+    """
+    completed = getattr(material, "evidence", None) is not None
+    return make_unique(f"{name}, completed" if completed and name in taken else name, taken)
 
 
 def find_evidence(data: MeasuredData, wi: AnyArray, wo: AnyArray) -> IntArray:

@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 from brdfkit.core.array_types import ArrayLike, FloatArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.figures import Plot
-from brdfkit.core.names import make_unique
 from brdfkit.images.thumbnails import Radius
 from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.evidence import make_name_unique
 from brdfkit.materials.plotting.certain_lobes import (
     EVIDENCE_LABELS,
     draw_certain_lobe,
@@ -127,7 +127,7 @@ def _choose_styles(things: list[Any]) -> list[dict[str, Any]]:
         if is_scattered(thing):
             style |= {"linestyle": "", "marker": "o", "markersize": 3}
         # Escape the dollar sign, which begins a formula in matplotlib's texts
-        style["label"] = make_unique(thing.name.replace("$", r"\$"), taken)
+        style["label"] = make_name_unique(thing.name.replace("$", r"\$"), thing, taken)
         taken.add(style["label"])
         styles.append(style)
     return styles

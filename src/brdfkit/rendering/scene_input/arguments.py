@@ -5,7 +5,7 @@ from typing import Any, TypeAlias
 from brdfkit.core.array_types import MitsubaModule
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.llvm import use_variant
-from brdfkit.core.names import make_unique
+from brdfkit.materials.measured.evidence import make_name_unique
 from brdfkit.materials.resolve import Material, MaterialLike, to_material
 from brdfkit.model import Model
 from brdfkit.regression import Fit
@@ -53,7 +53,7 @@ def load_named_materials(renderables: list[Renderable]) -> dict[str, Material]:
     """Load materials, and return them by their names, which are made unique."""
     materials: dict[str, Material] = {}
     for name, material in map(to_named_material, renderables):
-        materials[make_unique(name, materials)] = material
+        materials[make_name_unique(name, material, materials)] = material
     return materials
 
 
