@@ -6,8 +6,8 @@ highlight is that of a microfacet model,
     f = (peak / (4 cosθi cosθo)) D G F,    D = (1 + u)^-c,    u ∝ tan²θh,
 
 where c = 2 is GGX and a large c approaches Beckmann. Real highlights are no exact models, so D may
-change its width and F its rise with θd, G may be a power of the cosines, and the apertures of an
-instrument may widen D. Widths, strengths and albedos are drawn evenly in their logarithms. The
+change its width and F its rise with θd, G may be a power of the cosines, the growth by 1/cosθ may
+end before the horizon, and the apertures of an instrument may widen D. Widths, strengths and albedos are drawn evenly in their logarithms. The
 ranges were chosen by half of 80 reconstructed, 30 painted and 15 other measured materials; the
 materials themselves are no part of the prior.
 """
@@ -25,6 +25,8 @@ from brdfkit.materials.completion.prior_cells import get_cells
 METALS = 0.2  # the share of materials that are metals
 THIRD_HIGHLIGHT, BACK_LOBE, BLUR = 0.2, 0.15, 0.45  # the shares of materials that have these
 POWERS_OF_COSINES = 0.8  # the share of highlights whose G is a power of the cosines
+BOUNDED = 0.5  # the share of highlights whose growth towards the horizon ends before it
+BOUNDS = 0.1, 1.0  # the cosines of θ at which it ends
 ALBEDOS = 0.001, 0.95
 METAL_ALBEDOS = 0.001, 0.1  # of the diffuse term
 WIDTHS = 0.002, 0.5  # half widths at half maximum in tanθh of the narrowest highlight
@@ -121,6 +123,11 @@ def draw_highlight(
     A cone of the half angle `aperture` [rad] widens it by aperture / cosθd across the plane of
     incidence, and by the aperture itself along it.
     """
+    log_i_o = at.log_i_o
+    if rng.random() < BOUNDED:
+        # Measured highlights seldom grow by 1/cosθ up to the horizon
+        square = draw_log(rng, *BOUNDS) ** 2
+        log_i_o = 0.5 * sum(np.log((c**2 + square) / (1 + square)) for c in (at.cos_i, at.cos_o))
     exponent = draw_log(rng, *EXPONENTS)
     along = width**2 + aperture**2
     across = width**2 + (aperture / np.maximum(at.cos_d, 0.05)) ** 2
@@ -132,12 +139,12 @@ def draw_highlight(
         RISE * rng.normal() * (1 - at.cos_d)
     )
     if rng.random() < POWERS_OF_COSINES:
-        return peak * distribution * fresnel * np.exp(-rng.uniform(0, 1) * at.log_i_o)
+        return peak * distribution * fresnel * np.exp(-rng.uniform(0, 1) * log_i_o)
     square = min(1.2 * width, 1.0) ** 2
     shadowing = 4 / (
         (1 + np.sqrt(1 + square * at.incident)) * (1 + np.sqrt(1 + square * at.outgoing))
     )
-    return peak * distribution * fresnel * shadowing * np.exp(-at.log_i_o)
+    return peak * distribution * fresnel * shadowing * np.exp(-log_i_o)
 
 
 def draw_log(rng: np.random.Generator, low: float, high: float) -> float:
