@@ -21,8 +21,8 @@ from brdfkit.materials.auditing.noise import estimate_noise
 from brdfkit.materials.completion import plan_picture
 from brdfkit.materials.completion.reach import Arms
 from brdfkit.materials.measured import evidence
+from brdfkit.materials.measured.measured_angles import MeasuredAngles
 from brdfkit.reporting.verdict.verdict import describe_completion
-from brdfkit.viewing.materials.unmeasured import MeasuredAngles
 
 angles = st.floats(10, 85)
 
@@ -378,8 +378,24 @@ def test_a_view_hatches_by_evidence(completed):
     angles = MeasuredAngles(completed)
     theta = np.radians(np.arange(2.0, 89, 4))
     view = from_angles(theta, 0.0)
-    kinds = angles.find_view_kinds(view)
+    kinds = angles.find_view_kinds(view[:, 2])
     assert (kinds[np.degrees(theta) < 60] == evidence.INFERRED).all()
     wi, wo = from_angles(0.5, 0.0), from_angles(0.6, 2.0)
     near = evidence.find_evidence(completed, wi[None], wo[None])
     assert angles.find_kinds(wi, wo) == near[0]
+
+
+def test_a_rendering_repeats_a_completed_material_hatched(module_in_llvm, completed, tmp_path):
+    from PIL import Image
+
+    pictures = bk.render([completed, ("grey", "lambert")], spp=1, size=32)
+    assert list(pictures.evidence) == ["twenty"]
+    levels = pictures.evidence["twenty"]
+    assert (levels[~pictures.mask] == 0).all()
+    assert (levels[pictures.mask] >= evidence.INFERRED).mean() > 0.9
+    pictures.write(tmp_path / "hatched.png")
+    wide = np.asarray(Image.open(tmp_path / "hatched.png").convert("L"), float)
+    tile = slice(-np.shape(wide)[1] // 3, None)  # the third of three
+    first = wide[: wide.shape[0] // 2, : wide.shape[1] // 3]
+    assert np.abs(np.diff(wide[: wide.shape[0] // 2, tile])).mean() > np.abs(np.diff(first)).mean()
+    assert list(bk.preview(completed, size=16).evidence) == ["twenty"]

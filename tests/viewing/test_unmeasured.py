@@ -6,9 +6,9 @@ import pytest
 import brdfkit as bk
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.images.hatching import hatch
+from brdfkit.materials.measured.measured_angles import MeasuredAngles
 from brdfkit.viewing.materials.application import MaterialApplication
 from brdfkit.viewing.materials.live_light import LAMP
-from brdfkit.viewing.materials.unmeasured import MeasuredAngles
 
 HIGHEST = 50  # polar angle of the samples [degrees]; others within 5° count as measured
 
@@ -29,7 +29,7 @@ def test_angles_beyond_the_samples_are_not_known(measured):
     sure = np.abs(inside - HIGHEST - 3) > 4
     known = angles.knows(np.broadcast_to(light, view.shape), view)
     assert np.array_equal(known[sure], inside[sure] < HIGHEST)
-    assert np.array_equal(angles.knows_views(view)[sure], inside[sure] < HIGHEST)
+    assert np.array_equal(angles.find_view_kinds(view[:, 2])[sure] == 0, inside[sure] < HIGHEST)
     grazing = np.broadcast_to(from_angles(1.4, 0.0), view.shape)
     assert not angles.knows(grazing, view).any()
 

@@ -16,6 +16,7 @@ from brdfkit.core.json_values import to_json
 from brdfkit.core.names import to_printable
 from brdfkit.core.version import __version__
 from brdfkit.images.errors.colour_difference import ciede2000
+from brdfkit.images.hatching import hatch
 
 if TYPE_CHECKING:
     from PIL.Image import Image as PillowImage
@@ -27,6 +28,7 @@ GAP = 20  # space around each picture [pixels]
 WHITE_GROUND = "RGB", (255, 255, 255), (26, 26, 26), (105, 105, 105)
 # Mode and colours of a page in notebooks: transparent, with grey text, readable on white and black
 ANY_GROUND = "RGBA", (125, 125, 125, 0), (125, 125, 125, 255), (125, 125, 125, 255)
+HATCHES = "stripes: inferred; dense: guessed"  # below a picture that is hatched
 LARGEST_DIFFERENCE = 20  # colour difference ΔE of the brightest false colour, in all montages
 
 
@@ -72,14 +74,15 @@ def draw_montage(rendering: Any, on_any_ground: bool = False) -> PillowImage:
     """Draw the pictures of a `Rendering` with captions, up to four in a row.
 
     The page is white or, with `on_any_ground`, transparent for notebooks. Below each picture is its
-    colour difference from the reference (CIEDE2000), in false colours that a legend explains.
+    colour difference from the reference (CIEDE2000), in false colours that a legend explains. At
+    the end, pictures of completed materials are repeated, hatched where nothing was measured.
     """
     from PIL import Image, ImageDraw
 
     captions, differences = rendering.captions, compute_colour_differences(rendering)
     tone = rendering.tone_mapping
     brightest = tone.brightest_of(rendering.pictures[rendering.reference])
-    names = list(rendering.pictures)
+    names = [*rendering.pictures, *rendering.evidence]
 
     zoom = ceil(TILE / rendering.pictures[names[0]].shape[1])
     height, width = (zoom * n for n in rendering.pictures[names[0]].shape[:2])
@@ -94,10 +97,16 @@ def draw_montage(rendering: Any, on_any_ground: bool = False) -> PillowImage:
     draw = ImageDraw.Draw(page)
     for i, name in enumerate(names):
         x, y = GAP + i % COLUMNS * (width + GAP), GAP + i // COLUMNS * row
-        draw_caption(draw, (x, y), name, captions[name], width, text, inks)
-        shown = tone(rendering.pictures[name], brightest)
-        page.paste(to_image(to_visible_srgb(shown), zoom), (x, y + caption))
+        repeated = i >= len(rendering.pictures)
+        below = HATCHES if repeated else captions[name]
+        draw_caption(draw, (x, y), name, below, width, text, inks)
+        shown = to_image(to_visible_srgb(tone(rendering.pictures[name], brightest)), zoom)
+        if repeated:
+            shown = hatch_image(shown, rendering.evidence[name], zoom)
+        page.paste(shown, (x, y + caption))
         y += caption + height + GAP
+        if repeated:
+            continue
         if name in differences:
             page.paste(to_image(_to_false_colours(differences[name]), zoom), (x, y))
             draw.rectangle((x, y, x + width - 1, y + height - 1), outline=(200, 200, 200))
@@ -118,6 +127,14 @@ def to_image(rgb: FloatArray, zoom: int) -> PillowImage:
 
     image = Image.fromarray((np.clip(rgb, 0, 1) * 255 + 0.5).astype(np.uint8))
     return image.resize((image.width * zoom, image.height * zoom), Image.Resampling.NEAREST)
+
+
+def hatch_image(image: PillowImage, levels: AnyArray, zoom: int) -> PillowImage:
+    """Hatch an image where `levels` (height, width), before it was enlarged by `zoom`, say so."""
+    from PIL import Image
+
+    large = levels.repeat(zoom, axis=0).repeat(zoom, axis=1)
+    return Image.fromarray(hatch(np.asarray(image), large))
 
 
 def to_visible_srgb(linear: FloatArray) -> FloatArray:

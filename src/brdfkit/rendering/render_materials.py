@@ -14,18 +14,21 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from brdfkit.core.arguments import to_positive_number, to_whole_number
-from brdfkit.core.array_types import BoolArray
+from brdfkit.core.array_types import AnyArray, BoolArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.core.memory import require_memory
 from brdfkit.distance_fields import Node, from_function
+from brdfkit.materials.resolve import Material
 from brdfkit.mitsuba_bridge.scene_file import load_scene_file
+from brdfkit.rendering.evidence import find_picture_evidence
 from brdfkit.rendering.result import Rendering
 from brdfkit.rendering.scene_input import field
 from brdfkit.rendering.scene_input.arguments import (
     Renderable,
-    describe_materials,
+    collect_parameters,
     load_mitsuba,
+    load_named_materials,
     to_material_list,
 )
 from brdfkit.rendering.scene_input.loading import SIZE, load_scenes
@@ -128,10 +131,11 @@ def render(
     subjects = to_material_list(materials)
     require_memory(size or SIZE, len(subjects))
     load_mitsuba()  # it sets Mitsuba's variant, on which the dictionaries of BSDFs below depend
-    described, parameters = describe_materials(subjects)
+    named = load_named_materials(subjects)
     where = scene, size, environment
-    traced, mask = _load_and_trace_scenes(described, where, spp, seed, progress, noise_floor)
-    return to_rendering(traced, seed, noise_floor, parameters, mask)
+    traced, mask, evidence = _load_and_trace_scenes(named, where, spp, seed, progress, noise_floor)
+    parameters = collect_parameters(named)
+    return to_rendering(traced, seed, noise_floor, parameters, mask, evidence)
 
 
 def _find_scene_file(materials: object) -> Path | None:
@@ -193,6 +197,7 @@ def to_rendering(
     noise_floor: float | None,
     parameters: dict[str, dict[str, Any]] | None = None,
     mask: BoolArray | None = None,
+    evidence: dict[str, AnyArray] | None = None,
 ) -> Rendering:
     """Convert the result of `trace_scenes` to the `Rendering` that users receive."""
     return Rendering(
@@ -206,6 +211,7 @@ def to_rendering(
         traced.first.other_seed,
         noise_floor,
         standard_error=traced.first.standard_error,
+        evidence=evidence or {},
     )
 
 
@@ -232,19 +238,23 @@ def _render_field(
 
 @in_turn
 def _load_and_trace_scenes(
-    materials: dict[str, dict[str, Any]],
+    materials: dict[str, Material],
     where: tuple[SceneLike, tuple[int, int] | None, str | Path | None],
     spp: int,
     seed: int,
     progress: PictureProgress | None,
     noise_floor: float | None,
-) -> tuple[Traced, BoolArray | None]:
-    """Path-trace `materials`, BSDF dictionaries by name; return the pictures and the mask.
+) -> tuple[Traced, BoolArray | None, dict[str, AnyArray]]:
+    """Path-trace `materials` by name; return the pictures, the mask and the evidence.
 
-    The mask is True in the pixels that show the material. `where` is (scene, size, environment).
+    The mask is True in the pixels that show the material, and the evidence is what
+    `find_picture_evidence` tells of them. `where` is (scene, size, environment).
     The scenes must be freed when this function returns, before another thread renders: kernels of
     Mitsuba call the BSDFs of all scenes in the process, and would call one that is being freed.
     """
-    loaded, mask = load_scenes(materials, *where)
-    require_memory(next(iter(loaded.values())).sensors()[0].film().size(), len(loaded))
-    return trace_scenes(loaded, spp, seed, progress, noise_floor, mask), mask
+    described = {name: material.scene_dict() for name, material in materials.items()}
+    loaded, mask = load_scenes(described, *where)
+    first = next(iter(loaded.values()))
+    require_memory(first.sensors()[0].film().size(), len(loaded))
+    evidence = find_picture_evidence(materials, first, mask)
+    return trace_scenes(loaded, spp, seed, progress, noise_floor, mask), mask, evidence

@@ -67,6 +67,9 @@ class Rendering(Shown):
     tone_mapping : ToneMapping
         The curve with which PNG files and notebooks show the pictures; by default radiance 1 is
         white. The values of the pictures do not change.
+    evidence : dict of str to ndarray of int, shape (height, width)
+        For each picture of a completed material, by name: where its values were measured, 0,
+        inferred, 1, or guessed, 2.
     bare : bool
         Whether PNG files contain the first picture alone, without a caption, as those of
         `viewing.render_view`.
@@ -84,6 +87,7 @@ class Rendering(Shown):
     shadows: str = ""
     tone_mapping: ToneMapping = field(default_factory=ToneMapping)
     standard_error: np.ndarray | None = field(default=None, repr=False)
+    evidence: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
     bare: bool = False
 
     @property
@@ -145,7 +149,8 @@ class Rendering(Shown):
         each linear difference from the reference, and a part "standard error: NAME" for the
         reference. Each part has R, G and B as float32 and, in its header, spp, seed, brdfkit (the
         version), parameters (JSON) and noise_floor [dB]. The PNG shows the pictures side by side
-        with captions and, below them, their differences in colour (CIEDE2000).
+        with captions and, below them, their differences in colour (CIEDE2000). A completed material
+        is shown again, hatched where it was not measured.
 
         Parameters
         ----------

@@ -7,9 +7,9 @@ highlight is that of a microfacet model,
 
 where c = 2 is GGX and a large c approaches Beckmann. Real highlights are no exact models, so D may
 change its width and F its rise with θd, G may be a power of the cosines, the growth by 1/cosθ may
-end before the horizon, and the apertures of an instrument may widen D. Widths, strengths and albedos are drawn evenly in their logarithms. The
-ranges were chosen by half of 80 reconstructed, 30 painted and 15 other measured materials; the
-materials themselves are no part of the prior.
+end before the horizon, and the apertures of an instrument may widen D. Widths, strengths and
+albedos are drawn evenly in their logarithms. The ranges were chosen by half of 80 reconstructed, 30
+painted and 15 other measured materials; the materials themselves are no part of the prior.
 """
 
 from dataclasses import dataclass

@@ -24,6 +24,7 @@ from brdfkit.core.memory import require_memory
 from brdfkit.lighting.environments.map_files import find_map
 from brdfkit.materials.resolve import Material
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
+from brdfkit.rendering.evidence import find_picture_evidence
 from brdfkit.rendering.previewing.cache import load_bsdf, load_material_through_cache
 from brdfkit.rendering.previewing.scene import PreviewShape, describe_preview
 from brdfkit.rendering.progressive import to_rgb
@@ -153,7 +154,7 @@ def _render_preview(
     integrator = _load_integrator(variant, method, shadows)
     both_sides = find_scene_suffix(scene) in mesh_file.SUFFIXES
     pictures: dict[str, FloatArray] = {}
-    mask = None
+    mask, evidence = None, {}
     for name, subject in materials.items():
         material = load_bsdf(subject, name, variant, both_sides)
         built = shape.build(material, size)
@@ -161,13 +162,24 @@ def _render_preview(
         loaded = load_by_mitsuba(mi.load_dict, described, name)
         if shadows:
             integrator.casters.set_casters(loaded, None, shape.casters)
-        mask = find_material_mask(loaded, material) if mask is None else mask
+        if mask is None:
+            mask = find_material_mask(loaded, material)
+            evidence = find_picture_evidence(materials, loaded, mask)
         with raise_first_cause():
             pictures[name] = to_rgb(integrator.render(loaded, seed=0, spp=spp)).astype(np.float32)
     first, seconds = next(iter(pictures.values())), time.perf_counter() - start
     parameters = collect_parameters(materials)
     return Rendering(
-        pictures, spp, seconds, 0, parameters, mask, spp, first, shadows=SHADOWS[shadows]
+        pictures,
+        spp,
+        seconds,
+        0,
+        parameters,
+        mask,
+        spp,
+        first,
+        shadows=SHADOWS[shadows],
+        evidence=evidence,
     )
 
 

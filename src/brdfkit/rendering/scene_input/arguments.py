@@ -40,15 +40,6 @@ def _is_named_material(material: Any) -> bool:
     return isinstance(material, tuple) and len(material) == 2 and isinstance(material[0], str)
 
 
-def describe_materials(
-    renderables: list[Renderable],
-) -> tuple[dict[str, dict[str, Any]], dict[str, dict[str, Any]]]:
-    """Return the BSDF dictionaries and the parameter values of materials, each by unique name."""
-    materials = load_named_materials(renderables)
-    bsdfs = {name: material.scene_dict() for name, material in materials.items()}
-    return bsdfs, collect_parameters(materials)
-
-
 def load_named_materials(renderables: list[Renderable]) -> dict[str, Material]:
     """Load materials, and return them by their names, which are made unique."""
     materials: dict[str, Material] = {}

@@ -1,10 +1,11 @@
 """Loads the material of a scene, and finds the pixels of a picture that show it."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from brdfkit.core.array_types import BoolArray, MitsubaObject
+from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray, MitsubaObject
 from brdfkit.core.jit.padding import pad
 from brdfkit.mitsuba_bridge.properties.picture_file import load_by_mitsuba
 
@@ -30,18 +31,41 @@ def find_material_mask(scene: MitsubaObject, material: MitsubaObject) -> BoolArr
     """
     import mitsuba as mi
 
+    def shows_material(ray: MitsubaObject) -> Any:
+        shape = scene.ray_intersect_preliminary(ray).shape
+        if str(mi.variant()).startswith("scalar"):
+            return shape is not None and shape.bsdf() is material
+        return shape.bsdf() == mi.BSDFPtr(material)
+
+    return map_central_rays(scene, shows_material)
+
+
+def find_view_cosines(scene: MitsubaObject) -> FloatArray:
+    """Return the cosines (height, width) of the angles between normals and the view, at least 0.
+
+    They are those of the surface that the central ray of each pixel hits.
+    """
+    return np.abs(map_central_rays(scene, lambda ray: scene.ray_intersect(ray).wi.z))
+
+
+def map_central_rays(scene: MitsubaObject, function: Callable[[MitsubaObject], Any]) -> AnyArray:
+    """Return the values (height, width) of a function of each pixel's central ray.
+
+    In scalar variants of Mitsuba, which trace rays one by one, the function takes one ray;
+    otherwise it takes all of them.
+    """
+    import mitsuba as mi
+
     sensor = scene.sensors()[0]
     width, height = map(int, sensor.film().crop_size())
     x, y = np.meshgrid((np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height)
 
-    def find_shape(place: Any) -> MitsubaObject:
+    def evaluate(place: MitsubaObject) -> Any:
         ray, _ = sensor.sample_ray(0.0, 0.5, place, mi.Point2f(0.5))
-        return scene.ray_intersect_preliminary(ray).shape
+        return function(ray)
 
-    if str(mi.variant()).startswith("scalar"):  # scalar variants can only trace rays one by one
-        shapes = (find_shape(mi.Point2f(*p)) for p in zip(x.flat, y.flat, strict=True))
-        mask = np.array([s is not None and s.bsdf() is material for s in shapes])
+    if str(mi.variant()).startswith("scalar"):
+        values = [evaluate(mi.Point2f(*place)) for place in zip(x.flat, y.flat, strict=True)]
     else:
-        shape = find_shape(mi.Point2f(*(pad(a.ravel().astype(np.float32)) for a in (x, y))))
-        mask = np.array(shape.bsdf() == mi.BSDFPtr(material))
-    return mask.reshape(height, width)
+        values = evaluate(mi.Point2f(*(pad(a.ravel().astype(np.float32)) for a in (x, y))))
+    return np.array(values).reshape(height, width)

@@ -8,11 +8,11 @@ import numpy as np
 
 from brdfkit.core.array_types import AnyArray
 from brdfkit.materials.measured import Measured
+from brdfkit.materials.measured.measured_angles import MeasuredAngles
 from brdfkit.viewing.controls import State
 from brdfkit.viewing.materials.live_light import LAMP
 from brdfkit.viewing.materials.live_material import LiveMaterial
 from brdfkit.viewing.materials.material_state import MaterialState, make_look
-from brdfkit.viewing.materials.unmeasured import MeasuredAngles
 from brdfkit.viewing.recent import Recent
 
 KEPT = 2  # views whose directions are kept: at rest and while something moves
@@ -50,7 +50,7 @@ class PictureMasks:
             mask &= light[..., 2] > 0
             kinds[mask] = angles.find_kinds(light[mask], view[mask])
         else:
-            kinds[mask] = angles.find_view_kinds(view[mask])
+            kinds[mask] = angles.find_view_kinds(view[mask][..., 2])
         return kinds if angles.is_completed else kinds > 0
 
     def find_directions(self, state: State, size: tuple[int, int]) -> tuple[AnyArray, AnyArray]:

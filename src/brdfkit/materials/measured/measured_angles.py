@@ -43,20 +43,15 @@ class MeasuredAngles:
             shares = np.einsum("i,ijk->j", weight, self.kinds <= kind) / weight.sum() / TURNS
             self.view_kinds += shares < LEAST_SHARE
 
-    def find_view_kinds(self, view: FloatArray) -> AnyArray:
-        """Return what most light for the directions (..., 3) of views is, as `kinds` says it."""
-        return self.view_kinds[_find_angle(view)]
+    def find_view_kinds(self, cosine: FloatArray) -> AnyArray:
+        """Return what most light for views is, by cosines to the normal, as `kinds` says it."""
+        return self.view_kinds[_find_angle(cosine)]
 
     def find_kinds(self, light: FloatArray, view: FloatArray) -> AnyArray:
         """Return what pairs of directions (..., 3) about the normal z are, as `kinds` says it."""
         azimuth = np.arctan2(light[..., 1], light[..., 0]) - np.arctan2(view[..., 1], view[..., 0])
         between = (azimuth / (2 * np.pi) * TURNS).astype(int) % TURNS
-        return self.kinds[_find_angle(light), _find_angle(view), between]
-
-    def knows_views(self, view: FloatArray) -> BoolArray:
-        """Return whether most light for the directions (..., 3) of views was measured."""
-        known: BoolArray = self.find_view_kinds(view) == MEASURED
-        return known
+        return self.kinds[_find_angle(light[..., 2]), _find_angle(view[..., 2]), between]
 
     def knows(self, light: FloatArray, view: FloatArray) -> BoolArray:
         """Return whether pairs of directions (..., 3) about the normal z were measured."""
@@ -64,7 +59,7 @@ class MeasuredAngles:
         return known
 
 
-def _find_angle(direction: FloatArray) -> AnyArray:
-    """Return the cell of the polar angle of directions (..., 3)."""
-    theta = np.arccos(np.clip(direction[..., 2], 0, 1))
+def _find_angle(cosine: FloatArray) -> AnyArray:
+    """Return the cell of the polar angle with this cosine."""
+    theta = np.arccos(np.clip(cosine, 0, 1))
     return np.minimum((theta / (np.pi / 2) * ANGLES).astype(int), ANGLES - 1)
