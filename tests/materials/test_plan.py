@@ -265,6 +265,16 @@ def test_the_commands(cli, truth):
     assert again["completed"] == full.info["completed"]
 
 
+def test_the_command_completes_wavelengths_that_give_no_colour(cli):
+    infrared = tuple(f"{length}nm" for length in (1000, 1200, 1400, 1600))
+    wi, wo = from_angles(np.radians([0, 20, 40, 60]), 0), from_angles(np.radians([60, 40, 9, 2]), 2)
+    data = bk.Measured.from_samples(wi, wo, np.full((4, 4), 0.1), channels=infrared)
+    bk.save(data, "infrared.csv")
+    done = cli("complete", "infrared.csv", "-o", "full.npz")
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert "(mean)" in done.stdout
+
+
 TRAPS = [
     (["plan", "0"], "n = 0 should be a whole number"),
     (["plan", "x"], "'x' is not a valid integer"),

@@ -3,8 +3,9 @@
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import ANGLES
 from brdfkit.materials.measured.evidence import describe_evidence
+from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean
 
-MOST_CHANNELS = 3  # albedos of more channels are told in linear sRGB
+MOST_CHANNELS = 3  # albedos of more are told in linear sRGB, or the mean if they give no colour
 
 
 def describe_completion(completed: Measured) -> dict[str, str]:
@@ -21,7 +22,7 @@ def describe_completion(completed: Measured) -> dict[str, str]:
 
 def describe_albedo(completed: Measured) -> str:
     """Return the directional albedos at 5°, 45° and 75° in words, one number for each channel."""
-    data = completed if len(completed.channels) <= MOST_CHANNELS else completed.rgb
+    data = completed if len(completed.channels) <= MOST_CHANNELS else to_rgb_or_mean(completed)
     rows = zip(ANGLES, data.albedo.values, strict=False)
     texts = [f"{' '.join(f'{a:.3f}' for a in albedo)} at {angle:g}°" for angle, albedo in rows]
     return f"{', '.join(texts)} ({' '.join(data.channels)})"
