@@ -49,6 +49,9 @@ def test_the_rim_of_the_ball_is_hatched_and_what_the_lamp_grazes(module_in_llvm,
     assert (grazed & ball & ~rim).any()
     assert view.find_unmeasured(view.change(lit, {"show.unmeasured": False}), size) is None
 
+    view.close()  # while a pass goes on
+    assert view.find_unmeasured(lit, size) is None
+
 
 @pytest.mark.quick
 def test_a_model_alone_has_nothing_to_hatch():

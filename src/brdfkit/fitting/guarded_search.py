@@ -155,7 +155,7 @@ def note_beyond(
         return [f"{sentence}; it is not guarded, because {unguarded}" if unguarded else sentence]
     excess = guard.find_excess(brdf)
     if excess is None:
-        kept = f"and reflects about as much light as {guard.describe_table()}"
+        kept = f"and reflects not much more light than {guard.describe_table()}"
         return [sentence.replace("and nothing tests it", kept)]
     own, known = map(format_light_share, excess[1:])
     return [

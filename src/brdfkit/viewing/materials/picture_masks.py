@@ -36,10 +36,10 @@ class PictureMasks:
 
         That is a view, and with the lamp a pair of directions, without samples near it. A completed
         material has 1 where they were inferred, and 2 where they are guesses. None where the
-        material was not measured at all.
+        material was not measured at all, and where the page was closed during the pass.
         """
         measured = self.states.measured
-        if not isinstance(measured, Measured):
+        if not isinstance(measured, Measured) or not self.live.kept:
             return None
         if self.angles is None or self.angles[0] is not measured:
             self.angles = measured, MeasuredAngles(measured)
