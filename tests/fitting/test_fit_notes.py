@@ -276,6 +276,9 @@ def test_a_table_of_few_samples_is_extrapolated():
 
 NOTES = {  # the files that make notes, and in which of their functions or names; None: in all
     "fitting/notes.py": None,
+    "fitting/guarded_search.py": ("guard_solution", "explain_unguarded_fit", "note_beyond"),
+    "fitting/growth.py": None,
+    "materials/auditing/highlight_sampling.py": ("warn_of_narrow_highlight",),
     "fitting/uncertainty/isotropic_limit.py": ("note_on_isotropic_model",),
     "fitting/lobe_notes.py": None,
     "fitting/lobe_widths.py": None,

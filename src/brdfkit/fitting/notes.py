@@ -36,7 +36,7 @@ def list_fit_notes(
     """
     notes = [*list_data_findings(data, samples.largest_angle)]
     if data.evidence is not None:
-        made = data.info.get("completed", "from few values").split(" with ")[0]
+        made = data.info.get("completed", "from values").split(" with ")[0]
         notes.append(f"{COMPLETED} {made}: its cells tell no standard errors of the parameters")
     if weighted:
         notes.append("samples count by the weights that were given; so in the loss")
