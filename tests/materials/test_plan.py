@@ -369,6 +369,7 @@ def test_repeated_directions_tell_noise_and_count_once(chosen, truth):
 
 def test_an_audit_tells_the_evidence(completed):
     rows = bk.audit(completed).rows()
+    assert 75 <= bk.audit(completed).albedo.measured_to <= 80.5  # 5° beyond the plan's reach
     assert "inferred" in rows["evidence"]
     assert "grazing" in rows["95 % intervals"]
     assert not any("brdfkit complete" in said for said in bk.audit(completed).findings())

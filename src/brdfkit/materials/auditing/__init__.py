@@ -34,6 +34,7 @@ from brdfkit.materials.auditing.symmetries import (
 )
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.coverage import Coverage, compute_coverage, is_in_plane
+from brdfkit.materials.measured.evidence import find_measured_rows
 from brdfkit.materials.measured.spectrum_to_rgb import to_rgb_or_mean
 from brdfkit.materials.resolve import MaterialLike, to_measured
 from brdfkit.model.samples import Samples
@@ -247,9 +248,9 @@ def _list_measured_angles(data: Measured, w: FloatArray) -> tuple[float, ...]:
     """Return the angles to the normal [degrees] of the valid samples' directions `w` (n, 3).
 
     They are ascending. For a table, and for many angles, only the smallest and the largest are
-    returned.
+    returned; of a completed table those of its measured cells.
     """
-    cosines = w[data.samples.valid, 2]
+    cosines = w[find_measured_rows(data), 2]
     if data.is_table:
         cosines = np.array([cosines.max(), cosines.min()])
     angles = np.unique(np.degrees(np.arccos(np.clip(cosines, -1, 1))).round(1))
