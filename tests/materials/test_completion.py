@@ -290,6 +290,15 @@ def test_bad_input_is_said_in_a_sentence(tmp_path, prior, twenty):
         assert str(caught.value).count("\n") == 0
 
 
+def test_dark_values_are_in_no_other_unit():
+    """The albedo of the first table is limited, but not because of the values."""
+    theta, phi = np.radians([[7, 50, 40, 54], [27, 53, 29, 32]]), np.array([1, 1, 6, 4])
+    wi, wo = from_angles(theta[0], np.zeros(4)), from_angles(theta[1], phi)
+    values = np.array([[0.0], [0.15], [0.0], [0.13]])
+    assert "dimmed" not in bk.complete(measured_at(wi, wo, values), aperture=15).info
+    assert "divided by 2.1" in bk.complete(measured_at(wi, wo, 0 * values + 0.7)).info["dimmed"]
+
+
 @pytest.mark.parametrize(("dark", "noise"), [(0, 0.1), (8, 0.1), (0, 0.0)])
 def test_repeated_directions_tell_the_noise(twenty, dark, noise):
     """Values around 0 tell little of it, and copies nothing."""

@@ -70,7 +70,7 @@ class Guard:
         if compute_share_beyond(data, max_angle) <= LARGEST_FIT_SHARE:
             return None
         completed = complete_once(data)
-        if completed is None:
+        if completed is None or "dimmed" in completed.info:
             return None
         return cls(completed, max_angle, describe_reach(data))
 

@@ -66,12 +66,16 @@ def complete(
         rows = describe_completion(completed)
     if output:
         save(completed, output)
-    written, unlike = [output] if output else [], completed.info.get("unlike")
+    written = [output] if output else []
+    unlike, dimmed = map(completed.info.get, ("unlike", "dimmed"))
     if console.as_json:
-        console.print_json({"name": completed.name, **rows, "unlike": unlike, "written": written})
+        warnings = {"unlike": unlike, "dimmed": dimmed}
+        console.print_json({"name": completed.name, **rows, **warnings, "written": written})
         return
     console.output.print(completed.name, style="bold")
     console.print_table(["", ""], list(rows.items()))
     if unlike:
         console.output.print(f"! unlike every material of the prior: {unlike}")
+    if dimmed:
+        console.output.print(f"! dimmed: {dimmed}")
     console.print_written(written)

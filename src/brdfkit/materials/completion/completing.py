@@ -8,14 +8,14 @@ from math import log, radians
 import numpy as np
 
 from brdfkit.core.arguments import to_number
-from brdfkit.core.array_types import AnyArray, BoolArray, FloatArray
+from brdfkit.core.array_types import AnyArray, BoolArray
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.materials.completion.albedo_guard import limit_albedo
 from brdfkit.materials.completion.noise import choose_noise
-from brdfkit.materials.completion.observations import Lookup, observe
+from brdfkit.materials.completion.observations import Lookup, Observations, observe
 from brdfkit.materials.completion.posterior import Posterior, solve
-from brdfkit.materials.completion.prior_cells import SHAPE, from_logarithm
+from brdfkit.materials.completion.prior_cells import SHAPE, from_logarithm, to_logarithm
 from brdfkit.materials.completion.prior_choice import PriorLike, to_prior
 from brdfkit.materials.measured import Measured
 from brdfkit.materials.measured.albedos import make_measured_test
@@ -35,10 +35,10 @@ FEWEST_VALUES = 4
 MOST_SAMPLES = 6_000  # of more samples, so many are drawn; they count as few anyway
 # A value that was not measured is a guess if its 95 % interval is wider than a factor of 2 each way
 GUESS_DEVIATION = log(2) / NORMAL_95
-# Values have another unit than 1/sr if, to limit the albedo to 1, more than half of those that were
-# measured are divided by a larger factor; beyond the largest value, logarithms have no meaning
-LARGEST_DIMMING = 1.5
-LARGEST_VALUE = 1e9  # [sr⁻¹]
+# Factors by which the limit of the albedo makes values smaller: from the first on, a note tells it;
+# from the second on, the values have surely another unit than 1/sr
+DIMMED, OTHER_UNIT = 1.5, 5.0
+LARGEST_VALUE = 1e9  # [sr⁻¹]; beyond it, logarithms overflow
 UNLIKE_SCALE = 2.0  # from this scale s on, a material is unlike those of the prior
 SEED = 0
 
@@ -107,7 +107,14 @@ def complete(
             f"its values are {posterior.scale:.1f} times as far from the prior as those of the "
             "materials that the prior was made from: all intervals are wider by this factor"
         )
-    return make_table(data, posterior, sigma, {**data.info, **notes, **known.notes()})
+    completed = make_table(data, posterior, sigma, {**data.info, **notes, **known.notes()})
+    dimming = find_dimming(completed, posterior, observed, wi, wo)
+    if dimming > DIMMED:
+        completed.info["dimmed"] = (
+            f"its values were divided by {dimming:.2g}, so that it reflects at most all light; are "
+            "they in 1/sr, without a cosine?"
+        )
+    return completed
 
 
 def list_values(data: Measured) -> tuple[AnyArray, AnyArray, AnyArray, AnyArray | None]:
@@ -185,7 +192,6 @@ def make_table(
             errors[measured] = np.maximum(errors[measured], noise * values[measured])
     table.values[above] = values
     factors = limit_albedo(table)
-    require_unit(data.name, factors[above][measured])
     standard_error = np.full(table.values.shape, np.nan)
     standard_error[above] = errors
     evidence = np.full(table.shape, GUESSED, np.uint8)
@@ -201,14 +207,24 @@ def make_table(
     return replace(completed, evidence=evidence.reshape(-1))
 
 
-def require_unit(name: str, factors: FloatArray) -> None:
-    """Raise `BrdfkitError` if the `factors` of measured cells (n, channels) darken most of them."""
-    dimming = 1 / np.median(factors.mean(axis=1)) if len(factors) else 1.0
-    if dimming > LARGEST_DIMMING:
+def find_dimming(
+    completed: Measured, posterior: Posterior, observed: Observations, wi: AnyArray, wo: AnyArray
+) -> float:
+    """Return the factor by which the limit of the albedo made values at `wi`, `wo` (n, 3) smaller.
+
+    It is a median of the measured values, or of those of the posterior where these are smaller.
+    Raises `BrdfkitError` if it is so large that the values have another unit.
+    """
+    lookup = observed.lookup
+    least = np.minimum(observed.logarithm, lookup.interpolate(posterior.logarithm.T))
+    limited = to_logarithm(completed.eval(wi, wo).T, lookup.cosine).T
+    dimming = float(np.exp(np.median((least - limited).mean(axis=1))))
+    if dimming > OTHER_UNIT:
         raise BrdfkitError(
-            f"{name}: its values reflect more light than arrives, and would have to be divided by "
-            f"{dimming:.2g}; give them in 1/sr, without a cosine."
+            f"{completed.name}: its values reflect more light than arrives, and would have to be "
+            f"divided by {dimming:.2g}; give them in 1/sr, without a cosine."
         )
+    return dimming
 
 
 def is_measured(data: Measured, wi: AnyArray, wo: AnyArray) -> BoolArray:
