@@ -26,6 +26,7 @@ from brdfkit.materials.completion.prior_cells import (
 from brdfkit.materials.completion.prior_choice import get_default_prior
 from brdfkit.materials.completion.prior_file import read_prior, write_prior
 from brdfkit.materials.completion.prior_making import draw_row
+from brdfkit.materials.measured.albedos import compute_directional_albedo
 from brdfkit.model.samples import Table
 
 REACHED = np.radians(75)
@@ -128,6 +129,16 @@ def test_completions_are_reciprocal_and_reflect_at_most_all_light(twenty):
         light = np.broadcast_to(from_angles(np.radians(angle), 0.0), out.shape)
         albedo = weights @ completed.eval(light, out)
         assert albedo.max() <= 1, angle
+
+
+def test_noise_alone_reflects_at_most_all_light():
+    """The completed table is wild, so that a coarse quadrature misses much of its light."""
+    rng = np.random.default_rng(6)
+    theta, phi = np.radians(rng.uniform(0, 60, (2, 300))), rng.uniform(0, 2 * np.pi, (2, 300))
+    wi, wo = from_angles(theta[0], phi[0]), from_angles(theta[1], phi[1])
+    completed = bk.complete(measured_at(wi, wo, rng.normal(0, 0.1, (300, 1))), noise=1e-9)
+    light = from_angles(np.radians(84.5), 0.0)
+    assert compute_directional_albedo(completed, light, finer=5).max() <= 1
 
 
 def test_variance_by_wrong_directions_is_that_of_a_simulation(prior):

@@ -59,29 +59,30 @@ class MeasuredAlbedo:
         return tuple(means[: len(ANGLES)].tolist())
 
 
-def compute_directional_albedo(data: Any, wi: FloatArray) -> FloatArray:
+def compute_directional_albedo(data: Any, wi: FloatArray, finer: int = 1) -> FloatArray:
     """Return the directional albedo (channels,) of a `Measured` for light from `wi` (3,).
 
     It is integrated over half vectors h, where dωo = 4 (wi·h) dωh, by a coarse quadrature. This
     suffices for measured data, whereas `brdfkit.albedo` refines its quadrature for seconds. The
-    result is scaled so that a Lambertian surface gets exactly its reflectance.
+    result is scaled so that a Lambertian surface gets exactly its reflectance. With `finer`, there
+    are so many times as many angles and azimuths.
     """
-    wo, weight = make_outgoing_quadrature(wi)
+    wo, weight = make_outgoing_quadrature(wi, finer)
     values = data.eval(np.broadcast_to(wi, wo.shape), wo)
     return weight @ values * np.pi / weight.sum()
 
 
-def make_outgoing_quadrature(wi: FloatArray) -> tuple[FloatArray, FloatArray]:
+def make_outgoing_quadrature(wi: FloatArray, finer: int = 1) -> tuple[FloatArray, FloatArray]:
     """Return the nodes and weights of a quadrature over the directions wo for light from `wi` (3,).
 
     The nodes (n, 3) are directions above the surface, dense around the mirror direction. The
     weights (n,) are cos θo dωo, up to a factor.
     """
     # Place half vectors, dense around the normal
-    x = (np.arange(N_THETA) + 0.5) / N_THETA
-    theta, phi = x**2 * np.pi / 2, (np.arange(N_PHI) + 0.5) / N_PHI * 2 * np.pi
+    x, turns = ((np.arange(n * finer) + 0.5) / (n * finer) for n in (N_THETA, N_PHI))
+    theta, phi = x**2 * np.pi / 2, turns * 2 * np.pi
     h = from_angles(*np.meshgrid(theta, phi, indexing="ij")).reshape(-1, 3)
-    d_omega = np.repeat(x * np.sin(theta), N_PHI)
+    d_omega = np.repeat(x * np.sin(theta), len(phi))
 
     # Reflect `wi` about the half vectors
     cosine = h @ wi
