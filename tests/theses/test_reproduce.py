@@ -1,5 +1,7 @@
 """Theses reproduced: the page of claims, what is said where data are missing, and some claims."""
 
+from types import SimpleNamespace
+
 import pytest
 from brdfkit.theses.kurt2007 import NEEDS, PARTS
 from brdfkit.theses.kurt2007.appendix_3 import read_rows
@@ -13,6 +15,7 @@ from brdfkit.theses import Claim, list_theses
 from brdfkit.theses.claims import count_verdicts
 from brdfkit.theses.drawing import draw_curves, make_figure
 from brdfkit.theses.page import Picture, Section, Table, write_page
+from brdfkit.theses.replacing import replace_part
 from brdfkit.theses.sources import find_sources
 
 CLAIMS = [
@@ -45,6 +48,21 @@ def test_a_verdict_is_one_of_four():
     assert count_verdicts(CLAIMS[:1] * 2) == "2 confirmed"
     with pytest.raises(ValueError, match="perhaps"):
         Claim("", "", "", "", "perhaps")
+
+
+@pytest.mark.quick
+def test_a_replaced_part_has_to_be_used():
+    owner = SimpleNamespace(bound=abs, read=abs)
+    with replace_part(owner, "read", lambda x: 7):
+        assert owner.read(-1) == 7
+    assert owner.read is abs
+    bound = owner.bound
+    with (
+        pytest.raises(AssertionError, match=r"bound was replaced but never called"),
+        replace_part(owner, "bound", lambda x: 7),
+    ):
+        assert bound(-1) == 1
+    assert owner.bound is abs
 
 
 @pytest.mark.quick

@@ -13,11 +13,12 @@ from brdfkit.theses.ergun2015 import (
     moving_parts,
     shapes,
 )
-from brdfkit.theses.ergun2015.lit_balls import FILTERS, METHODS, ROUGHNESSES
+from brdfkit.theses.ergun2015.lit_balls import FILTERS, METHODS, ROUGHNESSES, make_ward_bsdf
 from brdfkit.theses.ergun2015.unshadowed import make_unshadowed_integrator
 
 import brdfkit as bk
 from brdfkit.lighting.visibility.hull import make_hull
+from brdfkit.rendering.scene_input.loading import find_scene
 
 CONVEX = ["convex_reads", "convex_pictures", "convex_settings", "moving_parts"]
 
@@ -108,6 +109,20 @@ def test_an_edge_is_seen_where_the_view_changes(monkeypatch):
     views, seen = np.arange(size)[:, None] // 8 + np.zeros((1, size)), np.ones((size, size), bool)
     assert lobe_views.measure_view_jumps(error, views, seen) == pytest.approx(1, abs=0.15)
     assert lobe_views.measure_view_jumps(error + 9 * views[..., None], views, seen) > 5
+
+
+def test_the_lobes_of_the_nearest_view_are_rendered(llvm_variant):
+    """The replaced look-up of views changes the picture, and is taken away again."""
+    made = find_scene("ball")(make_ward_bsdf(0.2), (16, 16))
+    light = llvm_variant.load_dict({"type": "constant"})
+    entries = {"type": "filtered_environment", "method": "warped", "resolution": 32}
+    lobes = llvm_variant.load_dict(entries).shading.fit_lobes(make_ward_bsdf(0.2))
+    between, nearest, again = (
+        lobe_views.render_with_lobes(made, light, llvm_variant.load_dict(entries), lobes, which)
+        for which in (False, True, False)
+    )
+    assert np.abs(nearest - between).max() > 1e-4
+    assert (again == between).all()
 
 
 def test_the_truth_without_shadows_has_none(llvm_variant):

@@ -4,6 +4,7 @@ All pictures take the same samples, by the integrator `convex_direct`: they diff
 alone.
 """
 
+from contextlib import nullcontext
 from functools import cache, cached_property
 from importlib.util import find_spec
 
@@ -17,6 +18,7 @@ from brdfkit.lighting.visibility.decomposition import decompose
 from brdfkit.lighting.visibility.occluders import Occluders
 from brdfkit.rendering.scene_input.environment import describe_environment, replace_light
 from brdfkit.theses.claims import measure_least_seconds
+from brdfkit.theses.replacing import replace_part
 
 SIZE, SPP = 96, 64
 SWEPT = "spot"  # the mesh for which settings are varied, and which moves
@@ -85,7 +87,8 @@ class Study:
         """
         integrator = self.scene.integrator()
         integrator.casters.set_casters(self.scene, occluders, others or self.ground)
-        return np.array(integrator.render(self.scene, seed=0, spp=spp), float)[..., :3]
+        with replace_part(occluders, "is_blocked") if occluders else nullcontext():
+            return np.array(integrator.render(self.scene, seed=0, spp=spp), float)[..., :3]
 
     def measure_seconds(self, occluders):
         """Return the CPU seconds for a picture, the least of three."""

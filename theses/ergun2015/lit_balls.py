@@ -10,6 +10,7 @@ from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.environments.map_files import load_map
 from brdfkit.rendering.previewing.scene import describe_preview
 from brdfkit.rendering.scene_input.material import load_material
+from brdfkit.theses.replacing import replace_part
 
 PROBES = "grace", "uffizi", "pisa", "ennis"
 SHIPPED = "studio", "sky", "room"
@@ -66,6 +67,13 @@ def render_scene(made, light, integrator):
     start = time.process_time()
     picture = np.array(integrator.render(scene, seed=0, spp=1), float)[..., :3]
     return picture, time.process_time() - start, scene
+
+
+def render_filtered(made, light, integrator):
+    """Render like `render_scene` by one of the integrators of `make_integrators`."""
+    parts = (integrator.light, "filter_if_changed"), (integrator.shading, "radiance")
+    with replace_part(*parts[0]), replace_part(*parts[1]):  # the shared parts are those in use
+        return render_scene(made, light, integrator)
 
 
 def render_reference(made, light):

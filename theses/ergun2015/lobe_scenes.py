@@ -14,8 +14,8 @@ from brdfkit.theses.ergun2015.lit_balls import (
     find_probes,
     make_integrators,
     make_ward_bsdf,
+    render_filtered,
     render_reference,
-    render_scene,
 )
 from brdfkit.theses.ergun2015.shapes import find_meshes, make_torus_scene
 
@@ -85,7 +85,7 @@ def load_light(file):
 def render_pictures(made, light, bsdf, methods):
     """Return halves of the truth, the picture by each method and filter, and the BSDF's pixels."""
     halves, scene = render_reference(made, light)
-    pictures = {kind: render_scene(made, light, by)[0] for kind, by in methods.items()}
+    pictures = {kind: render_filtered(made, light, by)[0] for kind, by in methods.items()}
     return halves, pictures, find_material_mask(scene, bsdf)
 
 

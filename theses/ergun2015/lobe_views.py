@@ -18,6 +18,7 @@ from brdfkit.rendering.scene_input.material import find_material_mask
 from brdfkit.theses.claims import Claim, to_verdict
 from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section
+from brdfkit.theses.replacing import replace_part
 
 SECONDS = 20
 SIZE, ALPHA = 256, 0.05
@@ -46,10 +47,7 @@ def check_claims(sources, report):
         integrator = mi.load_dict({"type": "filtered_environment", "method": method})
         lobes = integrator.shading.fit_lobes(bsdf)
         views = find_nearest_views(scene, lobes.step) if views is None else views
-        if "nearest" in kind:
-            lobes.find_surrounding_views = select_nearest_view(lobes.find_surrounding_views)
-        integrator.shading.lobes.make = lambda bsdf, lobes=lobes: lobes
-        pictures[kind] = render_scene(made, light, integrator)[0]
+        pictures[kind] = render_with_lobes(made, light, integrator, lobes, "nearest" in kind)
     psnrs = {kind: compute_psnr(reference, p, seen)[0] for kind, p in pictures.items()}
     jumps = {kind: measure_view_jumps(p - reference, views, seen) for kind, p in pictures.items()}
     blocks, _, kernels = jumps.values()
@@ -75,6 +73,18 @@ def check_claims(sources, report):
     caption = f"In {name}, from the left: the truth; {'; '.join(KINDS)}."
     picture = Picture("lobe_views", draw_balls([reference, *pictures.values()]), caption)
     return Section("Between views", TEXT, claims, pictures=[picture])
+
+
+def render_with_lobes(made, light, integrator, lobes, nearest):
+    """Render a scene with `lobes` for its material, by the `nearest` view or between views."""
+    find = lobes.find_surrounding_views
+    with (
+        replace_part(integrator.shading.lobes, "make", lambda bsdf: lobes),
+        replace_part(
+            lobes, "find_surrounding_views", select_nearest_view(find) if nearest else find
+        ),
+    ):
+        return render_scene(made, light, integrator)[0]
 
 
 def select_nearest_view(find_surrounding_views):
