@@ -428,6 +428,31 @@ def test_derivatives_of_rings_are_those_of_the_minimum(direction):
     assert np.abs(rough - expected).sum() > 0.02 * scale
 
 
+@pytest.mark.parametrize("direction", "AB")
+@pytest.mark.parametrize(
+    ("method", "rel"),
+    [(compute_linear_shadow, 0.001), (base, 0.001), (compute_convex_shadow, 0.02)],
+)
+def test_derivatives_of_nearly_dark_and_nearly_lit_rays(method, rel, direction):
+    """By the light's radius: no march ends early for them, and both ends of the axis count."""
+    rng, many = np.random.default_rng(2), 2000
+    field = random_spheres(rng, many) | random_boxes(rng, many) | HalfSpace(P(0, 0, 1), -0.1)
+    start = vectors(rng.normal(0, (0.1, 0.1, 1e-9), (many, 3)))
+
+    def share(method, radius, *settings):
+        return method(field, make_light_cone(start, P(0, 0, 6), radius, 0.1), *settings).visible
+
+    radius = dr.full(Float, 1, many)
+    dr.enable_grad(radius)
+    found = share(method, radius, 1 / 20, direction)
+    dr.forward(radius)
+    larger, smaller = (np.array(share(compute_dense_shadow, 1 + x)) for x in (1e-4, -1e-4))
+    expected = (larger - smaller) / 2e-4
+    off = np.abs(np.array(dr.grad(found)) - expected)
+    assert off.sum() < rel * np.abs(expected).sum()
+    assert np.mean(off > 0.02) <= (0.015 if method is compute_convex_shadow else 0)
+
+
 # Backends, precisions, and what is refused
 
 

@@ -49,11 +49,14 @@ class Walk:
 
     R_T : the smallest ratio of distance to cone radius that it found.
     t : the distance along the axis at which it found this ratio.
+    before, after : the distances one step before and after t, or t itself where there is none.
     evaluations : the number of evaluations of the distance.
     """
 
     R_T: Any
     t: Any
+    before: Any
+    after: Any
     evaluations: Any
 
 
@@ -77,6 +80,7 @@ def march_along_cone(
     epsilon: float,
     pace: Pace = make_cone_tracing_step,
     active: JitMask = True,
+    to_the_end: bool = False,
 ) -> Walk:
     """March from the start of a cone to its end, and return the smallest ratio on the way.
 
@@ -86,30 +90,41 @@ def march_along_cone(
     epsilon : error of the lit share, which bounds the number of steps.
     pace : function that makes the function for the steps.
     active : whether each ray marches at all.
+    to_the_end : whether rays that are nearly dark go on as long as any light is left, as is needed
+        for derivatives.
     """
     f, cone = distance_function(field), cone.make_detached()
     step, memory = pace(field, cone)
     max_steps = cone.bound_step_count(epsilon, lipschitz_bound(field))
+    last = -1.0 if to_the_end else rule.last
 
     def take_step(
-        t: JitFloat, R_T: JitFloat, R_C: JitFloat, t_min: JitFloat, i: JitFloat, memory: Any
+        t: JitFloat,
+        R_T: JitFloat,
+        R_C: JitFloat,
+        place: tuple[JitFloat, ...],
+        t_before: JitFloat,
+        i: JitFloat,
+        memory: Any,
     ) -> tuple[Any, ...]:
         F, rho = f(cone.point(t)), cone.radius(t)
         nearer = R_T * rho > F
         lower_T, lower_C = rule.lower(F / rho, R_T)
         R_T, R_C = dr.select(nearer, lower_T, R_T), dr.select(nearer, lower_C, R_C)
         dt, memory = step(t, F, R_C, memory)
-        return t + dt, R_T, R_C, dr.select(nearer, t, t_min), i + 1, memory
+        here = t, t_before, t + dt
+        place = tuple(dr.select(nearer, new, old) for new, old in zip(here, place, strict=True))
+        return t + dt, R_T, R_C, place, t, i + 1, memory
 
     with dr.suspend_grad():
         zero = 0 * cone.d
         R_T, R_C = (zero + R for R in rule.first)
-        t, R_T, _, t_min, i, _ = dr.while_loop(
-            (zero, R_T, R_C, zero, zero, memory),
-            lambda t, R_T, R_C, t_min, i, memory: (
-                active & (t < cone.d) & (rule.last < R_T) & (i < max_steps)
+        t, R_T, _, place, _, i, _ = dr.while_loop(
+            (zero, R_T, R_C, (zero, zero, zero), zero, zero, memory),
+            lambda t, R_T, R_C, place, t_before, i, memory: (
+                active & (t < cone.d) & (last < R_T) & (i < max_steps)
             ),
             take_step,
         )
     # A field that is not a number makes t NaN, but not R_T
-    return Walk(dr.select(dr.isnan(t), dr.nan, R_T), t_min, i)
+    return Walk(dr.select(dr.isnan(t), dr.nan, R_T), *place, i)

@@ -4,8 +4,10 @@ The march itself is not differentiated. It finds where on the cone's axis f / ρ
 distance to the surface over the cone's radius. By the envelope theorem, the derivative of this
 minimum is that of f / ρ at a fixed point of the axis. So f / ρ is evaluated there once more, with
 derivatives with respect to the light, its radius, the surface point, and the parameters of the
-field. The march ends within ε of the minimum, so its point is refined first. Where nothing carries
-derivatives, none of this is part of the kernel.
+field. The march passes within ε of the minimum, so its point is refined first, between the steps
+before and after it; a march from the light does not quite reach the surface point, which is tried,
+too. Rays that are nearly dark are followed to full darkness, as τ is steep where they would end
+else. Where nothing carries derivatives, none of this is part of the kernel.
 """
 
 from dataclasses import dataclass
@@ -27,10 +29,8 @@ from brdfkit.distance_fields.shadows.tau import lit_disc_share
 
 DIRECTIONS = "A", "B"  # A marches from the surface to the light, B from the light to the surface
 GOLDEN_RATIO = (5**0.5 - 1) / 2
-# The golden-section search for the exact minimum near the smallest ratio that a march found: its
-# reach to each side, in units of `epsilon` times the cone's radius, and its number of iterations.
-# The reach is about two steps of the march.
-SEARCH_WIDTH, SEARCH_STEPS = 4.0, 20
+# Iterations of the golden-section search for the exact minimum near the smallest ratio of a march
+SEARCH_STEPS = 24
 SIDE_STEP = 1e-3  # the distance from a minimum to the points beside it, in radii of the cone
 
 
@@ -92,41 +92,48 @@ def trace_shadow(
     """
     forward = direction == "A"
     path = cone if forward else cone.make_reversed()
-    walk = march_along_cone(field, path, rule, epsilon, pace, active)
+    settings = field, path, rule, epsilon, pace, active
+    walk = march_along_cone(*settings)
+    # Asked at the march's own end, because Dr.Jit drops derivatives that are 0 at a constant point
+    differentiable = dr.grad_enabled(clearance_ratio(field, path, walk.t))
+    if differentiable:
+        walk = march_along_cone(*settings, to_the_end=True)  # the first one is not run
     d = dr.detach(cone.d)
-    t = walk.t if forward else d - walk.t
+    t, before, after = (t if forward else d - t for t in (walk.t, walk.before, walk.after))
     r = walk.R_T
     visible = dr.select(dr.isnan(r), r, lit_disc_share(r))
-    minimum = attach_ratio_derivatives(r, field, cone, t, epsilon)
-    if dr.grad_enabled(minimum):
+    if differentiable:
         # The derivatives are taken at the exact minimum: the march's own ratio r is a little above
         # it, where the slope of `lit_disc_share` is another
+        minimum = compute_smallest_ratio(field, cone, before, after)
         visible, r = replace_grad(visible, lit_disc_share(minimum)), replace_grad(r, minimum)
     return Shadow(visible, r, t, walk.evaluations)
 
 
-def attach_ratio_derivatives(
-    r: JitFloat, field: Any, cone: LightCone, t: JitFloat, epsilon: float
+def compute_smallest_ratio(
+    field: Any, cone: LightCone, before: JitFloat, after: JitFloat
 ) -> JitFloat:
-    """Return the smallest clearance ratio near t with derivatives; `r` if nothing carries any.
+    """Return the smallest clearance ratio between two points of the axis, with derivatives.
 
-    Derivatives jump at a crease of the field. The derivative of the minimum is then a mean of the
-    derivatives on both sides, with weights that let the slopes along the axis cancel.
+    The start of the axis is tried, too. Derivatives jump at a crease of the field. The derivative
+    of the minimum is then a mean of the derivatives on both sides, with weights that let the slopes
+    along the axis cancel.
     """
 
     def moving_ratio(t: JitFloat) -> JitFloat:
         # If the axis grows longer, its point t moves along, at the same share of the length
         return clearance_ratio(field, cone, t / dr.detach(cone.d) * cone.d)
 
-    if not dr.grad_enabled(moving_ratio(t)):
-        return r
     with dr.suspend_grad():
         fixed = cone.make_detached()
+        middle, width = (before + after) / 2, dr.abs(after - before) / 2
+        t = find_smallest_ratio(field, fixed, middle, width, SEARCH_STEPS)
+        at_start = clearance_ratio(field, fixed, 0 * t) < clearance_ratio(field, fixed, t)
+        t = dr.select(at_start, 0, t)
         rho = fixed.radius(t)
-        t = find_smallest_ratio(field, cone, t, SEARCH_WIDTH * epsilon * rho, SEARCH_STEPS)
         places = [dr.clip(t + k * SIDE_STEP * rho, 0, fixed.d) for k in (-2, -1, 1, 2)]
-        before, at_left, at_right, behind = (clearance_ratio(field, fixed, t) for t in places)
-        falls, rises = dr.maximum(before - at_left, 0), dr.maximum(behind - at_right, 0)
+        first, at_left, at_right, last = (clearance_ratio(field, fixed, t) for t in places)
+        falls, rises = dr.maximum(first - at_left, 0), dr.maximum(last - at_right, 0)
         level = falls + rises == 0
         weight = dr.select(level, 0.5, rises / dr.select(level, 1, falls + rises))
     return weight * moving_ratio(places[1]) + (1 - weight) * moving_ratio(places[2])
