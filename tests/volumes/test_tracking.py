@@ -6,6 +6,7 @@ import pytest
 from scipy.ndimage import map_coordinates
 
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.volumes.light.constant_medium import split_light
 from brdfkit.volumes.light.majorants import Majorants
 from brdfkit.volumes.light.tracking import (
     FAINT,
@@ -188,3 +189,16 @@ def test_what_collides_has_a_place(llvm_variant):
     _, collided, t, _ = found
     assert collided[0] > 0
     assert np.isfinite(t[0])
+
+
+@pytest.mark.parametrize("depth", [1e-6, 9e-3, 1.1e-2, 1.0, 40.0])
+def test_collisions_in_a_constant_medium_are_inverted(depth, llvm_variant):
+    mi = llvm_variant
+    u, sigma, length = np.linspace(0, 1, 64, endpoint=False), 2.5, depth / 2.5
+    found = split_light(mi.Float(sigma), mi.Float(length), mi.Float(u.astype(np.float32)))
+    passed, collided, t = (np.array(part, float) for part in found)
+    np.testing.assert_allclose(passed, np.exp(-depth), rtol=1e-5)
+    np.testing.assert_allclose(collided, -np.expm1(-depth), rtol=2e-6)
+    # The distribution function, at t, is the random number
+    reached = np.expm1(-sigma * t) / np.expm1(-depth)
+    np.testing.assert_allclose(reached, u, atol=1e-4)

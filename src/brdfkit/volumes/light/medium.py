@@ -22,6 +22,7 @@ from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, Mi
 from brdfkit.core.errors import BrdfkitError
 from brdfkit.core.jit.gradients import replace_grad
 from brdfkit.mitsuba_bridge.channels import make_rgb_emission, make_rgb_spectrum, make_white_light
+from brdfkit.volumes.light.constant_medium import is_constant, split_light
 from brdfkit.volumes.light.majorants import Majorants, compute_majorants
 from brdfkit.volumes.light.tracking import (
     estimate_passed_and_collided_light,
@@ -45,6 +46,7 @@ class Medium:
     - `albedo`: the share of collisions that scatter light; an albedo from RGB multiplies it
     - `emission`: the radiance that the medium adds per unit of length
     - `majorants`: upper bounds of σ; None before `recompute_majorants` is called
+    - `is_constant`: whether σ is the same everywhere in the box, so that no tracking is needed
     """
 
     extinction: Any
@@ -52,6 +54,7 @@ class Medium:
     albedo: Any
     emission: Any
     majorants: Any
+    is_constant: bool
 
     def __init__(
         self,
@@ -62,6 +65,7 @@ class Medium:
     ) -> None:
         self.extinction, self.scale = extinction, scale
         self.albedo, self.emission, self.majorants = albedo, emission, None
+        self.is_constant = is_constant(extinction)
         # What RGB means if σ is a transfer function: "albedo" or "emission"
         function = getattr(extinction, "function", None)
         self.colour = None if function is None else function.colour
@@ -118,9 +122,15 @@ class Medium:
         the transmittance, and is NaN where σ exceeds its majorant.
         """
         near, far = self.clip_ray_to_box(ray, end)
-        share, collided, t, _ = estimate_passed_and_collided_light(
-            self.evaluate_extinction, self.majorants, ray, near, far, sampler, active
-        )
+        if self.is_constant:
+            with dr.suspend_grad():
+                sigma, length = self.measure_constant(ray, near, far, active)
+                share, collided, t = split_light(sigma, length, sampler.next_1d(active))
+            t = near + t
+        else:
+            share, collided, t, _ = estimate_passed_and_collided_light(
+                self.evaluate_extinction, self.majorants, ray, near, far, sampler, active
+            )
         depth = self.estimate_optical_depth(ray, end, sampler, active)
         return replace_grad(share, -share * depth), collided, t
 
@@ -132,6 +142,9 @@ class Medium:
         It has the derivatives of the transmittance.
         """
         near, far = self.clip_ray_to_box(ray, end)
+        if self.is_constant:
+            sigma, length = self.measure_constant(ray, near, far, active)
+            return dr.exp(-sigma * length)
         share, _ = estimate_transmittance(
             self.evaluate_extinction, self.majorants, ray, near, far, sampler, active
         )
@@ -173,6 +186,14 @@ class Medium:
         length = dr.maximum(far - near, 0)
         return length * self.evaluate_extinction(
             ray(near + sampler.next_1d(active) * length), active
+        )
+
+    def measure_constant(
+        self, ray: MitsubaObject, near: JitFloat, far: JitFloat, active: JitMask
+    ) -> tuple[JitFloat, JitFloat]:
+        """Return the constant extinction, and the length of rays in the box; 0 if not `active`."""
+        return self.evaluate_extinction(ray.o, active), dr.select(
+            active, dr.maximum(far - near, 0), 0
         )
 
     def clip_ray_to_box(self, ray: MitsubaObject, end: JitFloat) -> tuple[JitFloat, JitFloat]:
