@@ -1,5 +1,6 @@
 """Robust least squares: MATLAB's figures, planted outliers, and the thesis's fits of CUReT."""
 
+import drjit as dr
 import numpy as np
 import pytest
 from robust_least_squares import robust_least_squares
@@ -120,6 +121,51 @@ def test_a_linear_fit_is_the_least_squares():
         found = robust_least_squares(columns, values[:, 0], name)
         weights = [fit.values[n] for n in fit.model.weights()]
         np.testing.assert_allclose(np.ravel(weights), found.solution, rtol=1e-8)
+
+
+def reweight_by_hand(design, values):
+    """Solve for bisquare weights until nothing changes, without brdfkit's helpers."""
+    q, r = np.linalg.qr(design)
+    lever, skip = np.sqrt(1 - (q * q).sum(axis=1)), design.shape[1] - 1
+    solution = q.T @ values
+    for _ in range(500):
+        off = np.abs(values - q @ solution) / lever
+        ratio = off / (4.685 * np.median(np.sort(off)[skip:]) / 0.6745)
+        weights = np.where(ratio < 1, (1 - ratio**2) ** 2, 0)
+        before, solution = solution, np.linalg.solve(q.T * weights @ q, q.T @ (weights * values))
+        if np.abs(solution - before).max() <= 1e-12 * np.abs(solution).max():
+            break
+    return np.linalg.solve(r, solution)
+
+
+@pytest.mark.parametrize("label", ["pca_polynomial:degree=7", "koenderink:order=4"])
+def test_linear_passes_run_no_kernels(label):
+    """A robust fit ends where a few lines of NumPy do, and each pass is as cheap as there."""
+    wi, wo = draw_direction_pairs(300, seed=8, max_degrees=79)
+    noise = np.random.default_rng(4).standard_t(2, (300, 3)) / 20
+    values = wi[:, 2:] * wo[:, 2:] + noise
+    data = bk.Measured.from_samples(wi, wo, values)
+    counts = {}
+    with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
+        for robust in (None, "bisquare"):
+            dr.kernel_history_clear()
+            fit = bk.fit(data, label, loss=sample_sum("plain"), robust=robust)
+            counts[robust] = len(dr.kernel_history([dr.KernelType.JIT]))
+    assert fit.message.startswith("settled in ")
+    passes = int(fit.message.split()[2])
+    assert counts["bisquare"] - counts[None] <= 12 < passes
+    columns, _ = compute_lobe_values(fit.model, wi, wo)
+    weights = np.array([fit.values[n] for n in fit.model.weights()])
+    for channel in range(3):
+        by_hand = columns @ reweight_by_hand(columns, values[:, channel])
+        np.testing.assert_allclose(columns @ weights[:, channel], by_hand, atol=1e-8)
+
+
+def test_a_cycle_of_linear_passes_is_left(measured_data):
+    """On CUReT's sample 45 the bisquare passes go round; Newton's steps end at the solution."""
+    data = bk.load(measured_data / "curet" / "abrdf.dat#45")
+    fit = bk.fit(data, "koenderink:order=2", loss=sample_sum("plain"), robust="bisquare")
+    assert fit.message.startswith("settled")
 
 
 def test_the_thesis_polynomial(measured_data):

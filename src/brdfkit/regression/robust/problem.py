@@ -127,6 +127,19 @@ class RobustProblem:
             for r, least in zip(adjusted, self.least, strict=True)
         ]
 
+    @property
+    def is_linear(self) -> bool:
+        """Whether the residuals are linear in all parameters, of which none has a bound."""
+        problem = self.problem
+        unbounded = not problem.space.names and bool(np.isneginf(problem.least).all())
+        return problem.linear and unbounded
+
+    def weigh_residuals(self, channel: int, residuals: FloatArray) -> FloatArray:
+        """Return the samples' weights ω (n,) that follow from the residuals (n,) of a channel."""
+        adjusted = residuals / self.levers[channel]
+        scale = estimate_residual_scale(adjusted, self.rank, self.least[channel])
+        return self.function(adjusted / (self.tune * scale))
+
     def scale_residuals(self, point: Point, scales: list[float]) -> list[FloatArray]:
         """Return the scaled residuals r (n,) in each channel, arguments of the weight function.
 

@@ -117,12 +117,22 @@ def compute_smallest_scale(values: FloatArray) -> float:
     return 1e-6 * float(np.std(values, ddof=1)) or 1.0
 
 
+def orthonormalise(columns: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return an orthonormal basis (rank, n) of the sums of `columns` (parameters, n).
+
+    Return also the matrix (parameters, rank) that turns coefficients of the basis into those of
+    the columns. The rank is smaller than the number of columns if some are sums of others.
+    """
+    u, values, v = np.linalg.svd(columns.T, full_matrices=False)
+    kept = values > values.max(initial=0) * len(u) * np.finfo(float).eps
+    return u[:, kept].T, v[kept].T / values[kept]
+
+
 def compute_leverages(columns: FloatArray) -> FloatArray:
     """Return the leverages h (n,) of samples, between 0 and 0.9999.
 
     They say how much a sample determines its own fitted value. `columns` (parameters, n):
     derivatives of the fitted values; h is the diagonal of the projection onto them.
     """
-    u, values, _ = np.linalg.svd(columns.T, full_matrices=False)
-    u = u[:, values > values.max(initial=0) * len(u) * np.finfo(float).eps]
-    return np.minimum((u * u).sum(axis=1), 0.9999)
+    basis, _ = orthonormalise(columns)
+    return np.minimum((basis * basis).sum(axis=0), 0.9999)

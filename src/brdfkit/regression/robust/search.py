@@ -8,7 +8,8 @@ With few samples, the first passes are those of MATLAB's robustfit, which keeps 
 during a step. Such "ordinary" passes become slow if much of a highlight is an outlier. Then Newton
 steps replace them, which allow for the change of the weights during the step. Far from the fixed
 point they reduce a merit function, in which the scales of the noise are constant. Near the fixed
-point they solve for it directly, and allow for the change of the scales, too.
+point they solve for it directly, and allow for the change of the scales, too. A linear model takes
+all its ordinary passes in `linear` before.
 """
 
 from collections.abc import Sequence
@@ -22,6 +23,7 @@ from brdfkit.core.interrupts import Interrupted
 from brdfkit.core.progress_bar import Progress
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.problem.subset import draw_subset
+from brdfkit.regression.robust.linear import reweight_linear_model
 from brdfkit.regression.robust.problem import Point, RobustProblem
 
 # Smallest curvature for a Newton step, as a share of the curvature for an ordinary step; it keeps
@@ -250,8 +252,12 @@ def search_robust_solution(
         robust = RobustProblem(problem, u, weights, name, part, rows)
         end = RobustSearch(robust).run_search(start.u, start.weights, report, ordinary_passes=0)
     else:
-        robust = RobustProblem(problem, u, weights, name)
-        end = RobustSearch(robust).run_search(u, weights, report, EXACT)
+        robust, passes = RobustProblem(problem, u, weights, name), 0
+        if robust.is_linear:  # mostly the search then finds that it starts at the solution
+            weights, passes = reweight_linear_model(robust, weights, EXACT, PASSES)
+        ordinary_passes = 0 if passes else ORDINARY_PASSES
+        end = RobustSearch(robust).run_search(u, weights, report, 10 * EXACT, ordinary_passes)
+        end.passes += passes
     note = f"{name}: {end.outliers:.1%} of the samples count less than half; the loss is of all"
     message = f"settled in {end.passes} passes"
     if not end.converged:

@@ -25,7 +25,8 @@ PARTS = 40_000, 3_000
 FEW_SHAPES = 3
 # Rounds of a search, each a pair: number of starts that continue, and number of steps before
 # they are chosen
-FEW_SHAPES_ROUNDS, MANY_SHAPES_ROUNDS = ((24, 4), (8, 6)), ((32, 20), (8, 30))
+FEW_SHAPES_ROUNDS: tuple[tuple[int, int], ...] = ((24, 4), (8, 6))
+MANY_SHAPES_ROUNDS: tuple[tuple[int, int], ...] = ((32, 20), (8, 30))
 # Ends on a part go on to more samples if their squared loss is within this share of the least one
 CLOSE = 0.02
 # Largest number of ends that go on to more samples
@@ -98,6 +99,7 @@ def search_from_starts(
     if first.clamped:
         u, weights = _add_unclamped_starts(first, u, weights)
     rounds = MANY_SHAPES_ROUNDS if u.shape[1] > FEW_SHAPES else FEW_SHAPES_ROUNDS
+    rounds = rounds if u.size or len(u) > 1 else ()  # without shapes there is nothing to choose
     total = len(rounds) + len(problems)
     # All starts take a few steps, the best of them a few more, and so on
     for number, (count, steps) in enumerate(rounds):
@@ -106,8 +108,9 @@ def search_from_starts(
         evaluations += search.evaluations
         ends = search.ends.select_points(search.find_best_ends(count))
         u, weights = ends.u, ends.weights
-    revived = revive_zero_weights(first, ends.select_points([0]), starts)
-    u, weights = (np.concatenate(parts) for parts in zip((u, weights), revived, strict=True))
+    if rounds:
+        revived = revive_zero_weights(first, ends.select_points([0]), starts)
+        u, weights = (np.concatenate(parts) for parts in zip((u, weights), revived, strict=True))
     for number, problem in enumerate(problems):
         report(len(rounds) + number, total)
         if number:
