@@ -12,7 +12,8 @@ error: root mean square of ln(f cosθi cosθo + 10⁻³) over 3,000 pairs of dir
 measured, spread like the cells of a MERL table, with both angles below 80° (75° behind --loose);
 the mean of the materials, and the largest. coverage: of 95 % intervals below 75°;
 the mean, and the least. unlike: share of the materials with a scale above 2. A line "off by 0.25°"
-has directions that are wrong by this angle, and says so.
+has directions that are wrong by this angle, and says so. In a line "over 1°" a value is the mean
+over a cone with this half angle about the detector's direction, and `complete` is told so or not.
 """
 
 import argparse
@@ -43,7 +44,7 @@ from brdfkit.model.samples import Samples
 COUNTS = 8, 20, 64
 NOISE = 0.05
 REACH, TARGET = np.radians(75), np.radians(80)
-ALIGNMENT = np.radians(0.25)
+CONE_POINTS = 200
 CANDIDATES, EVALUATED, FOLDS, RANDOM_CHOICES = 6_000, 3_000, 5, 10
 CELLS = get_cells()
 
@@ -120,16 +121,61 @@ def draw_evaluated(pairs: Pairs) -> np.ndarray:
     return rng.choice(len(key), min(EVALUATED, len(key)), p=weights / weights.sum())
 
 
+@dataclass(frozen=True)
+class Instrument:
+    """What is wrong with an instrument.
+
+    `off`: the angle [rad] by which both directions are wrong. `aperture`: half angle [rad] of the
+    detector's cone. `stated_aperture`: what `complete` is told of it. `note`: the same in words.
+    """
+
+    off: float = 0.0
+    aperture: float = 0.0
+    stated_aperture: float = 0.0
+    note: str = ""
+
+    def measure(
+        self, truth: Truth, wi: np.ndarray, wo: np.ndarray, rng: np.random.Generator
+    ) -> np.ndarray:
+        """Return the values (n, channels) that it measures, before their noise."""
+        if self.off:
+            wi, wo = (turn(w, self.off, rng.uniform(0, 2 * np.pi, len(w))) for w in (wi, wo))
+        if not self.aperture:
+            return truth.evaluate(wi, wo)
+        # A spiral with equal areas between its points
+        spiral = [
+            turn(
+                wo,
+                self.aperture * np.sqrt((k + 0.5) / CONE_POINTS),
+                np.full(len(wo), k * np.pi * (3 - np.sqrt(5))),
+            )
+            for k in range(CONE_POINTS)
+        ]
+        return np.mean([truth.evaluate(wi, w) for w in spiral], axis=0)
+
+
+INSTRUMENTS = (
+    Instrument(off=np.radians(0.25), note="off by 0.25°"),
+    Instrument(aperture=np.radians(1), note="over 1°, not told"),
+    Instrument(aperture=np.radians(1), stated_aperture=np.radians(1), note="over 1°, told"),
+)
+
+
 def complete(
-    prior: Prior, truth: Truth, pairs: Pairs, rows: np.ndarray, noise: float, off: float, seed: int
+    prior: Prior,
+    truth: Truth,
+    pairs: Pairs,
+    rows: np.ndarray,
+    noise: float,
+    instrument: Instrument,
+    seed: int,
 ) -> tuple[float, float, float]:
     """Complete a material from `rows` of pairs; return its error, coverage and scale."""
     rng = np.random.default_rng(seed)
     wi, wo = pairs.wi[rows], pairs.wo[rows]
-    ways = [turn(w, off, rng.uniform(0, 2 * np.pi, len(rows))) if off else w for w in (wi, wo)]
-    values = truth.evaluate(*ways)
+    values = instrument.measure(truth, wi, wo, rng)
     values = values * (1 + noise * rng.normal(size=values.shape))
-    observed = observe(wi, wo, values, NOISE, off)
+    observed = observe(wi, wo, values, NOISE, instrument.off, instrument.stated_aperture)
     at = draw_evaluated(pairs)
     lookup = Lookup.at(pairs.wi[at], pairs.wo[at])
     logarithms = to_logarithm(truth.evaluate(pairs.wi[at], pairs.wo[at]).T, lookup.cosine)
@@ -173,19 +219,23 @@ def test_materials(
         {id(p): p for p in priors.values()},
     )
     rows = list_candidates(pairs)
-    for count, off in [*((n, 0.0) for n in COUNTS), (20, ALIGNMENT)]:
+    for count, instrument in [
+        *((n, Instrument()) for n in COUNTS),
+        *((20, i) for i in INSTRUMENTS),
+    ]:
+        candidates = pairs.wi[rows], pairs.wo[rows]
         chosen = {
-            key: rows[choose_directions(p, pairs.wi[rows], pairs.wo[rows], count, noise, off)[0]]
+            key: rows[choose_directions(p, *candidates, count, noise, instrument.off)[0]]
             for key, p in kinds.items()
         }
         results = [
-            complete(priors[name], truth, pairs, chosen[id(priors[name])], noise, off, seed)
+            complete(priors[name], truth, pairs, chosen[id(priors[name])], noise, instrument, seed)
             for seed, (name, truth) in enumerate(materials.items())
         ]
         errors, covered, scales = np.array(results).T
-        note = ""
-        if count == 20:
-            note = " off by 0.25°" if off else count_wins(materials, priors, pairs, noise, errors)
+        note = f" {instrument.note}"
+        if count == 20 and not instrument.note:
+            note = count_wins(materials, priors, pairs, noise, errors)
         print(
             f"{title:32}{count:4}{errors.mean():8.3f}{errors.max():7.3f}{covered.mean():9.3f}"
             f"{covered.min():7.2f}{np.mean(scales > 2):8.2f} {note}",
@@ -206,9 +256,15 @@ def count_wins(
     for name in names:
         seed = list(materials).index(name)
         others = [
-            complete(priors[name], materials[name], pairs, rng.choice(rows, 20), noise, 0.0, seed)[
-                0
-            ]
+            complete(
+                priors[name],
+                materials[name],
+                pairs,
+                rng.choice(rows, 20),
+                noise,
+                Instrument(),
+                seed,
+            )[0]
             for _ in range(RANDOM_CHOICES)
         ]
         wins += errors[seed] < np.median(others)
