@@ -1,5 +1,7 @@
 """Theses reproduced: the page of claims, what is said where data are missing, and some claims."""
 
+from itertools import product
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -14,14 +16,17 @@ from brdfkit.cli import main
 from brdfkit.theses import Claim, list_theses
 from brdfkit.theses.claims import count_verdicts
 from brdfkit.theses.drawing import draw_curves, make_figure
+from brdfkit.theses.grid import judge_over_grid
 from brdfkit.theses.page import Picture, Section, Table, write_page
 from brdfkit.theses.replacing import replace_part
 from brdfkit.theses.sources import find_sources
 
+PAGES = Path(__file__).parents[2] / "docs" / "reproduce"
 CLAIMS = [
     Claim("Water is wet.", "Table 1", "1.00", "0.99", "confirmed", "Tolerance 2 %."),
     Claim("a | b", "p. 7", "2", "3", "not confirmed"),
     Claim("It looks good.", "Figure 2", "no figure", "12 dB", "not stated"),
+    Claim("1 + 1 = 2.", "eq. 1", "2", "2", "confirmed", arithmetic=True),
 ]
 
 
@@ -33,7 +38,9 @@ def test_a_page_has_every_claim_table_and_figure(tmp_path):
     section = Section("Table 1", "Some text.", CLAIMS, [table], [Picture("curves", drawn)])
     page, picture = write_page(tmp_path / "x.md", "A thesis", "By hand.", [section], ["part_2"])
     text = page.read_text(encoding="utf-8")
-    assert "3 claims: 1 confirmed, 1 not confirmed, 1 not stated." in text
+    counts = "3 claims: 1 confirmed, 1 not confirmed, 1 not stated"
+    assert f"{counts}; and 1 checks of arithmetic: 1 confirmed." in text
+    assert text.index("| Water") < text.index("## Checks of arithmetic") < text.index("| 1 + 1")
     assert "| Water is wet. | Table 1 | 1.00 | 0.99 | **confirmed** |" in text
     assert "| a ∣ b |" in text
     assert "| ward | 0.1 |" in text
@@ -66,11 +73,48 @@ def test_a_replaced_part_has_to_be_used():
 
 
 @pytest.mark.quick
+def test_a_claim_over_a_grid_names_the_settings_in_which_it_holds():
+    """All cells, a block that lacks one value of a setting, a single cell, and none."""
+    settings = list(product(("ball", "box", "tree"), ("512²", "1024²"), ("none", "5 × 5")))
+    names = "scene", "map", "blur"
+
+    def judge(holds):
+        return judge_over_grid(names, {cell: holds(*cell) for cell in settings})
+
+    assert judge(lambda scene, size, blur: True) == ("in 12 of 12 settings", "confirmed")
+    found = judge(lambda scene, size, blur: scene != "tree" and blur == "none")
+    assert found == (
+        "in 4 of 12 settings",
+        "holds where the scene is not tree and the blur is none",
+    )
+    assert count_verdicts([Claim("", "", "", *found)]) == "1 for some settings"
+    ours, verdict = judge(lambda *cell: cell == settings[0])
+    assert ours.startswith("in 1 of 12 settings, at most where the scene is ball and the map is")
+    assert verdict == "not confirmed"
+    assert judge(lambda *cell: False) == ("in 0 of 12 settings", "not confirmed")
+
+
+@pytest.mark.quick
 def test_the_theses_are_listed():
     assert "kurt2007" in list_theses()
     listed = CliRunner().invoke(main, ["reproduce"])
     assert listed.exit_code == 0
     assert "kurt2007" in listed.output
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    ("thesis", "parts"),
+    [("ergun2008", ["check_values", "misprints", "depth_curves"]), ("ergun2015", ["convex_rays"])],
+)
+def test_committed_pages_have_the_verdicts_of_the_code(thesis, parts, llvm_variant):
+    page = (PAGES / f"{thesis}.md").read_text(encoding="utf-8")
+    rows = [line.strip("| ").split(" | ") for line in page.splitlines() if line.endswith("** |")]
+    committed = {row[0]: row[-1].strip("*") for row in rows}
+    found = bk.reproduce(thesis, parts=parts).claims
+    assert {claim.says: committed.get(claim.says) for claim in found} == {
+        claim.says: claim.verdict for claim in found
+    }
 
 
 @pytest.mark.quick

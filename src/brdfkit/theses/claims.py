@@ -19,7 +19,8 @@ def measure_least_seconds(function: Callable[..., Any], *arguments: Any, times: 
 
 
 CONFIRMED, REFUTED, UNSTATED, NOT_RUN = "confirmed", "not confirmed", "not stated", "not run"
-VERDICTS = CONFIRMED, REFUTED, UNSTATED, NOT_RUN
+HOLDS_WHERE = "holds where"  # a verdict begins with it that names the settings in which it holds
+VERDICTS = CONFIRMED, HOLDS_WHERE, REFUTED, UNSTATED, NOT_RUN
 
 
 @dataclass(frozen=True)
@@ -37,10 +38,14 @@ class Claim:
     ours : str
         The figures that come out here.
     verdict : str
-        "confirmed", "not confirmed", "not stated" (the thesis gives no figure to compare with) or
-        "not run" (the data for it are missing).
+        "confirmed", "holds where " and some of the settings that were tried, "not confirmed", "not
+        stated" (the thesis gives no figure to compare with) or "not run" (the data for it are
+        missing).
     why : str
         Why the figures differ, or how they were compared.
+    arithmetic : bool, default False
+        Whether this checks a formula by values that were computed apart, or adds printed figures
+        up: that tests the code, not what the thesis found, and is counted apart.
     """
 
     says: str
@@ -49,10 +54,16 @@ class Claim:
     ours: str
     verdict: str
     why: str = ""
+    arithmetic: bool = False
 
     def __post_init__(self) -> None:
-        if self.verdict not in VERDICTS:
+        if self.kind not in VERDICTS:
             raise ValueError(f"{self.verdict!r} is no verdict; there are {', '.join(VERDICTS)}")
+
+    @property
+    def kind(self) -> str:
+        """The verdict, or "holds where" without the settings."""
+        return HOLDS_WHERE if self.verdict.startswith(f"{HOLDS_WHERE} ") else self.verdict
 
 
 def to_verdict(holds: bool) -> str:
@@ -66,5 +77,22 @@ def count_verdicts(claims: Iterable[Claim]) -> str:
     >>> count_verdicts([Claim("", "", "", "", "confirmed")])
     '1 confirmed'
     """
-    verdicts = [c.verdict for c in claims]
-    return ", ".join(f"{verdicts.count(v)} {v}" for v in VERDICTS if v in verdicts)
+    kinds = [claim.kind for claim in claims]
+    words = {HOLDS_WHERE: "for some settings"}
+    return ", ".join(f"{kinds.count(v)} {words.get(v, v)}" for v in VERDICTS if v in kinds)
+
+
+def describe_counts(claims: Iterable[Claim]) -> str:
+    """Count claims with their verdicts, and checks of arithmetic apart from them, in words.
+
+    >>> sums = Claim("", "", "", "", "confirmed", arithmetic=True)
+    >>> describe_counts([Claim("", "", "", "", "not stated"), sums])
+    '1 claims: 1 not stated; and 1 checks of arithmetic: 1 confirmed'
+    """
+    claims = list(claims)
+    counted = [claim for claim in claims if not claim.arithmetic]
+    checks = [claim for claim in claims if claim.arithmetic]
+    words = f"{len(counted)} claims: {count_verdicts(counted)}"
+    if not checks:
+        return words
+    return f"{words}; and {len(checks)} checks of arithmetic: {count_verdicts(checks)}"

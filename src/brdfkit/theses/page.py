@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from brdfkit.core.files import write_safely
-from brdfkit.theses.claims import Claim, count_verdicts
+from brdfkit.theses.claims import Claim, describe_counts
 
 HEAD = "claim", "where", "printed", "ours", "verdict"
+ARITHMETIC = """Formulas at values that were computed apart, and sums of printed figures. They test
+the code and the print, not what the thesis found, and do not count as claims."""
 RESOLUTION = 90  # dots per inch of the figures
 
 
@@ -84,8 +86,12 @@ def _format_page(
     blocks = [f"# {title}", introduction.strip()]
     if missing:
         blocks.append(f"**Not finished**: {', '.join(missing)}.")
-    blocks += ["## The claims", f"{len(claims)} claims: {count_verdicts(claims)}."]
-    blocks.append(_format_table(HEAD, [_format_claim(claim) for claim in claims]))
+    groups = [[c for c in claims if c.arithmetic is arithmetic] for arithmetic in (False, True)]
+    blocks += ["## The claims", f"{describe_counts(claims)}."]
+    blocks.append(_format_table(HEAD, [_format_claim(claim) for claim in groups[0]]))
+    if groups[1]:
+        blocks += ["## Checks of arithmetic", ARITHMETIC]
+        blocks.append(_format_table(HEAD, [_format_claim(claim) for claim in groups[1]]))
     for section in sections:
         blocks += [f"## {section.title}", section.text.strip()]
         blocks += [_format_reason(claim) for claim in section.claims if claim.why]

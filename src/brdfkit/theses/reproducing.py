@@ -14,7 +14,7 @@ from brdfkit.core.documents import Document, Shown, Table
 from brdfkit.core.errors import BrdfkitError, no_such_error
 from brdfkit.core.files import make_folder, require_writable
 from brdfkit.core.progress_bar import Progress
-from brdfkit.theses.claims import Claim, count_verdicts
+from brdfkit.theses.claims import Claim, describe_counts
 from brdfkit.theses.page import write_page
 from brdfkit.theses.sources import Sources, find_sources
 
@@ -44,7 +44,7 @@ class Reproduction(Shown):
     def document(self) -> Document:
         """Return a table of the claims: verdict, claim, printed figures, figures here."""
         rows = tuple((c.verdict, f"{c.says} ({c.where})", c.printed, c.ours) for c in self.claims)
-        title = f"{self.name}: {len(self.claims)} claims: {count_verdicts(self.claims)}"
+        title = f"{self.name}: {describe_counts(self.claims)}"
         return Document(title, (Table(rows, ("verdict", "claim", "printed", "here")),))
 
 

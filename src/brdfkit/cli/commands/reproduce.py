@@ -83,12 +83,12 @@ def reproduce(
 
 def _print_claims(result: Reproduction, console: Console) -> None:
     """Print the verdicts on the claims, and the files that were written."""
-    from brdfkit.theses.claims import count_verdicts
+    from brdfkit.theses.claims import describe_counts
 
     if console.as_json:
         console.print_json(result)
         return
     rows = [(c.verdict, c.says, c.where, c.printed, c.ours) for c in result.claims]
-    title = f"{result.name}: {len(rows)} claims: {count_verdicts(result.claims)}"
+    title = f"{result.name}: {describe_counts(result.claims)}"
     console.print_table(["verdict", "claim", "where", "printed", "ours"], rows, title=title)
     console.print_written(result.written)
