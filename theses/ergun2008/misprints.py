@@ -185,4 +185,5 @@ def claim_means():
         f"{2 * len(expected)} figures whose cells are in the text",
         f"off by {np.max(off):.2f} of their last digits at most",
         to_verdict(np.max(off) < 1),
+        arithmetic=True,
     )

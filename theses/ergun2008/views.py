@@ -3,16 +3,28 @@
 from dataclasses import dataclass
 
 import numpy as np
+from brdfkit.theses.ergun2008.compact import make_compact_scene
 
 from brdfkit.images.errors.psnr import psnr
 from brdfkit.shadows.comparison.exact_shadow import LitView
 from brdfkit.shadows.maps.light_shadow import LightShadow
+from brdfkit.shadows.maps.map_point import AUTOMATIC, Bias
 from brdfkit.shadows.maps.placement import Placement
-from brdfkit.shadows.maps.scenes import LIGHTS, SCENES, VIEWS
+from brdfkit.shadows.maps.scenes import LIGHTS, VIEWS
+from brdfkit.shadows.maps.scenes import SCENES as DEEP_SCENES
 from brdfkit.theses.drawing import make_figure
 
 SIZE = 256  # pixels along a side of a picture
 RESOLUTION = 512  # texels along a side of a map
+SCENES = DEEP_SCENES | {
+    "compact": make_compact_scene(7.0),
+    "compact_from_afar": make_compact_scene(14.0),
+}
+# Moves of receivers towards the light. Constant ones, a share of the longest ray, were the usual
+BIASES = {
+    "by the receiver's plane": AUTOMATIC,
+    **{f"{share:g}": Bias(constant=share) for share in (5e-4, 1e-3, 2e-3)},
+}
 MOST = 99.0  # dB: the PSNR of a picture without an error, which would be infinite
 PROJECTIONS = {
     "uniform": "uniform",
@@ -58,6 +70,17 @@ class View:
         """Return the shares (pixels,) of the light that a `LightShadow` lets through."""
         si = self.seen.si
         return np.array(shadow.visibility(si.p, si.n, si.is_valid()))
+
+    def compute_lit_by_bias(self, biases, **technique):
+        """Yield the shares (pixels,) of the light by a technique with each of the `biases`.
+
+        The maps are made once, which takes most of the time: biases only move receivers.
+        """
+        shadow = self.make_shadow(**technique)
+        for bias in biases:
+            for each in shadow.maps:
+                each.bias = bias
+            yield self.compute_lit(shadow)
 
     def measure_error(self, lit):
         """Return the mean error of shares of the light, where surfaces face it."""
