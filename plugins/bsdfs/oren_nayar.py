@@ -6,9 +6,10 @@
 
 θ_i and θ_o are the angles of the directions of light and view to the normal, α is the greater and β
 the smaller of them, Δφ is the difference of their azimuths, and σ the standard deviation of the
-facets' inclination. A = C₁ = 1 - 0.5 σ² / (σ² + 0.33), B = 0.45 σ² / (σ² + 0.09), C₂ = B (sinα,
-less (2β/π)³ where cosΔφ < 0), C₃ = 0.125 σ² / (σ² + 0.09) (4αβ/π²)². The term with k_d² is light
-reflected between facets.
+facets' inclination. The bracket of the full form is clamped at 0: for rough facets it is below 0
+near the horizon, opposite to the light. A = C₁ = 1 - 0.5 σ² / (σ² + 0.33), B = 0.45 σ² / (σ² +
+0.09), C₂ = B (sinα, less (2β/π)³ where cosΔφ < 0), C₃ = 0.125 σ² / (σ² + 0.09) (4αβ/π²)². The term
+with k_d² is light reflected between facets.
 
 [Oren & Nayar 1994]; [Kurt 2007, eqs. 3.18-3.24]. (In the printed eq. 3.23 the bracket closes too
 early, which would make surfaces black at normal incidence.) At σ = 0 the model is Lambert's. It

@@ -1,5 +1,6 @@
 """The models that are linear in all their weights: Koenderink's basis and the PCA polynomial."""
 
+import math
 import sys
 
 import drjit as dr
@@ -7,9 +8,10 @@ import numpy as np
 import pytest
 
 import brdfkit as bk
+from brdfkit.checks.material_subject import draw_direction_pairs
 from brdfkit.core.geometry.directions import from_angles
 from brdfkit.materials.measured.selection import select_samples
-from brdfkit.model import labels
+from brdfkit.model import labels, weight
 from brdfkit.model.evaluation import compute_lobe_values
 
 
@@ -141,3 +143,18 @@ def test_what_is_clamped_is_said():
     )
     notes = bk.fit(data, "koenderink:order=4", loss="cosine").notes
     assert any("pairs are clamped at 0" in note for note in notes)
+
+
+def test_a_derived_class_may_have_a_highlight_below_zero():
+    """Weights of any sign are declared in a class of the model: docs/how_to/your_model.md."""
+
+    class SignedWard(labels.model("ward")):
+        specular_reflectance = weight(0.2, "k_s of any sign", (-math.inf, math.inf))
+
+    truth = SignedWard(diffuse_reflectance=0.5, specular_reflectance=-0.03, alpha_u=0.4)
+    wi, wo = draw_direction_pairs(500, seed=3, max_degrees=70)
+    data = bk.Measured.from_samples(wi, wo, truth.eval(wi, wo), channels=("Y",))
+    signed, known = (bk.fit(data, model, loss="cosine") for model in (SignedWard, "ward"))
+    np.testing.assert_allclose(signed.values["specular_reflectance"], -0.03, rtol=1e-3)
+    assert signed.loss < 1e-6 < known.loss
+    assert known.values["specular_reflectance"] == (0.0,)

@@ -16,6 +16,7 @@ from brdfkit.materials.loading import load
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model import labels
 from brdfkit.model.evaluation import compute_lobe_values, to_weight_matrix
+from brdfkit.model.parameters import SIGNED
 from brdfkit.regression import losses
 
 
@@ -43,6 +44,14 @@ BISQUARE, OLS, WLS = (PLAIN, "bisquare"), (PLAIN, None), ("kurt", None)
 METHODS = {"bisquare": BISQUARE, "least squares": OLS, "weighted by eq. 5.13": WLS}
 
 
+@cache
+def make_signed_model(label):
+    """Return a model's class with weights of any sign, as the thesis lets k_d and k_s have."""
+    model = labels.model(label)
+    weights = {name: replace(model.parameters[name], bounds=SIGNED) for name in model.weights()}
+    return type(f"Signed{model.__name__}", (model,), weights)
+
+
 class Sample:
     """A sample of CUReT, with its 189 values at angles below 80° and the weights of eq. 5.13."""
 
@@ -54,24 +63,27 @@ class Sample:
         self.weights = losses.named["kurt"].weights(self.cosines)
         self.fits = {}
 
-    def fit(self, label, how=WLS):
-        """Return the `Fit` of a model, made once; `how` holds the loss and the robust weight."""
-        if (label, how) not in self.fits:
+    def fit(self, label, how=WLS, signed=False):
+        """Return the `Fit` of a model, made once; `how` holds the loss and the robust weight.
+
+        If `signed`, the weights may have any sign.
+        """
+        if (label, how, signed) not in self.fits:
             loss, robust = how
             found = fit(
                 self.data,
-                label,
+                make_signed_model(label) if signed else label,
                 loss=loss,
                 robust=robust,
                 bounds=BOUNDS.get(label),
                 extrapolate="free",
             )
-            self.fits[label, how] = found
-        return self.fits[label, how]
+            self.fits[label, how, signed] = found
+        return self.fits[label, how, signed]
 
-    def compute_error(self, label, how=WLS):
+    def compute_error(self, label, how=WLS, signed=False):
         """Return the thesis's error E of a model's fit to the sample."""
-        return compute_error(self.fit(label, how).model, self.samples)
+        return compute_error(self.fit(label, how, signed).model, self.samples)
 
     def compute_value_error(self, values):
         """Return the thesis's error E of BRDF values (n,) at the sample's directions."""
@@ -103,11 +115,11 @@ def load_samples(sources):
     return {number: load_sample(sources, number) for number in NUMBERS}
 
 
-def compute_errors(sources, label, how=WLS, report=None):
+def compute_errors(sources, label, how=WLS, report=None, signed=False):
     """Return the thesis's error E (52,) of a model's fits to all samples."""
     found = []
     for done, data in enumerate(load_samples(sources).values()):
-        found.append(data.compute_error(label, how))
+        found.append(data.compute_error(label, how, signed))
         if report:
             report(done + 1, len(NUMBERS))
     return np.array(found)
@@ -127,7 +139,8 @@ def evaluate_lobes(name, shapes, wi, wo):
 def find_scale(data, printed):
     """Return the factor from our error of a sample to the thesis's, summed over three channels.
 
-    It is the median over the seven models of printed / ours; `printed` maps names to errors.
+    It is the median over the seven models of printed / ours, with weights of any sign; `printed`
+    maps names to errors.
     """
     names = [n for n in SEVEN if np.isfinite(printed[n])]
-    return np.median([printed[n] / data.compute_error(SEVEN[n]) for n in names])
+    return np.median([printed[n] / data.compute_error(SEVEN[n], signed=True) for n in names])

@@ -10,7 +10,7 @@ from brdfkit.fitting.fit import fit
 from brdfkit.materials.loading import load
 from brdfkit.materials.measured.selection import select_samples
 from brdfkit.model.evaluation import to_weight_matrix
-from brdfkit.theses.claims import NOT_RUN, Claim, to_verdict
+from brdfkit.theses.claims import NOT_RUN, UNSTATED, Claim, to_verdict
 from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section, Table
 
@@ -19,14 +19,18 @@ DEGREE = 5
 LIMIT = 0.12  # sr⁻¹: the top of the figure, below which are most samples
 DEGREES = 2, 3, 4, 7
 TEXT = """Z₁ and Z₂ are the principal components of W₁ = l_x v_x + l_y v_y and W₂ = l_z v_z over
-the measured directions. The thesis shows Mystique lacquer, whose file is not at hand: this is
-**Cayman lacquer**, its green channel, below 80°, by bisquare. The dots are samples, the lines the
+the measured directions. The thesis shows Mystique lacquer; where its file is not at hand, this is
+Cayman lacquer. It is the green channel, below 80°, by bisquare. The dots are samples, the lines the
 polynomial, f = β₀ + g(Z₁) + h(Z₂)."""
 
 
 def check_claims(sources, report):
     """Check the claims on the polynomial and its terms of interaction, and return their section."""
-    picture = _draw_figure(load(sources.find_file("cornell/cayman.brdf")))
+    mystique = sources.find_file("cornell/mystique.brdf")
+    here = mystique.is_file()
+    name = "Mystique" if here else "Cayman"
+    file = mystique if here else sources.find_file("cornell/cayman.brdf")
+    picture = _draw_figure(load(file), name)
     report(1, 3)
     shares = _compare_interactions(load_samples(sources).values())
     claims = [
@@ -34,9 +38,10 @@ def check_claims(sources, report):
             "f as a surface over Z₁ and Z₂, of Mystique lacquer.",
             "Figure 7.1",
             "a drawing",
-            "Cayman in its place",
-            NOT_RUN,
-            "Cornell's mystique.brdf is not at hand; nothing but the look could be compared.",
+            "a drawing" if here else "Cayman in its place",
+            UNSTATED if here else NOT_RUN,
+            "Nothing but the look could be compared."
+            + ("" if here else " Cornell's mystique.brdf is not at hand."),
         ),
         Claim(
             "Principal components are orthogonal, so that their interactions vanish.",
@@ -101,7 +106,7 @@ def _compute_components(wi, wo, angle):
     return _multiply_directions(wi, wo) @ np.array([[cosine, -sine], [sine, cosine]])
 
 
-def _draw_figure(data):
+def _draw_figure(data, name):
     from matplotlib.ticker import MaxNLocator
 
     found = fit(data, f"pca_polynomial:degree={DEGREE}", loss=PLAIN, robust="bisquare")
@@ -127,7 +132,7 @@ def _draw_figure(data):
     axes.view_init(22, -58)
     axes.legend(loc="upper left", frameon=False)
     caption = (
-        f"Cayman lacquer, p = {DEGREE}; the {(~low).sum()} of {len(f):,} samples above {LIMIT} "
+        f"{name} lacquer, p = {DEGREE}; the {(~low).sum()} of {len(f):,} samples above {LIMIT} "
         "sr⁻¹, those of the highlight, are not shown: for bisquare they are outliers."
     )
     return Picture("figure_7_1", drawn, caption)

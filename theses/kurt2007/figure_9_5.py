@@ -61,8 +61,10 @@ def _claim_degrees(as_thesis, least):
         f"polynomial {counts[0]} of 52, Koenderink {counts[1]} of 52; by least E {counts[2]} and "
         f"{counts[3]}",
         to_verdict(min(counts[:2]) >= 0.9 * len(NUMBERS)),
-        "In the samples that were fitted: 55 weights for 189 samples fit noise as well. Where "
-        "bisquare takes a highlight for outliers, a higher degree may have the larger E.",
+        "In the samples that were fitted: 55 weights for 189 samples fit noise as well. By least E "
+        "it cannot be otherwise, since the larger model contains the smaller. Where bisquare takes "
+        "a highlight for outliers, a higher degree may have the larger E.",
+        arithmetic=True,
     )
 
 
@@ -88,6 +90,7 @@ def _claim_isotropic_counts():
         "5 14 55",
         " ".join(map(str, counts)),
         to_verdict(counts == [5, 14, 55]),
+        arithmetic=True,
     )
 
 
@@ -104,4 +107,5 @@ def _claim_anisotropic_counts():
         to_verdict(counts == [14, 55, 295]),
         "No truncation of the reciprocal basis has these counts: 14 and 55 are those of the "
         "isotropic one at twice the order, whose next is 285.",
+        arithmetic=True,
     )

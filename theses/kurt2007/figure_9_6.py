@@ -38,6 +38,7 @@ def check_claims(sources, report):
             f"largest relative difference {difference:.1g}",
             to_verdict(difference <= 1e-12),
             "By construction: it is made of products of the components of both directions.",
+            arithmetic=True,
         ),
         Claim(
             "All models of chapter 3 are reciprocal.",
@@ -45,7 +46,8 @@ def check_claims(sources, report):
             "reciprocal",
             f"largest relative difference {worst:.1g}",
             to_verdict(worst <= 1e-12),
-            "In all printed forms, at our defaults.",
+            "In all printed forms, at our defaults: seen in the formulas.",
+            arithmetic=True,
         ),
     ]
     return Section("Figure 9.6: reciprocity", TEXT, claims)

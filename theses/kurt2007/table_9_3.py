@@ -24,10 +24,10 @@ SIZE, SPP = 96, 64
 TEXT = f"""**On neural reconstructions of MERL's materials** [Sztrajman et al. 2021], not on its
 measurements: they are 10 to 30 % off on gloss. The thesis sampled "all combinations of angles met
 when a sphere is rendered"; ours are the {CELLS[0]} × {CELLS[1]} × {CELLS[2]} cells of a table
-below 80°, so that E has another scale. Of the PSNR the thesis gives no definition, no size and no
-light; ours is that of `bk.render`, a ball of {SIZE} pixels and {SPP} samples a pixel under a
-clear sky and a softbox, linear values, peak the 99.9th percentile. So only who is best, and the
-order, compare. Cells: L2 error / PSNR [dB], printed → ours."""
+below 80°, so that E has another scale; weights are ≥ 0. Of the PSNR the thesis gives no definition,
+no size and no light; ours is that of `bk.render`, a ball of {SIZE} pixels and {SPP} samples a pixel
+under a clear sky and a softbox, linear values, peak the 99.9th percentile. So only who is best, and
+the order, compare. Cells: L2 error / PSNR [dB], printed → ours."""
 
 
 def check_claims(sources, report):
@@ -86,6 +86,8 @@ def _make_claims(theirs, ours, names):
     last = models.index(POLYNOMIAL)
     best = [_select_names(t["psnr"].argmax(axis=0) == last, names) for t in (theirs, ours)]
     lowest = [_select_names(_is_lowest(t["errors"], last), names) for t in (theirs, ours)]
+    margins = ours["psnr"][last] - np.delete(ours["psnr"], last, axis=0).max(axis=0)
+    least = np.where(margins > 0, margins, np.inf).argmin()
     order = [_compute_rank_correlation(theirs[k], ours[k]) for k in ("errors", "psnr")]
     yield Claim(
         "Where the polynomial of degree 5 has the best picture.",
@@ -93,7 +95,8 @@ def _make_claims(theirs, ours, names):
         ", ".join(best[0]),
         ", ".join(best[1]) or "nowhere",
         to_verdict(best[0] == best[1]),
-        "Highest PSNR of eight models; ours in another light, on neural reconstructions.",
+        "Highest PSNR of eight models; ours in another light, on neural reconstructions. On "
+        f"{names[least]} the lead is {margins[least]:.2f} dB, so that other lights may turn it.",
     )
     yield Claim(
         "Where the polynomial of degree 5 has the lowest error.",
@@ -108,9 +111,10 @@ def _make_claims(theirs, ours, names):
         "9.3",
         f"best picture on {len(best[0])} of 5, lowest error on {len(lowest[0])} of 5",
         f"best picture on {len(best[1])} of 5, lowest error on {len(lowest[1])} of 5",
-        to_verdict(len(best[1]) == len(lowest[1]) == len(names)),
-        "Not even in the printed table. Bisquare takes highlights for outliers: on gloss its E is "
-        "far above that of models that have a lobe, though a picture of the ball shows it little.",
+        to_verdict(min(len(best[1]), len(lowest[1])) > len(names) / 2),
+        "Confirmed where both are on most. Not even so in the printed table. Bisquare takes "
+        "highlights for outliers: on gloss its E is far above that of models that have a lobe, "
+        "though a picture of the ball shows it little.",
     )
     yield Claim(
         "The order of the models by their errors.",
