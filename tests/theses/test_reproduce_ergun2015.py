@@ -111,6 +111,19 @@ def test_an_edge_is_seen_where_the_view_changes(monkeypatch):
     assert lobe_views.measure_view_jumps(error + 9 * views[..., None], views, seen) > 5
 
 
+@pytest.mark.quick
+def test_edges_are_judged_by_map_and_roughness():
+    kinds = lobe_views.KINDS
+    jumps = {(m, a): dict.fromkeys(kinds, 2.0) for m in ("one", "two") for a in ("0.1", "0.2")}
+    jumps["two", "0.2"] = dict.fromkeys(kinds, 1.0)
+    found = lobe_views.claim_edges("Mixtures.", jumps, lobe_views.BLOCKS, True)
+    assert found.verdict == "holds where the map is one"
+    assert found.ours == "in 3 of 4 settings; 1.0 to 2.0 times"
+    assert lobe_views.claim_edges("None.", jumps, lobe_views.KERNELS, False).verdict == (
+        "not confirmed"
+    )
+
+
 def test_the_lobes_of_the_nearest_view_are_rendered(llvm_variant):
     """The replaced look-up of views changes the picture, and is taken away again."""
     made = find_scene("ball")(make_ward_bsdf(0.2), (16, 16))

@@ -73,6 +73,7 @@ def claim_law():
         f"sum off by {off:.0e}, ξ by {back:.0e}",
         to_verdict(max(off, back) < 1e-12),
         "n = 256, u = 5.",
+        arithmetic=True,
     )
 
 
