@@ -11,7 +11,7 @@ from brdfkit.theses.balint2019.scenes import MARCHES
 
 from brdfkit.theses.page import Table
 
-TIMES, RADIUS = 3, 0.5
+TIMES, RADIUS = 7, 0.5
 INVERSES = 10, 20, 30, 256  # of ε
 HEADS = {
     "table_6_1": "Table 6.1, a simple scene",
@@ -27,19 +27,17 @@ def list_settings():
 
 
 def read_printed_times(name):
-    """Return printed times (row, march) of the shadows alone, over that of `linear` in the first
-    row.
-    """
+    """Return printed times (1, row, march) of the shadows alone, over the first one of `linear`."""
     text = Path(__file__).with_name("printed.toml").read_text(encoding="utf-8")
     table = tomllib.loads(text)[name]
     times = (
         np.array([table[f"1/{n} {direction}"] for n, direction in list_settings()]) - table["bare"]
     )
-    return times / times[0, LINEAR]
+    return times[None] / times[0, LINEAR]
 
 
 def measure_marches(view):
-    """Return times, mean evaluations and errors of marches, each an array (row, march)."""
+    """Return times (turn, row, march) of marches, mean evaluations and errors (row, march)."""
     field, cone = view.scene.field, view.make_cones(RADIUS)
     methods = {
         (row, march): partial(call, field, cone, 1 / n, direction)
@@ -48,12 +46,14 @@ def measure_marches(view):
     }
     seconds = measure_in_turns(methods, TIMES)
     model = read_shares(compute_dense_shadow(field, cone))
-    found = np.zeros((3, len(list_settings()), len(MARCHES)))
+    times = np.zeros((TIMES, len(list_settings()), len(MARCHES)))
+    found = np.zeros((2, *times.shape[1:]))
     for place, method in methods.items():
         shadow = method()
         error = compute_rms(read_shares(shadow) - model)
-        found[:, *place] = seconds[place], np.mean(shadow.evaluations), error
-    return found
+        times[:, *place] = seconds[place]
+        found[:, *place] = np.mean(shadow.evaluations), error
+    return times, *found
 
 
 def make_times_table(name, ours, printed, evaluations):
@@ -64,7 +64,10 @@ def make_times_table(name, ours, printed, evaluations):
             *(f"{a:.2f} / {b:.2f} ({e:.0f})" for a, b, e in zip(*columns, strict=True)),
         )
         for (n, direction), *columns in zip(
-            list_settings(), ours, printed, evaluations, strict=True
+            list_settings(),
+            *(np.exp(np.log(times).mean(axis=0)) for times in (ours, printed)),
+            evaluations,
+            strict=True,
         )
     ]
     caption = (

@@ -20,7 +20,9 @@ from brdfkit.distance_fields.shadows.tau import lit_disc_share
 
 NEWTON_STEPS = 4  # for errors below 1e-14, and below 1e-6 in single precision
 MAX_STEPS = 512  # of a hard ray
-HIT_DISTANCE = 1e-3  # of a hard ray from an object that it meets, over the light's distance
+# Of a hard ray from an object that it meets: at most this share of the light's distance, and
+# half of the empty ball's radius at most, so that no ray meets the surface where it starts
+HIT_DISTANCE = 1e-3
 
 
 def base(field: Any, cone: LightCone, epsilon: float = 1 / 20, direction: str = "A") -> Shadow:
@@ -107,7 +109,7 @@ def trace_hard_ray(
     `nearness(t, F, F_before)` is the distance at which it passes, over t.
     """
     f, lipschitz, cone = (distance_function(field), lipschitz_bound(field), cone.make_detached())
-    k, hit = cone.d / cone.R_1, HIT_DISTANCE * cone.d
+    k, hit = cone.d / cone.R_1, dr.minimum(HIT_DISTANCE * cone.d, cone.R_0 / 2)
 
     def step(
         t: JitFloat, visible: JitFloat, t_min: JitFloat, F_before: JitFloat, i: JitFloat

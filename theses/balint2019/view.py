@@ -34,21 +34,18 @@ SKY, AMBIENT = 0.8, 0.15  # the grey of pictures without an object, and of unlit
 
 
 class View:
-    """The points of a `Scene` that a square picture of `size` × `size` pixels shows."""
+    """The points of a `Scene` that a square picture of `size` × `size` pixels shows.
 
-    def __init__(self, scene, size):
+    rows : the rows of a larger picture, of which these pixels are a sample, as wide as they are
+        there; by default `size`.
+    """
+
+    def __init__(self, scene, size, rows=None):
         self.scene, self.size = scene, size
-        eye, d, tangent = (
-            Array3f(scene.eye),
-            compute_ray_directions(scene, size),
-            pixel_tangent(scene.fov, size),
-        )
-        field = scene.field
-        how = {"lipschitz": field.lipschitz, "tangent": tangent, "precision": PRECISION}
-        hit = cone_trace(field.distance, eye, d, FAR, **how)
+        hit, points = find_points(scene, size, rows)
         self.seen = np.array(hit.found)
         lanes = dr.compress(hit.found)
-        self.points = dr.gather(Array3f, eye + d * hit.t, lanes)
+        self.points = dr.gather(Array3f, points, lanes)
         self.ball = dr.gather(Float, hit.distance, lanes)
         dr.eval(self.points, self.ball)
 
@@ -74,6 +71,31 @@ class View:
         found = np.full(self.seen.shape, other, float)
         found[self.seen] = values
         return found.reshape(self.size, self.size)
+
+
+def find_points(scene, size, rows=None):
+    """Return where the eye rays of a picture end, as `Hit` of cone tracing and as points."""
+    field, eye, d = scene.field, Array3f(scene.eye), compute_ray_directions(scene, size)
+    tangent = pixel_tangent(scene.fov, rows or size)
+    how = {"lipschitz": field.lipschitz, "tangent": tangent, "precision": PRECISION}
+    hit = cone_trace(field.distance, eye, d, FAR, **how)
+    return hit, eye + d * hit.t
+
+
+def trace_eye_rays(scene, size, rows=None):
+    """Return what all pixels of a picture show: points, normals, empty balls, whether there is any.
+
+    Nothing is run, so that it can be part of a larger kernel.
+    """
+    hit, points = find_points(scene, size, rows)
+    normals = normal(scene.field.distance, points, dr.maximum(hit.distance, STEP))
+    return points, normals, hit.distance, hit.found
+
+
+def shade_points(light, points, normals, found, visible):
+    """Return grey pixels by shares `visible` of the light."""
+    facing = dr.maximum(dr.dot(normals, dr.normalize(light - points)), 0)
+    return dr.select(found, AMBIENT + (1 - AMBIENT) * facing * visible, SKY)
 
 
 def compute_ray_directions(scene, size):

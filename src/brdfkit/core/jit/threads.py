@@ -50,6 +50,22 @@ def set_thread_count(count: int) -> None:
 
 
 @contextmanager
+def use_one_thread() -> Iterator[None]:
+    """Run the kernels of the block in the calling thread alone, to measure their CPU time.
+
+    Other threads of Dr.Jit use the processor while they wait, and CPU time counts that, too.
+    """
+    import drjit as dr
+
+    count = dr.thread_count()
+    dr.set_thread_count(0)
+    try:
+        yield
+    finally:
+        dr.set_thread_count(count)
+
+
+@contextmanager
 def use_two_threads() -> Iterator[None]:
     """Run the kernels of the block in at least two threads.
 
