@@ -61,7 +61,7 @@ class Lanes:
 def half_plane(lanes):
     """Return half-spaces whose plane goes through the apex of the cone.
 
-    The true share of the light is τ(`lanes.edge`).
+    Seen from the apex, the share of the light is τ(`lanes.edge`).
     """
     lanes.edge = lanes.draw_uniform(-1, 1)
     azimuth, beta = lanes.draw_azimuth(), np.arctan(lanes.edge * lanes.tan)

@@ -5,8 +5,8 @@
 
 Each part is stored in `single_ray_shadows.json` as soon as it is measured, so that the same command
 continues an interrupted run; delete the file to measure again. Then it writes
-docs/single_ray_shadows.md and .png. Times are compared within a part, where methods take turns;
-they are processor times of all threads.
+docs/single_ray_shadows.md and .png. Times are compared within a part, where methods take turns in
+one thread; they are processor times.
 """
 
 import json
@@ -25,7 +25,7 @@ import single_ray_shadows_page as page
 from brdfkit.distance_fields.shadows.marches import compute_convex_shadow, compute_linear_shadow
 from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
 from brdfkit.distance_fields.shadows.split import compute_split_shadow
-from brdfkit.distance_fields.shadows.tau import lit_disc_share
+from brdfkit.core.jit.threads import use_one_thread
 from brdfkit.core.json_values import round_numbers
 from brdfkit.theses.balint2019.dense import compute_dense_shadow
 from brdfkit.theses.balint2019.rivals import aaltonen, base, discrete, quilez
@@ -43,7 +43,7 @@ MARCHES = {
     "discrete": discrete,
     "convex": compute_convex_shadow,
 }
-REPEATS = 8
+REPEATS = 5
 
 
 def list_methods():
@@ -92,6 +92,12 @@ def compare_methods(field, cone, truth, calls=None):
     return rows
 
 
+def compute_true_shares(field, cone, rays):
+    """Return the shares of the light by other rays than those of the methods that are compared."""
+    return np.array(compute_monte_carlo_shadow(field, cone, rays, HIT, max(RAYS)).visible)
+
+
+@use_one_thread()
 def measure_occluder(kind):
     """Measure all methods for one kind of occluder, compared with the true share of the light.
 
@@ -99,12 +105,7 @@ def measure_occluder(kind):
     """
     lanes = occluders.Lanes(LANES, seed=0)
     field = kind(lanes)
-    if kind is occluders.half_plane:
-        truth = np.array(
-            lit_disc_share(dr.llvm.Float(lanes.edge))
-        )  # the true share has a closed form
-    else:
-        truth = np.array(compute_monte_carlo_shadow(field, lanes.cone, TRUE_RAYS, HIT).visible)
+    truth = compute_true_shares(field, lanes.cone, TRUE_RAYS)
     model = np.array(compute_dense_shadow(field, lanes.cone).visible)
     rows = compare_methods(field, lanes.cone, truth)
     for name, march in MARCHES.items():
@@ -114,12 +115,11 @@ def measure_occluder(kind):
     return rows
 
 
+@use_one_thread()
 def measure_frame(scene, radius):
     """Measure all methods on a frame of shadows on the ground, compared with true shadows."""
     field, cone = scene(), ground_scenes.make_light_cones(SIZE, radius)
-    return compare_methods(
-        field, cone, np.array(compute_monte_carlo_shadow(field, cone, FRAME_RAYS, HIT).visible)
-    )
+    return compare_methods(field, cone, compute_true_shares(field, cone, FRAME_RAYS))
 
 
 def list_parts():

@@ -16,11 +16,11 @@ MARCHES = "base", "linear", "discrete", "convex"
 INTRODUCTION = """# Errors of single-ray shadows
 
 Made by `python benchmarks/single_ray_shadows.py`. Errors are root mean squares of the share of the
-light that is seen, from the light that truly arrives: 2048 rays (512 in frames), or the closed form
-of a half-plane. Times are ratios within one run. The marches are those of [Bálint et al. 2019], who
-published no errors; `quilez` and `aaltonen` are those of [Quílez 2010] and [Aaltonen 2018].
-What the errors look like: [the gallery](distance_fields.md); what the thesis claims:
-[its page](reproduce/balint2019.md).
+light that is seen, from the light that truly arrives: 2048 rays (512 in frames) from the point
+itself to a sphere. Times are ratios within one run, in one thread. The marches are those of
+[Bálint et al. 2019], who published no errors; `quilez` and `aaltonen` are those of [Quílez 2010]
+and [Aaltonen 2018]. What the errors look like: [the gallery](distance_fields.md); what the thesis
+claims: [its page](reproduce/balint2019.md).
 
 ![Errors over evaluations, and shadows on a ground](single_ray_shadows.png)
 """

@@ -166,8 +166,13 @@ def define(mi: MitsubaModule) -> type:
             """Return the light of all lamps and the sky that a `VisiblePoint` reflects."""
             light = mi.UnpolarizedSpectrum(0)
             bsdf = self.parts.find_bsdf(self.now, self.larger, point.si.p)
-            for lamp in find_lamps(scene):
-                light += self.light.compute_light_from_lamp(lamp, point, bsdf, sampler)
+            for lamps in find_lamps(scene):
+                light += lamps.sum_up(
+                    lambda lamp, sampler: self.light.compute_light_from_lamp(
+                        lamp, point, bsdf, sampler
+                    ),
+                    sampler,
+                )
             sky = scene.environment()
             if sky is not None:
                 light += self.light.compute_light_from_environment(sky, point, bsdf, sampler)

@@ -29,7 +29,7 @@ def lit(shape):
 
 
 def scene(mi, node, light, size=24, view=([-1, 0, 0.4], [-0.5, 0, 0]), unit=1, **integrator):
-    """The ground about the origin from above, without what casts the shadow."""
+    """The ground about the origin from above, without what casts the shadow; a lamp, or several."""
     given = {"bsdf": GREY, "field": node.to_json()}
     camera = mi.ScalarTransform4f().look_at(*(unit * np.array(view)).tolist(), [0, 0, 1])
     film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}}
@@ -39,7 +39,7 @@ def scene(mi, node, light, size=24, view=([-1, 0, 0.4], [-0.5, 0, 0]), unit=1, *
             "type": "scene",
             "integrator": {"type": "distance_field", **given, **integrator},
             "sensor": {"type": "perspective", "fov": 60, "to_world": camera, **clips, "film": film},
-            "lamp": light,
+            **(light if "type" not in light else {"lamp": light}),
         }
     )
 
@@ -231,6 +231,60 @@ def test_derivatives_are_those_of_differences(mi, name):
     expected = (ends[1] - ends[0]) / 0.02
     assert backward == pytest.approx(expected, rel=0.05)
     assert forward == pytest.approx(backward, rel=1e-3)
+
+
+def several_lamps(mi, count):
+    """Balls, rectangles, points and a sun about a cube, `count` of each, with their names."""
+    rng, t = np.random.default_rng(0), mi.ScalarTransform4f
+    made = {}
+    for i in range(count):
+        at = [rng.uniform((-3, -3, 3), (3, 3, 4)).tolist() for _ in "abc"]
+        turned = t().look_at(at[0], [0, 0, 0], [0, 1, 0]).scale([0.3, 0.2, 1])
+        made[f"ball_{i}"] = lit({"type": "sphere", "center": at[1], "radius": 0.1 + 0.05 * i})
+        made[f"rectangle_{i}"] = lit({"type": "rectangle", "to_world": turned})
+        made[f"point_{i}"] = POINT | {"position": at[2]}
+    return made | {"sun": {"type": "directional", "direction": [0, 1, -1], "irradiance": 2.0}}
+
+
+@pytest.mark.parametrize("settings", [{}, {"shading": "exact", "samples": 16}])
+def test_many_lamps_are_the_sum_of_each(mi, settings):
+    """Lamps are taken by a loop; a single one is not."""
+    lamps, size = several_lamps(mi, 2), 12
+    whole, *each = (
+        picture(mi, SHADED, some, size=size, **settings)
+        for some in (lamps, *({name: lamp} for name, lamp in lamps.items()))
+    )
+    tolerance = 1e-4 if not settings else 0.02
+    np.testing.assert_allclose(whole, sum(each), rtol=tolerance, atol=1e-5)
+
+
+def test_a_kernel_for_many_lamps_is_as_short_as_for_few(mi):
+    def count_operations(count):
+        loaded = scene(mi, SHADED, several_lamps(mi, count), size=4)
+        with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
+            dr.kernel_history_clear()
+            dr.eval(mi.render(loaded, spp=1))
+            return max(kernel.get("operation_count", 0) for kernel in dr.kernel_history())
+
+    assert count_operations(20) < 3 * count_operations(2)  # 10 times as many without the loop
+
+
+def test_one_of_several_lamps_has_derivatives(mi):
+    loaded = scene(mi, SHADED, several_lamps(mi, 2), size=8)
+    name = "rectangle_1.to_world"
+    parameters = mi.traverse(loaded)
+    start = mi.Transform4f(parameters[name])
+
+    def brightness(x):
+        parameters[name] = mi.Transform4f().translate(mi.Vector3f(x, 0, 0)) @ start
+        parameters.update()
+        return dr.sum(mi.render(loaded, parameters, spp=16, seed=5).array)
+
+    x = mi.Float(0)
+    dr.enable_grad(x)
+    dr.backward(brightness(x))
+    ends = [brightness(mi.Float(step))[0] for step in (-0.1, 0.1)]
+    assert dr.grad(x)[0] == pytest.approx((ends[1] - ends[0]) / 0.2, rel=0.05)
 
 
 def along(mi, loaded, name, step=None, spp=1024):

@@ -64,7 +64,7 @@ class DirectLight:
         """Return the radiance that a visible point reflects to the camera from a lamp."""
         import mitsuba as mi
 
-        if self.shading == "split" or lamp.shape is None:
+        if self.shading == "split" or not lamp.has_shape:
             return self._compute_split_light(lamp, seen, bsdf)
         is_visible: Callable[[MitsubaObject], JitMask]
         if self.shading == "exact":

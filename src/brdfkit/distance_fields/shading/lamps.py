@@ -3,12 +3,22 @@
 [Bálint et al. 2019, section 5.3]
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 import drjit as dr
+import numpy as np
 
-from brdfkit.core.array_types import JitColour, JitFloat, JitMask, JitVector, MitsubaObject
+from brdfkit.core.array_types import (
+    JitColour,
+    JitFloat,
+    JitInt,
+    JitMask,
+    JitVector,
+    MitsubaObject,
+)
 from brdfkit.core.errors import BrdfkitError
 
 # Mitsuba's shapes that may be lamps: points on their edges, in their own coordinates, and the
@@ -24,14 +34,19 @@ SHAPES: dict[str, Any] = {
 class Lamp:
     """A light of a scene.
 
-    emitter : the Mitsuba emitter.
+    emitter : `mi.EmitterPtr`.
     middle : the random numbers for which the emitter's `sample_direction` gives its centre.
-    shape : the shape of an area emitter; None for a point, a spot or a directional light.
+    has_shape : False for a point, a spot or a directional light.
+    centre, radius : the sphere around the shape, with derivatives.
+    is_sphere : Bool, whether the shape is that sphere.
     """
 
     emitter: Any
-    middle: tuple[float, float]
-    shape: Any = None
+    middle: Any
+    has_shape: bool
+    centre: Any
+    radius: Any
+    is_sphere: Any
 
     def bounding_sphere(
         self, si: MitsubaObject, ds: MitsubaObject, far: JitFloat
@@ -46,13 +61,10 @@ class Lamp:
         """
         import mitsuba as mi
 
-        if self.shape is None:
-            infinite = mi.has_flag(self.emitter.flags(), mi.EmitterFlags.Infinite)
-            return (si.p + ds.d * far if infinite else ds.p), mi.Float(0)
-        to_world = mi.traverse(self.shape)["to_world"]
-        edges, _ = SHAPES[find_lamp_shape(self.shape)]
-        sizes = [dr.norm(to_world @ mi.Vector3f(*edge)) for edge in edges]
-        return to_world @ mi.Point3f(0), dr.maximum(sizes[0], sizes[-1])
+        if self.has_shape:
+            return self.centre, self.radius
+        infinite = mi.has_flag(self.emitter.flags(), mi.EmitterFlags.Infinite)
+        return dr.select(infinite, si.p + ds.d * far, ds.p), mi.Float(0)
 
     def sample_centre(self, si: MitsubaObject, active: JitMask) -> tuple[MitsubaObject, JitColour]:
         """Return the direction to the light's centre, and its radiance times a solid angle.
@@ -61,15 +73,62 @@ class Lamp:
         surface is lit exactly. It is A cosθ / d² for a rectangle or disk of area A, seen at the
         angle θ to its normal. For a point or directional light, it is left out.
         """
+        ds, light = self.emitter.sample_direction(si, self.middle, active)
+        if self.has_shape:
+            sin2 = dr.minimum(dr.square(self.radius) / dr.squared_norm(self.centre - si.p), 1)
+            # From Mitsuba's solid angle of a sphere, 2π (1 - cosα), to π sin²α
+            light = light * dr.select(self.is_sphere, (1 + dr.safe_sqrt(1 - sin2)) / 2, 1)
+        return ds, light
+
+
+@dataclass(frozen=True)
+class Lamps:
+    """Several lights of a scene, with or without shapes, as arrays; the fields are those of `Lamp`.
+
+    count : the number of the lights.
+    """
+
+    count: int
+    emitter: Any
+    middle: Any
+    has_shape: bool
+    centre: Any
+    radius: Any
+    is_sphere: Any
+
+    def select_lamp(self, i: JitInt) -> Lamp:
+        """Return the i-th light."""
+        of_all, of_shapes = ("emitter", "middle"), ("centre", "radius", "is_sphere")
+        fields = {name: getattr(self, name) for name in (*of_all, *of_shapes)}
+        for name in (*of_all, *of_shapes) if self.has_shape else of_all:
+            fields[name] = dr.gather(type(fields[name]), fields[name], i)
+        return Lamp(has_shape=self.has_shape, **fields)
+
+    def sum_up(
+        self, light: Callable[[Lamp, MitsubaObject], JitColour], sampler: MitsubaObject
+    ) -> JitColour:
+        """Return the sum of `light(lamp, sampler)` over all lights.
+
+        A loop takes one after the other, so that a kernel for many is made as fast as for two.
+        Where loops are not recorded, while Mitsuba differentiates, it would be slower than none.
+        """
         import mitsuba as mi
 
-        ds, light = self.emitter.sample_direction(si, mi.Point2f(*self.middle), active)
-        if self.shape is not None and find_lamp_shape(self.shape) == "Sphere":
-            centre, radius = self.bounding_sphere(si, ds, 0)
-            sin2 = dr.minimum(radius * radius / dr.squared_norm(centre - si.p), 1)
-            # From Mitsuba's solid angle of a sphere, 2π (1 - cosα), to π sin²α
-            light = light * (1 + dr.safe_sqrt(1 - sin2)) / 2
-        return ds, light
+        if self.count == 1 or not dr.flag(dr.JitFlag.SymbolicLoops):
+            places = map(mi.UInt32, range(self.count))
+            each = (light(self.select_lamp(i), sampler) for i in places)
+            return sum(each, mi.UnpolarizedSpectrum(0))
+        _, _, total = dr.while_loop(
+            (mi.UInt32(0), sampler, mi.UnpolarizedSpectrum(0)),
+            lambda i, sampler, total: i < self.count,
+            lambda i, sampler, total: (
+                i + 1,
+                sampler,
+                total + light(self.select_lamp(i), sampler),
+            ),
+            max_iterations=self.count,
+        )
+        return total
 
 
 def find_lamp_shape(shape: MitsubaObject) -> Any:
@@ -79,8 +138,8 @@ def find_lamp_shape(shape: MitsubaObject) -> Any:
     return next((k for k in SHAPES if shape.shape_type() == int(getattr(mi.ShapeType, k))), None)
 
 
-def find_lamps(scene: MitsubaObject) -> list[Lamp]:
-    """Return the lamps of a scene, without its environment.
+def find_lamps(scene: MitsubaObject) -> list[Lamps]:
+    """Return the lamps of a scene, without its environment: those with shapes, and the others.
 
     Raises `BrdfkitError` for shapes that are no lamps, and for a scene without light.
     """
@@ -95,6 +154,62 @@ def find_lamps(scene: MitsubaObject) -> list[Lamp]:
             )
     if not scene.emitters():
         raise BrdfkitError("distance_field: the scene has no light; add an emitter.")
-    of_shapes = [Lamp(s.emitter(), SHAPES[find_lamp_shape(s)][1], s) for s in scene.shapes()]
-    points = [e for e in scene.emitters() if mi.has_flag(e.flags(), mi.EmitterFlags.Delta)]
-    return of_shapes + [Lamp(e, (0.5, 0.5)) for e in points]
+    shapes, emitters = scene.shapes(), list(scene.emitters())
+    points = [e for e in emitters if mi.has_flag(e.flags(), mi.EmitterFlags.Delta)]
+    kinds = [s.emitter() for s in shapes], points
+    return [
+        make_lamps(scene, [emitters.index(e) for e in kind], shapes if kind is kinds[0] else [])
+        for kind in kinds
+        if kind
+    ]
+
+
+def make_lamps(
+    scene: MitsubaObject, places: Sequence[int], shapes: Sequence[MitsubaObject]
+) -> Lamps:
+    """Return the emitters at `places` of a scene's list; `shapes` are theirs, or empty."""
+    import mitsuba as mi
+
+    emitter = dr.gather(mi.EmitterPtr, scene.emitters_dr(), mi.UInt32(list(places)))
+    kinds = [find_lamp_shape(shape) for shape in shapes]
+    middles = np.array([SHAPES[kind][1] for kind in kinds] or [(0.5, 0.5)] * len(places))
+    centres, radii = bound_shapes(shapes, kinds)
+    return Lamps(
+        len(places),
+        emitter,
+        mi.Point2f(mi.Float(middles[:, 0]), mi.Float(middles[:, 1])),
+        bool(shapes),
+        centres,
+        radii,
+        mi.Bool([kind == "Sphere" for kind in kinds] or [False]),
+    )
+
+
+def bound_shapes(
+    shapes: Sequence[MitsubaObject], kinds: Sequence[str]
+) -> tuple[JitVector, JitFloat]:
+    """Return the centres and the radii of spheres around shapes, with derivatives.
+
+    A kernel with all matrices of many lamps takes seconds to make. So each is stored by itself, by
+    a kernel that is the same for all.
+    """
+    import mitsuba as mi
+
+    if not shapes:
+        return mi.Point3f(0), mi.Float(0)
+    n, entries = len(shapes), list(product(range(4), range(3)))  # by columns
+    table = dr.zeros(mi.Float, len(entries) * n)
+    for i, shape in enumerate(shapes):
+        matrix, lamp = mi.traverse(shape)["to_world"].matrix, dr.opaque(mi.UInt32, i)
+        for place, (column, row) in enumerate(entries):
+            dr.scatter(table, matrix[row, column], place * n + lamp)
+        dr.eval(table)
+    lamps = dr.arange(mi.UInt32, n)
+    parts = [dr.gather(mi.Float, table, place * n + lamps) for place in range(len(entries))]
+    x, y, z, centres = (mi.Vector3f(*parts[3 * c : 3 * c + 3]) for c in range(4))
+    sizes = []
+    for place in (0, -1):
+        edges = np.array([SHAPES[kind][0][place] for kind in kinds], float)
+        i, j, k = (mi.Float(np.ascontiguousarray(part)) for part in edges.T)
+        sizes.append(dr.norm(x * i + y * j + z * k))
+    return mi.Point3f(centres), dr.maximum(*sizes)
