@@ -190,26 +190,24 @@ def bound_shapes(
 ) -> tuple[JitVector, JitFloat]:
     """Return the centres and the radii of spheres around shapes, with derivatives.
 
-    A kernel with all matrices of many lamps takes seconds to make. So each is stored by itself, by
-    a kernel that is the same for all.
+    A kernel with all numbers of the matrices of many lamps takes seconds to make. So each matrix is
+    made one array first, by a kernel that is the same for all.
     """
     import mitsuba as mi
 
     if not shapes:
         return mi.Point3f(0), mi.Float(0)
-    n, entries = len(shapes), list(product(range(4), range(3)))  # by columns
-    table = dr.zeros(mi.Float, len(entries) * n)
-    for i, shape in enumerate(shapes):
-        matrix, lamp = mi.traverse(shape)["to_world"].matrix, dr.opaque(mi.UInt32, i)
-        for place, (column, row) in enumerate(entries):
-            dr.scatter(table, matrix[row, column], place * n + lamp)
-        dr.eval(table)
-    lamps = dr.arange(mi.UInt32, n)
-    parts = [dr.gather(mi.Float, table, place * n + lamps) for place in range(len(entries))]
+    entries, matrices = list(product(range(4), range(3))), []  # by columns
+    for shape in shapes:
+        matrix = mi.traverse(shape)["to_world"].matrix
+        matrices.append(dr.concat([matrix[row, column] for column, row in entries]))
+        dr.eval(matrices[-1])
+    table, first = dr.concat(matrices), len(entries) * dr.arange(mi.UInt32, len(shapes))
+    parts = [dr.gather(mi.Float, table, first + place) for place in range(len(entries))]
     x, y, z, centres = (mi.Vector3f(*parts[3 * c : 3 * c + 3]) for c in range(4))
     sizes = []
     for place in (0, -1):
         edges = np.array([SHAPES[kind][0][place] for kind in kinds], float)
-        i, j, k = (mi.Float(np.ascontiguousarray(part)) for part in edges.T)
-        sizes.append(dr.norm(x * i + y * j + z * k))
+        along: MitsubaObject = [mi.Float(np.ascontiguousarray(part)) for part in edges.T]
+        sizes.append(dr.norm(x * along[0] + y * along[1] + z * along[2]))
     return mi.Point3f(centres), dr.maximum(*sizes)
