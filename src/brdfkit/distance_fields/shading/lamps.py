@@ -9,7 +9,6 @@ from itertools import product
 from typing import Any
 
 import drjit as dr
-import numpy as np
 
 from brdfkit.core.array_types import (
     JitColour,
@@ -172,12 +171,13 @@ def make_lamps(
 
     emitter = dr.gather(mi.EmitterPtr, scene.emitters_dr(), mi.UInt32(list(places)))
     kinds = [find_lamp_shape(shape) for shape in shapes]
-    middles = np.array([SHAPES[kind][1] for kind in kinds] or [(0.5, 0.5)] * len(places))
+    # Lists, not NumPy's arrays: kernels depend on how the memory of those is aligned
+    middles = [SHAPES[kind][1] for kind in kinds] or [(0.5, 0.5)] * len(places)
     centres, radii = bound_shapes(shapes, kinds)
     return Lamps(
         len(places),
         emitter,
-        mi.Point2f(mi.Float(middles[:, 0]), mi.Float(middles[:, 1])),
+        mi.Point2f(*(mi.Float(list(part)) for part in zip(*middles, strict=True))),
         bool(shapes),
         centres,
         radii,
@@ -197,17 +197,22 @@ def bound_shapes(
 
     if not shapes:
         return mi.Point3f(0), mi.Float(0)
-    entries, matrices = list(product(range(4), range(3))), []  # by columns
+    places = list(product(range(4), range(3)))  # by columns
+    numbers = []  # of each shape
     for shape in shapes:
         matrix = mi.traverse(shape)["to_world"].matrix
-        matrices.append(dr.concat([matrix[row, column] for column, row in entries]))
-        dr.eval(matrices[-1])
-    table, first = dr.concat(matrices), len(entries) * dr.arange(mi.UInt32, len(shapes))
-    parts = [dr.gather(mi.Float, table, first + place) for place in range(len(entries))]
+        numbers.append([matrix[row, column] for column, row in places])
+    parts = numbers[0]
+    if len(shapes) > 1:
+        for i, of_shape in enumerate(numbers):
+            numbers[i] = dr.concat(of_shape)
+            dr.eval(numbers[i])
+        table, first = dr.concat(numbers), len(places) * dr.arange(mi.UInt32, len(shapes))
+        parts = [dr.gather(mi.Float, table, first + place) for place in range(len(places))]
     x, y, z, centres = (mi.Vector3f(*parts[3 * c : 3 * c + 3]) for c in range(4))
     sizes = []
     for place in (0, -1):
-        edges = np.array([SHAPES[kind][0][place] for kind in kinds], float)
-        along: MitsubaObject = [mi.Float(np.ascontiguousarray(part)) for part in edges.T]
+        edges = zip(*(SHAPES[kind][0][place] for kind in kinds), strict=True)
+        along: MitsubaObject = [mi.Float(list(part)) for part in edges]
         sizes.append(dr.norm(x * along[0] + y * along[1] + z * along[2]))
     return mi.Point3f(centres), dr.maximum(*sizes)
