@@ -61,9 +61,10 @@ class Lanes:
 def half_plane(lanes):
     """Return half-spaces whose plane goes through the apex of the cone.
 
-    Seen from the apex, the share of the light is τ(`lanes.edge`).
+    Seen from the apex, the share of the light is τ(`lanes.edge`), above one half, as the point at
+    the start of the cone lies outside.
     """
-    lanes.edge = lanes.draw_uniform(-1, 1)
+    lanes.edge = lanes.draw_uniform(0, 1)
     azimuth, beta = lanes.draw_azimuth(), np.arctan(lanes.edge * lanes.tan)
     across = np.cos(azimuth) * np.cos(beta), np.sin(azimuth) * np.cos(beta)
     normal = to_vector(np.stack([*across, np.sin(beta)], 1))

@@ -198,16 +198,17 @@ def bound_shapes(
     if not shapes:
         return mi.Point3f(0), mi.Float(0)
     places = list(product(range(4), range(3)))  # by columns
-    numbers = []  # of each shape
+    numbers: list[list[JitFloat]] = []  # of each shape
     for shape in shapes:
         matrix = mi.traverse(shape)["to_world"].matrix
         numbers.append([matrix[row, column] for column, row in places])
     parts = numbers[0]
     if len(shapes) > 1:
-        for i, of_shape in enumerate(numbers):
-            numbers[i] = dr.concat(of_shape)
-            dr.eval(numbers[i])
-        table, first = dr.concat(numbers), len(places) * dr.arange(mi.UInt32, len(shapes))
+        joined = []
+        for of_shape in numbers:
+            joined.append(dr.concat(of_shape))
+            dr.eval(joined[-1])
+        table, first = dr.concat(joined), len(places) * dr.arange(mi.UInt32, len(shapes))
         parts = [dr.gather(mi.Float, table, first + place) for place in range(len(places))]
     x, y, z, centres = (mi.Vector3f(*parts[3 * c : 3 * c + 3]) for c in range(4))
     sizes = []
