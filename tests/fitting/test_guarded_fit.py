@@ -63,6 +63,17 @@ def test_a_fit_that_meets_the_samples_is_kept(truth):
     assert any("nothing tests it" in note for note in free.notes)
 
 
+def test_a_limit_at_89_degrees_costs_no_light(measured_data):
+    """Ward's albedo passes 1 near the horizon; a limit there would take a third of all light."""
+    copper = bk.load(measured_data / "minidiff_paints" / "C10_Copper.astm.xz")
+    free, guarded = (
+        bk.fit(copper, "ward_duer", loss="log", extrapolate=e) for e in ("free", "guarded")
+    )
+    assert any("follows a table" in note for note in guarded.notes)
+    light = [bk.albedo(fit.model, from_angles(0.1, 0.0)).mean() for fit in (free, guarded)]
+    assert light[1] == pytest.approx(light[0], rel=0.1)
+
+
 def test_a_fit_that_runs_away_follows_the_table(steel, tmp_path):
     free, guarded = (bk.fit(steel, "torrance_sparrow", extrapolate=e) for e in ("free", "guarded"))
     assert free.albedo.peak[1] > 1.2

@@ -94,6 +94,11 @@ class Guard:
             return None
         return ANGLES[row], float(own[row]), float(known[row])
 
+    def compute_largest_albedos(self, brdf: Brdf) -> FloatArray:
+        """Return the largest albedo (channels,) of a BRDF up to 85°."""
+        largest: FloatArray = make_albedo_pixels(ANGLES).evaluate(brdf).max(axis=0)
+        return largest
+
     @cached_property
     def _albedos(self) -> FloatArray:
         """The albedos of the table at `ANGLES`."""

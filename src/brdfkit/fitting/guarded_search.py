@@ -65,7 +65,7 @@ class GuardedSearch:
             return free
         found = self._search_on_table(self.guard, (), report)
         if self.find_largest_albedo(self._make_brdf(found))[1] > LARGEST_ALBEDO:
-            found = self._search_on_table(self.guard, (AlbedoAtMost(1.0, ANGLES),), report)
+            found = self._limit_albedo(self.guard, found, report)
         own, against = most, "more than arrives"
         if excess is not None and most <= LARGEST_ALBEDO:
             if not self.guard.is_nearer(*map(self._make_brdf, (found, free))):
@@ -84,6 +84,19 @@ class GuardedSearch:
             notes=(*(said for said in found.notes if not said.startswith(NOTE)), note),
             certainty=found.certainty.without_standard_errors(self.samples.values.size),
         )
+
+    def _limit_albedo(self, guard: Guard, found: Solution, report: Progress | None) -> Solution:
+        """Return a solution like `found`, which reflects too much light, that reflects less.
+
+        It is found with a limit of the albedo at all angles. Models such as Ward's keep that limit
+        at 89° only if they lose much light everywhere. So if the solution `found` is clearly nearer
+        to the table, scaled down to the limit up to 85°, that is returned.
+        """
+        limited = self._search_on_table(guard, (AlbedoAtMost(1.0, ANGLES),), report)
+        excess = np.maximum(guard.compute_largest_albedos(self._make_brdf(found)), 1)
+        scaled = replace(found, weights=found.weights / excess[:, None])
+        nearer = guard.is_nearer(*map(self._make_brdf, (scaled, limited)))
+        return scaled if nearer else limited
 
     def _search_on_table(
         self, guard: Guard, limits: tuple[Any, ...], report: Progress | None
