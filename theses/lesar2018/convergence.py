@@ -137,7 +137,8 @@ def claim_sizes(curves):
         "a figure",
         f"{said} dB after {ENOUGH[1]} iterations, {', '.join(f'{s}²' for s in curves)} pixels",
         to_verdict(max(last) - min(last) < 1),
-        "Noise is of a pixel, however many there are. Confirmed within 1 dB.",
+        "Pixels are independent, so that it cannot be otherwise. Confirmed within 1 dB.",
+        arithmetic=True,
     )
 
 
@@ -166,6 +167,7 @@ def claim_reference(rows):
         to_verdict(off < 0.1),
         "By the same run it is σ² (1/n - 1/N) in place of σ²/n: the curve rises at its end. "
         f"Confirmed where all of the table is within 0.1 dB; here {off:.2f}.",
+        arithmetic=True,
     )
 
 

@@ -85,6 +85,7 @@ def claim_value(values):
         f"{total} values, computed apart",
         f"{equal} of {total} equal to half of the last digit",
         to_verdict(equal == total),
+        arithmetic=True,
     )
 
 

@@ -144,6 +144,7 @@ def claim_order(errors):
         to_verdict(off < CLOSE),
         f"In {', '.join(map(str, KNOWN))} steps: of second order, four times the steps leave a "
         "sixteenth. The thesis derives its march elsewhere, and prints no number of steps.",
+        arithmetic=True,
     )
 
 
@@ -157,6 +158,7 @@ def claim_plain(errors):
         "errors " + ", ".join(f"{e:+.2g}" for _, e in errors.values()),
         to_verdict(off < CLOSE),
         "The common form: four times the steps leave a quarter.",
+        arithmetic=True,
     )
 
 

@@ -60,6 +60,8 @@ def claim_range(seen, low, high):
         f"{100 * lost:.0f} % of the pixels are black or white, of a window from {low:.2f} to "
         f"{high:.2f}",
         to_verdict(lost > 0 and linear < 1e-12),
+        "The window is chosen so that it loses 30 % of the pixels.",
+        arithmetic=True,
     )
 
 
@@ -80,6 +82,7 @@ def claim_reinhard():
         to_verdict(rises and largest < 1 and off < 1e-9),
         "1 itself is not reached. As ε L / (1 + ε L) it is black for ε = 0, which "
         "L / (1/ε + L), as printed, is not.",
+        arithmetic=True,
     )
 
 
