@@ -30,6 +30,7 @@ from brdfkit.theses.lesar2018 import (
     transfer_functions,
 )
 from brdfkit.theses.lesar2018.iterations import make_cloud, make_renderer, make_stage
+
 from brdfkit.volumes.rays import search
 
 

@@ -72,6 +72,6 @@ def claim_speed(speed):
         f"{speed[slowest]:.1f} ({slowest}) to {max(speed.values()):.1f} times, "
         f"{len(fast)} of {len(speed)} reach {FASTER}",
         UNSTATED,
-        "At equal variance. In nine settings light is scattered once. Where the medium is constant, "
-        "`single_scattering` inverts the density of a collision, and tracks nothing.",
+        "At equal variance. In nine settings light is scattered once. Where the medium is "
+        "constant, `single_scattering` inverts the density of a collision, and tracks nothing.",
     )

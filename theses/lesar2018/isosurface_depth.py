@@ -15,8 +15,8 @@ ITERATIONS, FEWER_RAYS = 64, 1_000  # each of the last number of points, and the
 APART = 0.0916  # the error of 10 points over the rays' length, by an independent simulation
 TEXT = f"""Rays of length D towards a half-space that begins at D / 4: the first of N random points
 that is inside, and the first after {ITERATIONS} iterations of {POINTS[-1]} points, as the thesis
-keeps the nearest over iterations. And rays towards a sphere: the first of N even steps, and what `isosurface` leaves of that, which then halves the step.
-{RAYS:,} rays; errors are means over D."""
+keeps the nearest over iterations. And rays towards a sphere: the first of N even steps, and what
+`isosurface` leaves of that, which then halves the step. {RAYS:,} rays; errors are means over D."""
 
 
 @in_turn

@@ -32,9 +32,9 @@ LOOKUPS = 20, 64, 256  # steps of a ray in the settings in which the renderers a
 TEXT = f"""Smoke by each renderer, one ray per pixel in an iteration, the least of {TIMES}. The
 thesis does not say which renderer its table is of, nor the steps of any; here the march takes 128
 steps, the others 256. Ours are seconds of CPU, of all cores together, over those of the middle
-cell, as the printed ones; 16 ms is the least that a browser shows. The renderers are ranked in the
-middle cell with {LOOKUPS[0]}, {LOOKUPS[1]} and {LOOKUPS[2]} steps of each ray, and maximum intensity
-with the search about the largest value that brdfkit adds, and without, as in the thesis; scattering
+cell, as the printed ones; 16 ms is the least that a browser shows. In that cell the renderers are
+ranked with {LOOKUPS[0]}, {LOOKUPS[1]} and {LOOKUPS[2]} steps of each ray, and maximum intensity with
+the search about the largest value that brdfkit adds, and without, as in the thesis. Scattering
 takes no steps."""
 
 
