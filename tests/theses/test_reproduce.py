@@ -105,7 +105,11 @@ def test_the_theses_are_listed():
 @pytest.mark.quick
 @pytest.mark.parametrize(
     ("thesis", "parts"),
-    [("ergun2008", ["check_values", "misprints", "depth_curves"]), ("ergun2015", ["convex_rays"])],
+    [
+        ("ergun2008", ["check_values", "misprints", "depth_curves"]),
+        ("ergun2015", ["convex_rays"]),
+        ("lesar2018", ["phase_functions", "schlick", "isosurface_depth"]),
+    ],
 )
 def test_committed_pages_have_the_verdicts_of_the_code(thesis, parts, llvm_variant):
     page = (PAGES / f"{thesis}.md").read_text(encoding="utf-8")

@@ -33,9 +33,9 @@ TEXT = f"""Smoke by each renderer, one ray per pixel in an iteration, the least 
 thesis does not say which renderer its table is of, nor the steps of any; here the march takes 128
 steps, the others 256. Ours are seconds of CPU, of all cores together, over those of the middle
 cell, as the printed ones; 16 ms is the least that a browser shows. In that cell the renderers are
-ranked with {LOOKUPS[0]}, {LOOKUPS[1]} and {LOOKUPS[2]} steps of each ray, and maximum intensity with
-the search about the largest value that brdfkit adds, and without, as in the thesis. Scattering
-takes no steps."""
+ranked with {", ".join(map(str, LOOKUPS))} steps of each ray, and maximum intensity with the search
+about the largest value that brdfkit adds, and without, as in the thesis. Scattering takes no
+steps."""
 
 
 @in_turn
