@@ -149,7 +149,7 @@ TRAPS = {
         "anisotropic": (b"# anisotropic: 1\n" + csv(), "says 'anisotropic: 1', where yes or no"),
         "nothing": (
             csv().replace(b"0,5", b"").replace(b"3,0", b"").replace(b"0,25", b""),
-            "no row",
+            "all fields of 450nm are empty; fill in what was measured",
         ),
     },
     "curet": {

@@ -31,6 +31,7 @@ TITLES = {  # of findings, by their topics
     "spike": "Spike",
     "albedo": "Albedo above 1",
     "negative": "Negative values",
+    "coverage": "Few measurements",
 }
 
 
