@@ -74,6 +74,16 @@ def test_a_limit_at_89_degrees_costs_no_light(measured_data):
     assert light[1] == pytest.approx(light[0], rel=0.1)
 
 
+def test_a_fit_slightly_above_1_near_the_horizon_is_scaled(measured_data):
+    black = bk.load(measured_data / "minidiff_paints" / "C2_Black.astm.xz")
+    free, guarded = (bk.fit(black, "abc+student_t", extrapolate=e) for e in ("free", "guarded"))
+    assert 1 < free.albedo.peak[1] < 1.1
+    assert guarded.albedo.peak[1] <= 1.001
+    assert any("the fit is scaled by 0.99" in note for note in guarded.notes)
+    light = [bk.albedo(fit.model, from_angles(0.1, 0.0)).mean() for fit in (free, guarded)]
+    assert light[1] == pytest.approx(light[0], rel=0.02)
+
+
 def test_a_fit_that_runs_away_follows_the_table(steel, tmp_path):
     free, guarded = (bk.fit(steel, "torrance_sparrow", extrapolate=e) for e in ("free", "guarded"))
     assert free.albedo.peak[1] > 1.2

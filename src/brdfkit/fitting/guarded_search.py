@@ -32,6 +32,9 @@ from brdfkit.regression.solvers import AlbedoAtMost
 
 # Angles of incidence [degrees] at which a guarded fit reflects at most all light
 ANGLES = (0.0, 30.0, 60.0, 75.0, 80.0, 85.0, 89.0)
+# A fit whose largest albedo is at most this, and that does not leave the table otherwise, is scaled
+# down to 1
+LARGEST_SCALED = 1.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +66,13 @@ class GuardedSearch:
         angle, most = self.find_largest_albedo(self._make_brdf(free))
         if most <= LARGEST_ALBEDO and (excess is None or self._meets_samples(free)):
             return free
+        if excess is None and most <= LARGEST_SCALED:
+            scaled = replace(free, weights=free.weights / most)
+            note = (
+                f"{_begin_note(self.guard)} is scaled by {1 / most:.3g}: "
+                f"{_describe_free_fit(most, angle)}, more than arrives"
+            )
+            return replace(scaled, loss=self._compute_loss(scaled), notes=(*free.notes, note))
         found = self._search_on_table(self.guard, (), report)
         if self.find_largest_albedo(self._make_brdf(found))[1] > LARGEST_ALBEDO:
             found = self._limit_albedo(self.guard, found, report)
@@ -73,9 +83,8 @@ class GuardedSearch:
             angle, own, known = excess
             against = f"where the table reflects {format_light_share(known)}"
         note = (
-            f"{BEYOND} which reach {self.guard.reach}, the fit follows "
-            f'{self.guard.describe_table()}: by the samples alone (extrapolate="free") it would '
-            f"reflect {format_light_share(own)} of the light at {angle:g}°, {against}"
+            f"{_begin_note(self.guard)} follows {self.guard.describe_table()}: "
+            f"{_describe_free_fit(own, angle)}, {against}"
         )
         return replace(
             found,
@@ -135,6 +144,17 @@ class GuardedSearch:
         importance = self.loss.importance(self.samples)
         squares = sum_squared_differences(self.loss, values, self.samples)
         return float(np.sqrt(importance @ squares))
+
+
+def _begin_note(guard: Guard) -> str:
+    """Return the begin of a note on a guarded fit."""
+    return f"{BEYOND} which reach {guard.reach}, the fit"
+
+
+def _describe_free_fit(albedo: float, angle: float) -> str:
+    """Return how much light a fit of the samples alone would reflect at an angle [degrees]."""
+    light = f"{format_light_share(albedo)} of the light at {angle:g}°"
+    return f'by the samples alone (extrapolate="free") it would reflect {light}'
 
 
 def explain_unguarded_fit(settings: FitSettings, weights: object) -> str:
