@@ -7,7 +7,7 @@ Half/difference coordinates are those of [Rusinkiewicz 1998].
 
 import numpy as np
 
-from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray
+from brdfkit.core.array_types import AnyArray, ArrayLike, FloatArray, IntArray
 
 
 def from_angles(theta: ArrayLike, phi: ArrayLike) -> FloatArray:
@@ -72,6 +72,16 @@ def from_half_difference(
     wi = _rotate_y(from_angles(theta_d, phi_d), theta_h)
     wo = _rotate_y(from_angles(theta_d, phi_d + np.pi), theta_h)
     return rotate_z(wi, phi_h), rotate_z(wo, phi_h)
+
+
+def group_equal_pairs(wi: AnyArray, wo: AnyArray) -> tuple[IntArray, IntArray]:
+    """Return the group (n,) of each pair of directions (n, 3), and the sizes of the groups.
+
+    Pairs in a group are equal to six decimals.
+    """
+    pairs = np.concatenate([wi, wo], axis=1).round(6)
+    _, group, counts = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
+    return group.ravel(), counts
 
 
 def rotate_z(w: FloatArray, angle: ArrayLike) -> FloatArray:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, IntArray
+from brdfkit.core.geometry.directions import group_equal_pairs
 from brdfkit.materials.auditing.subsets import (
     draw_row_numbers,
     draw_valid_samples,
@@ -112,11 +113,10 @@ def find_repeated_pairs(samples: Samples) -> IntArray:
 
     Of three samples, the first and the second are a pair, and the second and the third.
     """
-    directions = np.concatenate([samples.wi, samples.wo], axis=1).round(6)
-    _, group = np.unique(directions, axis=0, return_inverse=True)
-    order = np.argsort(group.ravel(), kind="stable")
+    group, _ = group_equal_pairs(samples.wi, samples.wo)
+    order = np.argsort(group, kind="stable")
     pairs = np.stack([order[:-1], order[1:]], axis=1)
-    same = np.diff(group.ravel()[order]) == 0
+    same = np.diff(group[order]) == 0
     copies = (samples.values[pairs[:, 0]] == samples.values[pairs[:, 1]]).all(axis=1)
     return pairs[same & ~copies]
 

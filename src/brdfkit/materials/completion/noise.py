@@ -4,6 +4,7 @@ import numpy as np
 
 from brdfkit.core.arguments import to_number
 from brdfkit.core.array_types import AnyArray, FloatArray
+from brdfkit.core.geometry.directions import group_equal_pairs
 from brdfkit.materials.completion.observations import LEAST_SHARE
 from brdfkit.materials.completion.prior_cells import compute_cosine
 from brdfkit.materials.measured.evidence import OFFSET
@@ -38,9 +39,7 @@ def estimate_repeatability(wi: AnyArray, wo: AnyArray, values: AnyArray) -> floa
     Dark values count little, by the share of f in f + e / c, and negative ones as 0. Where all
     repeated values are equal, they are copies, and tell nothing.
     """
-    pairs = np.concatenate([wi, wo], axis=1).round(6)
-    _, group, counts = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
-    group = group.ravel()
+    group, counts = group_equal_pairs(wi, wo)
     if (counts - 1).sum() < FEWEST_REPEATS:
         return None
     values = np.maximum(values, 0)

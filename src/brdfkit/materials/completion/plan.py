@@ -15,6 +15,7 @@ from brdfkit.core.array_types import AnyArray
 from brdfkit.core.colours import RGB
 from brdfkit.core.documents import Document, Shown
 from brdfkit.core.errors import BrdfkitError
+from brdfkit.core.geometry.directions import group_equal_pairs
 from brdfkit.materials.completion import plan_output
 from brdfkit.materials.completion.planning import choose_directions
 from brdfkit.materials.completion.posterior import EFFECTIVE_SAMPLES
@@ -178,8 +179,8 @@ def plan(
         **known.notes(),
     }
     if already is not None:
-        different = np.unique(np.concatenate(already, axis=1).round(6), axis=0)
-        info["measured"] = f"{len(different):,} directions were measured before"
+        _, counts = group_equal_pairs(*already)
+        info["measured"] = f"{len(counts):,} directions were measured before"
     angles = np.asarray(candidates[rows], np.float64)
     wi, wo = (np.asarray(w, np.float64) for w in to_directions(angles))
     return Plan(wi, wo, angles, np.asarray(errors, np.float64), info)
