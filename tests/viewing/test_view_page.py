@@ -88,8 +88,16 @@ def test_keys_work_after_a_click_on_nothing(page):
     assert number(page, "Elevation [°]") == 0
 
 
+def point_colour(page):
+    """The colour of the last handle of the transfer function."""
+    return page.locator(".handle").last.evaluate("(handle) => handle.style.backgroundColor")
+
+
 def test_a_bump_is_dragged_typed_widened_and_removed(page):
+    colour = point_colour(page)
     choose(page, "Renderer", "Emission and absorption")
+    # The bumps begin as the points, which Python changes with the renderer
+    wait_until(page, lambda: point_colour(page) != colour, "the points keep their colours")
     choose(page, "Drawn by", "bumps over values and gradients")
     assert page.locator(".head option:checked").first.inner_text() == "edited"
     handle = page.get_by_role("button", name="bump 1 of 1")
@@ -108,7 +116,7 @@ def test_a_bump_is_dragged_typed_widened_and_removed(page):
     assert number(page, "Value") == pytest.approx(0.5 + (high - low) * shift, abs=0.005)
     assert "bump 1 of 1" in handle.get_attribute("aria-label")
     type_number(page, "Opacity", 0)
-    wait_until(page, lambda: pixels(page).std() < after.std() / 4, "the smoke stays")
+    wait_until(page, lambda: pixels(page).std() < after.std() / 2, "the smoke stays")
     dark = pixels(page)
     width = number(page, "Width")
     handle.focus()
