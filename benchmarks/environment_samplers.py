@@ -31,6 +31,7 @@ SAMPLERS = {
     "blocks, `lookup=tree`": BLOCKS | {"lookup": "tree"},
     "blocks, `lookup=grid`": BLOCKS | {"lookup": "grid"},
     "blocks, `criterion=sse`": BLOCKS | {"criterion": "sse"},
+    "blocks, `alias`": BLOCKS | {"distribution": "alias"},
     "blocks, `steps`": BLOCKS | {"distribution": "steps"},
     "blocks, `hyperbolic`": BLOCKS | {"distribution": "hyperbolic"},
     "`cdf`": OTHERS | {"sampler": "cdf"},

@@ -14,7 +14,8 @@ error over its mean, which is what a block adds to the variance of samples. The 
 other criteria: the largest squared error (`sse`), `variance` and `range`.
 
 `distribution` says how a sample chooses a block. `exact` walks down the tree, by the share of each
-block in the power. Two closed forms need no walk and no table: `hyperbolic` is the thesis's law
+block in the power. `alias` has the same shares in an alias table, which is four to six times as
+fast [Vose 1991]. Two closed forms need no walk and no table: `hyperbolic` is the thesis's law
 with one parameter, and noisier where the sorted shares are not hyperbolic; `steps` has eight ranges
 of equal shares.
 
@@ -24,7 +25,7 @@ blocks that a square of a coarse grid lists. `compensated` is for integrators th
 [Karlík et al. 2019].
 
 Mitsuba's samplers `stratified`, `multijitter`, `orthogonal` and `ldsampler` stratify the numbers
-that choose blocks, `independent` does not. `exact` keeps the strata; the closed forms lose most.
+that choose blocks, `independent` does not. `exact` keeps the strata; the other ways lose most.
 
 [Ergun 2015, chapter 6]. In spectral variants a colour of the map becomes a smooth spectrum under
 D65 [Mallett & Yuksel 2019], linear in the colour.

@@ -15,21 +15,20 @@ import numpy as np
 
 from brdfkit.core.array_types import (
     FloatArray,
-    IntArray,
     JitFloat,
-    JitInt,
     JitMask,
     JitVector,
     MitsubaModule,
     MitsubaObject,
 )
+from brdfkit.lighting.sampling.alias_table import AliasTable, make_alias_table
 from brdfkit.lighting.sampling.emitter import (
     MAP_PARAMETERS,
     derive_environment_emitter,
     make_small_sky,
 )
 from brdfkit.lighting.sampling.power_map import cell_power, pixel_power
-from brdfkit.mitsuba_bridge.arrays import Integers, Rows, find_cell
+from brdfkit.mitsuba_bridge.arrays import Rows, find_cell
 from brdfkit.mitsuba_bridge.properties.declarations import declare_choice
 
 # `lighting/sampling/__init__.py` lists the methods that the three map samplers below share
@@ -88,9 +87,7 @@ class Cdf:
 class Alias:
     """Draws points of an environment map by alias tables: of its rows, and of each row's cells.
 
-    It draws every entry of a table equally often, then keeps the entry if a second random number is
-    below the entry's threshold, and otherwise takes the entry's alias, which is another entry. A
-    single table of all cells would need random numbers with more bits than single precision has.
+    A single table of all cells would need random numbers with more bits than single precision has.
     """
 
     def __init__(self, brightness: FloatArray) -> None:
@@ -113,66 +110,6 @@ class Alias:
     def density(self, x: JitFloat, y: JitFloat, active: JitMask) -> JitFloat:
         index = find_cell(y, self.rows) * self.columns + find_cell(x, self.columns)
         return self.densities.at(index, active=active)
-
-
-class AliasTable:
-    """Alias tables, one after another, for drawing entries in proportion to their weights.
-
-    `thresholds` (n,) and `aliases` (n,) are those of the entries of all tables.
-    """
-
-    def __init__(self, thresholds: FloatArray, aliases: IntArray) -> None:
-        self.thresholds, self.aliases = Rows(thresholds), Integers(aliases)
-        self.nbytes = 8 * len(thresholds)
-
-    def draw_entry(
-        self, u: JitFloat, first: JitInt, count: int, active: JitMask
-    ) -> tuple[JitInt, JitFloat]:
-        """Draw an entry of the table of `count` entries that begins at `first`, by the number `u`.
-
-        Returns the index of the entry within its table, and a random number that is independent of
-        it, made from the remaining digits of `u`.
-        """
-        import drjit as dr
-        import mitsuba as mi
-
-        entry = find_cell(u * count, count)
-        remainder = u * count - mi.Float(entry)
-        threshold = self.thresholds.at(first + entry, active=active)
-        own = remainder < threshold
-        left = dr.select(own, remainder, remainder - threshold)
-        left = left / dr.maximum(dr.select(own, threshold, 1 - threshold), 1e-7)
-        return dr.select(own, entry, self.aliases.at(first + entry, active)), dr.clip(left, 0, 1)
-
-
-def make_alias_table(weights: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Return an alias table of `weights` (n,) ≥ 0: thresholds (n,) and aliases (n,).
-
-    An entry lighter than the mean is filled up to the mean by heavier entries, in order; cumulative
-    sums of the deficits and excesses show which heavy entry that is. If all weights are 0, they
-    count as equal.
-
-    >>> [part.tolist() for part in make_alias_table(np.array([1.0, 3.0]))]
-    [[0.5, 1.0], [1, 1]]
-    """
-    n, total = len(weights), weights.sum()
-    share = weights * (n / total) if total > 0 else np.ones(n)
-    thresholds, aliases = np.ones(n), np.arange(n)
-    light, heavy = np.flatnonzero(share < 1), np.flatnonzero(share >= 1)
-    if min(len(light), len(heavy)) == 0:  # up to rounding, all weights are equal
-        return thresholds, aliases
-    deficit, excess = np.cumsum(1 - share[light]), np.cumsum(share[heavy] - 1)
-    last = len(heavy) - 1
-    # A light entry is filled up by the first heavy entry with some excess left
-    thresholds[light] = share[light]
-    turn = np.searchsorted(excess, deficit - (1 - share[light]), side="right")
-    aliases[light] = heavy[np.minimum(turn, last)]
-    # A heavy entry that gives away more than its excess is filled up by the next heavy entry
-    by = np.searchsorted(deficit, excess, side="right")
-    short = np.flatnonzero((by < len(light)) & (np.arange(last + 1) < last))
-    thresholds[heavy[short]] = 1 - (deficit[by[short]] - excess[short])
-    aliases[heavy[short]] = heavy[short + 1]
-    return thresholds.clip(0, 1), aliases
 
 
 SAMPLERS = {"cdf": Cdf, "mip": Mip, "alias": Alias}

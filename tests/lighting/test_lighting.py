@@ -119,7 +119,10 @@ REFUSED = [
     ({"blocks": 0}, "blocks = 0 should be a number between 1 and 1e+06."),
     ({"blocks": 2_000_000}, "blocks = 2000000 should be a number between 1 and 1e+06."),
     ({"criterion": "mse"}, "criterion = mse should be one of relative, sse, variance, range."),
-    ({"distribution": "even"}, "distribution = even should be one of exact, hyperbolic, steps."),
+    (
+        {"distribution": "even"},
+        "distribution = even should be one of exact, alias, hyperbolic, steps.",
+    ),
     ({"lookup": "hash"}, "lookup = hash should be one of texture, tree, grid."),
     ({"compensated": 1}, "compensated = 1 should be true or false."),
 ]

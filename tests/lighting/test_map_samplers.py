@@ -4,12 +4,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from brdfkit.plugins.emitters.sampled_envmap import Alias, Cdf, Mip, make_alias_table
+from brdfkit.plugins.emitters.sampled_envmap import Alias, Cdf, Mip
 
 import brdfkit as bk
 from brdfkit.checks import directions
 from brdfkit.checks import emitters as checks
 from brdfkit.checks.plugin_subject import make_example
+from brdfkit.lighting.sampling.alias_table import make_alias_table
 from brdfkit.lighting.sampling.blocks import DISTRIBUTIONS, LOOKUPS, Blocks
 from brdfkit.lighting.sampling.power_map import subtract_mean_brightness
 
@@ -111,6 +112,7 @@ def test_a_compensated_map_is_what_is_above_its_mean():
 
 
 FORMS = [
+    ("kdtree_envmap", {"distribution": "alias"}),
     ("kdtree_envmap", {"distribution": "hyperbolic"}),
     ("kdtree_envmap", {"distribution": "steps", "lookup": "tree"}),
     ("sampled_envmap", {"sampler": "mip"}),

@@ -10,6 +10,7 @@ sampler*, made from the `brightness` (rows, columns) of a map's pixels, with
 - `nbytes`: the memory of its tables.
 
 `blocks.py` has the default sampler: `tree.py` cuts the map into rectangular blocks,
-`block_slopes.py` fits a linear density in each, `block_lookups.py` finds the block of a point, and
-`block_laws.py` draws blocks by closed formulas. `power_map.py` computes the power per angle.
+`block_slopes.py` fits a linear density in each, `block_lookups.py` finds the block of a point,
+`alias_table.py` draws blocks by a table, and `block_laws.py` by closed formulas. `power_map.py`
+computes the power per angle.
 """

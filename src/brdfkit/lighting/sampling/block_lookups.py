@@ -6,6 +6,8 @@ made from the `Tree` of blocks, their mean densities (n,) relative to a uniform 
 `nbytes`, the memory of its tables.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from brdfkit.core.array_types import FloatArray, IntArray, JitFloat, JitInt, JitMask, JitVector
@@ -45,9 +47,7 @@ class TextureLookup:
 
     def __init__(self, tree: Tree, densities: FloatArray, slopes: FloatArray) -> None:
         _, self.columns, _, self.rows = tree.boxes[0].tolist()
-        texels = np.zeros((self.rows, self.columns), np.uint32)
-        for block, (x0, x1, y0, y1) in enumerate(tree.blocks.tolist()):
-            texels[y0:y1, x0:x1] = block
+        texels = _paint_block_numbers(tree.blocks, self.columns, self.rows)
         self.texels = Integers(texels.ravel())
         self.densities = BlockDensities(tree.blocks, densities, slopes)
         self.nbytes = texels.nbytes + self.densities.nbytes
@@ -56,6 +56,21 @@ class TextureLookup:
         """Return the sampling density at a point (x, y) of the map, relative to a uniform one."""
         index = find_cell(y, self.rows) * self.columns + find_cell(x, self.columns)
         return self.densities.density_in_block(self.texels.at(index, active), x, y, active)
+
+
+def _paint_block_numbers(blocks: IntArray, columns: int, rows: int) -> IntArray:
+    """Return the number (rows, columns) of the block around each cell of the map.
+
+    Sums along rows and columns spread the numbers from the corners of the `blocks` (n, 4).
+    """
+    x0, x1, y0, y1 = blocks.T
+    steps = np.zeros((rows + 1, columns + 1), np.int32)
+    numbers = np.arange(len(blocks), dtype=np.int32)
+    for y, x, sign in ((y0, x0, 1), (y0, x1, -1), (y1, x0, -1), (y1, x1, 1)):
+        np.add.at(steps, (y, x), sign * numbers)
+    for above, row in pairwise(steps):  # this loop is twice as fast as np.cumsum along columns
+        row += above
+    return np.cumsum(steps, axis=1, out=steps)[:rows, :columns]
 
 
 class GridLookup:
@@ -133,11 +148,7 @@ class TreeWalk:
     def __init__(self, tree: Tree, densities: FloatArray, slopes: FloatArray) -> None:
         leaf, left = tree.left < 0, tree.left.clip(0)
         x0, x1, y0, y1 = tree.boxes.T
-        probability = np.zeros(len(leaf))
-        probability[leaf] = densities * ((x1 - x0) * (y1 - y0))[leaf]
-        # from the last node to the first, so that both parts precede the whole
-        for node in np.flatnonzero(~leaf)[::-1]:
-            probability[node] = probability[left[node]] + probability[left[node] + 1]
+        probability = _sum_parts(tree, densities * ((x1 - x0) * (y1 - y0))[leaf])
         down = x1[left] == x1
         cut = np.where(down, y1[left], x1[left])
         share = probability[left] / np.maximum(probability, 1e-300)
@@ -207,3 +218,17 @@ class TreeWalk:
         across, downwards = mi.Vector4f(x0, x1, box.z, box.w), mi.Vector4f(box.x, box.y, y0, y1)
         index = mi.UInt32(node.z) + dr.select(second, mi.UInt32(1), 0)
         return self.nodes.at(index, mi.Vector4f, active), dr.select(down, downwards, across)
+
+
+def _sum_parts(tree: Tree, weights: FloatArray) -> FloatArray:
+    """Return the sum (n,) of the blocks' `weights` in each node of a tree."""
+    leaf = tree.left < 0
+    sums = np.zeros(len(leaf))
+    sums[leaf] = weights
+    levels = [np.array([0])]  # of nodes, from the whole map downwards
+    while len(first := tree.left[levels[-1][~leaf[levels[-1]]]]):
+        levels.append(np.concatenate([first, first + 1]))
+    for level in levels[::-1]:
+        whole = level[~leaf[level]]
+        sums[whole] = sums[tree.left[whole]] + sums[tree.left[whole] + 1]
+    return sums

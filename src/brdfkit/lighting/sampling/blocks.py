@@ -5,13 +5,14 @@
 
 from brdfkit.core.array_types import FloatArray, JitFloat, JitMask, JitVector
 from brdfkit.lighting.sampling import tree
+from brdfkit.lighting.sampling.alias_table import AliasBlocks
 from brdfkit.lighting.sampling.block_laws import Hyperbolic, Law, SortedBlocks, Steps
 from brdfkit.lighting.sampling.block_lookups import GridLookup, TextureLookup, TreeWalk
 from brdfkit.lighting.sampling.block_slopes import fit_slopes
 from brdfkit.lighting.sampling.power_map import cell_power, pixel_power
 
 LAWS: dict[str, type[Law]] = {"hyperbolic": Hyperbolic, "steps": Steps}
-DISTRIBUTIONS = ("exact", *LAWS)
+DISTRIBUTIONS = ("exact", "alias", *LAWS)
 LOOKUPS: dict[str, type[TextureLookup | TreeWalk | GridLookup]] = {
     "texture": TextureLookup,
     "tree": TreeWalk,
@@ -24,8 +25,8 @@ class Blocks:
 
     The three names choose among methods: `criterion` is the error in `tree.CRITERIA` by which the
     next block to cut is found, `distribution` the way in DISTRIBUTIONS to draw a block, and
-    `lookup` the way in LOOKUPS to find the block of a point. The distribution "exact" draws blocks
-    by their shares of the power.
+    `lookup` the way in LOOKUPS to find the block of a point. The distributions "exact" and "alias"
+    draw blocks by their shares of the power.
     """
 
     def __init__(
@@ -36,10 +37,12 @@ class Blocks:
         cells, power, _ = sums.sum_moments(self.tree.blocks)
         self.shares = power.clip(0) / power.clip(0).sum()
         slopes = fit_slopes(sums, pixel_power(brightness), self.tree.blocks)
-        self.sampler: TreeWalk | SortedBlocks
+        self.sampler: TreeWalk | AliasBlocks | SortedBlocks
+        densities = self.shares * sums.values.size / cells
         if distribution == "exact":
-            densities = self.shares * sums.values.size / cells
             self.sampler = TreeWalk(self.tree, densities, slopes)
+        elif distribution == "alias":
+            self.sampler = AliasBlocks(self.tree.blocks, densities, self.shares, slopes)
         else:
             self.sampler = SortedBlocks(self.tree, self.shares, slopes, LAWS[distribution])
             densities = self.sampler.densities
