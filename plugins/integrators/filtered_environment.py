@@ -108,9 +108,9 @@ def define(mi: MitsubaModule) -> type:
             hit = active & si.is_valid()
             if self.shadows != "none":
                 directions = unshadowed.get_light_directions(sampler.sample_count())
-                light = ShadowedLight(
-                    unshadowed, si, self.make_visibility_test(scene, si, hit), directions
-                )
+                visible = self.make_visibility_test(scene, si, hit)
+                sharpness = self.shading.shadow_sharpness
+                light = ShadowedLight(unshadowed, si, visible, directions, sharpness)
             reflected = self.shading.radiance(scene, sampler, si, light, hit)
             behind = mi.unpolarized_spectrum(environment.eval(si, active & ~hit))
             return mi.depolarizer(dr.select(hit, reflected, behind)), active, []

@@ -5,7 +5,7 @@ a BSDF is uniform over its surface, its directions are stored for a grid of view
 """
 
 from brdfkit.core.array_types import JitColour, JitInt, JitMask, MitsubaObject
-from brdfkit.lighting.filtering.bsdf_directions import Directions, split_off_constant
+from brdfkit.lighting.filtering.bsdf_directions import OVERLAP, Directions, split_off_constant
 from brdfkit.lighting.filtering.filtered_light import Light
 from brdfkit.lighting.filtering.scene_bsdfs import (
     CacheByValues,
@@ -20,6 +20,9 @@ from brdfkit.mitsuba_bridge.channels import make_rgb_emission
 
 class FilteredSampling:
     """Lights each pixel from `count` directions that its BSDF draws, shared out among its rays."""
+
+    # The lobes of light overlap; shadow rays keep to the part that a direction represents
+    shadow_sharpness = 1 / OVERLAP
 
     def __init__(self, count: int) -> None:
         self.count = count

@@ -28,6 +28,8 @@ class LobeLight:
     `method` is a name of `lobe_table.METHODS`, and `count` the number of lobes per view.
     """
 
+    shadow_sharpness = 1.0  # the lobes are the BSDF's own shape, and shadow rays fill them
+
     def __init__(self, method: str, count: int) -> None:
         self.method, self.count = method, count
         self.lobes = CacheByValues(self.fit_lobes)

@@ -18,25 +18,34 @@ class ShadowedLight:
 
     `si` are the lit points, a `mi.SurfaceInteraction3f`, and `visible(direction)` returns whether
     light from a direction reaches them. `directions` sample the light in proportion to its
-    brightness, so that hidden lamps cast shadows in the irradiance.
+    brightness, so that hidden lamps cast shadows in the irradiance. Shadow rays have `sharpness`
+    times the concentration of the lobe of light: more than 1 where lobes overlap each other, since
+    light from around an obstacle would leak into the darkest shadow.
     """
 
     def __init__(
-        self, light: Light, si: MitsubaObject, visible: Visible, directions: LightDirections
+        self,
+        light: Light,
+        si: MitsubaObject,
+        visible: Visible,
+        directions: LightDirections,
+        sharpness: float = 1.0,
     ) -> None:
         self.light, self.si, self.visible, self.directions = light, si, visible, directions
+        self.sharpness = sharpness
 
     def mean_radiance_over_lobe(self, axis: JitVector, kappa: JitFloat) -> JitColour:
         """Return the mean visible radiance, in linear sRGB, over a von Mises-Fisher lobe."""
         import drjit as dr
 
         normal = self.si.to_world(type(axis)(0, 0, dr.sign(self.si.wi.z)))
+        sharp = kappa * self.sharpness
 
         def weigh_direction(direction: JitVector) -> JitColour:
-            radiance = self.light.mean_radiance_over_lobe(direction, kappa * RAYS)
+            radiance = self.light.mean_radiance_over_lobe(direction, sharp * RAYS)
             return dr.select(dr.dot(direction, normal) > 0, radiance, 0)
 
-        share = visible_share(self.visible, axis, kappa, weigh_direction, RAYS)
+        share = visible_share(self.visible, axis, sharp, weigh_direction, RAYS)
         return self.light.mean_radiance_over_lobe(axis, kappa) * share
 
     def irradiance(self, normal: JitVector) -> JitColour:
