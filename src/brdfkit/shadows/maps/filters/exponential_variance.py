@@ -58,11 +58,15 @@ class Lookup:
 
     def visibility(self, point: MapPoint) -> JitFloat:
         """Return the greatest share of the light that may arrive at a point."""
-        means, bound = self.moments.interpolate_moments(point), 1
         depth = dr.clip(point.depth, -1, 1)
-        for i, (warp, steepness) in enumerate(self.warps):
-            t = warp(depth)
-            least = dr.square(LEAST_DEVIATION * steepness * t)
-            mean, square = means[2 * i], means[2 * i + 1]
-            bound = dr.minimum(bound, bound_by_two_moments(mean, square, t, least))
-        return self.moments.reduce_light_bleeding(point, bound)
+
+        def bound_by_all_warps(means: list[JitFloat]) -> JitFloat:
+            bound: JitFloat = 1
+            for i, (warp, steepness) in enumerate(self.warps):
+                t = warp(depth)
+                least = dr.square(LEAST_DEVIATION * steepness * t)
+                mean, square = means[2 * i], means[2 * i + 1]
+                bound = dr.minimum(bound, bound_by_two_moments(mean, square, t, least))
+            return bound
+
+        return self.moments.bound_light(point, bound_by_all_warps)

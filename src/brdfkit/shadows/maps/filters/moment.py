@@ -47,5 +47,6 @@ class Lookup:
         """Return the greatest share of the light that may arrive at a point."""
         depth = point.depth - (dr.abs(point.slope_u) + dr.abs(point.slope_v)) / 2
         depth = dr.clip(depth, -1, 1)
-        bound = bound_by_four_moments(self.moments.interpolate_moments(point), depth, self.rounding)
-        return self.moments.reduce_light_bleeding(point, bound)
+        return self.moments.bound_light(
+            point, lambda means: bound_by_four_moments(means, depth, self.rounding)
+        )

@@ -39,6 +39,9 @@ class Lookup:
 
     def visibility(self, point: MapPoint) -> JitFloat:
         """Return the greatest share of the light that may arrive at a point."""
-        mean, square = self.moments.interpolate_moments(point)
-        bound = bound_by_two_moments(mean, square, point.depth, self.least_variance)
-        return self.moments.reduce_light_bleeding(point, bound)
+
+        def bound(means: list[JitFloat]) -> JitFloat:
+            mean, square = means
+            return bound_by_two_moments(mean, square, point.depth, self.least_variance)
+
+        return self.moments.bound_light(point, bound)

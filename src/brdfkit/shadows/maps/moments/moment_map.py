@@ -9,7 +9,7 @@ from typing import Any
 
 import drjit as dr
 
-from brdfkit.core.array_types import JitFloat
+from brdfkit.core.array_types import JitFloat, MitsubaObject
 from brdfkit.mitsuba_bridge.properties.declarations import declare_float, declare_int
 from brdfkit.shadows.maps.map_point import MapPoint
 from brdfkit.shadows.maps.moments.moving_depths import MovingDepths
@@ -31,26 +31,36 @@ class MomentMap:
     def __init__(
         self, moments: Callable[[Any], list[Any]], depths: MovingDepths, blur: int, bleeding: float
     ) -> None:
-        import mitsuba as mi
-
-        values = dr.stack(
-            [depths.attach_edge_derivatives(m) for m in moments(depths.values)], axis=2
-        )
+        values = dr.stack(moments(dr.detach(depths.values)), axis=2)
         if blur:
             side = 2 * blur + 1
             values = dr.convolve(values, [1 / side] * side, axis=(0, 1), boundary="nearest")
         self.resolution, self.bleeding = values.shape[0], bleeding
-        texture: Any = mi.Texture2f  # `Any`, because mypy thinks that it cannot be called
-        self.texture = texture(values, False, False, wrap_mode=dr.WrapMode.Clamp)
+        self.means = make_texture(values)
+        moving = depths.average_with_derivatives(moments, blur)
+        self.moving_means = None if moving is None else make_texture(moving)
 
-    def interpolate_moments(self, point: MapPoint) -> list[JitFloat]:
-        """Return the moments of the depths around a receiver, interpolated between texels."""
+    def bound_light(self, point: MapPoint, bound: Callable[[list[Any]], JitFloat]) -> JitFloat:
+        """Return the largest share of the light at a receiver, less the light that leaks.
+
+        If shapes move, its derivatives are those by means that know how silhouettes move.
+
+        bound : function from the moments around the receiver to the largest share of the light.
+        """
         import mitsuba as mi
 
         scale: JitFloat = dr.opaque(mi.Float, 1 / self.resolution)
-        return self.texture.eval(mi.Point2f(point.u, point.v) * scale, point.active)
+        place = mi.Point2f(point.u, point.v) * scale
 
-    def reduce_light_bleeding(self, point: MapPoint, bound: JitFloat) -> JitFloat:
+        def look_up(means: MitsubaObject) -> JitFloat:
+            return self._reduce_light_bleeding(point, bound(means.eval(place, point.active)))
+
+        share = look_up(self.means)
+        if self.moving_means is None:
+            return share
+        return dr.replace_grad(share, look_up(self.moving_means))
+
+    def _reduce_light_bleeding(self, point: MapPoint, bound: JitFloat) -> JitFloat:
         """Return an upper `bound` on a receiver's light, less the light that leaks; 1 off the map.
 
         Bounds up to the setting `bleeding` become 0, and larger ones are stretched to end at 1.
@@ -59,3 +69,11 @@ class MomentMap:
         inside = (point.u >= 0) & (point.u <= size) & (point.v >= 0) & (point.v <= size)
         share = dr.clip((bound - self.bleeding) / (1 - self.bleeding), 0, 1)
         return dr.select(point.active & inside, share, 1)
+
+
+def make_texture(values: MitsubaObject) -> MitsubaObject:
+    """Return a `mi.Texture2f` of a tensor (rows, columns, channels), continued beyond its edge."""
+    import mitsuba as mi
+
+    texture: Any = mi.Texture2f  # `Any`, because mypy thinks that it cannot be called
+    return texture(values, False, False, wrap_mode=dr.WrapMode.Clamp)

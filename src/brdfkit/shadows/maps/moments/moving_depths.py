@@ -14,9 +14,17 @@ length along it, and v the velocity of the nearer surface on the map, its change
 
 The integral becomes a sum over pairs of neighbouring texels that a silhouette separates. A pair in
 a row stands for n_u ds = ±1, and a pair in a column for n_v ds = ±1, however the silhouette runs
-between texels; u and v are the map's axes. Each texel of a pair gets half of the pair's term.
+between texels; u and v are the map's axes. The silhouette is taken to be halfway between the
+centres of the texels, and [f] is the jump between their tangent planes there.
+
+As a silhouette passes a texel, the mean changes at once. What is computed from the mean, such as a
+bound on the light, may be curved, so its slope has to be taken halfway through the change: before
+it, where the window may not yet hold one of the two depths, a bound can be so steep that a few
+texels would outweigh all others. So derivatives are those of means whose first and last texels
+count half, and of silhouettes between two texels of the window. Both depths then have weight.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,24 +62,39 @@ class MovingDepths:
     values: Any
     motions: tuple[TexelMotion, TexelMotion] | None = None
 
-    def attach_edge_derivatives(self, f: MitsubaObject) -> MitsubaObject:
-        """Return the tensor `f`, a function of the depths, with the derivatives that edges add.
+    def average_with_derivatives(
+        self, compute: Callable[[Any], list[Any]], blur: int
+    ) -> MitsubaObject | None:
+        """Return means of functions of the depths, with right derivatives as shapes move, or None.
 
-        Where a silhouette moves, the depth of a texel jumps. With the derivatives added, those of
-        blurred means are right when shapes move; the values do not change.
+        The means are a tensor (resolution, resolution, functions), over windows whose first and
+        last texels count half. They are None if nothing moves.
+
+        compute : function from a tensor of depths to a list of tensors.
+        blur : number of texels on each side of a texel over which to average, at least 1.
         """
         if self.motions is None:
-            return f
-        return f + sum(
-            self._compute_edge_derivatives(f, i, each) for i, each in enumerate(self.motions)
-        )
+            return None
+        steps = 2 * max(blur, 1)
+        window = [0.5 / steps, *[1 / steps] * (steps - 1), 0.5 / steps]
+        means = dr.stack(compute(self.values), axis=2)
+        means = dr.convolve(means, window, axis=(0, 1), boundary="nearest")
+        for axis, motion in enumerate(self.motions):
+            edges = self._compute_edge_derivatives(compute, axis, motion)
+            # A kernel of even length averages the edges between the texels of a window
+            edges = dr.convolve(edges, [1 / steps] * steps, axis=axis)
+            means += dr.convolve(edges, window, axis=1 - axis)
+        return means
 
     def _compute_edge_derivatives(
-        self, f: MitsubaObject, axis: int, motion: TexelMotion
+        self, compute: Callable[[Any], list[Any]], axis: int, motion: TexelMotion
     ) -> MitsubaObject:
-        """Return a tensor of zeros whose derivatives are those of `f` due to moving silhouettes.
+        """Return a tensor of zeros with the derivatives of functions due to moving silhouettes.
 
-        axis : the axis of the tensor along which neighbouring texels are compared.
+        Each texel has those of the silhouette between it and the next texel.
+
+        compute : function from a tensor of depths to a list of tensors.
+        axis : the axis of the tensors along which neighbouring texels are compared.
         motion : motion of the surfaces along this axis.
         """
         with dr.suspend_grad():
@@ -81,13 +104,14 @@ class MovingDepths:
             deepest = dr.maximum(dr.maximum(slope, slope_next), 0) + CONTINUOUS_STEP
             highest = dr.minimum(dr.minimum(slope, slope_next), 0) - CONTINUOUS_STEP
             here_nearer, next_nearer = z_next - z > deepest, z_next - z < highest
-            f_here, f_next = pair_neighbours(f, axis)
-            jump = f_next - f_here
+            f_here = compute(dr.clip(z + slope / 2, -1, 1))
+            f_next = compute(dr.clip(z_next - slope_next / 2, -1, 1))
+            jumps = [beyond - here for here, beyond in zip(f_here, f_next, strict=True)]
         moved, moved_next = pair_neighbours(motion.place - dr.detach(motion.place), axis)
         moved = dr.select(here_nearer, moved, dr.select(next_nearer, moved_next, 0))
-        half = -moved * jump / 2
-        none = dr.zeros(type(half), (1, half.shape[1]) if axis == 0 else (half.shape[0], 1))
-        return dr.concat([half, none], axis) + dr.concat([none, half], axis)
+        edges = dr.stack([-moved * jump for jump in jumps], axis=2)
+        last = [1 if i == axis else size for i, size in enumerate(edges.shape)]
+        return dr.concat([edges, dr.zeros(type(edges), last)], axis)
 
 
 def pair_neighbours(values: MitsubaObject, axis: int) -> tuple[MitsubaObject, MitsubaObject]:
