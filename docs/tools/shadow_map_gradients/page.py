@@ -89,14 +89,11 @@ setting `bleeding`, c⁻ is `negative_exponent`.
 A box and a ring cast plain shadows. The bars of the fence are narrower than the window over which
 moments are averaged. Two plates, of which the upper one moves, cast shadows that cross.
 
-At the fence variances and moments have derivatives as wrong as their pictures. Between plates it
-is the derivative alone: with c⁻ the exponential filter takes the less of two bounds, and where
-three depths meet, the second one is so steep that a few texels outweigh all others; without c⁻ it
-is the fence that it gets wrong."""
+At the fence derivatives are as wrong as the pictures of their filters. Elsewhere they are right
+within a few per cent, between plates, too, where a window holds three depths."""
 
-TEXELS = """The slope over the box and the ring, and in brackets off, in per cent. From 512² on a
-finer map brings little: its pictures become better, its derivatives hardly. A wide blur wants a
-fine map."""
+TEXELS = """The slope over the box and the ring, and in brackets off, in per cent. Coarse maps have
+hardly more bias than fine ones, but more noise. A wide blur wants a fine map."""
 
 ZERO = f"""{", ".join(f"`{name}`" for name in COMPARE)}:
 these compare the depth of a texel with that of the point, lit or not, and average then. The
@@ -183,8 +180,9 @@ def write_advice(found):
             f"{within} of {len(plain)} within {BAR_IN_PERCENT}; off by {fence:.0f} % over the "
             f"fence, {plates:.0f} % between plates."
         )
+    named = " or ".join(filter(None, (", ".join(good[:-1]), good[-1])))
     verdict = (
-        f"{' or '.join(good)}: over a box and a ring their slopes are within "
+        f"{named}: over a box and a ring their slopes are within "
         f"{BAR_IN_PERCENT} in all projections."
     )
     return "\n".join([verdict, "", *lines])
