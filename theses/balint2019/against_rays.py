@@ -5,12 +5,12 @@ The thesis shows them in Figures 6.2 to 6.6.
 
 from brdfkit.theses.balint2019 import scenes, whole_frames
 from brdfkit.theses.balint2019.frame import EPSILON, RAYS, SIZE, TIMES, TRUE_RAYS, Frame
-from brdfkit.theses.balint2019.measuring import ALIKE, compare_times
 
 from brdfkit.core.jit.threads import in_turn
 from brdfkit.theses.claims import UNSTATED, Claim, to_verdict
 from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section, Table
+from brdfkit.theses.timing import ALIKE, compare_times
 
 SECONDS = 60
 SCENES = scenes.cube, scenes.simple, scenes.complicated

@@ -3,12 +3,7 @@
 from functools import partial
 
 import numpy as np
-from brdfkit.theses.balint2019.measuring import (
-    compare_times,
-    compute_rms,
-    measure_in_turns,
-    read_shares,
-)
+from brdfkit.theses.balint2019.measuring import compute_rms, measure_in_turns, read_shares
 from brdfkit.theses.balint2019.rivals import aaltonen, quilez
 from brdfkit.theses.balint2019.view import View
 from brdfkit.theses.balint2019.whole_frames import ROWS
@@ -17,6 +12,7 @@ from brdfkit.distance_fields.shadows.marches import compute_convex_shadow, compu
 from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
 from brdfkit.distance_fields.shadows.split import compute_split_shadow
 from brdfkit.images.errors.psnr import psnr
+from brdfkit.theses.timing import compare_times
 
 SIZE, TRUE_RAYS, TIMES = 144, 1024, 5
 EPSILON = {0.2: 1 / 10, 1.0: 1 / 20}  # by the radius of the light

@@ -1,43 +1,10 @@
 """Measures shadows: their shares of the light, evaluations, errors and times."""
 
-from dataclasses import dataclass
-
 import drjit as dr
 import numpy as np
-from scipy.stats import t as student
 
 from brdfkit.core.jit.threads import use_one_thread
 from brdfkit.theses.claims import measure_cpu_seconds
-
-ALIKE = 1.5  # ratios of times on two machines agree up to this factor
-
-
-@dataclass(frozen=True)
-class Ratio:
-    """The ratio of two times, and its 95 % interval."""
-
-    value: float
-    low: float
-    high: float
-
-    def __str__(self):
-        return f"{self.value:.3g} ({self.low:.3g} to {self.high:.3g})"
-
-    def is_at_least(self, printed):
-        """Return whether the whole interval is above a printed ratio, less the factor `ALIKE`."""
-        return self.low * ALIKE >= printed
-
-    def is_at_most(self, printed):
-        """Return whether the whole interval is below a printed ratio, times the factor `ALIKE`."""
-        return self.high <= printed * ALIKE
-
-
-def compare_times(some, others):
-    """Return the `Ratio` of two arrays of times (turn, ...), of which each turn is a pair."""
-    logs = np.log(np.divide(some, others))
-    n = len(logs)
-    wide = student.ppf(0.975, n - 1) * logs.std(ddof=1) / np.sqrt(n) if n > 1 else 0.0
-    return Ratio(*(float(np.exp(logs.mean() + side * wide)) for side in (0, -1, 1)))
 
 
 def wait_for(*arrays):

@@ -5,13 +5,14 @@ The thesis does so in Figures 6.15 and 6.16.
 
 import numpy as np
 from brdfkit.theses.balint2019 import scenes
-from brdfkit.theses.balint2019.measuring import ALIKE, compare_times, compute_rms
+from brdfkit.theses.balint2019.measuring import compute_rms
 
 from brdfkit.core.jit.llvm import use_variant
 from brdfkit.core.jit.threads import in_turn, use_one_thread
 from brdfkit.theses.claims import Claim, measure_cpu_seconds, to_verdict
 from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section, Table
+from brdfkit.theses.timing import ALIKE, compare_times
 
 SECONDS = 25
 SIZE, MANY, FEW, TRUE_SAMPLES, TIMES = 128, 150, 50, 1024, 5

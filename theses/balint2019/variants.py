@@ -19,7 +19,7 @@ from brdfkit.theses.balint2019.march_times import (
     measure_marches,
     read_printed_times,
 )
-from brdfkit.theses.balint2019.measuring import ALIKE, compare_times, measure_in_turns
+from brdfkit.theses.balint2019.measuring import measure_in_turns
 from brdfkit.theses.balint2019.scenes import MARCHES
 from brdfkit.theses.balint2019.view import View
 from brdfkit.theses.balint2019.whole_frames import measure_horizon
@@ -28,6 +28,7 @@ from brdfkit.core.jit.threads import in_turn
 from brdfkit.distance_fields.shadows.marches import compute_convex_shadow, compute_linear_shadow
 from brdfkit.theses.claims import Claim, to_verdict
 from brdfkit.theses.page import Section
+from brdfkit.theses.timing import ALIKE, compare_times
 
 SECONDS = 60
 SIZE, HORIZON_SIZE = 160, 256

@@ -4,7 +4,7 @@ from functools import partial
 
 import drjit as dr
 from brdfkit.theses.balint2019 import scenes
-from brdfkit.theses.balint2019.measuring import compare_times, measure_in_turns
+from brdfkit.theses.balint2019.measuring import measure_in_turns
 from brdfkit.theses.balint2019.rivals import aaltonen, quilez
 from brdfkit.theses.balint2019.view import shade_points, trace_eye_rays
 from drjit.llvm import Array3f, Float
@@ -12,6 +12,7 @@ from drjit.llvm import Array3f, Float
 from brdfkit.distance_fields.shadows import make_light_cone
 from brdfkit.distance_fields.shadows.marches import compute_convex_shadow, compute_linear_shadow
 from brdfkit.distance_fields.shadows.monte_carlo import compute_monte_carlo_shadow
+from brdfkit.theses.timing import compare_times
 
 SIZE, TIMES = 160, 11
 ROWS = 1080  # of the thesis's pictures, which are in full HD: empty balls are as large as there

@@ -1,11 +1,10 @@
-"""Measures the time of drawing from each phase function, and of a picture with it."""
+"""Draws from each phase function, and renders pictures with it, to measure the times."""
 
 import drjit as dr
 
 from brdfkit.mitsuba_bridge import phase_functions
-from brdfkit.theses.claims import measure_least_seconds
 
-DRAWS, TURNS = 1 << 20, 16  # threads, and draws of each, whose time is measured
+DRAWS, REPEATS = 1 << 20, 16  # threads, and draws of each, whose time is measured
 SIZE, SPP = 256, 16  # pixels along an edge of the measured picture, and samples of each
 G, K = 0.6, 0.8112
 
@@ -71,14 +70,8 @@ def list_plugins(fits):
     }
 
 
-def divide_by_first(seconds):
-    """Return times relative to that of the first."""
-    first = next(iter(seconds.values()))
-    return {name: s / first for name, s in seconds.items()}
-
-
-def measure_picture(phase):
-    """Return the CPU seconds of a picture of even smoke with a phase function."""
+def prepare_picture(phase):
+    """Return a function that renders a picture of even smoke with a phase function."""
     import mitsuba as mi
 
     camera = mi.ScalarTransform4f().look_at([1.9, 1.1, 2.2], [0.5, 0.5, 0.5], [0, 1, 0])
@@ -94,27 +87,22 @@ def measure_picture(phase):
         parallel=False,
     )
 
-    def picture():
-        mi.render(scene, spp=SPP).numpy()
-
-    picture()  # compiles the kernels, which is not timed
-    return measure_least_seconds(picture)
+    return lambda: mi.render(scene, spp=SPP).numpy()
 
 
-def measure_draws(draw):
-    """Return the CPU seconds of the draws of a sampler, in one kernel that sums them."""
+def prepare_draws(draw):
+    """Return a function that draws by a sampler many times, in one kernel that sums the cosines."""
     import mitsuba as mi
 
-    def drawn():
+    def draw_all():
         numbers = mi.PCG32(DRAWS)
 
         def add_draw(i, total, numbers):
             return i + 1, total + draw(numbers.next_float32()), numbers
 
         state = mi.UInt32(0), mi.Float(0), numbers
-        _, total, _ = dr.while_loop(state, lambda i, *_: i < TURNS, add_draw)
+        _, total, _ = dr.while_loop(state, lambda i, *_: i < REPEATS, add_draw)
         dr.eval(total)
         dr.sync_thread()
 
-    drawn()  # compiles the kernel, which is not timed
-    return measure_least_seconds(drawn)
+    return draw_all
