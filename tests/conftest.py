@@ -150,6 +150,7 @@ def model(model_name):
 def browser():
     """Headless Chromium: the system's, or the one that Playwright has installed."""
     api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
+    api.expect.set_options(timeout=30_000)  # the machine may be busy
     with api.sync_playwright() as playwright:
         names = "chromium", "chromium-browser", "google-chrome"
         own = playwright.chromium.executable_path

@@ -1,5 +1,6 @@
 """What tests of a view's page do in a browser: they drag, type and choose, and look for faults."""
 
+import base64
 import gzip
 import io
 from pathlib import Path
@@ -33,6 +34,12 @@ def read_axe():
     return gzip.decompress(AXE.read_bytes()).decode()
 
 
+def read_address(page):
+    """The settings in the page's address, as JSON."""
+    letters = page.url.partition("state=")[2]
+    return base64.urlsafe_b64decode(letters + "=" * (-len(letters) % 4)).decode()
+
+
 def pixels(page):
     """The pixels of the picture (height, width, 3)."""
     shot = page.locator("canvas").first.screenshot()
@@ -41,7 +48,7 @@ def pixels(page):
 
 def wait_until(page, is_met, say="the page does not change"):
     """Wait until a function of no arguments returns something true, and return that."""
-    for _ in range(200):
+    for _ in range(600):  # a minute, since the machine may be busy
         if result := is_met():
             return result
         page.wait_for_timeout(100)

@@ -12,6 +12,7 @@ from helpers.view_pages import (
     drag,
     number,
     pixels,
+    read_address,
     type_number,
     wait_for_change,
     wait_until,
@@ -135,8 +136,9 @@ def test_a_bump_is_dragged_typed_widened_and_removed(page):
 def test_the_menu_says_when_the_points_are_no_longer_those_of_the_preset(page):
     preset = page.get_by_role("combobox", name="Preset")
     shown = "([own, text]) => own.selectedOptions[0].textContent === text"
+    colour = point_colour(page)
     choose(page, "Preset", "intensity")
-    page.wait_for_timeout(2000)  # until the page takes over what Python says of it
+    wait_until(page, lambda: point_colour(page) != colour, "the points keep their colours")
     page.locator(".handle").last.focus()
     page.keyboard.press("ArrowDown")
     for text, button in (("edited", "Undo"), ("intensity", "Undo"), ("default", "Redo")):
@@ -334,7 +336,7 @@ def test_a_volume_is_opened_from_a_file(new_page, scan, way):
     new_page.get_by_text("6 × 7 × 8 voxels of 2").wait_for(timeout=60_000)
     assert number(new_page, "The plot shows values to") == 2
     if way == "drop":  # the volume of the command is not shown with its settings
-        new_page.wait_for_timeout(3000)  # until the address has them
+        wait_until(new_page, lambda: "two_blocks" in read_address(new_page))
         new_page.reload()
         new_page.get_by_text("The address has settings of two_blocks of 6×7×8 voxels").wait_for()
         new_page.get_by_text("16 × 16 × 16 voxels").wait_for()
