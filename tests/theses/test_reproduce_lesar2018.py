@@ -31,6 +31,7 @@ from brdfkit.theses.lesar2018 import (
 )
 from brdfkit.theses.lesar2018.iterations import make_cloud, make_renderer, make_stage
 
+from brdfkit.theses.timing import compare_times
 from brdfkit.volumes.rays import search
 
 
@@ -165,22 +166,24 @@ def test_the_end_of_a_run_as_its_reference():
 def test_times_beside_the_printed(monkeypatch):
     """As if each time were that of the phone; single scattering is the slowest."""
 
+    def let_times_be(time):
+        """Let iterations take times by their renderer, voxels and frame, equal in each turn."""
+        monkeypatch.setattr(iteration_times, "prepare_iteration", time)
+
+    def repeat(times, turns):
+        return {label: np.full(turns, time) for label, time in times.items()}
+
     def phone(renderer, voxels, frame, steps=None):
         slow = {"single_scattering": 2, "maximum_intensity": 0.5}
         return slow.get(renderer, 1) * iteration_times.PRINTED["phone"][voxels, frame]
 
-    monkeypatch.setattr(iteration_times, "measure_iteration", phone)
+    monkeypatch.setattr(iteration_times, "measure_in_turns", repeat)
+    let_times_be(phone)
     assert verdicts("iteration_times") == ["confirmed"] * 4 + ["not confirmed"]
-
-    def others(renderer, voxels, frame, steps=None):
-        return frame**2 / len(renderer)
-
-    monkeypatch.setattr(iteration_times, "measure_iteration", others)
+    let_times_be(lambda renderer, voxels, frame, steps=None: frame**2 / len(renderer))
     assert verdicts("iteration_times") == ["not confirmed"] * 5
     # The slowest, if maximum intensity searches about the largest value, which it may not do
-    monkeypatch.setattr(
-        iteration_times, "measure_iteration", lambda name, *_: len(name) * (1 + search.HALVINGS)
-    )
+    let_times_be(lambda name, *_: 1 + search.HALVINGS if name == "maximum_intensity" else 2)
     assert verdicts("iteration_times")[0] == "holds where the maximum is plain"
 
 
@@ -198,7 +201,8 @@ def test_the_application_at_a_small_size(monkeypatch):
     small = {"VOXELS": 12, "SIZE": 64, "REFERENCE": 20, "RENDERERS": ["maximum_intensity"]}
     change(monkeypatch, {application: small})
     for moving, same in ((1.0, "confirmed"), (3.0, "not confirmed")):
-        monkeypatch.setattr(application, "measure_response", lambda *_, m=moving: (2.0, m))
+        ratio = compare_times([2.0, 2.0], [moving, moving])
+        monkeypatch.setattr(application, "measure_response", lambda *_, ratio=ratio: ratio)
         found = verdicts("application")
         assert found == [
             same if moving > 2 else "confirmed",
