@@ -4,7 +4,7 @@
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -82,26 +82,21 @@ class Lamp:
 
 @dataclass(frozen=True)
 class Lamps:
-    """Several lights of a scene, with or without shapes, as arrays; the fields are those of `Lamp`.
+    """Several lights of a scene, all with shapes or all without.
 
     count : the number of the lights.
+    arrays : a `Lamp` whose fields have one entry for each light.
     """
 
     count: int
-    emitter: Any
-    middle: Any
-    has_shape: bool
-    centre: Any
-    radius: Any
-    is_sphere: Any
+    arrays: Lamp
 
     def select_lamp(self, i: JitInt) -> Lamp:
         """Return the i-th light."""
-        of_all, of_shapes = ("emitter", "middle"), ("centre", "radius", "is_sphere")
-        fields = {name: getattr(self, name) for name in (*of_all, *of_shapes)}
-        for name in (*of_all, *of_shapes) if self.has_shape else of_all:
-            fields[name] = dr.gather(type(fields[name]), fields[name], i)
-        return Lamp(has_shape=self.has_shape, **fields)
+        of_shapes = ("centre", "radius", "is_sphere") if self.arrays.has_shape else ()
+        fields = {name: getattr(self.arrays, name) for name in ("emitter", "middle", *of_shapes)}
+        one = {name: dr.gather(type(field), field, i) for name, field in fields.items()}
+        return replace(self.arrays, **one)
 
     def sum_up(
         self, light: Callable[[Lamp, MitsubaObject], JitColour], sampler: MitsubaObject
@@ -174,15 +169,10 @@ def make_lamps(
     # Lists, not NumPy's arrays: kernels depend on how the memory of those is aligned
     middles = [SHAPES[kind][1] for kind in kinds] or [(0.5, 0.5)] * len(places)
     centres, radii = bound_shapes(shapes, kinds)
-    return Lamps(
-        len(places),
-        emitter,
-        mi.Point2f(*(mi.Float(list(part)) for part in zip(*middles, strict=True))),
-        bool(shapes),
-        centres,
-        radii,
-        mi.Bool([kind == "Sphere" for kind in kinds] or [False]),
-    )
+    middle = mi.Point2f(*(mi.Float(list(part)) for part in zip(*middles, strict=True)))
+    is_sphere = mi.Bool([kind == "Sphere" for kind in kinds] or [False])
+    lamps = Lamp(emitter, middle, bool(shapes), centres, radii, is_sphere)
+    return Lamps(len(places), lamps)
 
 
 def bound_shapes(
