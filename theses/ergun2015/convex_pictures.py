@@ -3,6 +3,7 @@
 import numpy as np
 from brdfkit.theses.ergun2015.convex_study import (
     NO_COACD,
+    PRINTED_FORM,
     SETTING,
     can_decompose,
     make_studies,
@@ -19,7 +20,7 @@ from brdfkit.theses.claims import NOT_RUN, Claim, to_verdict
 from brdfkit.theses.drawing import make_figure
 from brdfkit.theses.page import Picture, Section, Table
 
-SECONDS = 60
+SECONDS = 90
 BAR = 39  # dB: the lowest PSNR that the thesis has on any mesh
 DRAWN = "spot", "stanford-bunny", "suzanne"
 DIFFERENCE = 5  # the factor by which the figure enlarges differences
@@ -29,7 +30,11 @@ ORDER = "Height fields have the better pictures.", "Figure 9.9", "a drawing"
 TEXT = f"""{SETTING} PSNR is of linear values, its peak the 99.9th percentile; and of values as they
 are shown, in sRGB with white at the 95th percentile. Concavity {CONCAVITY:g}, maps of {RESOLUTION}
 texels. The thesis's meshes are of Stanford; these are common test meshes, of which some enclose no
-volume and so have no parts."""
+volume and so have no parts. {PRINTED_FORM}"""
+FORMS = "the thesis's form", "brdfkit's form"
+SELF_SHADOWS = """Parts bulge out of the mesh where it is hollow, and shade it there, as the thesis
+says of the edges where they overlap. Flat parts, which coacd makes and HACD's cost avoids, have few
+texels for their narrow faces in a sphere."""
 WHY = """The thesis does not say what its PSNR is of, nor how large the mesh is in the picture.
 Hulls close gaps and hollows. Those of a mesh with openings (beetle) are made around voxels, and are
 thicker than it. The clearance, 0.03, was chosen on these very meshes, of six values from 0.01 to
@@ -46,17 +51,26 @@ def check_claims(sources, report):
     found = make_studies(sources)
     quality = {}
     for done, (name, study) in enumerate(found.items()):
-        quality[name] = [study.compute_quality(by) for by in (study.convex, study.fields)]
+        printed = study.make_printed_parts(), study.make_printed_parts(true_planes=True)
+        kinds = *printed, study.fields_without_clearance, study.convex, study.fields
+        quality[name] = [study.compute_quality(by) for by in kinds]
         report(done + 1, len(found) + 1)
-    heads = "mesh", "triangles", "parts", "convex parts [dB]", "height fields [dB]"
+    kinds = (
+        "parts, printed",
+        "by true planes",
+        "fields, no clearance",
+        "convex parts",
+        "height fields",
+    )
+    heads = "mesh", "triangles", "parts", *kinds
     rows = [
         (
             name,
             f"{len(found[name].faces):,}",
             str(len(found[name].convex.hulls)),
-            *(f"{linear:.1f}, {as_shown:.1f} shown" for linear, as_shown in pair),
+            *(f"{linear:.1f}, {as_shown:.1f} shown" for linear, as_shown in row),
         )
-        for name, pair in quality.items()
+        for name, row in quality.items()
     ]
     drawn = {name: found[name] for name in DRAWN if name in found} or found
     caption = (
@@ -64,12 +78,25 @@ def check_claims(sources, report):
         f"difference, {DIFFERENCE} times as large."
     )
     picture = Picture("convex_pictures", draw_rows(drawn), caption)
-    claims = [claim_good(quality), claim_order(quality)]
-    return Section(TITLE, TEXT, claims, [Table(heads, rows)], [picture])
+    thesis = {name: (row[0], row[2]) for name, row in quality.items()}
+    ours = {name: row[3:] for name, row in quality.items()}
+    true = np.array([row[1][0] for row in quality.values()])
+    limit = (
+        f"By true planes in place of texels {(true >= BAR).sum()} of {len(true)} meshes, "
+        f"{true.min():.1f} to {true.max():.1f} dB. {SELF_SHADOWS}"
+    )
+    claims = [
+        claim_good(FORMS[0], thesis, limit),
+        claim_good(FORMS[1], ours, WHY),
+        claim_order(FORMS[0], thesis),
+        claim_order(FORMS[1], ours),
+    ]
+    table = Table(heads, rows, "PSNR [dB].")
+    return Section(TITLE, TEXT, claims, [table], [picture])
 
 
-def claim_good(quality):
-    """Claim that no mesh has a PSNR below the thesis's lowest one.
+def claim_good(form, quality, why):
+    """Claim that no mesh has a PSNR below the thesis's lowest one, by parts of a `form`.
 
     `quality` maps each mesh to two pairs of PSNRs, linear and as shown, for convex parts and for
     height fields.
@@ -80,18 +107,19 @@ def claim_good(quality):
         f"{linear.max():.1f} dB; as shown {(as_shown >= BAR).sum()}, {as_shown.min():.1f} to "
         f"{as_shown.max():.1f} dB"
     )
+    named = f"{GOOD[0][:-1]}: {form}.", *GOOD[1:]
     if not set(quality) <= set(MESHES):
-        return Claim(
-            *GOOD, ours, NOT_RUN, f"{find_mesh_path(MESHES[0])} and the others are missing."
-        )
-    return Claim(*GOOD, ours, to_verdict(linear.min() >= BAR), WHY)
+        missing = f"{find_mesh_path(MESHES[0])} and the others are missing."
+        return Claim(*named, ours, NOT_RUN, missing)
+    return Claim(*named, ours, to_verdict(linear.min() >= BAR), why)
 
 
-def claim_order(quality):
+def claim_order(form, quality):
     """Claim that pictures by height fields are nearer to triangles than those by convex parts."""
     better = sum(fields[0] > convex[0] for convex, fields in quality.values())
     holds = to_verdict(better > len(quality) / 2)
-    return Claim(*ORDER, f"on {better} of {len(quality)} meshes", holds, "Confirmed on most.")
+    named = f"{ORDER[0][:-1]}: {form}.", *ORDER[1:]
+    return Claim(*named, f"on {better} of {len(quality)} meshes", holds, "Confirmed on most.")
 
 
 def draw_rows(studies):

@@ -4,12 +4,15 @@ All pictures take the same samples, by the integrator `convex_direct`: they diff
 alone.
 """
 
+import copy
 from contextlib import nullcontext
 from functools import cache, cached_property
 from importlib.util import find_spec
 
 import numpy as np
+from brdfkit.theses.ergun2015.convex_rays import ExactPlaneMap
 from brdfkit.theses.ergun2015.height_fields import HeightFields
+from brdfkit.theses.ergun2015.printed_ray import PrintedOccluders
 from brdfkit.theses.ergun2015.shapes import find_meshes
 
 from brdfkit.core.colours import to_srgb
@@ -17,14 +20,17 @@ from brdfkit.images.errors.psnr import psnr
 from brdfkit.lighting.visibility.decomposition import decompose
 from brdfkit.lighting.visibility.occluders import Occluders
 from brdfkit.rendering.scene_input.environment import describe_environment, replace_light
-from brdfkit.theses.claims import measure_least_seconds
 from brdfkit.theses.replacing import replace_part
 
 SIZE, SPP = 96, 64
+EPSILON = 1e-5  # over a part's radius, of Algorithm 3: exact with true planes
 SWEPT = "spot"  # the mesh for which settings are varied, and which moves
 GREY = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": 0.5}}
 SETTING = f"""Pictures of {SIZE} × {SIZE} pixels with {SPP} samples: a grey mesh, whose longest side
 is 2, on a ground under the environment *studio*. The truth has the shadows of its triangles."""
+PRINTED_FORM = f"""*Printed*: parts lie in spheres, rays meet them by Algorithm 3 with ε =
+{EPSILON:g}, and nothing has the clearance that brdfkit adds: parts and fields shade from the
+surface on."""
 NO_COACD = (
     "coacd or libigl is not installed, which find the parts; pip install 'brdfkit[visibility]'."
 )
@@ -49,14 +55,17 @@ def can_decompose():
 
 
 class Study:
-    """A mesh, given as a `Shape`, with its pictures by shadows of several kinds."""
+    """A mesh, given as a `Shape`, with its pictures by shadows of several kinds.
 
-    def __init__(self, shape):
+    It has a `bsdf` and stands in the environment `light`, a map of brdfkit's or a file.
+    """
+
+    def __init__(self, shape, bsdf=GREY, light="studio"):
         import mitsuba as mi
 
         self.points, self.faces = shape.points, shape.faces
-        made = shape.build(GREY, (SIZE, SIZE))
-        light = describe_environment("studio") | {"type": "kdtree_envmap"}
+        made = shape.build(bsdf, (SIZE, SIZE))
+        light = describe_environment(light) | {"type": "kdtree_envmap"}
         entries = replace_light(light, made) | {"integrator": {"type": "convex_direct"}}
         self.scene = mi.load_dict(entries, parallel=False)
         self.ground = mi.load_dict({"type": "scene", "ground": made["ground"]}, parallel=False)
@@ -75,6 +84,23 @@ class Study:
         """The mesh as height fields."""
         return HeightFields(self.points, self.faces)
 
+    def make_printed_parts(self, true_planes=False):
+        """Return the same parts as the thesis prints them, which do not know a clearance.
+
+        Rays find the `true_planes` or those of texels.
+        """
+        parts = PrintedOccluders({"mesh": self.convex.hulls}, EPSILON)
+        if true_planes:
+            parts.maps = ExactPlaneMap(parts.hulls)
+        return parts
+
+    @cached_property
+    def fields_without_clearance(self):
+        """The mesh as height fields, which may block rays at once, as in the thesis."""
+        fields = copy.copy(self.fields)
+        fields.clearance = 0
+        return fields
+
     @cached_property
     def exact(self):
         """The picture with the shadows of the mesh's triangles."""
@@ -89,10 +115,6 @@ class Study:
         integrator.casters.set_casters(self.scene, occluders, others or self.ground)
         with replace_part(occluders, "is_blocked") if occluders else nullcontext():
             return np.array(integrator.render(self.scene, seed=0, spp=spp), float)[..., :3]
-
-    def measure_seconds(self, occluders):
-        """Return the CPU seconds for a picture, the least of three."""
-        return measure_least_seconds(self.render, occluders)
 
     def compute_quality(self, occluders):
         """Return the PSNR [dB] of a picture with shadows of `occluders`, linear and in sRGB."""
