@@ -1,9 +1,11 @@
 """Defines the claims of Table 1 on six projections of shadow maps, by their scores.
 
-`grid` maps each cell, a scene, a size of the map and a form of PSM, to scores (view, light,
-projection, 2): the unused share and the aliasing [dB].
+`grid` holds the `Scores` of the six projections in each cell: by form, ours or the thesis's, and
+then by the values of its settings, see `SETTINGS`. Verdicts are on the thesis's forms.
 """
 
+from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -13,14 +15,15 @@ from brdfkit.theses.ergun2008.views import PROJECTIONS
 from brdfkit.theses.claims import Claim
 from brdfkit.theses.grid import judge_over_grid
 
-SETTINGS = "scene", "map", "PSM"
-FITTED, SIMPLE = "fitted", "simple"  # the forms of PSM
+OURS, THESIS = "ours", "the thesis's"  # the forms
+SETTINGS = {OURS: ("scene", "map"), THESIS: ("scene", "map", "window", "near plane")}
+WINDOWS = {"1": 1.0, "½": 0.5}  # distance of shadows over the farthest depth that is seen
+NEARS = {"0.1": 0.1, "1": 1.0}  # distance of the eye's near plane over the nearest surface's
 PARTED = 1.0  # dB: projections whose aliasing is closer count as equal
 UNIFORM, FOCUSED, PSM, LISPSM, TSM, POSM = range(6)
-FORMS = (
-    "Of the author's PSM the thesis says only that its light's view may be opened to the whole "
-    "cube, symmetric about its middle: that is the simple form. brdfkit's is fitted on each side, "
-    "and begins where something is seen."
+FORM_OF_PSM = (
+    "The thesis's PSM opens the light's view to the whole cube, evenly about its middle; ours is "
+    "fitted on each side, and begins where something is seen."
 )
 
 
@@ -33,33 +36,46 @@ def shorten_name(name):
     return words.partition("(")[2].rstrip(")") or words
 
 
-def compute_figures(scores):
-    """Return the row of Table 1 of each projection (n, 4) from scores (view, light, n, 2)."""
-    return np.array(
-        [
-            [*average_cells(scores[..., i, 0]), *average_cells(scores[..., i, 1])]
-            for i in range(scores.shape[-2])
-        ]
-    )
+@dataclass(frozen=True)
+class Scores:
+    """The unused share and the aliasing [dB] of projections, in all views and lights of a scene.
 
-
-def judge_figures(grid, holds, with_psm=True):
-    """Return figures and verdict on a condition of the figures (6, 4) in the cells of a grid.
-
-    Both forms of PSM are tried only if the condition is about it, `with_psm`.
+    values : the scores (view, light, projection, 2).
     """
-    return judge(grid, lambda scores: holds(compute_figures(scores)), with_psm)
+
+    values: np.ndarray
+
+    @cached_property
+    def figures(self):
+        """The row of Table 1 of each projection (n, 4)."""
+        columns = [(i, score) for i in range(self.values.shape[2]) for score in (0, 1)]
+        means = [average_cells(self.values[..., i, score]) for i, score in columns]
+        return np.reshape(means, (-1, 4))
 
 
-def judge(grid, holds, with_psm=True):
-    """Return figures and verdict on a condition of the scores in the cells of a grid."""
-    names = SETTINGS if with_psm else SETTINGS[:-1]
-    tried = {
-        cell[: len(names)]: bool(holds(scores))
-        for cell, scores in grid.items()
-        if with_psm or cell[2] == FITTED
+def judge_figures(grid, holds):
+    """Return figures and verdict on a condition of the figures (6, 4) in the cells of a grid."""
+    return judge(grid, lambda scores: holds(scores.figures))
+
+
+def judge(grid, holds, settings=SETTINGS):
+    """Return figures and verdict on a condition of what the cells of a grid hold.
+
+    The verdict is on the thesis's forms; the figures are also those of ours.
+
+    settings : the names of the settings by form.
+    """
+    found = {
+        form: judge_over_grid(names, {cell: bool(holds(its)) for cell, its in grid[form].items()})
+        for form, names in settings.items()
     }
-    return judge_over_grid(names, tried)
+    (own, own_verdict), (its, verdict) = found[OURS], found[THESIS]
+    return f"by the thesis's forms {its}; by ours {own} ({own_verdict})", verdict
+
+
+def list_scores(grid):
+    """Return the `Scores` of all cells, of both forms."""
+    return [scores for cells in grid.values() for scores in cells.values()]
 
 
 def list_printed_pairs(column, sign, parted):
@@ -81,7 +97,7 @@ def claim_order(says, grid, column, sign, parted, why):
         return sum(better[a] > better[b] for a, b in pairs)
 
     ours, verdict = judge_figures(grid, lambda figures: count_kept(figures) == len(pairs))
-    kept = [count_kept(compute_figures(scores)) for scores in grid.values()]
+    kept = [count_kept(scores.figures) for scores in list_scores(grid)]
     order = np.argsort(-sign * read_printed_rows()[:, column], kind="stable")
     return Claim(
         says,
@@ -93,17 +109,17 @@ def claim_order(says, grid, column, sign, parted, why):
     )
 
 
-def claim_extreme(says, grid, column, sign, projection, why, with_psm=True):
+def claim_extreme(says, grid, column, sign, projection, why):
     """Claim that a projection has the largest value of a column, times `sign`."""
     ours, verdict = judge_figures(
-        grid, lambda figures: np.argmax(sign * figures[:, column]) == projection, with_psm
+        grid, lambda figures: np.argmax(sign * figures[:, column]) == projection
     )
     printed = f"{read_printed_rows()[projection, column]:g}"
     return Claim(says, "Table 1", printed, ours, verdict, why)
 
 
 def claim_focus(grid):
-    ours, verdict = judge_figures(grid, lambda f: f[FOCUSED, 0] < f[UNIFORM, 0], with_psm=False)
+    ours, verdict = judge_figures(grid, lambda f: f[FOCUSED, 0] < f[UNIFORM, 0])
     return Claim(
         "Focusing makes better use of the map than the uniform projection.",
         "2.2.2.1",
@@ -121,8 +137,8 @@ def measure_spread(figures):
 
 
 def claim_even(grid):
-    ours, verdict = judge_figures(grid, lambda f: measure_spread(f) < PARTED, with_psm=False)
-    spreads = [measure_spread(compute_figures(scores)) for scores in grid.values()]
+    ours, verdict = judge_figures(grid, lambda f: measure_spread(f) < PARTED)
+    spreads = [measure_spread(scores.figures) for scores in list_scores(grid)]
     return Claim(
         "Uniform, focused and LiSPSM hardly differ by aliasing.",
         "Table 1, 5",
@@ -146,7 +162,7 @@ def claim_steadiest(grid):
 
 
 def claim_steadier(grid):
-    ours, verdict = judge_figures(grid, lambda f: f[LISPSM, 3] < f[UNIFORM, 3], with_psm=False)
+    ours, verdict = judge_figures(grid, lambda f: f[LISPSM, 3] < f[UNIFORM, 3])
     return Claim(
         "LiSPSM's aliasing changes less from light to light than the uniform one's.",
         "5",
@@ -159,7 +175,7 @@ def claim_steadier(grid):
 
 def compare_use(scores, view, other):
     """Return of which projections (6,) a view uses the map better than another view."""
-    use = scores[..., 0].mean(axis=1)
+    use = scores.values[..., 0].mean(axis=1)
     return use[view] < use[other]
 
 

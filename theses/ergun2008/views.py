@@ -107,6 +107,17 @@ class View:
         return drawn
 
 
+def load_placements(name, light=1):
+    """Return the `Placement` of a scene in each view; the scene is loaded once."""
+    import mitsuba as mi
+
+    views = {view: SCENES[name](view, light, (SIZE, SIZE)) for view in VIEWS}
+    scene = mi.load_dict(next(iter(views.values())), parallel=False)
+    (emitter,) = scene.emitters()
+    sensors = {view: mi.load_dict(its["camera"]) for view, its in views.items()}
+    return {view: Placement.from_scene(scene, its, emitter) for view, its in sensors.items()}
+
+
 def measure_all(function, scenes, report):
     """Return for each scene an array (view, light, ...) of the results of `function(view)`."""
     scenes, found, done = list(scenes or SCENES), {}, 0
