@@ -245,7 +245,7 @@ def measure_sampler(entries, repeat):
     emitter = mi.load_dict(entries)
     derivatives = make_gradient_function(emitter)
     seeds = range(ROUNDS * repeat, ROUNDS * (repeat + 1))
-    ours = hasattr(emitter, "points")
+    ours = hasattr(emitter, "map_sampler")
     bright = luminance(np.array(entries["bitmap"], float))
     return {
         "noise": measure_noise(emitter, "independent", repeat),

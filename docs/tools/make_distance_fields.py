@@ -6,16 +6,18 @@ The picture of a scene (`distance_field_gallery/scenes.py`) is drawn only if it 
 Lessons (`distance_field_gallery/lessons.py`), small pictures next to each other, are drawn and
 measured each time.
 """
+# ruff: noqa: I001, for brdfkit comes first: it chooses the LLVM that Mitsuba loads
 
 import inspect
 import runpy
 import time
 from pathlib import Path
 
+import brdfkit  # noqa: F401
 import drjit as dr
 import mitsuba as mi
 import numpy as np
-from distance_field_gallery import lessons  # which imports brdfkit before Mitsuba
+from distance_field_gallery import lessons
 from distance_field_gallery.highlights import SIZES, compute_errors_by_roughness, highlights
 from distance_field_gallery.scenes import SCENES
 from make_models import join_paragraphs, make_table
