@@ -100,7 +100,7 @@ def test_two_lobes_of_schlicks(name, error, largest):
 def test_a_mean_in_16_bits_stops(monkeypatch):
     """At 0.0015, where 32 bits go on as 1/√n."""
     change(monkeypatch, {half_floats: {"PIXELS": 1024, "SHOWN": (100, 1000, 1500)}})
-    assert verdicts("half_floats") == ["not confirmed"]
+    assert verdicts("half_floats") == ["holds where the noise is 0 or 1, mean 0.1"]
     mean, draw = half_floats.NOISES["even, 0.45 to 0.55"]
     half, full = (
         half_floats.measure_errors(mean, draw, kind)[0][[999, -1]] for kind in ("f2", "f4")
@@ -179,12 +179,12 @@ def test_times_beside_the_printed(monkeypatch):
 
     monkeypatch.setattr(iteration_times, "measure_in_turns", repeat)
     let_times_be(phone)
-    assert verdicts("iteration_times") == ["confirmed"] * 4 + ["not confirmed"]
+    assert verdicts("iteration_times") == ["confirmed"] * 3 + ["not run", "not stated", "confirmed"]
     let_times_be(lambda renderer, voxels, frame, steps=None: frame**2 / len(renderer))
-    assert verdicts("iteration_times") == ["not confirmed"] * 5
-    # The slowest, if maximum intensity searches about the largest value, which it may not do
+    assert verdicts("iteration_times")[:3] == ["not confirmed"] * 3
+    # It would be the slowest with a search about the largest value, which the thesis does not have
     let_times_be(lambda name, *_: 1 + search.HALVINGS if name == "maximum_intensity" else 2)
-    assert verdicts("iteration_times")[0] == "holds where the maximum is plain"
+    assert verdicts("iteration_times")[0] == "confirmed"
 
 
 def test_a_plain_maximum_is_that_of_the_points(llvm_variant):
@@ -198,20 +198,15 @@ def test_a_plain_maximum_is_that_of_the_points(llvm_variant):
 
 def test_the_application_at_a_small_size(monkeypatch):
     """By one renderer: its parts, its samples and its convergence; and a part that does nothing."""
-    small = {"VOXELS": 12, "SIZE": 64, "REFERENCE": 20, "RENDERERS": ["maximum_intensity"]}
+    small = {"VOXELS": 12, "SIZE": 64, "REFERENCE": 20, "RENDERERS": ["single_scattering"]}
     change(monkeypatch, {application: small})
-    for moving, same in ((1.0, "confirmed"), (3.0, "not confirmed")):
-        ratio = compare_times([2.0, 2.0], [moving, moving])
-        monkeypatch.setattr(application, "measure_response", lambda *_, ratio=ratio: ratio)
-        found = verdicts("application")
-        assert found == [
-            same if moving > 2 else "confirmed",
-            *["confirmed"] * 2,
-            same,
-            "not confirmed",
-        ]
-        beside = {"show.slices": True}  # which the same samples are drawn with
-        monkeypatch.setattr(application, "PARTS", {"camera": (beside, application.RENDERERS)})
+    ratio = compare_times([2.0, 2.0], [1.0, 1.0])
+    monkeypatch.setattr(application, "measure_response", lambda *_: ratio)
+    averaged = "holds where the renderer is single_scattering"
+    assert verdicts("application") == ["confirmed"] * 2 + [averaged] + ["not run"] * 2
+    beside = {"show.slices": True}  # which the same samples are drawn with
+    monkeypatch.setattr(application, "PARTS", {"camera": (beside, application.RENDERERS)})
+    assert verdicts("application") == ["not confirmed"] * 2 + [averaged] + ["not run"] * 2
 
 
 @pytest.mark.quick

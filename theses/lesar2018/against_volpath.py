@@ -58,7 +58,8 @@ def claim_unbiased(z):
         f"{len(found)} z-scores of {found.min():+.1f} to {found.max():+.1f}, root mean square "
         f"{np.sqrt(np.mean(found**2)):.2f}",
         to_verdict(np.abs(found).max() < SIGNIFICANT),
-        f"Confirmed below {SIGNIFICANT:g}; of right methods the root mean square is near 1.",
+        f"Confirmed below {SIGNIFICANT:g}; of right methods the root mean square is near 1. Three "
+        "channels each of 40 parts of pictures: in grey media they are not independent.",
     )
 
 

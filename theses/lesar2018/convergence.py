@@ -65,9 +65,11 @@ def check_claims(sources, report):
         [(f"{n}", *(f"{v:+.2f} dB" for v in values)) for n, *values in rows],
         f"How much PSNR is too large, by a reference of {ITERATIONS[small]:,} iterations.",
     )
-    picture = Picture(
-        "convergence", draw_convergence(runs, peak), "Left: the smoke after 1, 30 and all."
+    caption = (
+        "Left: the smoke after 1, 30 and all iterations. The larger frames end after fewer "
+        "iterations, on the curve of the small one."
     )
+    picture = Picture("convergence", draw_convergence(runs, peak), caption)
     return Section("Convergence", TEXT, claims, [table], [picture])
 
 
@@ -123,7 +125,9 @@ def claim_slope(run):
         "-1/2; ch. 5 has O(n⁻¹) as well",
         f"{slope:+.3f}",
         to_verdict(abs(slope + 0.5) < 0.03),
-        "The slope of log error over log n; O(n⁻¹) is that of the variance.",
+        "The slope of log error over log n; O(n⁻¹) is that of the variance. Of independent samples "
+        "it cannot be otherwise.",
+        arithmetic=True,
     )
 
 

@@ -85,6 +85,7 @@ def claim_below(missing, own, truth):
         to_verdict(least > -1e-3 * truth.max() and all(b < a / 4 for a, b in means.values())),
         "Never too large. Means over the rays, the values are 0 to 1. `maximum_intensity`, which "
         f"halves the distance about the largest of {STEPS} points, misses {own.mean():.0e}.",
+        arithmetic=True,
     )
 
 
@@ -95,7 +96,9 @@ def draw_missing(missing, own):
     n = np.arange(1, ITERATIONS + 1)
     for (points, found), colour in zip(missing.items(), COLOURS, strict=False):
         axes.loglog(n, found.mean(axis=1), color=colour, label=f"{points} points")
-    axes.axhline(own.mean(), color=COLOURS[-1], linestyle="--", linewidth=1)
+    axes.axhline(
+        own.mean(), color=COLOURS[-1], linestyle="--", linewidth=1, label="brdfkit's search"
+    )
     axes.set_xlabel("iterations")
     axes.legend(fontsize=8)
     style_axes(axes, "", "missing")

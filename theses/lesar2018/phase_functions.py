@@ -46,7 +46,7 @@ def check_claims(sources, report):
     rows = [(name, f"{found[name][1]:.5f}", *(f"{v:.6f}" for v in values[name])) for name in phases]
     heads = "", "mean cosine", *(f"p({mu:g})" for mu in COSINES)
     caption = "The names have the mean cosine g of Henyey-Greenstein's, and the k of Schlick's."
-    picture = Picture("phase_functions", draw_phases(phases), "Straight on is to the right.")
+    picture = Picture("phase_functions", draw_phases(phases), "Straight on is to the left.")
     return Section("Phase functions", TEXT, claims, [Table(heads, rows, caption)], [picture])
 
 
@@ -59,6 +59,7 @@ def claim_integral(found):
         "1",
         f"off by {off:.0e} at most, of {len(found)}",
         to_verdict(off < 1e-6),
+        arithmetic=True,
     )
 
 
@@ -71,6 +72,7 @@ def claim_mean(found):
         "g",
         f"off by {off:.0e} at most, of 0.6 and -0.3",
         to_verdict(off < 1e-6),
+        arithmetic=True,
     )
 
 
@@ -121,11 +123,11 @@ def draw_phases(phases):
     """Draw all phase functions over the angle."""
     drawn = make_figure(7, 3)
     axes = drawn.subplots()
-    degrees = np.linspace(-180, 0, 361)
+    degrees = np.linspace(0, 180, 361)
     for (name, p), colour in zip(phases.items(), COLOURS, strict=False):
         axes.semilogy(degrees, p(np.cos(np.radians(degrees))), label=name, color=colour)
     axes.set_xlabel("deflection [degrees]")
-    axes.set_xticks(np.arange(-180, 1, 45), [f"{-d}" for d in range(-180, 1, 45)])
+    axes.set_xticks(np.arange(0, 181, 45))
     axes.legend(fontsize=7)
     style_axes(axes, "", "p [sr⁻¹]")
     return drawn

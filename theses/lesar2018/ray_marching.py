@@ -170,9 +170,11 @@ def claim_bias(off):
         "Even steps are biased, also with a random place; Woodcock tracking is not.",
         "ch. 5",
         "no figure",
-        f"{STEPS[0]} steps: {100 * coarse:+.1f} %, {coarse / error:.0f} standard errors; "
-        f"Woodcock: {z:+.1f}",
+        f"{STEPS[0]} steps: {100 * coarse:+.1f} %, {coarse / error:.0f} standard errors, "
+        f"{STEPS[-1]} steps {100 * off[f'{STEPS[-1]} steps'][0]:+.3f} %; Woodcock: {z:+.1f} "
+        f"standard errors of {100 * tracked_error:.2f} %",
         to_verdict(coarse > 5 * error and abs(z) < 3.5),
         "exp(-τ) of a random τ is too large in the mean: more passes at the same steps bring it no "
-        "nearer.",
+        f"nearer, more steps do. The truth is a march of {MANY} even steps. Woodcock's bias would "
+        "not be seen below its standard error; `Woodcock tracking is unbiased` has a closed form.",
     )

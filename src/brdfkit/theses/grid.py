@@ -8,6 +8,7 @@ import numpy as np
 from brdfkit.theses.claims import CONFIRMED, HOLDS_WHERE, REFUTED
 
 LEAST = 0.1  # of the grid: a claim that holds in a smaller block of settings is not confirmed
+FEW = 4  # settings: in a larger grid, a single one in which a claim holds may be chance
 
 Cell = tuple[str, ...]  # the value of each setting
 
@@ -17,8 +18,9 @@ def judge_over_grid(names: Sequence[str], holds: Mapping[Cell, bool]) -> tuple[s
 
     The claim is confirmed where it holds in all cells. Otherwise the verdict names the largest
     block in which it holds without exception: some values of each setting, in all combinations. Of
-    equal blocks it is the one with the fewest settings to name. If that block is a single cell, or
-    has less than the share `LEAST` of all cells, the claim is not confirmed, and the text names it.
+    equal blocks it is the one with the fewest settings to name. If that block has less than the
+    share `LEAST` of all cells, or is a single one of more than `FEW`, the claim is not confirmed,
+    and the text names it.
 
     names : the name of each setting, in the order of the cells' values.
     holds : whether the claim holds, for each cell of the grid.
@@ -39,7 +41,7 @@ def judge_over_grid(names: Sequence[str], holds: Mapping[Cell, bool]) -> tuple[s
         for name, values, every in zip(names, block, _list_values(holds), strict=True)
         if len(values) < len(every)
     )
-    if size < max(2, LEAST * len(holds)):
+    if size < LEAST * len(holds) or (size == 1 and len(holds) > FEW):
         return f"{ours}, at most where {words}", REFUTED
     return ours, f"{HOLDS_WHERE} {words}"
 
