@@ -10,7 +10,7 @@ from brdfkit.shadows.hybrid import make_hybrid_shadow
 from brdfkit.shadows.maps.scenes import SCENES
 from brdfkit.shadows.volumes.light_volumes import LightVolumes
 from brdfkit.shadows.volumes.mesh import Mesh
-from brdfkit.theses.claims import UNSTATED, Claim, measure_least_seconds, to_verdict
+from brdfkit.theses.claims import Claim, measure_least_seconds, to_verdict
 from brdfkit.theses.page import Section, Table
 
 SECONDS = 15
@@ -105,7 +105,8 @@ def claim_memory(found):
         "O(E n) and O(r s t)",
         f"as n to the power {power:.2f}, up to {most:.1f} times the map's; maps 0",
         to_verdict(power > 0.5),
-        "Below 1: a small box has its faces in few tiles of the picture.",
+        "Below 1: a small box has its faces in few tiles of the picture. A map's size is given.",
+        arithmetic=True,
     )
 
 
@@ -155,7 +156,8 @@ def claim_hybrid():
         "no figure",
         f"{100 * wrong[0]:.2f} % wrong light, the map {100 * wrong[1]:.2f} %; "
         f"{times[0] / times[1]:.0f} times the time",
-        UNSTATED,
+        to_verdict(wrong[0] > wrong[1] and times[0] > 2 * times[1]),
         f"Volumes from the edges of a focused depth map, and that map itself, with {COUNTS[1]} "
-        "boxes.",
+        "boxes, on a processor: the one setting that was tried. Confirmed where the hybrid has "
+        "more wrong light and takes twice the time.",
     )

@@ -195,5 +195,7 @@ def claim_waste(rows, balls):
         f"{min(more):.1f} to {max(more):.1f} times as many triangles as ours",
         to_verdict(bool(np.all(np.diff(wasted) > 0)) and wasted[-1] > 0.9 and min(more) > 1),
         "By counted work. Whether the processor or the program is faster then, as it says, depends "
-        "on hardware of 2008. Confirmed where the share grows at every step, to over 90 %.",
+        "on hardware of 2008, and was not run. Confirmed where the share grows at every step, to "
+        "over 90 %.",
+        arithmetic=True,
     )

@@ -35,7 +35,7 @@ def check_claims(sources, report):
 def claim_misprint(says, where, wrong, right, why):
     """Claim on a formula that is off by `wrong` as printed, and by `right` as it is meant."""
     ours = f"off by {wrong:.3g}; as it is meant {right:.0e}"
-    return Claim(says, where, "the formula", ours, to_verdict(wrong < 1e-4), why)
+    return Claim(says, where, "the formula", ours, to_verdict(wrong < 1e-4), why, arithmetic=True)
 
 
 def claim_bound():
@@ -146,11 +146,12 @@ def claim_footprint_area():
     return Claim(
         "d_s r_s / cosα is the area of a texel on a surface.",
         "3.1.1",
-        "2 times at twice the distance",
+        "the formula: 2 times at twice the distance",
         f"{growth:.4f} times",
         to_verdict(np.isclose(growth, 2)),
         "The formula is that of a length, along the slope; the area is d_s² r_s² / cosα. So Q2, by "
         "4.2.3 a ratio of areas, is not the ratio that 3.1.1 prints.",
+        arithmetic=True,
     )
 
 
@@ -165,6 +166,7 @@ def claim_rotation():
         f"({5 * np.cos(turn) + 8 * np.sin(turn):.4f}, {y:.4f})",
         to_verdict(f"{y:.4f}" == "4.4281"),
         "The last digit was cut.",
+        arithmetic=True,
     )
 
 

@@ -19,6 +19,7 @@ OURS, THESIS = "ours", "the thesis's"  # the forms
 SETTINGS = {OURS: ("scene", "map"), THESIS: ("scene", "map", "window", "near plane")}
 WINDOWS = {"1": 1.0, "½": 0.5}  # distance of shadows over the farthest depth that is seen
 NEARS = {"0.1": 0.1, "1": 1.0}  # distance of the eye's near plane over the nearest surface's
+EQUAL = 0.001  # of the map: uses of it that are closer count as equal
 PARTED = 1.0  # dB: projections whose aliasing is closer count as equal
 UNIFORM, FOCUSED, PSM, LISPSM, TSM, POSM = range(6)
 FORM_OF_PSM = (
@@ -119,7 +120,7 @@ def claim_extreme(says, grid, column, sign, projection, why):
 
 
 def claim_focus(grid):
-    ours, verdict = judge_figures(grid, lambda f: f[FOCUSED, 0] < f[UNIFORM, 0])
+    ours, verdict = judge_figures(grid, lambda f: f[FOCUSED, 0] < f[UNIFORM, 0] - EQUAL)
     return Claim(
         "Focusing makes better use of the map than the uniform projection.",
         "2.2.2.1",
@@ -154,7 +155,7 @@ def claim_steadiest(grid):
     ours, verdict = judge_figures(grid, lambda f: np.argmin(f[:, 3]) == PSM)
     return Claim(
         "PSM's aliasing changes least from light to light, though it is the worst.",
-        "Table 1",
+        "cells of Table 1",
         "2.03 dB, others 4.36 to 6.76",
         ours,
         verdict,
@@ -187,7 +188,7 @@ def claim_lamp(grid):
     ours, verdict = judge(grid, lambda scores: compare_use(scores, 3, 0)[:POSM].all())
     return Claim(
         "The miner's lamp, V4, uses maps better than V1, of all projections but POSM.",
-        "4.2.2",
+        "cells of 4.2.2",
         "5 of 5",
         ours,
         verdict,
@@ -200,7 +201,7 @@ def claim_dueling(grid):
     ours, verdict = judge(grid, lambda scores: compare_use(scores, 1, 2).all())
     return Claim(
         "V3, which is called intermediate, uses maps less than V2, the worst case by name.",
-        "4.2.2",
+        "cells of 4.2.2",
         "6 of 6 projections",
         ours,
         verdict,

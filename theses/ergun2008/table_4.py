@@ -144,14 +144,14 @@ def claim_gain(grid):
 def claim_softness(grid):
     ours, verdict = judge(grid, lambda scores: scores[0, PCF] < scores[0, DEPTH])
     return Claim(
-        "PCF is farther from them than a plain depth map, for its edges are soft.",
+        "PCF is farther from them than a plain depth map.",
         "Table 4",
         "-2.05 dB",
         f"{ours}; {format_range(grid, PCF, DEPTH)}",
         verdict,
-        "A soft edge is wrong on more pixels by less, and squares favour that. The most that PCF "
-        "loses is by constant biases, and not by its edges: a wider window reaches farther up a "
-        "slope, so that there is acne.",
+        "The thesis's reason, its soft edges, is not what counts: they are wrong on more pixels by "
+        "less, and squares favour that. The most that PCF loses is by constant biases: a wider "
+        "window reaches farther up a slope, so that there is acne.",
     )
 
 

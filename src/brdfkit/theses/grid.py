@@ -7,7 +7,7 @@ import numpy as np
 
 from brdfkit.theses.claims import CONFIRMED, HOLDS_WHERE, REFUTED
 
-LEAST = 0.1  # of the grid: a claim that holds in a smaller block of settings is not confirmed
+LEAST = 1 / 8  # of the grid: a claim that holds in a smaller block of settings is not confirmed
 FEW = 4  # settings: in a larger grid, a single one in which a claim holds may be chance
 
 Cell = tuple[str, ...]  # the value of each setting
