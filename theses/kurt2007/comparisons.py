@@ -8,19 +8,15 @@ from brdfkit.regression.problem.parameter_space import Space
 from brdfkit.regression.problem.problem import Problem
 from brdfkit.regression.robust.linear import reweight_linear_model
 from brdfkit.regression.robust.problem import RobustProblem
-from brdfkit.rendering import render
-from brdfkit.theses.claims import HOLDS_WHERE, Claim, to_verdict
+from brdfkit.theses.claims import Claim, to_verdict
 from brdfkit.theses.page import Section
 
-SECONDS = 25
+SECONDS = 18
 POLYNOMIAL = "pca_polynomial:degree=7"
 STARTS, PASSES, SETTLED = 8, 500, 1e-9
-WIDTHS, ALIKE = (0.2, 0.6), 35  # Figure 3.3's m; PSNR [dB] from which pictures are alike
-SIZE, SPP = 96, 64
 APART = 1e-3  # of the values' spread: ends that differ by more are two
 TEXT = """What the thesis says in its text, on the 52 samples of CUReT, by E of eq. 5.13, here
-with weights ≥ 0: below 0 a highlight is none. *Pictures*: those of Table 9.3, k_d = 0.2, F₀ = 0.5,
-and k_s = 0.4 for Torrance-Sparrow, whose formula has the 1/4 that Cook-Torrance's lacks.
+with weights ≥ 0: below 0 a highlight is none.
 *Minimum*: the passes of bisquare start at the least squares of the polynomial of degree 7 to all
 samples and to random thirds of them; ends count as two if their values differ by more than 0.1 % of
 the spread of the measured ones."""
@@ -29,16 +25,15 @@ the spread of the measured ones."""
 def check_claims(sources, report):
     """Check the claims on pairs of models, and on the minimum of a fit; return their section."""
     errors = {}
-    for label in ("phong", "blinn_phong", "torrance_sparrow", "cook_torrance", "lafortune"):
+    for label in ("phong", "blinn_phong", "lafortune"):
         errors[label] = compute_errors(sources, label)
-        report(len(errors), 8)
+        report(len(errors), 6)
     errors["two"] = compute_errors(sources, "lafortune:lobe_count=2")
-    report(6, 8)
+    report(4, 6)
     ends = [_count_ends(data.samples) for data in load_samples(sources).values()]
-    report(7, 8)
+    report(5, 6)
     claims = [
         _claim_half_vector(errors["blinn_phong"] / errors["phong"]),
-        _claim_distributions(errors["torrance_sparrow"] / errors["cook_torrance"]),
         _claim_two_lobes(errors["two"] / errors["lafortune"]),
         _claim_global_minimum(np.array(ends)),
     ]
@@ -58,39 +53,6 @@ def _claim_half_vector(ratios):
         "Ngan et al. measured gloss. CUReT's samples are rough, and most have no highlight for "
         "which the two would differ as theirs did.",
     )
-
-
-def _claim_distributions(ratios):
-    psnr = {m: _compare_distributions(m) for m in WIDTHS}
-    alike = [f"m = {m}" for m, decibels in psnr.items() if decibels >= ALIKE]
-    verdict = to_verdict(len(alike) == len(psnr))
-    if 0 < len(alike) < len(psnr):
-        verdict = f"{HOLDS_WHERE} {' and '.join(alike)}"
-    near = (np.abs(ratios - 1) <= 0.05).sum()
-    return Claim(
-        "Beckmann's and the Gaussian distribution give nearly the same pictures.",
-        "Figure 3.3",
-        "pictures at m = 0.2 and 0.6",
-        ", ".join(f"PSNR {d:.0f} dB at m = {m}" for m, d in psnr.items()),
-        verdict,
-        f"Nearly the same is {ALIKE} dB here; the thesis tells no figure and no light. The "
-        "Gaussian of the angle and Beckmann's of its tangent part as m grows. A fit makes up for "
-        f"it by m: E of Torrance-Sparrow over Cook-Torrance is {np.median(ratios):.3f} (median), "
-        f"within 5 % on {near} of {len(ratios)}.",
-    )
-
-
-def _compare_distributions(m):
-    """Return the PSNR [dB] between pictures of Torrance-Sparrow and of Cook-Torrance."""
-    cook, torrance = (
-        labels.model(name)(diffuse_reflectance=0.2, specular_reflectance=k_s, f0=0.5, alpha=m)
-        for name, k_s in (("cook_torrance", 0.1), ("torrance_sparrow", 0.4))
-    )
-    pictures = render([cook, torrance], spp=SPP, size=SIZE)
-    if pictures.spp < SPP:  # Ctrl-C
-        raise KeyboardInterrupt
-    (decibels,) = pictures.psnr().values()
-    return decibels
 
 
 def _claim_two_lobes(ratios):

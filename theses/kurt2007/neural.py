@@ -1,9 +1,13 @@
 """Decodes neural networks that represent measured BRDFs [Sztrajman et al. 2021] into tables."""
 
+from functools import cache
+
 import numpy as np
 
+from brdfkit.materials.measured import Measured
 from brdfkit.model.samples.table import Table
 
+CELLS = 30, 30, 60  # of the tables to which the claims fit models: θ_h, θ_d, φ_d
 WEIGHTS = 675  # of a network with layers of 6, 21, 21 and 3 numbers, biases included
 
 
@@ -33,3 +37,10 @@ def decode_network(weights, shape):
     angles = (a[above] for a in np.meshgrid(*table.centres, indexing="ij"))
     table.values[above] = evaluate_network(weights, *angles)
     return table
+
+
+@cache
+def load_neural_material(sources, name):
+    """Return the neural reconstruction of a material of MERL, as a measured table."""
+    with np.load(sources.find_file("nbrdf_derived/merl_nbrdf.npz")) as networks:
+        return Measured.from_table(decode_network(networks[name], CELLS).values, name=name)
