@@ -7,18 +7,25 @@ sets what came out beside what is printed.
 
 **In short.** The thesis fits known BRDF models to measurements, and a new one, a polynomial over
 two principal components of the directions. It claims that the polynomial, being linear, takes half
-the time, reaches the global minimum, and describes most materials best. *What holds*: its printed
-errors come back, and the polynomial of degree 7 has the lowest error of eight models on most
-samples of CUReT. *What does not*: it is not the best on gloss, in the thesis's own table either; by
-bisquare, as the thesis fits it, it has several minima, and hides highlights; terms of interaction
-do not vanish; and four models reflect more light than arrives. *What surprised*: in one of five
-printed fits the highlight is below 0, with which it beats every fit that light allows; and the time
-is a matter of the program more than of the model.
+the time, reaches the global minimum, needs few parameters, and describes most materials best. *What
+holds*: its printed errors come back, and so do the ratios of its times where the searches alone are
+timed; the polynomial of degree 7 has the lowest error of eight models on most samples of CUReT; the
+powers are worth more than the terms of interaction that it drops; away from the horizon Lambert's
+sampling is enough for it; and bisquare resists outliers. *What does not*: it is not the best on
+gloss, in the thesis's own table either; by bisquare, as the thesis fits it, it has several minima,
+and a higher degree brings no highlight to a lacquer; a rational function of as many coefficients
+has lower errors, also of values left out of its fit; and four models reflect more light than
+arrives. *What surprised*: in one of five printed fits the highlight is below 0, with which it beats
+every fit that light allows; and though bisquare hides highlights, the balls of four of MERL's five
+are nearest by the polynomial.
 
 The measurements, which brdfkit does not ship, and what is not as it was in the thesis:
 
 - **CUReT**: the thesis fitted R, G and B; the file at hand is an average over them, on a scale of
-  its own in each sample. So errors are compared after one factor per sample, or without a unit.
+  its own in each sample. So errors are compared after one factor per sample, or without a unit; one
+  section divides the average among the channels by the colours of the printed fits.
+- **Meshes**: the thesis's vase and dragon are not at hand. In their place are brdfkit's vase, the
+  Stanford bunny and two more meshes, under lights of ours, because the thesis tells none.
 - **Weights below 0**: the thesis let k_d and k_s have any sign and printed the negative ones as 0;
   those of brdfkit's models are never negative. Each section says which are compared; models whose
   weights may have any sign are made for it, in three lines (docs/how_to/your_model.md).

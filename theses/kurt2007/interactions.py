@@ -106,7 +106,7 @@ def _claim_interactions(errors, names):
     ours, verdict = judge_over_grid(
         ["polynomial", "E"], {cell: bool(np.median(r) > 1) for cell, r in ratios.items()}
     )
-    last = [r for (pair, _), r in ratios.items() if names[-1] in pair]
+    last = [r for (pair, _), r in ratios.items() if pair.endswith(names[-1])]
     counts = ", ".join(
         f"{(r > 1).sum()} ({c})" for r, c in zip(last, (*WAYS, LEFT_OUT), strict=True)
     )
@@ -118,7 +118,7 @@ def _claim_interactions(errors, names):
         verdict,
         "At about equal numbers of coefficients; E with interactions is "
         f"{min(np.median(r) for r in last):.2f} to {max(np.median(r) for r in last):.2f} times as "
-        "large, with 15 each (medians). So they do not vanish, as Figure 7.1 has it below, but "
+        "large, with 15 each (medians). So they do not vanish, as Figure 7.1 shows, but "
         "higher powers are worth more.",
     )
 
